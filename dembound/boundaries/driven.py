@@ -1,0 +1,25 @@
+"""What all wave-driven sides have in common: which named wave moves them in which direction."""
+
+from pydantic import model_validator
+
+from dembound.table import Table, quantity
+
+
+class Driven(Table):
+    """A side that names its waves by type: P moves along the side's normal, S across it.
+
+    Positive velocities point along +x and +y whatever the side. Both may be given at once.
+    """
+
+    wave_p: str | None = quantity(None, unit="1", help="name of the wave that moves along the side's normal")
+    wave_s: str | None = quantity(None, unit="1", help="name of the wave that moves across the side's normal")
+
+    @model_validator(mode="after")
+    def _names_a_wave(self) -> "Driven":
+        if self.wave_p is None and self.wave_s is None:
+            raise ValueError("names no wave; give wave_p (along the normal), wave_s (across it) or both")
+        return self
+
+    def waves_by_axis(self, normal_axis: int) -> tuple[str | None, str | None]:
+        """Wave names for x and y motion, given the axis of the side's normal."""
+        return (self.wave_p, self.wave_s) if normal_axis == 0 else (self.wave_s, self.wave_p)

@@ -1,0 +1,44 @@
+"""Which particles make up a side: those that can be seen when looking at it along its normal."""
+
+import numpy as np
+
+SAMPLES_PER_RADIUS = 100
+"""Lines of sight per smallest radius: a disk that shows less than 1 % of it counts as hidden."""
+
+DEPTH = 4.0
+"""How far behind the outermost face a disk may lie and still belong to the side, in largest radii: enough to
+look into every hole of a dense packing, and short of looking past a rough corner across the whole scene."""
+
+
+def exposed(positions: np.ndarray, radii: np.ndarray, side: str, period: float | None = None) -> np.ndarray:
+    """Indices of the particles seen from outside `side`, sorted along it.
+
+    A depth buffer over parallel lines of sight. positions (n, 2) and radii (n,) in m; side is left, right, bottom
+    or top; period (m) is the scene's length along the side when it is periodic there, else None.
+    """
+    axis = 0 if side in ("left", "right") else 1
+    sign = 1.0 if side in ("right", "top") else -1.0
+    outward, along = sign * positions[:, axis], positions[:, 1 - axis]
+    front = outward + radii
+    near = np.flatnonzero(front > front.max() - DEPTH * radii.max())
+    near = near[np.argsort(-front[near], kind="stable")]
+    spacing = radii.min() / SAMPLES_PER_RADIUS
+    origin = np.min(along[near] - radii[near])
+    count = int(np.ceil((np.max(along[near] + radii[near]) - origin) / spacing)) + 1
+    if period is not None:
+        count = int(np.ceil(period / spacing))
+        spacing = period / count
+    depth = np.full(count, -np.inf)
+    owner = np.full(count, -1)
+    for i in near:
+        first = int(np.ceil((along[i] - radii[i] - origin) / spacing))
+        last = int(np.floor((along[i] + radii[i] - origin) / spacing))
+        samples = np.arange(first, last + 1)
+        reach = radii[i] ** 2 - (origin + samples * spacing - along[i]) ** 2
+        face = outward[i] + np.sqrt(np.maximum(reach, 0.0))
+        slots = samples % count if period is not None else samples
+        seen = face > depth[slots]
+        depth[slots[seen]] = face[seen]
+        owner[slots[seen]] = i
+    nodes = np.unique(owner[owner >= 0])
+    return nodes[np.argsort(along[nodes], kind="stable")]

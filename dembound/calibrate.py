@@ -1,0 +1,313 @@
+"""Calibration: the factor β with which a side's dashpots absorb, or let in, a plane wave whole.
+
+A pulse of peak M_in meets the side at normal incidence; M_out is the mean peak velocity of the side's particles. An
+absorbing side of impedance β/β0 answers M_out/M_in = 2/(1 + β/β0), an input side 2/(1 + β0/β); both are 1 at β0.
+
+No more is modelled than decides M_out: a strip of the scene's own bricks, long enough that nothing returns to
+the side before the peak has left it, and each pass ends then.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Literal
+
+import h5py
+import numpy as np
+
+from dembound import __version__
+from dembound.boundaries import Free, Periodic, Velocity, Viscous, ViscousInput
+from dembound.case import Case
+from dembound.errors import CaseError, RunError
+from dembound.scene import Scene, boundary_medium, build, with_boundaries
+from dembound.simulate import Simulation
+from dembound.stability import choose_step
+from dembound.waves import Cosine
+
+Motion = Literal["p", "s"]
+Method = Literal["impedance", "ratio", "homogenised"]
+
+OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
+PULSE = "calibration"
+MOST_PASSES = 40
+
+STRIP = 0.35
+"""Strip length in pulse lengths cT. The peak is at the side T/2 after the front and has fallen by a tenth 0.6 T
+after it; an echo needs 2L/c from side to side, so L > 0.3 cT keeps M_out clean, and a sixth more makes it sure."""
+
+
+@dataclass
+class Calibration:
+    """What a calibration found.
+
+    Attributes
+    ----------
+    case, side, motion ("p" or "s"), method : what was asked.
+    kind : "absorbing" or "input".
+    incident : M_in, m/s.
+    beta, outgoing : per pass, the factor tried and the M_out (m/s) it gave.
+    result : the calibrated factor.
+    shortened : what was left out of the scene, one sentence each.
+    particles, steps : size of the scene calibrated on, and steps of all passes.
+    """
+
+    case: Case
+    side: str
+    motion: Motion
+    method: Method
+    kind: Literal["absorbing", "input"]
+    incident: float
+    shortened: list[str]
+    beta: list[float] = field(default_factory=list)
+    outgoing: list[float] = field(default_factory=list)
+    result: float = float("nan")
+    particles: int = 0
+    steps: int = 0
+
+    @property
+    def ratio(self) -> list[float]:
+        """M_out/M_in per pass."""
+        return [outgoing / self.incident for outgoing in self.outgoing]
+
+    @property
+    def factor(self) -> str:
+        """The calibrated key of the case file: beta_p or beta_s."""
+        return f"beta_{self.motion}"
+
+    def write(self, path: Path) -> None:
+        """Record the passes in an HDF5 file: attributes, and datasets beta, outgoing (m/s) and ratio."""
+        with h5py.File(path, "w") as file:
+            file.attrs.update(
+                {
+                    "name": self.case.name,
+                    "case": self.case.text,
+                    "version": __version__,
+                    "boundary": self.side,
+                    "wave": self.motion,
+                    "kind": self.kind,
+                    "method": self.method,
+                    "incident": self.incident,
+                    "result": self.result,
+                    "shortened": "\n".join(self.shortened),
+                }
+            )
+            for name, values, unit in (
+                ("beta", self.beta, "1"),
+                ("outgoing", self.outgoing, "m/s"),
+                ("ratio", self.ratio, "1"),
+            ):
+                file.create_dataset(name, data=np.array(values)).attrs["unit"] = unit
+
+
+Report = Callable[[Calibration], None]
+
+
+def calibrate(
+    case: Case,
+    side: str,
+    *,
+    motion: Motion | None = None,
+    method: Method = "impedance",
+    start: float | None = None,
+    tolerance: float = 1e-3,
+    full: bool = False,
+    report: Report | None = None,
+) -> Calibration:
+    """Find β of one side for P (motion "p", along its normal) or S waves ("s", across it).
+
+    Parameters
+    ----------
+    motion : by default P, or S where the scene holds the motion along the normal.
+    method : "impedance" solves the end's impedance relation for β0 and checks it; "ratio" multiplies β by
+        M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised" takes β0 = (c_eff/c)·H/ΣD from the
+        brick alone and runs nothing.
+    start : first β; by default the case's.
+    tolerance : ends when |M_out/M_in − 1| is below it.
+    full : use the whole scene instead of a strip.
+    report : called after every pass.
+
+    Raises CaseError when the side has no dashpots or cannot move that way, RunError when β does not converge.
+    """
+    table = _dashpots(case, side)
+    motion = motion or _default_motion(case, side)
+    _must_move(case, side, motion)
+    pulse = _pulse(case, side, motion)
+    strip, shortened = (_driven(case, side, motion, pulse), []) if full else _strip(case, side, motion, pulse)
+    found = Calibration(
+        case=case,
+        side=side,
+        motion=motion,
+        method=method,
+        kind="input" if isinstance(table, ViscousInput) else "absorbing",
+        incident=pulse.peak(),
+        shortened=shortened,
+    )
+    scene = build(strip)
+    found.particles = scene.count
+    if method == "homogenised":
+        found.result = homogenised_beta(scene, side, motion)
+        return found
+    beta = getattr(table, found.factor) if start is None else start
+    if beta <= 0.0:
+        raise CaseError([f"boundary.{side}.{found.factor}: is {beta:g}, must be above 0 to start a calibration"])
+    time_step, _ = choose_step(scene)  # β does not change it: centred dashpots cost no stability
+    for _ in range(MOST_PASSES):
+        trial = with_boundaries(scene, _with_beta(strip, side, found.factor, beta))
+        outgoing, steps = _pass(trial, time_step, found, pulse, full)
+        found.beta.append(beta)
+        found.outgoing.append(outgoing)
+        found.steps += steps
+        if report is not None:
+            report(found)
+        if abs(found.ratio[-1] - 1.0) < tolerance:
+            found.result = beta
+            return found
+        beta = _next_beta(found)
+    raise RunError(
+        f"calibration of {side} did not converge in {MOST_PASSES} passes: M_out/M_in = {found.ratio[-1]:.5f} "
+        f"at {found.factor} = {found.beta[-1]:.5f}"
+    )
+
+
+def homogenised_beta(scene: Scene, side: str, motion: Motion) -> float:
+    """β0 = (c_eff/c)·H/ΣD: the assembly's own wave speed over the nominal one, and the side's true length."""
+    edge = scene.edges[side]
+    index = 0 if motion == "p" else 1
+    own = scene.ground.wave_speeds(edge.axis)[index]
+    medium = boundary_medium(scene.case, scene.ground)
+    nominal = (medium.p_wave_speed, medium.s_wave_speed)[index]
+    return own / nominal / edge.cover
+
+
+def _next_beta(found: Calibration) -> float:
+    """The factor to try next, from the last pass."""
+    beta, ratio = found.beta[-1], found.ratio[-1]
+    absorbing = found.kind == "absorbing"
+    if found.method == "ratio":
+        return beta * ratio if absorbing else beta / ratio
+    return beta * ratio / (2.0 - ratio) if absorbing else beta * (2.0 - ratio) / ratio
+
+
+def _pass(scene: Scene, time_step: float, found: Calibration, pulse: Cosine, full: bool) -> tuple[float, int]:
+    """M_out of one run (m/s) and its number of steps."""
+    side, axis = found.side, _axis_of_motion(found.side, found.motion)
+    simulation = Simulation(scene, time_step, np.zeros(0, dtype=np.int64))
+    due = pulse.peak_time() + (0.0 if found.kind == "input" else _travel(scene, side, found.motion))
+
+    def peak() -> float:
+        return float(simulation.edge_peaks(side)[:, axis, 1].mean())
+
+    def passed(simulation: Simulation, record: np.ndarray) -> bool:
+        now = float(simulation.edge_velocity(side)[:, axis].mean())
+        return not full and simulation.time > due and now < 0.9 * peak()
+
+    longest = scene.case.run.duration if full else due + pulse.period
+    simulation.run(int(np.ceil(longest / time_step)), passed)
+    return peak(), simulation.steps
+
+
+def _travel(scene: Scene, side: str, motion: Motion) -> float:
+    """Time (s) a wave takes from the opposite side."""
+    axis = scene.edges[side].axis
+    return float(scene.assembly.size[axis]) / scene.ground.wave_speeds(axis)[0 if motion == "p" else 1]
+
+
+def _dashpots(case: Case, side: str) -> Viscous | ViscousInput:
+    table = case.boundary.get(side)
+    if not isinstance(table, Viscous | ViscousInput):
+        has = "free" if table is None else table.type
+        usable = [name for name, t in case.boundary.items() if isinstance(t, Viscous | ViscousInput)]
+        raise CaseError(
+            [f"boundary.{side}: is {has}, only viscous sides can be calibrated; here: {', '.join(usable) or 'none'}"]
+        )
+    return table
+
+
+def _normal_axis(side: str) -> int:
+    return 0 if side in ("left", "right") else 1
+
+
+def _axis_of_motion(side: str, motion: Motion) -> int:
+    return _normal_axis(side) if motion == "p" else 1 - _normal_axis(side)
+
+
+def _default_motion(case: Case, side: str) -> Motion:
+    return "s" if "xy"[_normal_axis(side)] in case.motion.held else "p"
+
+
+def _must_move(case: Case, side: str, motion: Motion) -> None:
+    name = "xy"[_axis_of_motion(side, motion)]
+    if name in case.motion.held:
+        raise CaseError([f"motion.held: holds {name}, the motion of {motion.upper()} waves at the side {side}"])
+
+
+def _waves_of(case: Case, motion: Motion) -> Iterator[str]:
+    """Names of the waves that drive this kind of motion, then of all others."""
+    for table in case.boundary.values():
+        name = getattr(table, f"wave_{motion}", None)
+        if name is not None:
+            yield name
+    yield from case.wave
+
+
+def _pulse(case: Case, side: str, motion: Motion) -> Cosine:
+    """The calibrating pulse: a cosine with the peak and dominant period of the case's own wave.
+
+    Without a usable wave: 1 m/s and a length of 200 mean diameters at the nominal P speed.
+    """
+    for name in _waves_of(case, motion):
+        wave = case.wave[name]
+        frequency = wave.dominant_frequency()
+        if np.isfinite(frequency) and frequency > 0.0:
+            return Cosine(type="cosine", amplitude=wave.peak(), period=1.0 / frequency)
+    speed = case.material.p_wave_speed or 1000.0
+    return Cosine(type="cosine", amplitude=1.0, period=400.0 * case.packing.radius / speed)
+
+
+def _with_beta(case: Case, side: str, factor: str, beta: float) -> Case:
+    table = case.boundary[side].model_copy(update={factor: beta})
+    return replace(case, boundary={**case.boundary, side: table})
+
+
+def _driven(case: Case, side: str, motion: Motion, pulse: Cosine) -> Case:
+    """The case with the pulse as its only wave: sent from the opposite side, or let in by the side itself."""
+    table, wave = case.boundary[side], {f"wave_{motion}": PULSE}
+    boundary = {name: t for name, t in case.boundary.items() if name not in (side, OPPOSITE[side])}
+    if isinstance(table, ViscousInput):
+        other = {"wave_s" if motion == "p" else "wave_p": None}
+        boundary[side] = table.model_copy(update={**wave, **other})
+    else:
+        boundary[side] = table
+        boundary[OPPOSITE[side]] = Velocity(type="velocity", **wave)
+    return replace(case, boundary=boundary, wave={PULSE: pulse}, monitor=())
+
+
+def _strip(case: Case, side: str, motion: Motion, pulse: Cosine) -> tuple[Case, list[str]]:
+    """The least scene that decides M_out, and sentences that say what was left out."""
+    case = _driven(case, side, motion, pulse)
+    axis = _normal_axis(side)
+    bricks, brick = list(case.packing.copies), case.packing.brick_size
+    speed = case.material.p_wave_speed or _speed_of(case, axis, motion)
+    shortened = []
+    needed = max(1, int(np.ceil(STRIP * speed * pulse.period / brick[axis])))
+    if needed < bricks[axis]:
+        shortened.append(
+            f"length {needed * brick[axis]:g} m instead of {case.packing.size[axis]:g} m, "
+            "and each pass ends once the peak has left the side"
+        )
+        bricks[axis] = needed
+    lateral = ("bottom", "top") if axis == 0 else ("left", "right")
+    tables = [case.boundary.get(name) for name in lateral]
+    plane = "xy"[1 - axis] in case.motion.held and all(t is None or isinstance(t, Free) for t in tables)
+    if not plane:
+        case = replace(case, boundary={**case.boundary, **{name: Periodic(type="periodic") for name in lateral}})
+        if bricks[1 - axis] > 1 or not all(isinstance(t, Periodic) for t in tables):
+            shortened.append("one brick wide and periodic sideways")
+        bricks[1 - axis] = 1
+    size = (bricks[0] * brick[0], bricks[1] * brick[1])
+    return replace(case, packing=case.packing.model_copy(update={"size": size})), shortened
+
+
+def _speed_of(case: Case, axis: int, motion: Motion) -> float:
+    """Wave speed (m/s) of the packing, for a case that names none."""
+    return build(case).ground.wave_speeds(axis)[0 if motion == "p" else 1]

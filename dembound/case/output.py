@@ -1,0 +1,15 @@
+"""The ``[output]`` table."""
+
+from dembound.table import Table, quantity
+
+
+class Output(Table):
+    """What is kept besides the last state."""
+
+    history_interval: float = quantity(
+        0.0, unit="s", help="time between two samples of the histories; 0: every step", ge=0.0
+    )
+    snapshots: int = quantity(
+        0, unit="1", help="number of whole-scene snapshots, evenly spaced, the last at the end", ge=0
+    )
+    pictures: bool = quantity(True, unit="1", help="whether pictures are drawn when the run is over")

@@ -1,0 +1,141 @@
+"""From a TOML file to a `Case`, or to the list of everything wrong with it."""
+
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+from pydantic_core import to_json
+
+from dembound.boundaries import SIDES, BoundaryTable
+from dembound.case.material import Material
+from dembound.case.model import Case
+from dembound.case.monitor import Monitor
+from dembound.case.motion import Motion
+from dembound.case.output import Output
+from dembound.case.problems import problems_between
+from dembound.case.run import Run
+from dembound.case.sentences import describe, show, unknown
+from dembound.errors import CaseError
+from dembound.packings import PackingTable
+from dembound.waves import WaveTable
+
+SINGLE_TABLES: Mapping[str, TypeAdapter[Any]] = {
+    "packing": TypeAdapter(PackingTable),
+    "material": TypeAdapter(Material),
+    "motion": TypeAdapter(Motion),
+    "run": TypeAdapter(Run),
+    "output": TypeAdapter(Output),
+}
+TITLE: TypeAdapter[Any] = TypeAdapter(str)
+BOUNDARY: TypeAdapter[Any] = TypeAdapter(BoundaryTable)
+WAVE: TypeAdapter[Any] = TypeAdapter(WaveTable)
+MONITOR: TypeAdapter[Any] = TypeAdapter(Monitor)
+
+KEYS = tuple(field.name for field in fields(Case) if field.compare)
+"""All that may stand at the top level of a case file."""
+
+
+def load(path: Path) -> Case:
+    """Read a case file.
+
+    Raises
+    ------
+    CaseError
+        With one line per mistake. A file that is absent or not TOML shows only that.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise CaseError(["no such file"], str(path)) from None
+    except UnicodeDecodeError:
+        raise CaseError(["is not a text file in UTF-8"], str(path)) from None
+    except OSError as error:
+        raise CaseError([f"cannot be read: {error.strerror}"], str(path)) from None
+    return _read(text, path.parent, path.stem, str(path))
+
+
+def loads(text: str, folder: Path = Path(), name: str = "case") -> Case:
+    """Read a case from TOML text, as if it stood in the file `name` of the folder; errors as `load`."""
+    return _read(text, folder, name, name)
+
+
+def _read(text: str, folder: Path, name: str, source: str) -> Case:
+    """The case; `source` is how errors call the text."""
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError([_syntax_problem(str(error))], source) from None
+    tables, problems = _Reader(folder).read(data)
+    if problems:
+        raise CaseError(problems, source)
+    return Case(**tables, name=name, text=text, folder=folder)
+
+
+def _syntax_problem(message: str) -> str:
+    """Tomllib's message with the line first: ``line 7: …``."""
+    place = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)$", message)
+    if not place:
+        return message
+    return f"line {place[1]}: {message[: place.start()]}" if place[1] else f"at the end: {message[: place.start()]}"
+
+
+class _Reader:
+    """Validates table by table, so that a mistake in one hides none in the others."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.problems: list[str] = []
+
+    def read(self, data: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+        """The fields of a `Case`, None for what is invalid, and all problems."""
+        self.problems = [f"{key}: {unknown('table', key, KEYS)}" for key in data if key not in KEYS]
+        tables = {"title": self._valid("title", data.get("title", ""), TITLE)}
+        for key, kind in SINGLE_TABLES.items():
+            tables[key] = self._valid(key, data.get(key, {}), kind)
+        tables["boundary"] = self._sides(data.get("boundary", {}))
+        tables["wave"] = self._named("wave", data.get("wave", {}), WAVE)
+        tables["monitor"] = self._numbered(data.get("monitor", []))
+        self.problems += problems_between(tables)
+        return tables, self.problems
+
+    def _valid(self, path: str, raw: object, kind: TypeAdapter[Any]) -> Any | None:
+        """The validated table; None, and its mistakes noted, if it is invalid.
+
+        Strict JSON takes a list for a tuple and a whole number for a float, but no text or bool for a number.
+        """
+        try:
+            json = to_json(raw, inf_nan_mode="constants")
+            return kind.validate_json(json, strict=True, context={"folder": self.folder})
+        except ValidationError as error:
+            self.problems += describe(error, path, raw, kind.json_schema())
+            return None
+
+    def _named(self, path: str, raw: object, kind: TypeAdapter[Any]) -> dict[str, Any]:
+        """A table of named tables."""
+        if not isinstance(raw, Mapping):
+            self.problems.append(f"{path}: is {show(raw)}, must be made of tables [{path}.NAME]")
+            return {}
+        return {name: self._valid(f"{path}.{name}", table, kind) for name, table in raw.items()}
+
+    def _sides(self, raw: object) -> dict[str, Any]:
+        """The boundary tables in the order of the sides."""
+        if isinstance(raw, Mapping):
+            strange = [name for name in raw if name not in SIDES]
+            self.problems += [f"boundary.{name}: {unknown('side', name, SIDES)}" for name in strange]
+            raw = {side: raw[side] for side in SIDES if side in raw}
+        return self._named("boundary", raw, BOUNDARY)
+
+    def _numbered(self, raw: object) -> tuple[Any, ...]:
+        """The monitors, counted from 1 in error texts."""
+        if not isinstance(raw, list):
+            self.problems.append(f"monitor: is {show(raw)}, must be made of tables [[monitor]]")
+            return ()
+        paths = []
+        for number, table in enumerate(raw, start=1):
+            named = isinstance(table, Mapping) and isinstance(table.get("name"), str)
+            paths.append(f"monitor[{number}, {table['name']}]" if named else f"monitor[{number}]")
+        return tuple(self._valid(path, table, MONITOR) for path, table in zip(paths, raw, strict=True))

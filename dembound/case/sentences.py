@@ -1,0 +1,151 @@
+"""From pydantic's errors to one plain line per mistake: ``table.key: what is wrong, what is allowed``."""
+
+import difflib
+import json
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+LIMITS = {
+    "greater_than": "greater than {gt:g}",
+    "greater_than_equal": "at least {ge:g}",
+    "less_than": "less than {lt:g}",
+    "less_than_equal": "at most {le:g}",
+}
+"""Mistakes of a value that is of the right kind."""
+
+KINDS = {
+    *("float_type", "int_type", "bool_type", "string_type", "tuple_type", "literal_error"),
+    *("missing", "too_short", "too_long", "string_too_short"),
+}
+"""Mistakes that are best answered with all that is allowed."""
+
+
+def describe(error: ValidationError, path: str, raw: object, schema: Mapping[str, Any]) -> list[str]:
+    """Say what is wrong with one table.
+
+    Parameters
+    ----------
+    error
+        What validating the table raised.
+    path
+        The table's place in the file, such as ``boundary.left``.
+    raw
+        The table as it was read.
+    schema
+        JSON schema of what was expected: a table, tables told apart by a key, or a plain value.
+    """
+    if not isinstance(raw, Mapping) or not {"properties", "discriminator"} & schema.keys():
+        return [f"{path}: is {show(raw)}, must be {allowed(schema)}"]
+    details = error.errors(include_url=False)
+    if "discriminator" in schema:
+        selector, variants = schema["discriminator"]["propertyName"], schema["discriminator"]["mapping"]
+        if details[0]["type"].startswith("union_tag"):
+            found = f"is {show(raw[selector])}" if selector in raw else "is missing"
+            return [f"{path}.{selector}: {found}, must be {_one_of(variants)}"]
+        schema = schema["$defs"][variants[raw[selector]].rsplit("/", 1)[-1]]
+        for detail in details:
+            detail["loc"] = detail["loc"][1:]  # without the variant
+    by_key: dict[str, list[ErrorDetails]] = {}
+    for detail in details:
+        by_key.setdefault(str(detail["loc"][0]) if detail["loc"] else "", []).append(detail)
+    return [line for key, found in by_key.items() for line in _lines(path, key, found, raw, schema["properties"])]
+
+
+def _lines(
+    path: str, key: str, details: list[ErrorDetails], raw: Mapping[str, Any], keys: Mapping[str, Any]
+) -> Iterator[str]:
+    """The lines about one key, or about the table as a whole when the key is empty."""
+    first = details[0]
+    if first["type"] == "value_error":
+        for line in str(first["ctx"]["error"]).splitlines():
+            yield _join(path, key, line, keys)
+    elif first["type"] == "extra_forbidden":
+        yield f"{path}.{key}: {unknown('key', key, keys)}"
+    elif key not in raw:
+        yield f"{path}.{key}: is missing, must be {allowed(keys[key])}"
+    elif any(detail["type"] == "finite_number" for detail in details):
+        yield f"{path}.{key}: is {show(raw[key])}, must be finite"
+    elif len(details) == 1 and first["type"] in LIMITS and len(first["loc"]) == 1:
+        limit = LIMITS[first["type"]].format(**first.get("ctx", {}))
+        yield f"{path}.{key}: is {show(raw[key])}, must be {limit}"
+    elif first["type"] in LIMITS or first["type"] in KINDS:
+        yield f"{path}.{key}: is {show(raw[key])}, must be {allowed(keys[key])}"
+    else:
+        yield f"{path}.{key}: is {show(raw[key])}; {first['msg']}"
+
+
+def _join(path: str, key: str, message: str, keys: Iterable[str]) -> str:
+    """Put the place before a table's own message, which may start with the key it is about: ``key: …``."""
+    about, colon, rest = message.partition(": ")
+    if not key and colon and about in keys:
+        return f"{path}.{about}: {rest}"
+    return f"{path}.{key}: {message}" if key else f"{path}: {message}"
+
+
+def unknown(what: str, name: str, known: Collection[str]) -> str:
+    """Say that nothing is called so, and what is."""
+    return f"unknown {what}; allowed: {choices(name, known)}"
+
+
+def choices(name: str, known: Collection[str]) -> str:
+    """The names there are, and the one that was probably meant by `name`."""
+    alike = difflib.get_close_matches(name, known, n=1)
+    return ", ".join(known) + (f" (did you mean {alike[0]}?)" if alike else "")
+
+
+def show(value: object) -> str:
+    """A value as the case file spells it; tables and long values are shortened."""
+    if isinstance(value, Mapping):
+        return "a table"
+    text = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False, default=str)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def allowed(schema: Mapping[str, Any]) -> str:
+    """What a JSON schema allows, in words: ``a number greater than 0 (s)``."""
+    unit = schema.get("unit", "1")
+    return _kind(schema) + ("" if unit == "1" else f" ({unit})")
+
+
+def _kind(schema: Mapping[str, Any]) -> str:
+    if "anyOf" in schema:
+        return " or ".join(_kind(option) for option in schema["anyOf"] if option.get("type") != "null")
+    if "const" in schema:
+        return show(schema["const"])
+    if "enum" in schema:
+        return _one_of(schema["enum"])
+    if schema.get("type") == "array":
+        return _list(schema)
+    kinds = {
+        "number": "a number",
+        "integer": "a whole number",
+        "boolean": "true or false",
+        "string": "a text",
+    }
+    return kinds.get(schema.get("type", ""), "a table") + _limits(schema)
+
+
+def _one_of(values: Iterable[object]) -> str:
+    return "one of " + ", ".join(show(value) for value in values)
+
+
+def _list(schema: Mapping[str, Any]) -> str:
+    items = schema.get("prefixItems")
+    if items:
+        return f"a list of {len(items)} values, each {_kind(items[0])}"
+    return f"a list of values, each {_kind(schema['items'])}"
+
+
+def _limits(schema: Mapping[str, Any]) -> str:
+    words = {
+        "exclusiveMinimum": "greater than",
+        "minimum": "no less than",
+        "exclusiveMaximum": "less than",
+        "maximum": "no more than",
+        "minLength": "no shorter than",
+    }
+    limits = [f"{word} {schema[key]:g}" for key, word in words.items() if key in schema]
+    return " " + " and ".join(limits) if limits else ""

@@ -1,0 +1,126 @@
+"""Snapshots for ParaView: one VTU file each, a PVD file listing their times, and a script that shows disks.
+
+Every disk is a vertex at its reference position moved by its displacement (z = 0), with these point data:
+
+| name | unit | shape | what |
+|---|---|---|---|
+| ``radii`` | m | (n,) | disk radius (YADE's name) |
+| ``id`` | 1 | (n,) | number of the disk in the scene (YADE's name) |
+| ``linVelVec`` | m/s | (n, 3) | velocity, z = 0 (YADE's name) |
+| ``angVelVec`` | rad/s | (n, 3) | angular velocity, along z (YADE's name) |
+| ``speed`` | m/s | (n,) | length of ``linVelVec`` |
+| ``displacement`` | m | (n, 3) | since the start of the run, z = 0 |
+| ``rotation`` | rad | (n,) | since the start of the run |
+| ``brick_particle`` | 1 | (n,) | the disk of the brick that this one is a copy of |
+
+To see disks in ParaView, run ``paraview --script=view.py`` in the folder, or open ``particles.pvd``, press
+Apply and run ``view.py`` from the Python shell (Run Script). By hand: representation *Point Gaussian*, shader
+preset *Plain circle*, scale by array ``radii``, no scale function, Gaussian radius 1. As solid geometry: filter
+*Glyph*, type *2D Glyph* (circle, filled), no orientation, scale array ``radii``, scale factor 2, all points.
+*Warp By Vector* with ``displacement`` and factor k − 1 shows displacements k times as large.
+"""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import h5py
+import meshio
+import numpy as np
+
+from dembound.results import open_record, replacing
+
+VIEW_SCRIPT = '''\
+"""Shows the disks of particles.pvd in ParaView: paraview --script=view.py, or Run Script once it is open."""
+
+from pathlib import Path
+
+from paraview.simple import *
+
+folder = Path(globals().get("__file__", "view.py")).resolve().parent  # Run Script has no __file__
+disks = GetActiveSource() or PVDReader(FileName=str(folder / "particles.pvd"))
+view = GetActiveViewOrCreate("RenderView")
+view.InteractionMode = "2D"
+GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
+
+shown = Show(disks, view)
+shown.SetRepresentationType("Point Gaussian")
+shown.ShaderPreset = "Plain circle"
+shown.SetScaleArray = ["POINTS", "radii"]
+shown.ScaleByArray = 1
+shown.UseScaleFunction = 0
+shown.GaussianRadius = 1.0
+
+ColorBy(shown, ("POINTS", "linVelVec", "Magnitude"))
+shown.RescaleTransferFunctionToDataRangeOverTime()
+shown.SetScalarBarVisibility(view, True)
+view.ResetCamera()
+Render()
+'''
+
+
+def write_vtu(run: Path, folder: Path) -> Path | None:
+    """Write every snapshot of a run for ParaView; returns the PVD file, None for a run without snapshots.
+
+    Parameters
+    ----------
+    run
+        the ``run.h5`` of a run.
+    folder
+        made when it is not there; gets ``particles_0000.vtu`` …, ``particles.pvd`` and ``view.py``.
+
+    The PVD file is written last, so it never names a file that is not there.
+
+    Raises CaseError when the record cannot be read.
+    """
+    with open_record(run) as file:
+        snapshots = file.get("snapshots", {})
+        if not snapshots:
+            return None
+        folder.mkdir(parents=True, exist_ok=True)
+        times = {}
+        for number, snapshot in snapshots.items():
+            name = f"particles_{number}.vtu"
+            with replacing(folder / name) as part:
+                meshio.write(part, _mesh(file["particles"], snapshot), file_format="vtu")
+            times[name] = float(snapshot.attrs["time"])
+    (folder / "view.py").write_text(VIEW_SCRIPT, encoding="utf-8")
+    return _write_index(folder / "particles.pvd", times)
+
+
+def _mesh(particles: h5py.Group, snapshot: h5py.Group) -> meshio.Mesh:
+    """One snapshot as vertices with the point data of this module's table."""
+    displacement, velocity = snapshot["displacement"][:], snapshot["velocity"][:]
+    count = len(displacement)
+    numbers = np.arange(count)
+    moved = _in_space(displacement[:, :2])
+    return meshio.Mesh(
+        _in_space(particles["position"][:]) + moved,
+        [("vertex", numbers[:, None])],
+        point_data={
+            "radii": particles["radius"][:],
+            "id": numbers,
+            "linVelVec": _in_space(velocity[:, :2]),
+            "angVelVec": np.column_stack([np.zeros((count, 2)), velocity[:, 2]]),
+            "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
+            "displacement": moved,
+            "rotation": displacement[:, 2],
+            "brick_particle": particles["brick_particle"][:],
+        },
+    )
+
+
+def _in_space(vectors: np.ndarray) -> np.ndarray:
+    """Vectors (n, 2) as (n, 3) with z = 0."""
+    return np.column_stack([vectors, np.zeros(len(vectors))])
+
+
+def _write_index(path: Path, times: dict[str, float]) -> Path:
+    """The PVD file: file name -> time in s."""
+    root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
+    collection = ElementTree.SubElement(root, "Collection")
+    for name, time in times.items():
+        ElementTree.SubElement(collection, "DataSet", timestep=repr(time), part="0", file=name)
+    ElementTree.indent(root)
+    with replacing(path) as part:
+        ElementTree.ElementTree(root).write(part, encoding="utf-8", xml_declaration=True)
+    return path

@@ -1,0 +1,103 @@
+"""What every packing table has in common."""
+
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from dembound.errors import CaseError
+from dembound.packings.brick import Brick
+from dembound.packings.dense import Recipe, radius_range
+from dembound.table import Table, quantity
+
+Extent = tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]]
+# Below, a frictionless packing is so near to falling apart that it hardly comes to rest; above, overlaps of
+# a tenth of the diameter are no contacts any more.
+PRESSURES = (5e-4, 0.1)
+
+
+class Packing(Table):
+    """A scene filled with whole bricks of disks."""
+
+    size: Extent = quantity(unit="m", help="width and height of the scene")
+    radius: float = quantity(unit="m", help="disk radius (mean radius of a random packing)", gt=0.0)
+
+    @property
+    def brick_size(self) -> tuple[float, float]:
+        """Width and height of one brick in metres."""
+        raise NotImplementedError
+
+    def pack(self, contact_modulus: float) -> Brick:
+        """The brick, packed for disks of contact modulus E_c (Pa), see `Brick`."""
+        raise NotImplementedError
+
+    @property
+    def copies(self) -> tuple[int, int]:
+        """Number of bricks along x and y."""
+        width, height = (round(whole / part) for whole, part in zip(self.size, self.brick_size, strict=True))
+        return width, height
+
+    @model_validator(mode="after")
+    def _whole_bricks(self) -> Self:
+        for whole, part in zip(self.size, self.brick_size, strict=True):
+            number = whole / part
+            if number < 1.0 - 1e-9 or abs(number - round(number)) > 1e-9 * number:
+                below, above = part * int(number), part * (int(number) + 1)
+                would = f"{below:.10g} or {above:.10g}" if below > 0.0 else f"{above:.10g}"
+                raise ValueError(
+                    f"size: {whole:.10g} m is not a whole number of bricks of {part:.10g} m; {would} would be"
+                )
+        return self
+
+
+class DensePacking(Packing):
+    """A random dense packing in a periodic brick, under a locked-in isotropic stress."""
+
+    radius_ratio: float = quantity(unit="1", help="largest over smallest radius", ge=1.0, le=4.0)
+    brick: Extent = quantity(unit="m", help="width and height of the periodic brick")
+    seed: int = quantity(0, unit="1", help="seed of the random start", ge=0)
+    confining_stress: float = quantity(1e7, unit="Pa", help="locked-in isotropic pressure", gt=0.0)
+    bond_gap: float = quantity(0.0, unit="m", help="gaps up to this are contacts too", ge=0.0)
+
+    @property
+    def brick_size(self) -> tuple[float, float]:
+        """Width and height of one brick in metres."""
+        return self.brick
+
+    @property
+    def largest_radius(self) -> float:
+        """Radius of the largest disk in metres."""
+        return radius_range(self.radius, self.radius_ratio)[1]
+
+    def recipe(self, contact_modulus: float) -> Recipe:
+        """All that decides the brick, for disks of contact modulus E_c (Pa).
+
+        Raises CaseError when the confining stress is outside 5e-4 … 0.1 of the contact modulus.
+        """
+        pressure = self.confining_stress / contact_modulus
+        low, high = PRESSURES
+        if not low <= pressure <= high:
+            raise CaseError(
+                [
+                    f"packing.confining_stress: {self.confining_stress:g} Pa is {pressure:.2g} of the "
+                    f"contact modulus {contact_modulus:g} Pa; {low:g} to {high:g} of it "
+                    f"({low * contact_modulus:.3g} to {high * contact_modulus:.3g} Pa) can be packed"
+                ]
+            )
+        return Recipe(
+            size=self.brick,
+            radius=self.radius,
+            radius_ratio=self.radius_ratio,
+            pressure=pressure,
+            bond_gap=self.bond_gap,
+            seed=self.seed,
+        )
+
+    @model_validator(mode="after")
+    def _wide_brick(self) -> Self:
+        # below four diameters a disk could meet another one through two faces at once
+        least = 8.0 * self.largest_radius
+        if min(self.brick) < least:
+            raise ValueError(f"brick: {min(self.brick):g} m is too small, {least:.4g} m is the least for these disks")
+        if self.bond_gap > self.radius:
+            raise ValueError(f"bond_gap: {self.bond_gap:g} m is larger than the mean radius {self.radius:g} m")
+        return self

@@ -1,0 +1,76 @@
+"""The brick: a small periodic body of disks in force equilibrium that scenes are tiled from."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+def contact_vectors(positions: np.ndarray, pairs: np.ndarray, images: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Vectors (b, 2) m from disk i to the image of disk j that it touches: x_j + images·box − x_i."""
+    first, second = pairs.T
+    return positions[second] + images * box - positions[first]
+
+
+def contact_stress(vectors: np.ndarray, overlaps: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Mean stress (3,) xx, yy, xy over the box, per unit contact modulus, compression negative.
+
+    σ_ab = −Σ overlap · d_a d_b / |d| / (box area), with vectors d (b, 2) and overlaps (b,) in metres; a
+    negative overlap is a gap and carries no force.
+    """
+    pull = -np.maximum(overlaps, 0.0) / np.hypot(*vectors.T) / np.prod(box)
+    x, y = vectors.T
+    return np.array([np.sum(pull * x * x), np.sum(pull * y * y), np.sum(pull * x * y)])
+
+
+@dataclass(frozen=True, eq=False)
+class Brick:
+    """A periodic box of disks with its contacts; copies of it fit together without a seam.
+
+    A pair may occur more than once with different images, and a disk may touch its own image: the one-disk
+    brick of pattern A has the pairs (0, 0) with images (1, 0) and (0, 1).
+
+    Attributes
+    ----------
+    size : (2,) m, the periodic box.
+    positions : (n, 2) m, disk centres in [0, size).
+    radii : (n,) m.
+    pairs : (b, 2) int64, contacts i → j, each once.
+    images : (b, 2) int64, the contact vector is ``positions[j] + images * size - positions[i]``.
+    rows : (n, 2) bool, member of the regular row on x = 0 (column 0) or on y = 0 (column 1).
+    stress : (3,) xx, yy, xy of the packed state over the contact modulus E_c, compression negative.
+    residual_ratio : mean |unbalanced force| / mean contact force, over the disks not held on a row.
+    """
+
+    size: np.ndarray
+    positions: np.ndarray
+    radii: np.ndarray
+    pairs: np.ndarray
+    images: np.ndarray
+    rows: np.ndarray
+    stress: np.ndarray
+    residual_ratio: float
+
+    @property
+    def vectors(self) -> np.ndarray:
+        """Contact vectors (b, 2) m, from the centre of i to the centre of j."""
+        return contact_vectors(self.positions, self.pairs, self.images, self.size)
+
+    @property
+    def gaps(self) -> np.ndarray:
+        """Gap of every contact (b,) m; negative where the disks overlap."""
+        return np.hypot(*self.vectors.T) - self.radii[self.pairs].sum(axis=1)
+
+    @property
+    def solid_fraction(self) -> float:
+        """Area of the disks over the area of the box (overlaps counted twice)."""
+        return float(np.pi * np.sum(self.radii**2) / np.prod(self.size))
+
+    @property
+    def coordination(self) -> float:
+        """Mean number of contacts per disk, 2b/n."""
+        return 2.0 * len(self.pairs) / len(self.radii)
+
+    @property
+    def mean_diameter(self) -> float:
+        """Mean disk diameter in metres, row disks included."""
+        return float(2.0 * np.mean(self.radii))

@@ -1,0 +1,78 @@
+"""Packed bricks kept on disk, one file per set of parameters.
+
+A brick depends on nothing but its parameters, so a file is never out of date; one that cannot be read is
+packed again and replaced.
+"""
+
+import contextlib
+import hashlib
+import json
+import os
+import zipfile
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import platformdirs
+
+from dembound.packings.brick import Brick
+
+FORMAT = 1  # raise it whenever the packing procedure or the file layout changes
+UNREADABLE = (OSError, ValueError, KeyError, EOFError, TypeError, zipfile.BadZipFile, zlib.error)
+
+
+def cache_folder() -> Path:
+    """Where bricks are kept: the environment variable DEMBOUND_CACHE, else the user's cache folder."""
+    chosen = os.environ.get("DEMBOUND_CACHE")
+    return Path(chosen) if chosen else Path(platformdirs.user_cache_dir("dembound")) / "bricks"
+
+
+def load_or_pack(key_params: Mapping[str, Any], pack: Callable[[], Brick]) -> Brick:
+    """The brick with these parameters, from the cache, else freshly packed and kept.
+
+    key_params holds all that decides the brick, as JSON values; pack() makes it. A brick that cannot be
+    written (no space, no permission) is returned all the same.
+    """
+    path = cache_folder() / f"brick-{_digest(key_params)}.npz"
+    brick = _load(path)
+    if brick is None:
+        brick = pack()
+        _save(brick, path)
+    return brick
+
+
+def clear() -> int:
+    """Delete all kept bricks and return how many there were."""
+    files = list(cache_folder().glob("brick-*.npz"))
+    for path in files:
+        path.unlink(missing_ok=True)
+    return len(files)
+
+
+def _digest(key_params: Mapping[str, Any]) -> str:
+    text = json.dumps({"format": FORMAT, **key_params}, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def _load(path: Path) -> Brick | None:
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            arrays = {name: data[name] for name in data.files}
+        return Brick(**{**arrays, "residual_ratio": float(arrays["residual_ratio"])})
+    except UNREADABLE:
+        return None
+
+
+def _save(brick: Brick, path: Path) -> None:
+    part = path.with_suffix(f".{os.getpid()}.part")
+    with contextlib.suppress(OSError):  # a cache that cannot be written costs time, not results
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with part.open("wb") as file:
+                np.savez_compressed(file, **asdict(brick))
+            part.replace(path)  # whole or not at all, whoever else is packing the same brick
+        finally:
+            part.unlink(missing_ok=True)

@@ -1,0 +1,23 @@
+"""Pattern B: a random dense packing in a periodic brick."""
+
+from dataclasses import asdict
+from typing import Literal
+
+from dembound.packings.base import DensePacking
+from dembound.packings.brick import Brick
+from dembound.packings.cache import load_or_pack
+from dembound.packings.dense import pack_dense
+
+
+class RandomBrick(DensePacking):
+    """Disks with radii uniform in [R_min, radius_ratio·R_min], randomly packed (Z section 3.1)."""
+
+    pattern: Literal["B"] = "B"
+
+    def pack(self, contact_modulus: float) -> Brick:
+        """The packed brick for contact modulus E_c (Pa), from the cache where it is known already.
+
+        Raises CaseError for a confining stress out of range and PackingError when packing fails.
+        """
+        recipe = self.recipe(contact_modulus)
+        return load_or_pack({"pattern": self.pattern, **asdict(recipe)}, lambda: pack_dense(recipe))

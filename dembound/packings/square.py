@@ -1,0 +1,35 @@
+"""Pattern A: equal disks on a square lattice."""
+
+from typing import Literal
+
+import numpy as np
+
+from dembound.packings.base import Packing
+from dembound.packings.brick import Brick
+
+
+class Square(Packing):
+    """Equal disks, one to a square cell, touching their four neighbours without force (Z section 3.1)."""
+
+    pattern: Literal["A"] = "A"
+
+    @property
+    def brick_size(self) -> tuple[float, float]:
+        """The cell of one disk, in metres."""
+        return 2.0 * self.radius, 2.0 * self.radius
+
+    def pack(self, contact_modulus: float) -> Brick:
+        """One disk in the middle of its cell, touching its own images to the right and above.
+
+        The lattice is unstressed, so the contact modulus (Pa) plays no part.
+        """
+        return Brick(
+            size=np.array(self.brick_size),
+            positions=np.full((1, 2), self.radius),
+            radii=np.full(1, self.radius),
+            pairs=np.zeros((2, 2), np.int64),
+            images=np.eye(2, dtype=np.int64),
+            rows=np.zeros((1, 2), bool),
+            stress=np.zeros(3),
+            residual_ratio=0.0,
+        )

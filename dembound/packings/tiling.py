@@ -1,0 +1,107 @@
+"""Copies of a brick, side by side, as one body."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dembound.packings.brick import Brick
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """The disks and contacts of a whole scene; everything a contact needs to know stands once, in the brick.
+
+    Attributes
+    ----------
+    positions : (n, 2) m.
+    radii : (n,) m.
+    brick_particle : (n,) int32, the disk of the brick that this one is a copy of (its twin).
+    pairs : (b, 2) int32, contacts i → j, sorted by i, then by kind.
+    kind : (b,) int32, the contact of the brick that this one is a copy of: its vector points from i to j.
+    copies : number of bricks along x and y.
+    size : (2,) m, the scene: copies · brick size.
+    extent : (2,) m, the body: as `size`, plus the row that closes the frame where there is one.
+    """
+
+    positions: np.ndarray
+    radii: np.ndarray
+    brick_particle: np.ndarray
+    pairs: np.ndarray
+    kind: np.ndarray
+    copies: tuple[int, int]
+    size: np.ndarray
+    extent: np.ndarray
+
+
+def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> Assembly:
+    """Lay `copies` (along x, along y) of the brick side by side.
+
+    Along a periodic axis contacts wrap around: over one copy only, a disk may then touch its own image, and
+    this self-contact (i, i) is listed too (it feels no displacement, but it does feel rotation). Elsewhere
+    contacts that would leave the scene are dropped, and the regular rows of the brick, if it has any, are
+    repeated on the far edge, so that they frame the scene on all sides.
+
+    Disks are numbered tile after tile, tiles along the shorter side of the scene first, so that a long bar is
+    numbered along its length; within a tile they keep the order of the brick.
+    """
+    size = brick.size * copies
+    present = _present(brick.rows, copies, periodic)
+    # tiles in running order: an axis swap makes the shorter side the faster one
+    swap = (0, 1, 2) if size[1] <= size[0] else (1, 0, 2)
+    numbers = np.full(present.shape, -1, np.int32)
+    ordered = numbers.transpose(swap)  # a view
+    ordered[present.transpose(swap)] = np.arange(np.count_nonzero(present))
+    slow, fast, twin = np.nonzero(present.transpose(swap))
+    tiles = np.column_stack([slow, fast] if swap[0] == 0 else [fast, slow])
+    pairs, kind = _contacts(brick, numbers, copies, periodic)
+    return Assembly(
+        positions=brick.positions[twin] + tiles * brick.size,
+        radii=brick.radii[twin],
+        brick_particle=twin.astype(np.int32),
+        pairs=pairs,
+        kind=kind,
+        copies=copies,
+        size=size,
+        extent=size + _closing_width(brick, periodic),
+    )
+
+
+def _closing_width(brick: Brick, periodic: tuple[bool, bool]) -> np.ndarray:
+    """Width (2,) m that the repeated rows add along x and y: one disk, half of it beyond each outer line."""
+    return np.array(
+        [
+            0.0 if periodic[axis] else 2.0 * float(brick.radii[brick.rows[:, axis]].max(initial=0.0))
+            for axis in range(2)
+        ]
+    )
+
+
+def _present(rows: np.ndarray, copies: tuple[int, int], periodic: tuple[bool, bool]) -> np.ndarray:
+    """Which disks (tile x, tile y, disk) exist: all of the tiles, and the rows that close the frame."""
+    extra = [not periodic[axis] and bool(rows[:, axis].any()) for axis in range(2)]
+    present = np.ones((copies[0] + extra[0], copies[1] + extra[1], len(rows)), bool)
+    present[copies[0] :] &= rows[:, 0]
+    present[:, copies[1] :] &= rows[:, 1]
+    return present
+
+
+def _contacts(
+    brick: Brick, numbers: np.ndarray, copies: tuple[int, int], periodic: tuple[bool, bool]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs (b, 2) and kinds (b,) of all contacts whose two disks exist; numbers (tile x, tile y, disk)."""
+    first, second = brick.pairs.T
+    target = []
+    inside = []
+    for axis in range(2):
+        tiles = numbers.shape[axis]
+        there = np.arange(tiles)[:, None] + brick.images[:, axis]  # (tile, contact)
+        inside.append(np.ones_like(there, bool) if periodic[axis] else (there >= 0) & (there < tiles))
+        target.append(there % tiles)
+    starts = numbers[:, :, first]
+    ends = numbers[target[0][:, None, :], target[1][None, :, :], second]
+    ends[~(inside[0][:, None, :] & inside[1][None, :, :])] = -1
+    exists = (starts >= 0) & (ends >= 0)
+    kind = np.nonzero(exists)[2].astype(np.int32)
+    pairs = np.column_stack([starts[exists], ends[exists]])
+    order = np.lexsort((kind, pairs[:, 0]))
+    return pairs[order], kind[order]

@@ -1,0 +1,93 @@
+"""The particles of one side: their diameters and the peaks of their motion along it (Z figs 11, 12)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from dembound.errors import CaseError
+from dembound.plot.style import UNITS, line_style, new_figure, outside_legend, styled
+from dembound.results import COMPONENTS, open_record, record_names
+
+# A uniform side must look uniform: axes are not magnified beyond ± this part of the middle value.
+LEAST_SPAN = 0.1
+
+
+@dataclass(frozen=True)
+class Side:
+    """The q particles of a side: along (q,) m, diameters (q,) m, largest |velocity| peaks (q, 3) m/s, rad/s."""
+
+    along: np.ndarray
+    diameters: np.ndarray
+    peaks: np.ndarray
+
+
+@styled
+def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
+    """Diameter (upper panel) and peak velocity (lower panel) of the particles along a side, for several runs.
+
+    The peak is that of the component, x or y, that moved most on the side in any run. The legend gives the
+    number of particles, the mean peak, and the largest deviation from it in per cent.
+
+    Parameters
+    ----------
+    runs
+        ``run.h5`` files of complete runs.
+    side
+        left, right, bottom or top.
+
+    Raises CaseError when a file cannot be read or a run has no such side.
+    """
+    sides = [read_side(path, side) for path in runs]
+    column = int(np.argmax(np.max([s.peaks[:, :2].max(axis=0) for s in sides], axis=0)))
+    figure = new_figure(9.0, 6.5)
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    for index, (name, each) in enumerate(zip(record_names(runs), sides, strict=True)):
+        peaks = each.peaks[:, column]
+        style = line_style(index) | {"marker": "o", "markersize": 3.0, "linewidth": 0.8}
+        upper.plot(each.along, each.diameters, **style)
+        lower.plot(each.along, peaks, label=f"{name}: {_summary(peaks)}", **style)
+    along = "y" if side in ("left", "right") else "x"
+    upper.set_ylabel("particle diameter (m)")
+    unit = UNITS["velocity"][column]
+    lower.set_ylabel(f"peak |velocity| along {COMPONENTS[column]} ({unit})")
+    lower.set_xlabel(f"{along}, along the side (m)")
+    for panel in (upper, lower):
+        _widen(panel)
+    figure.suptitle(f"Particles of the {side} side: diameters, and peaks of their velocity", fontsize=11)
+    outside_legend(figure, [lower], columns=2)
+    return figure
+
+
+def read_side(path: Path, side: str) -> Side:
+    """The particles of a side of a run.
+
+    Raises CaseError when the file cannot be read or has no such side.
+    """
+    with open_record(path) as file:
+        sides = file.get("boundaries", {})
+        if side not in sides:
+            there = ", ".join(sides) or "none (the run is not complete, or the scene is periodic)"
+            raise CaseError([f"{path}: has no particles of side {side}, sides there: {there}"])
+        group = sides[side]
+        axis = 1 if side in ("left", "right") else 0
+        peaks = np.abs(group["peak_velocity"][:]).max(axis=2)
+        return Side(group["position"][:, axis], group["diameter"][:], peaks)
+
+
+def _summary(peaks: np.ndarray) -> str:
+    """Number, mean and spread in words."""
+    mean = float(peaks.mean())
+    spread = 100.0 * float(np.abs(peaks - mean).max()) / mean if mean > 0.0 else 0.0
+    return f"{len(peaks)} particles, mean {mean:.4g} m/s ± {spread:.2g} %"
+
+
+def _widen(panel: Axes) -> None:
+    """Keep the vertical axis from magnifying small differences."""
+    low, high = panel.get_ylim()
+    middle = 0.5 * (low + high)
+    half = max(0.5 * (high - low), LEAST_SPAN * abs(middle))
+    panel.set_ylim(middle - half, middle + half)

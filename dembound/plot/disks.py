@@ -1,0 +1,109 @@
+"""Drawing many disks, as disks where they are large enough to be seen, else as a picture of their mean."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import EllipseCollection
+
+from dembound.plot.style import SIGNED_MAP
+
+# A disk narrower than this cannot be told from its neighbours; drawing it alone would cost time for nothing.
+SMALLEST_PIXELS = 3.0
+
+# Cells of the averaged picture, in mean diameters: wide enough that none inside the packing is empty, so that
+# an empty cell is a hole.
+CELL_DIAMETERS = 1.5
+
+
+EMPTY = "#B5B5B5"
+"""Colour of the gaps: no disk at rest, which is white, is lost on it."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """A rectangle in metres: lower left corner and size, each (2,)."""
+
+    corner: np.ndarray
+    size: np.ndarray
+
+    @classmethod
+    def around(cls, positions: np.ndarray, radii: np.ndarray) -> "Window":
+        """The smallest one that holds all disks; positions (n, 2), radii (n,) in m."""
+        low = (positions - radii[:, None]).min(axis=0)
+        return cls(low, (positions + radii[:, None]).max(axis=0) - low)
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Left, right, bottom, top in metres."""
+        (left, bottom), (right, top) = self.corner, self.corner + self.size
+        return float(left), float(right), float(bottom), float(top)
+
+    def touches(self, positions: np.ndarray, radii: np.ndarray) -> np.ndarray:
+        """Which disks (n,) bool reach into it; positions (n, 2), radii (n,) in m."""
+        nearest = np.clip(positions, self.corner, self.corner + self.size)
+        return np.hypot(*(positions - nearest).T) < radii * (1.0 - 1e-9)  # mere contact, rounded, is outside
+
+
+def draw_disks(axes: Axes, positions: np.ndarray, radii: np.ndarray, **looks: Any) -> EllipseCollection:
+    """Add disks to the axes in true size; positions (n, 2) and radii (n,) in m; looks go to matplotlib."""
+    disks = EllipseCollection(
+        2.0 * radii,
+        2.0 * radii,
+        np.zeros(len(radii)),
+        units="xy",
+        offsets=positions,
+        offset_transform=axes.transData,
+        **looks,
+    )
+    axes.add_collection(disks, autolim=False)
+    return disks
+
+
+def draw_field(
+    axes: Axes,
+    window: Window,
+    positions: np.ndarray,
+    radii: np.ndarray,
+    values: np.ndarray,
+    limit: float,
+    scale: float,
+) -> ScalarMappable:
+    """Fill the axes with a window of a field; returns what a colour bar needs.
+
+    Parameters
+    ----------
+    window
+        the part of the scene to show.
+    positions (n, 2), radii (n,)
+        m.
+    values
+        (n,) the field, coloured from −limit to limit.
+    scale
+        pixels per metre. Disks below three pixels give way to the mean of the field on a grid.
+    """
+    axes.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], facecolor=EMPTY)
+    axes.grid(False)
+    inside = window.touches(positions, radii)
+    positions, radii, values = positions[inside], radii[inside], values[inside]
+    colours: dict[str, Any] = {"cmap": SIGNED_MAP, "clim": (-limit, limit)}
+    diameter = 2.0 * float(radii.mean())
+    if diameter * scale >= SMALLEST_PIXELS:
+        return draw_disks(axes, positions, radii, array=values, linewidths=0.0, **colours)
+    means = mean_on_grid(positions, values, window, max(1.0 / scale, CELL_DIAMETERS * diameter))
+    return axes.imshow(means, origin="lower", extent=window.extent, interpolation="nearest", **colours)
+
+
+def mean_on_grid(positions: np.ndarray, values: np.ndarray, window: Window, cell: float) -> np.ndarray:
+    """Mean of `values` (n,) over the disks centred in each cell, (rows, columns); NaN where there is none.
+
+    positions (n, 2) and cell, the least width of a cell, in m. The first row is the lowest.
+    """
+    shape = np.maximum(1, np.floor(window.size / cell)).astype(int)[::-1]
+    left, right, bottom, top = window.extent
+    place: dict[str, Any] = {"bins": shape, "range": ((bottom, top), (left, right))}
+    count, _, _ = np.histogram2d(positions[:, 1], positions[:, 0], **place)
+    total, _, _ = np.histogram2d(positions[:, 1], positions[:, 0], weights=values, **place)
+    return np.divide(total, count, out=np.full_like(total, np.nan), where=count > 0)

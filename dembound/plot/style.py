@@ -1,0 +1,84 @@
+"""What all figures share: type, colours, size, and how they are saved."""
+
+from collections.abc import Callable, Iterable
+from functools import wraps
+from pathlib import Path
+from typing import ParamSpec
+
+from matplotlib import style
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.font_manager import get_font_names
+
+from dembound.results import replacing
+
+# Okabe & Ito: told apart with every kind of colour vision; yellow is left out, too faint for lines on white
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
+DASHES = ("-", "--", "-.", ":")
+REFERENCE = "#7F7F7F"
+"""Colour of what the eye compares with: incident peaks, frames."""
+
+SIGNED_MAP = "RdBu_r"
+"""Colour map of fields that may have either sign; white is zero."""
+
+# DejaVu comes with matplotlib; the others supply Chinese characters in titles wherever one is installed
+FONTS = ("DejaVu Sans", "Noto Sans CJK SC", "Microsoft YaHei", "PingFang SC", "SimHei", "WenQuanYi Zen Hei")
+
+UNITS = {"velocity": ("m/s", "m/s", "rad/s"), "displacement": ("m", "m", "rad")}
+"""Units of x, y and rotation."""
+
+Parameters = ParamSpec("Parameters")
+
+
+def styled(draw: Callable[Parameters, Figure]) -> Callable[Parameters, Figure]:
+    """Give a drawing function this style, whatever the user's matplotlib settings are."""
+
+    @wraps(draw)
+    def in_style(*args: Parameters.args, **kwargs: Parameters.kwargs) -> Figure:
+        installed = set(get_font_names())
+        settings = {
+            "font.family": [name for name in FONTS if name in installed],
+            "font.size": 10.0,
+            "axes.titlesize": 10.0,
+            "axes.grid": True,
+            "axes.axisbelow": True,
+            "axes.unicode_minus": True,
+            "grid.color": "#E5E5E5",
+            "grid.linewidth": 0.6,
+            "lines.linewidth": 1.4,
+            "lines.markersize": 4.0,
+            "legend.frameon": False,
+        }
+        with style.context(["default", settings]):
+            return draw(*args, **kwargs)
+
+    return in_style
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of this size in inches that arranges its parts itself."""
+    return Figure(figsize=(width, height), dpi=150, layout="constrained")
+
+
+def line_style(index: int) -> dict[str, str]:
+    """Colour and dashes of the index-th of several lines; repeats only after 28."""
+    return {
+        "color": COLOURS[index % len(COLOURS)],
+        "linestyle": DASHES[(index // len(COLOURS) + index) % len(DASHES)],
+    }
+
+
+def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None:
+    """Put one legend of all labels in the panels, each once, below everything else."""
+    handles: dict[str, Artist] = {}
+    for panel in panels:
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
+            handles.setdefault(label, handle)
+    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=columns)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write the figure as a PNG file, whole or not at all."""
+    with replacing(path) as part:
+        figure.savefig(part, format="png")

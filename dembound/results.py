@@ -1,0 +1,43 @@
+"""Result files: opening records, and writing what is made of them whole or not at all."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import h5py
+
+from dembound.errors import CaseError
+
+COMPONENTS = ("x", "y", "rotation")
+"""The columns of every displacement and velocity in a record."""
+
+
+def open_record(path: Path) -> h5py.File:
+    """Open a record (``run.h5``, ``calibration.h5``) for reading; use it in a ``with`` statement.
+
+    Raises CaseError when it is not there or not readable.
+    """
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        raise CaseError([f"{path}: cannot be read as a record of results: {error}"]) from None
+
+
+def record_names(paths: Sequence[Path]) -> list[str]:
+    """A name for each record, for legends: its case's name, or its path where two cases share a name."""
+    names = []
+    for path in paths:
+        with open_record(path) as file:
+            names.append(str(file.attrs["name"]))
+    return [name if names.count(name) == 1 else str(path) for name, path in zip(names, paths, strict=True)]
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Give a neighbouring path to write to, which takes the place of `path` when all went well."""
+    part = path.with_name(f"{path.name}.part")
+    try:
+        yield part
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)

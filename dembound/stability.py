@@ -1,0 +1,73 @@
+"""The largest stable time step, from the scene's own largest eigenfrequency."""
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from dembound.errors import CaseError
+from dembound.kernels.elastic import contact_forces
+from dembound.scene import Scene
+
+TOLERANCE = 1e-4
+"""Relative accuracy of the limit; a Lanczos value errs on the large side of the step by no more than this."""
+
+
+def step_limit(scene: Scene) -> float:
+    """Largest stable step 2/ω_max of central differences (s), within TOLERANCE.
+
+    ω_max² is the largest eigenvalue of M⁻¹K of the assembled scene, found by Lanczos iteration on M^(-1/2) K
+    M^(-1/2) with held and prescribed components taken out; centred dashpots do not change it. The start vector is
+    fixed, so the step is the same in every run.
+    """
+    root = np.sqrt(_inverse_mass(scene))
+    stiffness = _support_stiffness(scene)
+    force = np.empty((3, scene.count))
+
+    def apply(vector: np.ndarray) -> np.ndarray:
+        u = root * vector.reshape(3, -1)
+        contact_forces(u, *scene.contacts.arrays, force)
+        return (root * (stiffness * u - force)).ravel()
+
+    size = 3 * scene.count
+    operator = LinearOperator((size, size), matvec=apply, dtype=float)
+    start = np.random.default_rng(0).standard_normal(size) * (root.ravel() > 0.0)
+    if not start.any():
+        return np.inf
+    if size < 20:
+        matrix = np.stack([apply(column) for column in np.eye(size)], axis=1)
+        largest = np.linalg.eigvalsh(0.5 * (matrix + matrix.T))[-1]
+    else:
+        largest = eigsh(operator, k=1, which="LA", v0=start, tol=TOLERANCE, return_eigenvectors=False)[0]
+    return float(2.0 / np.sqrt(largest)) if largest > 0.0 else np.inf
+
+
+def _inverse_mass(scene: Scene) -> np.ndarray:
+    """(3, n): 1/m, 1/m, 1/I, and 0 for components that cannot move."""
+    inverse = scene.free[:, None] / np.stack([scene.mass, scene.mass, scene.inertia])
+    fixed = scene.supports.prescribed
+    inverse[scene.supports.component[fixed], scene.supports.node[fixed]] = 0.0
+    return inverse
+
+
+def _support_stiffness(scene: Scene) -> np.ndarray:
+    """(3, n) N/m that the supports add to the diagonal."""
+    stiffness = np.zeros((3, scene.count))
+    stiffness[scene.supports.component, scene.supports.node] = scene.supports.stiffness
+    return stiffness
+
+
+def choose_step(scene: Scene) -> tuple[float, float]:
+    """Time step to run with and the stability limit (s).
+
+    Raises CaseError when the case gives a step above the limit.
+    """
+    limit = step_limit(scene)
+    wanted = scene.case.run.time_step
+    if wanted == "auto":
+        step = scene.case.run.safety * limit
+        if not np.isfinite(step):
+            raise CaseError(["run.time_step: is auto but nothing in the scene can vibrate, give a step in s"])
+        return step, limit
+    assert isinstance(wanted, float | int)
+    if wanted > limit:
+        raise CaseError([f"run.time_step: is {wanted:g} s, must not be above the stability limit {limit:.6g} s"])
+    return float(wanted), limit

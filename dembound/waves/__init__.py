@@ -1,0 +1,20 @@
+"""Waves: named velocity histories that drive sides, one type a file.
+
+A new type is one file and its class's name in the list below.
+"""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from dembound.waves.constant import Constant
+from dembound.waves.cosine import Cosine
+from dembound.waves.record import Record
+from dembound.waves.ricker import Ricker
+from dembound.waves.sine_burst import SineBurst
+from dembound.waves.wave import Wave
+
+WaveTable = Annotated[Cosine | Ricker | SineBurst | Constant | Record, Field(discriminator="type")]
+"""Any wave table of a case file, told apart by its ``type``."""
+
+__all__ = ["Constant", "Cosine", "Record", "Ricker", "SineBurst", "Wave", "WaveTable"]

@@ -1,0 +1,54 @@
+"""A velocity that is switched on and stays."""
+
+import math
+from typing import Literal
+
+import numpy as np
+
+from dembound.table import quantity
+from dembound.waves.spectrum import HANN_FADE
+from dembound.waves.wave import Shape
+
+
+class Constant(Shape):
+    """v = M from `rise` seconds after the start on; on the way there v = M[s − sin(2πs)/2π], s = t/rise.
+
+    The ramp's acceleration is one Hann lobe, so velocity and acceleration are continuous. rise = 0 is a step.
+    """
+
+    type: Literal["constant"]
+    rise: float = quantity(0.0, unit="s", help="length of the smooth ramp to the full velocity", ge=0.0)
+
+    def _progress(self, since: np.ndarray) -> np.ndarray:
+        """Position on the ramp: 0 before, 1 after."""
+        if self.rise == 0.0:
+            return np.where(since >= 0.0, 1.0, 0.0)
+        return np.clip(since / self.rise, 0.0, 1.0)
+
+    def _velocity_shape(self, since: np.ndarray) -> np.ndarray:
+        s = self._progress(since)
+        return s - np.sin(2.0 * math.pi * s) / (2.0 * math.pi)
+
+    def _displacement_shape(self, since: np.ndarray) -> np.ndarray:
+        s = self._progress(since)
+        on_the_ramp = 0.5 * s**2 - (1.0 - np.cos(2.0 * math.pi * s)) / (4.0 * math.pi**2)
+        return self.rise * on_the_ramp + np.maximum(since - self.rise, 0.0)
+
+    def peak_time(self) -> float:
+        """Time at which the full velocity is reached, s."""
+        return self.start + self.rise
+
+    def duration(self) -> float:
+        """Infinite: the motion goes on."""
+        return math.inf
+
+    def dominant_frequency(self) -> float:
+        """1/rise, Hz; infinite for a step."""
+        return 1.0 / self.rise if self.rise > 0.0 else math.inf
+
+    def highest_frequency(self) -> float:
+        """Frequency above which the *acceleration's* spectrum stays below 1 % of its largest value, Hz.
+
+        Infinite for a step. A velocity that stays has no spectrum of its own.
+        """
+        return HANN_FADE * self.dominant_frequency()

@@ -1,0 +1,131 @@
+"""A measured or computed velocity history, read from a text file."""
+
+import warnings
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from pydantic import PrivateAttr, ValidationInfo, model_validator
+
+from dembound.table import quantity
+from dembound.waves.spectrum import amplitude_spectrum, faded_frequency
+from dembound.waves.wave import NonZero, Wave
+
+
+class Record(Wave):
+    """Velocities from a file, joined by straight lines and zero outside.
+
+    The file has two columns, time (s) and velocity (m/s). Its times are counted from `start`; a ``#`` begins
+    a comment. A relative path is taken from the case file's folder, which validation passes as the
+    context ``{"folder": Path}``; without one, from the current folder.
+    """
+
+    type: Literal["file"]
+    path: str = quantity(..., unit="1", help="text file of two columns, time (s) and velocity (m/s)", min_length=1)
+    scale: NonZero = quantity(1.0, unit="1", help="factor of the file's velocities")
+
+    # tuples rather than arrays: two equal waves then compare equal
+    _times: tuple[float, ...] = PrivateAttr(default=())
+    _velocities: tuple[float, ...] = PrivateAttr(default=())
+
+    @model_validator(mode="after")
+    def _read(self, info: ValidationInfo) -> "Record":
+        folder = (info.context or {}).get("folder", Path())
+        samples = read_samples(folder / self.path)
+        self._times = tuple(samples[:, 0].tolist())
+        self._velocities = tuple((self.scale * samples[:, 1]).tolist())
+        return self
+
+    def _samples(self) -> tuple[np.ndarray, np.ndarray]:
+        """Times (k,), s, counted from t = 0, and scaled velocities (k,), m/s."""
+        return self.start + np.array(self._times), np.array(self._velocities)
+
+    def velocity(self, t: np.ndarray) -> np.ndarray:
+        """Particle velocity, m/s, at the times t, s; same shape as t."""
+        return np.interp(t, *self._samples(), left=0.0, right=0.0)
+
+    def displacement(self, t: np.ndarray) -> np.ndarray:
+        """Exact time integral of the velocity from −∞ to t, m; same shape as t."""
+        times, velocities = self._samples()
+        areas = 0.5 * (velocities[1:] + velocities[:-1]) * np.diff(times)
+        at_samples = np.concatenate([[0.0], np.cumsum(areas)])
+        inside = np.clip(t, times[0], times[-1])
+        left = np.clip(np.searchsorted(times, inside, side="right") - 1, 0, len(times) - 2)
+        mean = 0.5 * (velocities[left] + np.interp(inside, times, velocities))
+        return at_samples[left] + mean * (inside - times[left])
+
+    def peak(self) -> float:
+        """Largest |velocity| of the file, scaled, m/s."""
+        return float(np.abs(self._velocities).max())
+
+    def peak_time(self) -> float:
+        """Time of the first largest |velocity|, s."""
+        times, velocities = self._samples()
+        return float(times[np.abs(velocities).argmax()])
+
+    def duration(self) -> float:
+        """Time from which the wave is over, s: that of the last line."""
+        return self.start + self._times[-1]
+
+    def dominant_frequency(self) -> float:
+        """Frequency at which the *acceleration's* amplitude spectrum is largest, Hz.
+
+        A record with net displacement has its largest velocity amplitude at zero frequency.
+        """
+        frequencies, amplitudes = self._spectrum()
+        return float(frequencies[np.argmax(frequencies * amplitudes)])
+
+    def highest_frequency(self) -> float:
+        """Frequency above which the amplitude spectrum stays below 1 % of its largest value, Hz.
+
+        At most the Nyquist frequency of the file's usual time step.
+        """
+        return faded_frequency(*self._spectrum())
+
+    def _spectrum(self) -> tuple[np.ndarray, np.ndarray]:
+        times, _ = self._samples()
+        time_step = float(np.median(np.diff(times)))
+        evenly = np.arange(times[0], times[-1] + time_step, time_step)
+        return amplitude_spectrum(self.velocity(evenly), time_step)
+
+
+def read_samples(path: Path) -> np.ndarray:
+    """Read a two-column text file into an array (k, 2): times, s, and velocities, m/s.
+
+    Raises
+    ------
+    ValueError
+        If the file is absent or does not hold a velocity history; the message starts with ``path:``.
+    """
+    if not path.is_file():
+        raise ValueError(f'path: no file "{path}"')
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # an empty file is reported below
+            samples = np.loadtxt(path, ndmin=2, encoding="utf-8")
+    except ValueError as error:
+        reason = str(error).split(";")[0]
+        raise ValueError(f'path: "{path}" is not two columns of numbers apart by blanks: {reason}') from error
+    problem = _problem(samples)
+    if problem:
+        raise ValueError(f'path: "{path}" {problem}')
+    return samples
+
+
+def _problem(samples: np.ndarray) -> str:
+    """What keeps samples (k, c) from being a velocity history; empty if nothing does."""
+    if samples.size == 0:
+        return "holds no numbers"
+    if samples.shape[1] != 2:
+        return f"has {samples.shape[1]} columns, must have two: time (s), velocity (m/s)"
+    if not np.isfinite(samples).all():
+        return "holds values that are not finite"
+    if len(samples) < 2:
+        return "holds one line, must hold at least two"
+    steps = np.diff(samples[:, 0])
+    if not (steps > 0.0).all():
+        line = int(np.argmin(steps > 0.0)) + 2
+        return f"must have increasing times; row {line} of its numbers does not follow the row before"
+    if not samples[:, 1].any():
+        return "holds nothing but zero velocities"
+    return ""

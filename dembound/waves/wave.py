@@ -1,0 +1,83 @@
+"""What every wave can answer, and what the waves given by a formula have in common."""
+
+from abc import ABC, abstractmethod
+from typing import Annotated
+
+import numpy as np
+from pydantic import AfterValidator
+
+from dembound.table import Table, quantity
+
+
+def _not_zero(value: float) -> float:
+    if value == 0.0:
+        raise ValueError("is 0, must not be 0")
+    return value
+
+
+NonZero = Annotated[float, AfterValidator(_not_zero)]
+"""A number of either sign; zero would be no wave at all."""
+
+
+class Wave(Table, ABC):
+    """A velocity history that is at rest before `start` and known at every time."""
+
+    start: float = quantity(0.0, unit="s", help="time at which the wave begins", ge=0.0)
+
+    @abstractmethod
+    def velocity(self, t: np.ndarray) -> np.ndarray:
+        """Particle velocity, m/s, at the times t, s; same shape as t."""
+
+    @abstractmethod
+    def displacement(self, t: np.ndarray) -> np.ndarray:
+        """Exact time integral of the velocity from −∞ to t, m; same shape as t."""
+
+    @abstractmethod
+    def peak(self) -> float:
+        """Largest |velocity| ever reached, m/s."""
+
+    @abstractmethod
+    def peak_time(self) -> float:
+        """First time at which |velocity| is `peak`, s, counted from t = 0 like `start`."""
+
+    @abstractmethod
+    def duration(self) -> float:
+        """Time from which the wave is over, s, counted from t = 0; infinite if it never is."""
+
+    @abstractmethod
+    def dominant_frequency(self) -> float:
+        """The frequency that characterises the wave, Hz; each type says which."""
+
+    @abstractmethod
+    def highest_frequency(self) -> float:
+        """Frequency above which the amplitude spectrum stays below 1 % of its largest value, Hz.
+
+        It is what particle spacing and time step have to carry. The spectrum is the velocity's unless the
+        type says otherwise.
+        """
+
+
+class Shape(Wave):
+    """A wave given by a formula: `amplitude` times a shape whose argument is the time since `start`."""
+
+    amplitude: NonZero = quantity(..., unit="m/s", help="factor of the shape, of either sign")
+
+    def velocity(self, t: np.ndarray) -> np.ndarray:
+        """Particle velocity, m/s, at the times t, s; same shape as t."""
+        return self.amplitude * self._velocity_shape(np.asarray(t, dtype=float) - self.start)
+
+    def displacement(self, t: np.ndarray) -> np.ndarray:
+        """Exact time integral of the velocity from −∞ to t, m; same shape as t."""
+        return self.amplitude * self._displacement_shape(np.asarray(t, dtype=float) - self.start)
+
+    def peak(self) -> float:
+        """Largest |velocity|, m/s: the amplitude's size, as the shapes reach 1."""
+        return abs(self.amplitude)
+
+    @abstractmethod
+    def _velocity_shape(self, since: np.ndarray) -> np.ndarray:
+        """Velocity for unit amplitude, at times since the start, s."""
+
+    @abstractmethod
+    def _displacement_shape(self, since: np.ndarray) -> np.ndarray:
+        """Integral of the velocity shape, s, at times since the start, s."""

@@ -1,0 +1,46 @@
+"""The two ways to give stiffness exclude one another."""
+
+import pytest
+
+from dembound.case.material import Material
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"p_wave_speed": 1000.0},
+        {"p_wave_speed": 1000.0, "s_wave_speed": 700.0, "match": "assembly", "contact_share": 1.0},
+        {"emod": 1e9, "pb_emod": 0.0},
+        {"emod": 1e9, "pb_emod": 1e9, "s_wave_speed": 700.0},
+    ],
+)
+def test_complete_stiffness_is_accepted(keys: dict[str, float]) -> None:
+    material = Material(density=2500.0, **keys)
+    assert {key: getattr(material, key) for key in keys} == keys
+
+
+@pytest.mark.parametrize(
+    ("keys", "lines"),
+    [
+        ({}, ["p_wave_speed: is missing; give either"]),
+        ({"emod": 1e9}, ["pb_emod: is missing; emod and pb_emod go together"]),
+        ({"pb_emod": 1e9}, ["emod: is missing; emod and pb_emod go together"]),
+        (
+            {"p_wave_speed": 1e3, "emod": 1e9, "pb_emod": 1e9},
+            ["emod: is not allowed together", "pb_emod: is not allowed together"],
+        ),
+        (
+            {"emod": 1e9, "pb_emod": 1e9, "match": "lattice", "contact_share": 0.5},
+            ["match: is only allowed together", "contact_share: is only allowed together"],
+        ),
+        (
+            {"p_wave_speed": 1e3, "s_wave_speed": 1e3},
+            ["s_wave_speed: is 1000, must be less than p_wave_speed"],
+        ),
+    ],
+)
+def test_incomplete_or_doubled_stiffness_is_refused(keys: dict[str, float], lines: list[str]) -> None:
+    with pytest.raises(ValueError, match="is ") as caught:
+        Material(density=2500.0, **keys)
+    found = str(caught.value.errors()[0]["ctx"]["error"]).splitlines()
+    assert [line.startswith(start) for line, start in zip(found, lines, strict=True)] == [True] * len(lines)

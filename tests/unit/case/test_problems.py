@@ -1,0 +1,115 @@
+"""Mistakes that show only when tables are looked at together."""
+
+import pytest
+
+from dembound.case import loads
+from dembound.errors import CaseError
+
+BASE = """\
+[packing]
+pattern = "A"
+size = [10.0, 5.0]
+radius = 0.25
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+[run]
+duration = 0.1
+"""
+
+WAVES = '[wave.push]\ntype = "constant"\namplitude = 1.0\n[wave.shake]\ntype = "constant"\namplitude = 1.0\n'
+
+
+def problems(extra: str) -> list[str]:
+    try:
+        loads(BASE + extra)
+    except CaseError as error:
+        return error.problems
+    return []
+
+
+def side(name: str, kind: str, more: str = "") -> str:
+    return f'[boundary.{name}]\ntype = "{kind}"\n{more}\n'
+
+
+def test_waves_must_be_defined_but_need_not_be_used() -> None:
+    assert problems(WAVES) == []
+    assert problems(WAVES + side("left", "velocity", 'wave_p = "push"\nwave_s = "shake"')) == []
+    assert problems(WAVES + side("left", "velocity", 'wave_p = "shak"\nwave_s = "q"')) == [
+        'boundary.left.wave_p: "shak" is not a wave of this case; defined: push, shake (did you mean shake?)',
+        'boundary.left.wave_s: "q" is not a wave of this case; defined: push, shake',
+    ]
+    assert problems(side("top", "viscous_input", 'wave_p = "push"')) == [
+        'boundary.top.wave_p: "push" is not a wave of this case; none is defined'
+    ]
+
+
+def test_an_invalid_wave_still_counts_as_defined() -> None:
+    lines = problems('[wave.push]\ntype = "constant"\n' + side("left", "velocity", 'wave_p = "push"'))
+    assert [line.split(":")[0] for line in lines] == ["wave.push.amplitude"]
+
+
+@pytest.mark.parametrize(("one", "other"), [("left", "right"), ("top", "bottom")])
+def test_periodic_sides_come_in_pairs(one: str, other: str) -> None:
+    line = f'boundary.{one}.type: is "periodic", so boundary.{other} must be periodic too'
+
+    assert problems(side(one, "periodic") + side(other, "periodic")) == []
+    assert problems(side(one, "periodic")) == [line]
+    assert problems(side(one, "periodic") + side(other, "fixed")) == [line]
+    # what an invalid opposite side will be is not known yet
+    assert len(problems(side(one, "periodic") + side(other, "viscous", "beta_p = -1"))) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "direction"),
+    [("left", "wave_p", "x"), ("right", "wave_s", "y"), ("bottom", "wave_p", "y"), ("top", "wave_s", "x")],
+)
+def test_a_held_direction_cannot_be_driven(name: str, key: str, direction: str) -> None:
+    driven = WAVES + side(name, "viscous_input", f'{key} = "push"')
+    other = {"x": "y", "y": "x"}[direction]
+
+    assert problems(driven + f'[motion]\nheld = ["{other}", "rotation"]\n') == []
+    assert problems(driven + f'[motion]\nheld = ["{direction}"]\n') == [
+        f"boundary.{name}.{key}: drives {direction}, which motion.held holds for every particle"
+    ]
+
+
+def monitor(name: str, position: str) -> str:
+    return f'[[monitor]]\nname = "{name}"\nposition = {position}\n'
+
+
+def test_monitors_lie_in_the_scene() -> None:
+    assert problems(monitor("a", "[0, 0]") + monitor("b", "[10, 5]")) == []
+    assert problems(monitor("a", "[0, 0]") + monitor("b", "[10.5, 5]") + monitor("c", "[1, -1]")) == [
+        "monitor[2, b].position: is [10.5, 5.0], must be in the scene, [0, 0] to [10.0, 5.0] (m)",
+        "monitor[3, c].position: is [1.0, -1.0], must be in the scene, [0, 0] to [10.0, 5.0] (m)",
+    ]
+
+
+def test_monitor_names_are_unique() -> None:
+    assert problems(monitor("a", "[0, 0]") + monitor("b", "[1, 1]") + monitor("a", "[2, 2]")) == [
+        'monitor[3].name: "a" is taken by monitor[1]'
+    ]
+
+
+def test_intervals_fit_into_the_run() -> None:
+    assert problems("time_step = 0.1\n[output]\nhistory_interval = 0.1\n") == []
+    assert problems("time_step = 0.2\n[output]\nhistory_interval = 0.3\n") == [
+        "run.time_step: is 0.2, must be at most run.duration, 0.1 (s)",
+        "output.history_interval: is 0.3, must be at most run.duration, 0.1 (s)",
+    ]
+
+
+def test_invalid_tables_silence_only_the_checks_that_need_them() -> None:
+    wrong = BASE.replace("radius = 0.25", "radius = 0").replace("duration = 0.1", "duration = 0")
+    more = side("left", "periodic") + monitor("a", "[99, 99]") + monitor("a", "[1, 1]")
+    with pytest.raises(CaseError) as caught:
+        loads(wrong + more + "[motion]\nheld = [1]\n[output]\nhistory_interval = 7\n")
+
+    assert [line.split(": ")[0] for line in caught.value.problems] == [
+        "packing.radius",
+        "motion.held",
+        "run.duration",
+        "boundary.left.type",
+        "monitor[2].name",
+    ]

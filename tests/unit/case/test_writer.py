@@ -1,0 +1,83 @@
+"""Changed cases and the text they are written as."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from dembound.case import STARTER, load, loads, to_toml, with_changes
+from dembound.errors import CaseError
+
+RECORD = '[wave.quake]\ntype = "file"\npath = "quake.txt"\n'
+
+
+def test_the_starter_case_is_valid() -> None:
+    case = loads(STARTER)
+
+    assert case.boundary["left"].wave_p in case.wave
+    # the pulse and its reflection from the far end pass the middle monitor within the run
+    way = 1.5 * case.packing.size[0] / case.material.p_wave_speed + case.wave["pulse"].duration()
+    assert way <= case.run.duration
+
+
+def test_nothing_changed_is_the_same_case() -> None:
+    case = loads(STARTER)
+    assert with_changes(case, {}) == case
+    assert loads(to_toml(with_changes(case, {}))) == case
+
+
+def test_changes_replace_and_add_keys_and_touch_nothing_else() -> None:
+    case = loads(STARTER, Path("here"), "bar")
+    right = {"type": "fixed"}
+
+    changed = with_changes(case, {"boundary.left.beta_p": 0.81, "run.duration": 2, "boundary.right": right})
+
+    assert changed.boundary["left"].beta_p == 0.81
+    assert changed.boundary["right"].type == "fixed"
+    assert changed.run.duration == 2.0
+    assert (changed.name, changed.folder) == ("bar", Path("here"))
+    before, after = tomllib.loads(case.text), tomllib.loads(changed.text)
+    before["boundary"]["left"]["beta_p"] = 0.81
+    before["boundary"]["right"] = right
+    before["run"]["duration"] = 2
+    assert after == before
+    undone = {"boundary.left.beta_p": 1.0, "run.duration": 0.25, "boundary.right": {"type": "viscous"}}
+    assert with_changes(changed, undone) == case
+    assert changed != case
+
+
+def test_changes_make_tables_that_are_not_there() -> None:
+    changed = with_changes(
+        loads(STARTER),
+        {"boundary.top.type": "fixed", "wave.tap.type": "ricker"}
+        | {"wave.tap.amplitude": 1.0, "wave.tap.frequency": 2.0},
+    )
+    assert changed.boundary["top"].type == "fixed"
+    assert changed.wave["tap"].peak() == 1.0
+
+
+def test_wrong_changes_are_refused_like_wrong_files() -> None:
+    case = loads(STARTER)
+    with pytest.raises(CaseError, match=r"boundary\.left\.beta_p: is -1"):
+        with_changes(case, {"boundary.left.beta_p": -1})
+    with pytest.raises(CaseError, match="title is not a table"):
+        with_changes(case, {"title.size": 3})
+
+
+def test_the_text_keeps_its_comments() -> None:
+    case = loads(STARTER)
+    assert to_toml(case) == STARTER
+    assert to_toml(case, Path("elsewhere")) == STARTER
+
+
+def test_wave_files_are_found_from_another_folder(tmp_path: Path) -> None:
+    (tmp_path / "cases").mkdir()
+    (tmp_path / "results").mkdir()
+    (tmp_path / "cases" / "quake.txt").write_text("0 0\n1 3\n2 0\n")
+    case = loads(STARTER + RECORD, tmp_path / "cases")
+
+    text = to_toml(case, tmp_path / "results")
+    (tmp_path / "results" / "copy.toml").write_text(text, encoding="utf-8")
+
+    assert load(tmp_path / "results" / "copy.toml").wave["quake"].peak() == 3.0
+    assert tomllib.loads(text)["wave"]["quake"]["path"] == "../cases/quake.txt"

@@ -1,0 +1,93 @@
+"""The brick cache: hits, misses, damage, moving and clearing."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from dembound.packings import Square
+from dembound.packings.cache import cache_folder, clear, load_or_pack
+
+KEY = {"pattern": "T", "radius": 0.5, "size": (1.0, 1.0)}
+
+
+class Packer:
+    """Packs a small brick and counts how often it was asked to."""
+
+    def __init__(self):
+        self.calls = 0
+
+    def __call__(self):
+        self.calls += 1
+        return Square(size=(1.0, 1.0), radius=0.5).pack(1e9)
+
+
+@pytest.fixture
+def packer():
+    return Packer()
+
+
+def test_second_time_comes_from_the_file(packer):
+    packed, kept = load_or_pack(KEY, packer), load_or_pack(KEY, packer)
+    assert packer.calls == 1
+    for field in fields(packed):
+        one, other = getattr(packed, field.name), getattr(kept, field.name)
+        assert np.array_equal(one, other)
+        assert type(one) is type(other)
+        assert np.asarray(one).dtype == np.asarray(other).dtype
+
+
+def test_other_parameters_are_another_brick(packer):
+    load_or_pack(KEY, packer)
+    load_or_pack({**KEY, "radius": 0.5 + 1e-15}, packer)
+    assert packer.calls == 2
+
+
+@pytest.mark.parametrize("damage", [b"", b"not a brick", None])
+def test_a_damaged_file_is_packed_again_and_replaced(packer, own_cache, damage):
+    load_or_pack(KEY, packer)
+    (path,) = own_cache.iterdir()
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2] if damage is None else damage)
+    load_or_pack(KEY, packer)
+    load_or_pack(KEY, packer)
+    assert packer.calls == 2
+    assert list(own_cache.iterdir()) == [path]
+
+
+def test_a_file_without_all_arrays_is_damaged(packer, own_cache):
+    load_or_pack(KEY, packer)
+    (path,) = own_cache.iterdir()
+    np.savez(path, size=np.ones(2))
+    load_or_pack(KEY, packer)
+    assert packer.calls == 2
+
+
+def test_the_folder_can_move(packer, own_cache, tmp_path, monkeypatch):
+    load_or_pack(KEY, packer)
+    own_cache.rename(tmp_path / "elsewhere")
+    monkeypatch.setenv("DEMBOUND_CACHE", str(tmp_path / "elsewhere"))
+    load_or_pack(KEY, packer)
+    assert packer.calls == 1
+    assert cache_folder() == tmp_path / "elsewhere"
+
+
+def test_without_the_variable_the_users_cache_folder_is_used(monkeypatch):
+    monkeypatch.delenv("DEMBOUND_CACHE")
+    assert cache_folder().name == "bricks"
+    assert "dembound" in cache_folder().parts
+
+
+def test_an_unwritable_folder_is_no_error(packer, tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setenv("DEMBOUND_CACHE", str(tmp_path / "file" / "bricks"))
+    assert len(load_or_pack(KEY, packer).radii) == 1
+
+
+def test_clear_counts_what_it_deletes(packer):
+    assert clear() == 0
+    load_or_pack(KEY, packer)
+    load_or_pack({**KEY, "radius": 1.0}, packer)
+    assert clear() == 2
+    load_or_pack(KEY, packer)
+    assert packer.calls == 3

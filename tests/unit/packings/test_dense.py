@@ -1,0 +1,122 @@
+"""Random packings: stress, balance, contacts, sizes, determinism."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from dembound.errors import PackingError
+from dembound.packings import dense
+from dembound.packings.dense import pack_dense
+
+
+def pair_forces(brick):
+    """Force on j (b, 2) over E_c, from the definition: overlap along the line of centres."""
+    lengths = np.linalg.norm(brick.vectors, axis=1)
+    overlaps = brick.radii[brick.pairs[:, 0]] + brick.radii[brick.pairs[:, 1]] - lengths
+    return np.where(overlaps > 0, overlaps / lengths, 0.0)[:, None] * brick.vectors
+
+
+def test_same_seed_same_bits(random_brick, recipe):
+    again = pack_dense(recipe)
+    for field in fields(again):
+        assert np.array_equal(getattr(again, field.name), getattr(random_brick, field.name)), field.name
+
+
+def test_another_seed_another_brick(random_brick, recipe):
+    other = pack_dense(replace(recipe, seed=recipe.seed + 1))
+    assert not np.array_equal(other.positions[:50], random_brick.positions[:50])
+
+
+def test_stress_is_the_one_asked_for(dense_brick, recipe):
+    forces = pair_forces(dense_brick)
+    stress = -np.einsum("ba,bc->ac", forces, dense_brick.vectors) / np.prod(dense_brick.size)
+    # 5e-4 is the tolerance of the pressure search
+    assert -0.5 * np.trace(stress) == pytest.approx(recipe.pressure, rel=5e-4)
+    assert dense_brick.stress == pytest.approx([stress[0, 0], stress[1, 1], stress[0, 1]], rel=1e-9)
+
+
+def test_forces_balance(dense_brick):
+    forces = pair_forces(dense_brick)
+    sums = np.zeros_like(dense_brick.positions)
+    np.subtract.at(sums, dense_brick.pairs[:, 0], forces)
+    np.add.at(sums, dense_brick.pairs[:, 1], forces)
+    sizes = np.linalg.norm(forces, axis=1)
+    free = ~dense_brick.rows.any(axis=1)
+    ratio = np.linalg.norm(sums[free], axis=1).mean() / sizes[sizes > 0].mean()
+    # round-off: one coordinate of 10 m is known to 1e-15 m, the mean overlap is 3e-3 m, so 1e-12 at most
+    assert ratio == pytest.approx(dense_brick.residual_ratio, abs=1e-11)
+    assert ratio <= 1e-9
+
+
+def test_no_loose_disks(dense_brick):
+    contacts = np.bincount(dense_brick.pairs.ravel(), minlength=len(dense_brick.radii))
+    assert contacts[~dense_brick.rows.any(axis=1)].min() >= 3
+
+
+def test_contacts_are_those_of_brute_force_over_all_images(dense_brick, recipe):
+    found = {(*pair, *image) for pair, image in zip(dense_brick.pairs, dense_brick.images, strict=True)}
+    expected = set()
+    for ix in (-1, 0, 1):
+        for iy in (-1, 0, 1):
+            moved = dense_brick.positions + np.array([ix, iy]) * dense_brick.size
+            apart = np.linalg.norm(moved[None] - dense_brick.positions[:, None], axis=2)
+            touching = apart <= dense_brick.radii[:, None] + dense_brick.radii + 1e-9 * recipe.radius
+            expected |= {(i, j, ix, iy) for i, j in np.argwhere(touching) if i < j}
+    assert len(found) == len(dense_brick.pairs)
+    assert found == expected
+
+
+def test_bond_gap_lists_near_contacts_too(random_brick, recipe):
+    gap = 0.05 * recipe.radius
+    wide = pack_dense(replace(recipe, bond_gap=gap))
+    assert np.array_equal(wide.positions, random_brick.positions)
+    assert wide.gaps.max() <= gap + 1e-9 * recipe.radius
+    assert np.count_nonzero(wide.gaps <= 1e-9 * recipe.radius) == len(random_brick.pairs)
+    assert len(wide.pairs) > len(random_brick.pairs)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.5, 3.0])
+def test_radii_are_uniform_with_the_mean_asked_for(recipe, ratio):
+    brick = pack_dense(replace(recipe, radius_ratio=ratio, size=(10.0, 10.0)))
+    assert brick.radii.mean() == pytest.approx(recipe.radius, rel=2e-3)
+    assert brick.radii.max() <= ratio * brick.radii.min() * (1 + 1e-12)
+    spread = np.linspace(brick.radii.min(), brick.radii.max(), len(brick.radii))
+    # grown disks move up in the ranks: at most the share of loose disks, 5 % at ratio 3
+    assert np.abs(np.sort(brick.radii) - spread).max() <= 0.05 * np.ptp(brick.radii) + 1e-12
+
+
+def test_disks_lie_in_the_box(dense_brick):
+    assert np.all((dense_brick.positions >= 0) & (dense_brick.positions < dense_brick.size))
+
+
+def test_rows_are_straight_equal_and_touching(edged_brick):
+    for row, (across, along) in enumerate([(0, 1), (1, 0)]):
+        member = edged_brick.rows[:, row]
+        assert np.all(edged_brick.positions[member, across] == 0.0)
+        inner = member & ~edged_brick.rows.all(axis=1)
+        assert np.ptp(edged_brick.radii[inner]) == 0.0
+        assert 2 * edged_brick.radii[member].sum() == pytest.approx(edged_brick.size[along], rel=1e-14)
+        within = member[edged_brick.pairs].all(axis=1)
+        assert np.count_nonzero(within) == np.count_nonzero(member)  # a ring through the periodic face
+        assert np.abs(edged_brick.gaps[within]).max() < 1e-13  # round-off of 10 m
+    assert np.count_nonzero(edged_brick.rows.all(axis=1)) == 1
+
+
+def test_row_disks_keep_their_size_while_the_core_is_scaled(edged_brick, recipe):
+    core = edged_brick.radii[~edged_brick.rows.any(axis=1)]
+    assert core.mean() == pytest.approx(recipe.radius, rel=2e-3)
+
+
+def test_failure_says_how_far_it_got(recipe, monkeypatch):
+    monkeypatch.setattr(dense, "MAX_STARTS", 1)
+    monkeypatch.setattr(dense, "SIZE_TOLERANCE", 0.0)
+    with pytest.raises(PackingError, match=r"no nearer than 0\.\d\d % in 1 starts"):
+        pack_dense(recipe)
+
+
+def test_summary_numbers(random_brick):
+    area = random_brick.size.prod()
+    assert random_brick.solid_fraction == pytest.approx((np.pi * random_brick.radii**2).sum() / area)
+    assert random_brick.coordination == 2 * len(random_brick.pairs) / len(random_brick.radii)
+    assert random_brick.mean_diameter == pytest.approx(2 * random_brick.radii.mean())

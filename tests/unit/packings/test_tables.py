@@ -1,0 +1,82 @@
+"""The TOML tables of the packings."""
+
+import numpy as np
+import pytest
+from pydantic import TypeAdapter, ValidationError
+
+from dembound.errors import CaseError
+from dembound.packings import EdgedBrick, PackingTable, RandomBrick, Square
+from dembound.packings import random_brick as random_module
+
+B = {"pattern": "B", "size": [20.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [10.0, 10.0]}
+C = {**B, "pattern": "C", "edge_radius": 0.26}
+
+
+def read(table):
+    return TypeAdapter(PackingTable).validate_python(table)
+
+
+def test_the_pattern_chooses_the_table():
+    assert isinstance(read({"pattern": "A", "size": [4.0, 1.0], "radius": 0.25}), Square)
+    assert isinstance(read(B), RandomBrick)
+    assert isinstance(read(C), EdgedBrick)
+
+
+def test_copies():
+    assert read(B).copies == (2, 1)
+    assert Square(size=(1000.0, 50.0), radius=0.25).copies == (2000, 100)
+    assert Square(size=(0.3, 0.6), radius=0.05).copies == (3, 6)  # 0.3/0.1 is not 3 in floating point
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"size": [1010.0, 50.0], "brick": [50.0, 50.0]},
+         "size: 1010 m is not a whole number of bricks of 50 m; 1000 or 1050 would be"),
+        ({"size": [5.0, 10.0]}, "size: 5 m is not a whole number of bricks of 10 m; 10 would be"),
+        ({"brick": [1.0, 10.0]}, "brick: 1 m is too small, 2.4 m is the least"),
+        ({"bond_gap": 0.3}, "bond_gap: 0.3 m is larger than the mean radius"),
+        ({"radius_ratio": 0.9}, "greater than or equal to 1"),
+        ({"confining_stress": 0.0}, "greater than 0"),
+        ({"radios": 1.0}, "Extra inputs are not permitted"),
+    ],
+)  # fmt: skip
+def test_mistakes_are_named(change, message):
+    with pytest.raises(ValidationError, match=message):
+        read({**B, **change})
+
+
+def test_square_brick_is_one_disk_in_its_cell():
+    brick = Square(size=(2.0, 1.0), radius=0.25).pack(1e9)
+    assert brick.positions.tolist() == [[0.25, 0.25]]
+    assert brick.vectors.tolist() == [[0.5, 0.0], [0.0, 0.5]]
+    assert brick.gaps.tolist() == [0.0, 0.0]
+    assert brick.solid_fraction == pytest.approx(np.pi / 4)
+    assert brick.coordination == 4
+
+
+def test_edge_radii_are_adjusted_to_whole_disks():
+    table = read({**C, "size": [50.0, 50.0], "brick": [50.0, 50.0]})
+    assert table.edge_radii == pytest.approx((25.0 / 96, 25.0 / 96), rel=1e-14)
+    on_x, on_y = read({**C, "size": [10.0, 8.0], "brick": [10.0, 8.0]}).edge_radii
+    assert 38 * on_y == pytest.approx(10.0)  # 19 disks of about 0.52 m
+    assert 28 * on_x + 2 * on_y == pytest.approx(8.0)  # the corner disk and 14 more
+
+
+@pytest.mark.parametrize("modulus", [1e7, 1e12])
+def test_confining_stress_out_of_range_names_the_range(modulus):
+    with pytest.raises(CaseError, match=r"packing\.confining_stress: 1e\+07 Pa .* can be packed"):
+        read(B).pack(modulus)
+
+
+def test_bricks_are_packed_once(monkeypatch):
+    first = read(B).pack(1.25e9)
+    monkeypatch.setattr(random_module, "pack_dense", None)  # packing again would fail
+    assert np.array_equal(read(B).pack(1.25e9).positions, first.positions)
+    assert np.array_equal(read({**B, "confining_stress": 2e7}).pack(2.5e9).positions, first.positions)
+
+
+def test_edged_table_packs_its_rows():
+    brick = read({**C, "size": [5.2, 5.2], "brick": [5.2, 5.2]}).pack(1.25e9)
+    assert np.count_nonzero(brick.rows, axis=0).tolist() == [10, 10]
+    assert brick.radii[brick.rows.any(axis=1)] == pytest.approx(np.full(19, 0.26))

@@ -1,0 +1,105 @@
+"""Assemblies: counts, numbering, geometry and the frame."""
+
+import numpy as np
+import pytest
+
+from dembound.packings import Square
+from dembound.packings.tiling import tile
+
+
+@pytest.fixture
+def square():
+    return Square(size=(1.0, 1.0), radius=0.5).pack(1e9)
+
+
+@pytest.mark.parametrize(
+    ("periodic", "bonds"),
+    [
+        ((False, False), 2 * 7 * 4 - 7 - 4),
+        ((True, False), 2 * 7 * 4 - 7),
+        ((False, True), 2 * 7 * 4 - 4),
+        ((True, True), 2 * 7 * 4),
+    ],
+)
+def test_square_lattice_counts(square, periodic, bonds):
+    body = tile(square, (7, 4), periodic)
+    assert len(body.radii) == 28
+    assert len(body.pairs) == len(body.kind) == bonds
+    assert body.size.tolist() == [7.0, 4.0]
+
+
+@pytest.mark.parametrize("copies", [(5, 2), (2, 5)])
+def test_numbering_runs_along_the_length(square, copies):
+    positions = tile(square, copies, (False, False)).positions
+    length = 0 if copies[0] > copies[1] else 1
+    assert np.all(np.diff(positions[:, length]) >= 0)
+    assert positions[:2].max() == 1.5  # the first two lie across the bar
+    assert positions[0].tolist() == [0.5, 0.5]
+
+
+def test_one_periodic_copy_keeps_its_contacts_with_itself(square):
+    body = tile(square, (3, 1), (False, True))
+    itself = body.pairs[:, 0] == body.pairs[:, 1]
+    assert np.count_nonzero(itself) == 3
+    assert np.all(body.kind[itself] == 1)
+
+
+@pytest.mark.parametrize("periodic", [(False, False), (True, False), (False, True), (True, True)])
+def test_every_contact_has_the_vector_of_its_kind(dense_brick, periodic):
+    body = tile(dense_brick, (3, 2), periodic)
+    first, second = body.pairs.T
+    apart = body.positions[second] - body.positions[first]
+    wraps = np.where(periodic, body.size, np.inf)
+    miss = apart - dense_brick.vectors[body.kind]
+    miss -= np.where(periodic, np.rint(miss / wraps) * body.size, 0.0)
+    assert np.abs(miss).max() < 1e-13  # round-off of 30 m
+    assert np.array_equal(body.brick_particle[body.pairs], dense_brick.pairs[body.kind])
+
+
+def test_contacts_are_sorted_and_unique(dense_brick):
+    body = tile(dense_brick, (2, 2), (False, True))
+    keys = body.pairs[:, 0].astype(np.int64) * len(dense_brick.pairs) + body.kind
+    assert np.all(np.diff(keys) > 0)
+
+
+def test_seams_are_those_of_the_brick(random_brick):
+    body = tile(random_brick, (3, 3), (True, True))
+    assert len(body.pairs) == 9 * len(random_brick.pairs)
+    assert np.all(np.bincount(body.kind) == 9)
+
+
+def test_an_open_edge_loses_exactly_the_contacts_across_it(random_brick):
+    body = tile(random_brick, (3, 2), (False, False))
+    ix, iy = np.abs(random_brick.images).T
+    assert np.array_equal(np.bincount(body.kind), (3 - ix) * (2 - iy))
+
+
+def test_open_contacts_are_those_of_brute_force(edged_brick):
+    body = tile(edged_brick, (2, 1), (False, False))
+    apart = np.linalg.norm(body.positions[None] - body.positions[:, None], axis=2)
+    touching = np.triu(apart <= body.radii[:, None] + body.radii + 1e-9 * 0.25, k=1)
+    found = {tuple(sorted(pair)) for pair in body.pairs.tolist()}
+    assert found == set(map(tuple, np.argwhere(touching).tolist()))
+    assert len(found) == len(body.pairs)
+
+
+def test_rows_frame_the_scene_on_all_sides(edged_brick):
+    body = tile(edged_brick, (2, 3), (False, False))
+    for axis, row in ((0, 0), (1, 1)):
+        for edge in (0.0, body.size[axis]):
+            line = np.flatnonzero(body.positions[:, axis] == edge)
+            along = np.sort(body.positions[line, 1 - axis])
+            assert along[0] == 0.0
+            assert along[-1] == body.size[1 - axis]
+            assert np.all(edged_brick.rows[body.brick_particle[line], row])
+            ring = np.count_nonzero(edged_brick.rows[:, row])
+            assert len(line) == ring * body.copies[1 - axis] + 1
+    assert np.all(body.positions <= body.size)
+
+
+def test_rows_are_repeated_only_at_open_edges(edged_brick):
+    count = len(edged_brick.radii)
+    on_x, on_y = np.count_nonzero(edged_brick.rows, axis=0)
+    assert len(tile(edged_brick, (2, 3), (True, True)).radii) == 6 * count
+    assert len(tile(edged_brick, (2, 3), (False, True)).radii) == 6 * count + 3 * on_x
+    assert len(tile(edged_brick, (2, 3), (False, False)).radii) == 6 * count + 3 * on_x + 2 * on_y + 1

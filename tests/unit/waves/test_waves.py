@@ -1,0 +1,126 @@
+"""What every wave promises, checked on each type; and the values only one type has."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from dembound.waves import Constant, Cosine, Ricker, SineBurst
+from dembound.waves.wave import Shape
+
+WAVES = [
+    Cosine(type="cosine", start=0.3, amplitude=0.5, period=0.4),
+    Cosine(type="cosine", amplitude=-2.0, period=1.5),
+    Ricker(type="ricker", start=0.1, amplitude=-0.7, frequency=3.0),
+    SineBurst(type="sine_burst", start=0.2, amplitude=1.3, frequency=5.0, cycles=1),
+    SineBurst(type="sine_burst", amplitude=1.3, frequency=5.0, cycles=4),
+    SineBurst(type="sine_burst", amplitude=-1.3, frequency=4.0, cycles=3, taper=False),
+    Constant(type="constant", start=0.2, amplitude=0.8, rise=0.5),
+]
+PULSES = [wave for wave in WAVES if math.isfinite(wave.duration())]
+STEP = Constant(type="constant", start=0.2, amplitude=-0.8)
+
+
+def name_of(wave: Shape) -> str:
+    return f"{wave.type}-{wave.amplitude}"
+
+
+@pytest.mark.parametrize("wave", [*WAVES, STEP], ids=name_of)
+@pytest.mark.parametrize("end", [0.25, 0.37, 0.9, 2.0])
+def test_displacement_is_the_integral_of_velocity(wave: Shape, end: float) -> None:
+    # before -1 s every wave is at rest; the Ricker pulse, 4.8 periods before its crest, is e^-(4.8π)² = 1e-99
+    ends = [wave.start, wave.start + getattr(wave, "rise", 0.0), min(wave.duration(), end)]
+    integral, error = quad(wave.velocity, -1.0, end, points=ends, limit=200, epsabs=1e-12)
+
+    # quad bounds its own error; round-off of a closed form of size ≤ 2 m adds a few 1e-16
+    assert abs(wave.displacement(np.array(end)) - integral) <= error + 1e-14
+
+
+@pytest.mark.parametrize("wave", WAVES, ids=name_of)
+def test_peak_is_the_largest_speed_and_is_first_reached_at_the_peak_time(wave: Shape) -> None:
+    times = np.linspace(0.0, 3.0, 300_001)
+    speeds = np.abs(wave.velocity(times))
+
+    # at the peak time exactly the peak, up to the round-off of the sine's argument (1e-15 · some radians)
+    assert abs(wave.velocity(np.array(wave.peak_time()))) == pytest.approx(wave.peak(), rel=1e-12)
+    assert speeds.max() <= wave.peak() * (1.0 + 1e-12)
+    # and not yet 0.01 s before: the flattest crests lack (2π²/3)(0.01/rise)³ = 5e-5 (ramp), (0.01π/T)² = 4e-4
+    before = times < wave.peak_time() - 0.01
+    assert speeds[before].max() < wave.peak() * (1.0 - 4e-5)
+
+
+@pytest.mark.parametrize("wave", PULSES, ids=name_of)
+def test_at_rest_outside_start_and_duration(wave: Shape) -> None:
+    outside = np.array([-10.0, wave.start - 1e-9, wave.duration() + 1e-9, 100.0])
+
+    # the Ricker pulse is 2a·exp(-a) = 1e-8 there, a = (1.5π)²; the others are zero but for round-off
+    assert np.abs(wave.velocity(outside)).max() <= 1.01e-8 * abs(wave.amplitude)
+
+
+@pytest.mark.parametrize("wave", PULSES, ids=name_of)
+def test_spectrum_is_below_one_percent_above_the_highest_frequency_and_not_far_below_it(wave: Shape) -> None:
+    # an independent spectrum, with bins of 0.05 Hz up to 26 kHz, far above every band
+    samples = 2**20
+    spectrum = np.abs(np.fft.rfft(wave.velocity(np.linspace(0.0, 20.0, samples, endpoint=False))))
+    frequencies = np.fft.rfftfreq(samples, 20.0 / samples)
+    share = spectrum / spectrum.max()
+
+    assert share[frequencies > wave.highest_frequency()].max() <= 0.01
+    # side lobes are no wider than 1/length, so one lies in the upper half of the band
+    assert share[frequencies > 0.5 * wave.highest_frequency()].max() > 0.01
+
+
+def test_cosine_follows_its_equation() -> None:
+    wave = Cosine(type="cosine", amplitude=0.5, period=0.5)
+    t = np.array([0.0, 0.125, 0.25, 0.375, 0.5, 0.6])
+
+    # Z eq. 12 at quarters of the period: 0, M/2, M, M/2, 0, and rest; and its area MT/2
+    assert wave.velocity(t) == pytest.approx([0.0, 0.25, 0.5, 0.25, 0.0, 0.0], abs=1e-15)
+    assert wave.displacement(np.array([0.5, 9.0])) == pytest.approx([0.125, 0.125], rel=1e-14)
+    assert wave.duration() == 0.5
+    assert wave.dominant_frequency() == 2.0
+
+
+def test_ricker_troughs_and_vanishing_displacement() -> None:
+    wave = Ricker(type="ricker", amplitude=2.0, frequency=4.0)
+    trough = wave.peak_time() + math.sqrt(1.5) / (4.0 * math.pi)  # a = 3/2
+
+    assert wave.velocity(np.array(trough)) == pytest.approx(-4.0 * math.exp(-1.5), rel=1e-12)
+    # M·τ·exp(-(πfτ)²), τ = 1.5/f: 2 · 0.375 · 2.3e-10
+    assert abs(wave.displacement(np.array(wave.duration()))) < 2e-10
+
+
+def test_single_tapered_cycle_peaks_where_calculus_says() -> None:
+    wave = SineBurst(type="sine_burst", amplitude=1.0, frequency=1.0, cycles=1)
+
+    # sin²s · sin 2s is largest at s = π/3: (3/4)(√3/2)
+    assert wave.peak() == pytest.approx(0.375 * math.sqrt(3.0), rel=1e-14)
+    assert wave.peak_time() == pytest.approx(1.0 / 3.0, rel=1e-12)
+
+
+def test_sine_burst_leaves_no_displacement() -> None:
+    for taper in (True, False):
+        wave = SineBurst(type="sine_burst", amplitude=3.0, frequency=2.0, cycles=5, taper=taper)
+        assert abs(wave.displacement(np.array(wave.duration()))) < 1e-15  # 3/(4π) m times round-off squared
+
+
+def test_constant_is_a_step_without_rise() -> None:
+    assert STEP.velocity(np.array([0.1999, 0.2, 5.0])).tolist() == [0.0, -0.8, -0.8]
+    assert STEP.displacement(np.array(1.2)) == pytest.approx(-0.8, rel=1e-15)
+    assert STEP.peak_time() == 0.2
+    assert math.isinf(STEP.duration())
+    assert math.isinf(STEP.highest_frequency())
+
+
+def test_constant_ramp_holds_its_velocity() -> None:
+    wave = Constant(type="constant", amplitude=2.0, rise=0.5)
+
+    assert wave.velocity(np.array([0.25, 0.5, 7.0])) == pytest.approx([1.0, 2.0, 2.0], rel=1e-15)
+    assert wave.highest_frequency() == pytest.approx(3.2743 / 0.5, rel=1e-4)  # x³ − x = 100/π
+
+
+@pytest.mark.parametrize("value", [0.0, math.inf, math.nan])
+def test_amplitude_must_be_a_finite_number_other_than_zero(value: float) -> None:
+    with pytest.raises(ValueError, match=r"must not be 0|finite"):
+        Cosine(type="cosine", amplitude=value, period=1.0)
