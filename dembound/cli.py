@@ -1,11 +1,13 @@
 """The command line. Only this file prints and exits; what it does lives elsewhere."""
 
 import sys
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numba
 import typer
@@ -16,7 +18,7 @@ from rich.table import Table
 from dembound import __version__
 from dembound.boundaries import SIDES
 from dembound.calibrate import Calibration, calibrate
-from dembound.case import STARTER, load, to_toml, with_changes
+from dembound.case import STARTER, Case, load, to_toml, with_changes
 from dembound.check import check
 from dembound.errors import CaseError, DemboundError
 from dembound.packings.cache import cache_folder, clear
@@ -48,6 +50,11 @@ Cases = Annotated[list[Path], typer.Argument(metavar="CASE...", help="Case files
 OneCase = Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")]
 Output = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")]
 Threads = Annotated[int | None, typer.Option(min=1, help="Cores to use; all by default. Results do not depend on it.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change a key, e.g. boundary.right.beta_p=0.8. May be repeated."),
+]
+Name = Annotated[str | None, typer.Option(help="Name of the results folder; by default the case file's.")]
 Side = StrEnum("Side", {side: side for side in SIDES})  # type: ignore[misc]
 
 
@@ -87,10 +94,10 @@ def new(
 
 
 @app.command("check", rich_help_panel="Cases")
-def check_cases(cases: Cases, threads: Threads = None) -> None:
+def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None) -> None:
     """Say what would be run: particles, bonds, time step, memory, time, resolution. Writes nothing."""
     _use(threads)
-    for case in [load(path) for path in cases]:
+    for case in [_load(path, changes) for path in cases]:
         facts, warnings = check(case)
         table = Table(title=f"{case.name}: {case.title}" if case.title else case.name, show_header=False)
         for name, value in facts.items():
@@ -101,13 +108,19 @@ def check_cases(cases: Cases, threads: Threads = None) -> None:
 
 
 @app.command("run", rich_help_panel="Cases")
-def run(cases: Cases, output: Output = Path("results"), threads: Threads = None) -> None:
+def run(
+    cases: Cases,
+    output: Output = Path("results"),
+    changes: Settings = None,
+    name: Name = None,
+    threads: Threads = None,
+) -> None:
     """Run cases one after another; each leaves its folder of results.
 
     All case files are read before the first is run, so a mistake in the last one costs nothing.
     """
     _use(threads)
-    loaded = [load(path) for path in cases]
+    loaded = [_load(path, changes, name) for path in cases]
     names = [case.name for case in loaded]
     if len(set(names)) < len(names):
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
@@ -135,6 +148,8 @@ def calibrate_side(
     tolerance: Annotated[float, typer.Option(help="Largest |M_out/M_in − 1| to accept.", min=1e-9)] = 1e-3,
     full: Annotated[bool, typer.Option("--full", help="Use the whole scene instead of a short strip.")] = False,
     output: Output = Path("results"),
+    changes: Settings = None,
+    name: Name = None,
     threads: Threads = None,
 ) -> None:
     """Find the β with which a viscous side absorbs, or lets in, a plane wave whole.
@@ -142,7 +157,7 @@ def calibrate_side(
     Prints β and M_out/M_in of every pass; leaves the calibrated case, the passes in HDF5 and a picture of them.
     """
     _use(threads)
-    loaded = load(case)
+    loaded = _load(case, changes, name)
     found = calibrate(
         loaded,
         boundary.value,
@@ -190,6 +205,25 @@ def cache(
     out.print(str(cache_folder()))
     if delete:
         out.print(f"deleted {clear()} bricks")
+
+
+def _load(path: Path, changes: list[str] | None, name: str | None = None) -> Case:
+    """Read a case file, change keys and rename it as the options say."""
+    case = load(path)
+    if changes:
+        case = with_changes(case, dict(_setting(text) for text in changes))
+    return replace(case, name=name) if name else case
+
+
+def _setting(text: str) -> tuple[str, Any]:
+    """Key and value of ``--set key=value``; the value is TOML, or else a plain string."""
+    key, equals, value = text.partition("=")
+    if not equals or not key:
+        raise CaseError([f"--set: is {text}, must be KEY=VALUE, e.g. boundary.right.beta_p=0.8"])
+    try:
+        return key.strip(), tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return key.strip(), value.strip()
 
 
 def _results_file(path: Path) -> Path:

@@ -122,7 +122,7 @@ class SupportBuilder:
         if signal is not None:
             index = len(self._signals)
             self._signals.append(signal)
-        columns = {
+        columns: dict[str, float | np.ndarray] = {
             "node": nodes,
             "component": component,
             "preload": preload,

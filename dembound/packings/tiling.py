@@ -1,8 +1,10 @@
 """Copies of a brick, side by side, as one body."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 from dembound.packings.brick import Brick
 
@@ -21,6 +23,7 @@ class Assembly:
     copies : number of bricks along x and y.
     size : (2,) m, the scene: copies · brick size.
     extent : (2,) m, the body: as `size`, plus the row that closes the frame where there is one.
+    loose : number of disks left out because the cut at an open edge took all their ties to the body.
     """
 
     positions: np.ndarray
@@ -31,6 +34,7 @@ class Assembly:
     copies: tuple[int, int]
     size: np.ndarray
     extent: np.ndarray
+    loose: int = 0
 
 
 def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> Assembly:
@@ -39,7 +43,8 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
     Along a periodic axis contacts wrap around: over one copy only, a disk may then touch its own image, and
     this self-contact (i, i) is listed too (it feels no displacement, but it does feel rotation). Elsewhere
     contacts that would leave the scene are dropped, and the regular rows of the brick, if it has any, are
-    repeated on the far edge, so that they frame the scene on all sides.
+    repeated on the far edge, so that they frame the scene on all sides. Disks that such a cut severs from the
+    body are left out.
 
     Disks are numbered tile after tile, tiles along the shorter side of the scene first, so that a long bar is
     numbered along its length; within a tile they keep the order of the brick.
@@ -54,7 +59,7 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
     slow, fast, twin = np.nonzero(present.transpose(swap))
     tiles = np.column_stack([slow, fast] if swap[0] == 0 else [fast, slow])
     pairs, kind = _contacts(brick, numbers, copies, periodic)
-    return Assembly(
+    whole = Assembly(
         positions=brick.positions[twin] + tiles * brick.size,
         radii=brick.radii[twin],
         brick_particle=twin.astype(np.int32),
@@ -63,6 +68,28 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
         copies=copies,
         size=size,
         extent=size + _closing_width(brick, periodic),
+    )
+    return _without_loose(whole)
+
+
+def _without_loose(assembly: Assembly) -> Assembly:
+    """The largest connected body of an assembly; islands of disks beside it carry no wave."""
+    count = len(assembly.radii)
+    graph = coo_matrix((np.ones(len(assembly.pairs), np.int8), tuple(assembly.pairs.T)), shape=(count, count))
+    bodies, body = connected_components(graph, directed=False)
+    if bodies == 1:
+        return assembly
+    kept = body == np.argmax(np.bincount(body))
+    number = np.cumsum(kept, dtype=np.int32) - 1
+    contacts = kept[assembly.pairs[:, 0]]
+    return replace(
+        assembly,
+        positions=assembly.positions[kept],
+        radii=assembly.radii[kept],
+        brick_particle=assembly.brick_particle[kept],
+        pairs=number[assembly.pairs[contacts]].astype(np.int32),
+        kind=assembly.kind[contacts],
+        loose=int(count - kept.sum()),
     )
 
 

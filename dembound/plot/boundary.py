@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
-from dembound.plot.style import UNITS, line_style, new_figure, outside_legend, styled
+from dembound.plot.style import UNITS, new_figure, outside_legend, point_style, styled
 from dembound.results import COMPONENTS, open_record, record_names
 
 # A uniform side must look uniform: axes are not magnified beyond ± this part of the middle value.
@@ -47,7 +47,7 @@ def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
     upper, lower = figure.subplots(2, 1, sharex=True)
     for index, (name, each) in enumerate(zip(record_names(runs), sides, strict=True)):
         peaks = each.peaks[:, column]
-        style = line_style(index) | {"marker": "o", "markersize": 3.0, "linewidth": 0.8}
+        style = point_style(index)
         upper.plot(each.along, each.diameters, **style)
         lower.plot(each.along, peaks, label=f"{name}: {_summary(peaks)}", **style)
     along = "y" if side in ("left", "right") else "x"
@@ -82,7 +82,7 @@ def _summary(peaks: np.ndarray) -> str:
     """Number, mean and spread in words."""
     mean = float(peaks.mean())
     spread = 100.0 * float(np.abs(peaks - mean).max()) / mean if mean > 0.0 else 0.0
-    return f"{len(peaks)} particles, mean {mean:.4g} m/s ± {spread:.2g} %"
+    return f"{len(peaks)} particles, mean {mean:.4g} m/s ± {spread:.2f} %"
 
 
 def _widen(panel: Axes) -> None:

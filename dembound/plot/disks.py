@@ -11,11 +11,11 @@ from matplotlib.collections import EllipseCollection
 from dembound.plot.style import SIGNED_MAP
 
 # A disk narrower than this cannot be told from its neighbours; drawing it alone would cost time for nothing.
-SMALLEST_PIXELS = 3.0
+SMALLEST_PIXELS = 4.0
 
 # Cells of the averaged picture, in mean diameters: wide enough that none inside the packing is empty, so that
 # an empty cell is a hole.
-CELL_DIAMETERS = 1.5
+CELL_DIAMETERS = 2.0
 
 
 EMPTY = "#B5B5B5"
@@ -82,7 +82,7 @@ def draw_field(
     values
         (n,) the field, coloured from −limit to limit.
     scale
-        pixels per metre. Disks below three pixels give way to the mean of the field on a grid.
+        pixels per metre. Disks below `SMALLEST_PIXELS` give way to the mean of the field on a grid.
     """
     axes.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], facecolor=EMPTY)
     axes.grid(False)

@@ -18,7 +18,7 @@ Component = Literal["x", "y", "rotation"]
 
 @dataclass(frozen=True)
 class History:
-    """One monitor's motion in one run: time (k,) s, motion (k, 3) in `UNITS`, and its place (2,) m."""
+    """One monitor's motion in one run: time (k,) s, motion (k, 3) in `UNITS`, and the place asked for (2,) m."""
 
     time: np.ndarray
     motion: np.ndarray
@@ -69,7 +69,7 @@ def read_histories(path: Path, quantity: Quantity) -> dict[str, History]:
     """
     with open_record(path) as file:
         return {
-            name: History(group["time"][:], group[quantity][:], group.attrs["position"])
+            name: History(group["time"][:], group[quantity][:], group.attrs["wanted"])
             for name, group in file.get("histories", {}).items()
         }
 

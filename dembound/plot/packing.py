@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Rectangle
 
 from dembound.plot.disks import Window, draw_disks
 from dembound.plot.style import COLOURS, new_figure, outside_legend, styled
@@ -46,18 +46,18 @@ def plot_brick(
     size = np.asarray(size)
     places, disks, kinds = brick_disks(positions, radii, rows, size)
     window = Window.around(places, radii[disks])
-    figure = new_figure(7.5, 7.5 * window.size[1] / window.size[0] + 0.9)
+    figure = new_figure(7.5, 6.9 * window.size[1] / window.size[0] + 1.3)
     panel = figure.subplots()
     for kind, colour in KINDS.items():
         chosen = kinds == kind
         if chosen.any():
             _draw_kind(panel, places[chosen], radii[disks[chosen]], colour, f"{kind} ({np.count_nonzero(chosen)})")
     panel.add_patch(Rectangle((0.0, 0.0), *size, fill=False, linewidth=1.5, label="faces of the brick"))
-    title = f"Brick of {size[0]:g} m × {size[1]:g} m, {len(radii)} disks"
+    title = f"Brick of {size[0]:g} m × {size[1]:g} m; disks: {len(radii)}"
     if pairs is not None and images is not None:
         ends = np.stack([positions[pairs[:, 0]], positions[pairs[:, 1]] + images * size], axis=1)
         panel.add_collection(LineCollection(list(ends), colors="black", linewidths=0.6, label="contact"), autolim=False)
-        title += f", {len(pairs)} contacts"
+        title += f", contacts: {len(pairs)}"
     _frame(panel, window)
     figure.suptitle(title, fontsize=11)
     outside_legend(figure, [panel], columns=3)
@@ -99,7 +99,7 @@ def plot_patterns(parts: Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]]
         name -> positions (n, 2) m, radii (n,) m, and the indices (k,) of the edge's particles.
     """
     span = CLOSE_UP_DIAMETERS * max(2.0 * float(radii.mean()) for _, radii, _ in parts.values())
-    figure = new_figure(4.2 * len(parts) + 0.4, 5.4)
+    figure = new_figure(4.2 * len(parts) + 0.4, 5.0)
     panels = figure.subplots(1, len(parts), squeeze=False)[0]
     for panel, (name, (positions, radii, edge)) in zip(panels, parts.items(), strict=True):
         window = _edge_window(positions, radii, edge, span)
@@ -133,7 +133,7 @@ def _edge_window(positions: np.ndarray, radii: np.ndarray, edge: np.ndarray, spa
 def _draw_kind(panel: Axes, positions: np.ndarray, radii: np.ndarray, colour: str, label: str) -> None:
     """Disks of one kind, with an entry in the legend."""
     draw_disks(panel, positions, radii, facecolors=colour, edgecolors="white", linewidths=0.3)
-    panel.add_patch(Patch(facecolor=colour, label=label, visible=True))
+    panel.scatter([], [], s=50, color=colour, label=label)
 
 
 def _frame(panel: Axes, window: Window) -> None:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.errors import CaseError
 from dembound.plot.disks import Window, draw_field
@@ -21,9 +21,10 @@ LONG = 6.0
 """A scene this many times as long as wide gets a second panel, which shows a part of it closely."""
 
 CLOSE_UP_DIAMETERS = 40
-"""Short side of that part in mean disk diameters: few enough that every disk is seen."""
+"""Width of that part in mean disk diameters, or that of the scene if it is less: every disk can be seen."""
 
 CLOSE_UP_ASPECT = 3.0
+"""Length of that part over its width, but its length is never below `CLOSE_UP_DIAMETERS` either."""
 
 DRAWING = (9.5, 6.5)
 """Largest width and height of the scene on the page in inches."""
@@ -33,8 +34,8 @@ DRAWING = (9.5, 6.5)
 class Snapshot:
     """What a picture of the scene needs.
 
-    positions (n, 2) and radii (n,) in m, before the motion; values (n,) the field; time s; count n of disks;
-    monitors: name -> place (2,) m; quantity: the field in words, with its unit; name of the case.
+    positions (n, 2) and radii (n,) in m, before the motion; values (n,) the field; time in s; monitors: name ->
+    place (2,) m; field in words and its unit; name of the case.
     """
 
     positions: np.ndarray
@@ -66,7 +67,7 @@ def plot_scene(
 ) -> Figure:
     """The scene at a snapshot, at its undeformed places, with the monitors.
 
-    A very long scene gets a second panel that shows its surroundings of the largest motion closely.
+    A very long scene gets a second panel that shows a part of it closely.
 
     Parameters
     ----------
@@ -140,10 +141,10 @@ def _draw_long(shown: Snapshot) -> tuple[Figure, list[Axes], ScalarMappable]:
     scales = [room / max(window.size) for window in (shown.window, part)]
     strip, close = (scale * min(w.size) for scale, w in zip(scales, (shown.window, part), strict=True))
     if upright:
-        figure = new_figure(strip + close + 4.0, room + 1.4)
+        figure = new_figure(strip + close + 3.6, room + 1.4)
         panels = figure.subplots(1, 2, width_ratios=[strip, close])
     else:
-        figure = new_figure(room + 1.8, strip + close + 2.4)
+        figure = new_figure(room + 1.8, strip + close + 1.9)
         panels = figure.subplots(2, 1, height_ratios=[strip, close])
     _draw_panel(panels[0], shown, shown.window, scales[0] * figure.dpi)
     colours = _draw_panel(panels[1], shown, part, scales[1] * figure.dpi)
@@ -155,13 +156,13 @@ def _draw_long(shown: Snapshot) -> tuple[Figure, list[Axes], ScalarMappable]:
 
 
 def close_up(shown: Snapshot) -> Window:
-    """The part of a long scene around the largest motion, `CLOSE_UP_ASPECT` times as long as it is wide."""
+    """The part of a long scene around half its largest motion, on a wave's flank, where colours change most."""
     scene = shown.window
     along = int(np.argmax(scene.size))
-    short = min(scene.size.min(), CLOSE_UP_DIAMETERS * 2.0 * float(shown.radii.mean()))
-    size = np.full(2, short)
-    size[along] *= CLOSE_UP_ASPECT
-    centre = shown.positions[np.argmax(np.abs(shown.values))]
+    width = CLOSE_UP_DIAMETERS * 2.0 * float(shown.radii.mean())
+    size = np.minimum(scene.size, width)
+    size[along] = min(scene.size[along], max(CLOSE_UP_ASPECT * size.min(), width))
+    centre = shown.positions[np.argmin(np.abs(np.abs(shown.values) - 0.5 * shown.limit))]
     return Window(np.clip(centre - 0.5 * size, scene.corner, scene.corner + scene.size - size), size)
 
 
@@ -169,7 +170,8 @@ def _draw_panel(panel: Axes, shown: Snapshot, window: Window, scale: float) -> S
     """A window of the scene at `scale` pixels per metre."""
     colours = draw_field(panel, window, shown.positions, shown.radii, shown.values, shown.limit, scale)
     for axis, pixels in zip((panel.xaxis, panel.yaxis), scale * window.size, strict=True):
-        axis.set_major_locator(MaxNLocator(nbins=int(np.clip(pixels / 90, 1, 9))))
+        ticks = MaxNLocator(nbins=int(np.clip(pixels / 90, 1, 9)), steps=[1, 2, 5, 10])
+        axis.set_major_locator(ticks if pixels > 45 else NullLocator())  # two labels would collide
     panel.set(xlabel="x (m)", ylabel="y (m)")
     return colours
 

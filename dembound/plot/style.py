@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
-from typing import ParamSpec
+from typing import Any, ParamSpec
 
 from matplotlib import style
 from matplotlib.artist import Artist
@@ -16,6 +16,7 @@ from dembound.results import replacing
 # Okabe & Ito: told apart with every kind of colour vision; yellow is left out, too faint for lines on white
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 DASHES = ("-", "--", "-.", ":")
+MARKERS = "os^Dv"
 REFERENCE = "#7F7F7F"
 """Colour of what the eye compares with: incident peaks, frames."""
 
@@ -63,10 +64,13 @@ def new_figure(width: float, height: float) -> Figure:
 
 def line_style(index: int) -> dict[str, str]:
     """Colour and dashes of the index-th of several lines; repeats only after 28."""
-    return {
-        "color": COLOURS[index % len(COLOURS)],
-        "linestyle": DASHES[(index // len(COLOURS) + index) % len(DASHES)],
-    }
+    return {"color": COLOURS[index % len(COLOURS)], "linestyle": DASHES[index % len(DASHES)]}
+
+
+def point_style(index: int) -> dict[str, Any]:
+    """Colour and marker of the index-th of several rows of points, joined by thin lines; repeats after 35."""
+    colour, marker = COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
+    return {"color": colour, "marker": marker, "linewidth": 0.8}
 
 
 def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None:
