@@ -10,7 +10,7 @@ the side before the peak has left it, and each pass ends then.
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import h5py
 import numpy as np
@@ -74,23 +74,30 @@ class Calibration:
         """The calibrated key of the case file: beta_p or beta_s."""
         return f"beta_{self.motion}"
 
+    def summary(self) -> dict[str, Any]:
+        """The passes and the result as plain JSON values."""
+        return {
+            "name": self.case.name,
+            "version": __version__,
+            "boundary": self.side,
+            "wave": self.motion,
+            "kind": self.kind,
+            "method": self.method,
+            "incident": self.incident,
+            "result": self.result,
+            "beta": self.beta,
+            "outgoing": self.outgoing,
+            "ratio": self.ratio,
+            "particles": self.particles,
+            "steps": self.steps,
+            "reduced": self.shortened,
+        }
+
     def write(self, path: Path) -> None:
         """Record the passes in an HDF5 file: attributes, and datasets beta, outgoing (m/s) and ratio."""
         with h5py.File(path, "w") as file:
-            file.attrs.update(
-                {
-                    "name": self.case.name,
-                    "case": self.case.text,
-                    "version": __version__,
-                    "boundary": self.side,
-                    "wave": self.motion,
-                    "kind": self.kind,
-                    "method": self.method,
-                    "incident": self.incident,
-                    "result": self.result,
-                    "shortened": "\n".join(self.shortened),
-                }
-            )
+            scalars = {key: value for key, value in self.summary().items() if not isinstance(value, list)}
+            file.attrs.update({**scalars, "case": self.case.text, "reduced": "\n".join(self.shortened)})
             for name, values, unit in (
                 ("beta", self.beta, "1"),
                 ("outgoing", self.outgoing, "m/s"),

@@ -1,5 +1,6 @@
 """The command line. Only this file prints and exits; what it does lives elsewhere."""
 
+import json
 import sys
 import tomllib
 from collections.abc import Iterator
@@ -17,6 +18,7 @@ from rich.table import Table
 
 from dembound import __version__
 from dembound.boundaries import SIDES
+from dembound.boundaries.support import Edge
 from dembound.calibrate import Calibration, calibrate
 from dembound.case import STARTER, Case, load, to_toml, with_changes
 from dembound.check import check
@@ -25,8 +27,10 @@ from dembound.packings.cache import cache_folder, clear
 from dembound.plot.boundary import plot_boundary
 from dembound.plot.convergence import plot_convergence
 from dembound.plot.histories import plot_histories
+from dembound.plot.packing import plot_brick, plot_patterns
 from dembound.plot.style import save
 from dembound.run import run_case
+from dembound.scene import Scene, build
 from dembound.simulate import Simulation
 
 EXIT_CODES = """
@@ -56,6 +60,8 @@ Settings = Annotated[
 ]
 Name = Annotated[str | None, typer.Option(help="Name of the results folder; by default the case file's.")]
 Side = StrEnum("Side", {side: side for side in SIDES})  # type: ignore[misc]
+
+RIGHT = Side("right")
 
 
 class WaveType(StrEnum):
@@ -197,6 +203,38 @@ def plot(
     out.print(f"wrote {output}")
 
 
+@app.command("packing", rich_help_panel="Cases")
+def packing(
+    cases: Cases,
+    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write (PNG).")] = Path("packing.png"),
+    side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = RIGHT,
+    brick: Annotated[bool, typer.Option("--brick", help="Show the first case's whole brick with its seams.")] = False,
+    changes: Settings = None,
+) -> None:
+    """Draw packings: one side of each case next to each other, or one brick."""
+    loaded = [_load(path, changes) for path in cases]
+    if brick:
+        shown = build(loaded[0]).ground.brick
+        figure = plot_brick(shown.positions, shown.radii, shown.rows, shown.size, shown.pairs, shown.images)
+    else:
+        scenes = {case.name: build(case) for case in loaded}
+        figure = plot_patterns(
+            {
+                name: (scene.assembly.positions, scene.assembly.radii, _edge_of(scene, side.value).nodes)
+                for name, scene in scenes.items()
+            }
+        )
+    save(figure, output)
+    out.print(f"wrote {output}")
+
+
+def _edge_of(scene: Scene, side: str) -> Edge:
+    """A side that exists; a periodic one has no particles of its own."""
+    if side not in scene.edges:
+        raise CaseError([f"--side: is {side}, which is periodic in {scene.case.name}; here: {', '.join(scene.edges)}"])
+    return scene.edges[side]
+
+
 @app.command("cache", rich_help_panel="Results")
 def cache(
     delete: Annotated[bool, typer.Option("--clear", help="Delete all cached bricks.")] = False,
@@ -239,6 +277,8 @@ def _leave(found: Calibration, folder: Path) -> Iterator[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     found.write(folder / "calibration.h5")
     yield folder / "calibration.h5"
+    (folder / "summary.json").write_text(json.dumps(found.summary(), indent=2) + "\n")
+    yield folder / "summary.json"
     changed = with_changes(found.case, {f"boundary.{found.side}.{found.factor}": found.result})
     calibrated = folder / f"{found.case.name}_calibrated.toml"
     calibrated.write_text(to_toml(changed, folder))

@@ -96,10 +96,7 @@ def _without_loose(assembly: Assembly) -> Assembly:
 def _closing_width(brick: Brick, periodic: tuple[bool, bool]) -> np.ndarray:
     """Width (2,) m that the repeated rows add along x and y: one disk, half of it beyond each outer line."""
     return np.array(
-        [
-            0.0 if periodic[axis] else 2.0 * float(brick.radii[brick.rows[:, axis]].max(initial=0.0))
-            for axis in range(2)
-        ]
+        [0.0 if periodic[axis] else 2.0 * float(brick.radii[brick.rows[:, axis]].max(initial=0.0)) for axis in range(2)]
     )
 
 

@@ -11,7 +11,7 @@ from matplotlib.collections import EllipseCollection
 from dembound.plot.style import SIGNED_MAP
 
 # A disk narrower than this cannot be told from its neighbours; drawing it alone would cost time for nothing.
-SMALLEST_PIXELS = 4.0
+SMALLEST_PIXELS = 3.0
 
 # Cells of the averaged picture, in mean diameters: wide enough that none inside the packing is empty, so that
 # an empty cell is a hole.

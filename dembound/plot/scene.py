@@ -90,8 +90,7 @@ def plot_scene(
         figure, panels, colours = _draw_whole(shown)
     figure.colorbar(colours, ax=panels, label=f"{shown.field} ({shown.unit})", shrink=0.9, pad=0.02)
     figure.suptitle(f"{shown.name}: {shown.field} of {len(shown.values)} disks at t = {shown.time:.4g} s", fontsize=11)
-    if shown.monitors:
-        outside_legend(figure, panels, columns=3)
+    outside_legend(figure, panels, columns=3)
     return figure
 
 
@@ -144,7 +143,7 @@ def _draw_long(shown: Snapshot) -> tuple[Figure, list[Axes], ScalarMappable]:
         figure = new_figure(strip + close + 3.6, room + 1.4)
         panels = figure.subplots(1, 2, width_ratios=[strip, close])
     else:
-        figure = new_figure(room + 1.8, strip + close + 1.9)
+        figure = new_figure(room + 1.8, max(strip + close, 1.3) + 1.9)
         panels = figure.subplots(2, 1, height_ratios=[strip, close])
     _draw_panel(panels[0], shown, shown.window, scales[0] * figure.dpi)
     colours = _draw_panel(panels[1], shown, part, scales[1] * figure.dpi)

@@ -79,7 +79,8 @@ def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None
     for panel in panels:
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
             handles.setdefault(label, handle)
-    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=columns)
+    if handles:
+        figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=columns)
 
 
 def save(figure: Figure, path: Path) -> None:

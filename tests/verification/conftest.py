@@ -1,5 +1,6 @@
 """The lab in which physical claims are tested: cases from a few words, and their motion at chosen places."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -79,10 +80,9 @@ class Lab:
         """Z's cosine pulse, 0.5 m/s high."""
         return {"type": "cosine", "amplitude": 0.5, "period": period}
 
-    def nearest(self, scene: Scene, places: list[tuple[float, float]]) -> np.ndarray:
-        """Particles nearest to some places (m)."""
-        gap = scene.assembly.positions[None] - np.array(places)[:, None]
-        return np.argmin(np.hypot(*gap.T).T, axis=1)
+    def row(self, scene: Scene) -> np.ndarray:
+        """Particles of a one-row scene, from left to right."""
+        return np.argsort(scene.assembly.positions[:, 0])
 
     def run(self, scene: Scene, probes: np.ndarray, duration: float, step: float | None = None) -> History:
         """Motion of some particles from rest, at every step."""
@@ -90,6 +90,21 @@ class Lab:
         simulation = Simulation(scene, step, probes)
         record = simulation.advance(int(np.ceil(duration / step)))
         return History(step * np.arange(len(record)), record[..., :3], record[..., 3:])
+
+    def sections(self, scene: Scene, places: Sequence[float], duration: float) -> History:
+        """Mean motion of the particles within 1 m of each place x (m): one column per place.
+
+        Places a whole number of bricks apart have the same particles, so their histories differ by travel alone.
+        """
+        distance = np.abs(scene.assembly.positions[:, 0] - np.array(places)[:, None])
+        sections = [np.flatnonzero(near) for near in distance < 1.0]
+        history = self.run(scene, np.concatenate(sections), duration)
+        ends = np.cumsum([len(section) for section in sections])[:-1]
+        means = (
+            np.stack([part.mean(axis=1) for part in np.split(motion, ends, axis=1)], axis=1)
+            for motion in (history.displacement, history.velocity)
+        )
+        return History(history.times, *means)
 
     def forces(self, scene: Scene, displacement: np.ndarray) -> np.ndarray:
         """Contact forces and moments (3, n) of displacements and rotations (3, n)."""

@@ -23,7 +23,7 @@ def test_travelling_wave_keeps_its_frequency(lab, waves_per_row):
         return np.cos(per_disk * np.arange(DISKS) - advance * steps)
 
     simulation = Simulation(scene, step, np.zeros(0))
-    order = np.argsort(scene.assembly.positions[:, 0])
+    order = lab.row(scene)
     simulation.displacement[0, order] = displacement(0)
     simulation.velocity[0, order] = (displacement(0) - displacement(-1)) / step
     simulation.advance(STEPS)

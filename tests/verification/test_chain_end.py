@@ -20,7 +20,7 @@ def test_reflection_of_a_matched_dashpot(lab, share_of_limit):
             boundary={"left": {"type": "velocity", "wave_p": "pulse"}, "right": "viscous"},
             wave={"type": "sine_burst", "amplitude": 1.0, "frequency": frequency, "cycles": 5},
         )
-        return lab.run(scene, lab.nearest(scene, [(300 * lab.diameter, 0.0)]), 1000 * travel, step)
+        return lab.run(scene, lab.row(scene)[[300]], 1000 * travel, step)
 
     history, endless = motion(400), motion(800)  # echoes from the long chain's end come after 1300 travels
     incident = endless.velocity[:, 0, 0]

@@ -1,0 +1,90 @@
+"""How fast the solver steps, and how much of this machine that is.
+
+    python benchmarks/step_rate.py [CASE] [--threads 1 2 ...] [--steps 200] [--repeats 7]
+
+Builds a case (by default the full long bar of random disks), sets every particle in motion, compiles first, and then
+times blocks of steps. In the same run it times a plain array copy (STREAM's "copy": one stream read, one written,
+and the written one read before it is overwritten) with as many threads, on arrays of the same total size as the solver
+moves per step, so the share of the machine's memory bandwidth is a ratio measured side by side. Medians are quoted.
+"""
+
+import argparse
+import resource
+import time
+from pathlib import Path
+
+import numba
+import numpy as np
+
+from dembound.case import load
+from dembound.scene import Scene, build
+from dembound.simulate import Simulation
+from dembound.stability import choose_step
+
+CASE = Path(__file__).parents[1] / "cases" / "zhou2018" / "long_bar_b.toml"
+
+
+@numba.njit(parallel=True)
+def copy(source, target):
+    for i in numba.prange(source.size):
+        target[i] = source[i]
+
+
+def bytes_per_step(scene: Scene) -> float:
+    """Least memory traffic of one step in bytes: every array once, palette excluded (it stays in cache).
+
+    Per particle: u read (24), its successor written and fetched for writing (48), v read and written (48), Δt/m and
+    Δt/I (16), start of row (4); per contact end: neighbour and palette line (8).
+    """
+    return 140.0 * scene.count + 8.0 * len(scene.contacts.kind)
+
+
+def flops_per_step(scene: Scene) -> float:
+    """Additions and multiplications of one step: 29 per contact end, 15 per particle."""
+    return 29.0 * len(scene.contacts.kind) + 15.0 * scene.count
+
+
+def median_time(work, repeats: int) -> float:
+    times = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - began)
+    return float(np.median(times))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("case", nargs="?", type=Path, default=CASE)
+    parser.add_argument("--threads", type=int, nargs="+", default=sorted({1, numba.get_num_threads()}))
+    parser.add_argument("--steps", type=int, default=100)
+    parser.add_argument("--repeats", type=int, default=7)
+    options = parser.parse_args()
+
+    scene = build(load(options.case))
+    time_step, _ = choose_step(scene)
+    simulation = Simulation(scene, time_step, np.zeros(0, dtype=np.int64))
+    simulation.velocity[:] = np.random.default_rng(0).normal(0.0, 1e-3, simulation.velocity.shape)
+    simulation.advance(2)
+    traffic = bytes_per_step(scene)
+    source = np.ones(int(traffic / 24))
+    target = np.zeros_like(source)
+    copy(source, target)
+
+    print(f"{options.case.stem}: {scene.count:,} particles, {len(scene.contacts.kind) / scene.count:.2f} contacts each")
+    print(f"per particle-step: {traffic / scene.count:.0f} bytes, {flops_per_step(scene) / scene.count:.0f} flops")
+    print("threads | million particle-steps/s | Gflop/s | GB/s moved | GB/s of a copy | share of bandwidth")
+    for threads in options.threads:
+        numba.set_num_threads(threads)
+        step = median_time(lambda: simulation.advance(options.steps), options.repeats) / options.steps
+        stream = 24 * source.size / median_time(lambda: copy(source, target), 5 * options.repeats)
+        print(
+            f"{threads:7d} | {scene.count / step / 1e6:24.1f} | {flops_per_step(scene) / step / 1e9:7.2f} | "
+            f"{traffic / step / 1e9:10.2f} | {stream / 1e9:14.2f} | {traffic / step / stream:18.0%}"
+        )
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    print(f"memory: scene arrays {scene.bytes / scene.count:.0f} bytes per particle; process peak {peak / 1e6:.0f} MB")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+"""A small recorded run, for the tests of what reads results."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dembound.case import loads
+from dembound.record import Recorder
+from dembound.run import plan
+from dembound.simulate import Simulation
+
+CASE = """
+[packing]
+pattern = "A"
+size = [10.0, 2.5]
+radius = 0.25
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+[boundary.left]
+type = "velocity"
+wave_p = "push"
+wave_s = "shake"
+[boundary.right]
+type = "viscous"
+[wave.push]
+type = "cosine"
+amplitude = 0.5
+period = 0.01
+[wave.shake]
+type = "cosine"
+amplitude = 0.2
+period = 0.01
+[[monitor]]
+name = "front"
+position = [2.4, 1.2]
+[[monitor]]
+name = "back"
+position = [9.6, 1.2]
+[run]
+duration = 0.01
+"""
+
+
+def record(path: Path, name: str, snapshots: int) -> Path:
+    """Run the case, 20 × 5 disks in P and S motion, under a name; the snapshots are evenly spaced."""
+    planned = plan(loads(CASE, Path(), name))
+    monitors = np.array(list(planned.scene.monitors.values()), dtype=np.int64)
+    simulation = Simulation(planned.scene, planned.time_step, monitors)
+    with Recorder(path, simulation, planned.step_limit, 0.0) as recorder:
+        recorder.append(simulation.advance(planned.steps // 2))
+        for _ in range(snapshots):
+            recorder.snapshot()
+            recorder.append(simulation.advance(planned.steps // 4))
+    return path
+
+
+@pytest.fixture(scope="session")
+def small_run(tmp_path_factory) -> Path:
+    """The record of a run called ``small`` with two snapshots."""
+    return record(tmp_path_factory.mktemp("small") / "run.h5", "small", 2)
+
+
+@pytest.fixture(scope="session")
+def other_run(tmp_path_factory) -> Path:
+    """The record of a shorter run called ``other``, without snapshots."""
+    return record(tmp_path_factory.mktemp("other") / "run.h5", "other", 0)

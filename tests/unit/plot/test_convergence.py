@@ -1,0 +1,57 @@
+"""Calibrations show their passes."""
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.errors import CaseError
+from dembound.plot.convergence import plot_convergence
+
+BETA = [0.5, 0.618, 0.7]
+OUTGOING = [0.618, 0.567, 0.536]
+
+
+def calibration(path, name, beta, outgoing):
+    with h5py.File(path, "w") as file:
+        file.attrs.update(
+            {
+                "name": name,
+                "boundary": "right",
+                "wave": "p",
+                "kind": "absorbing",
+                "method": "ratio",
+                "incident": 0.5,
+            }
+        )
+        file["beta"], file["outgoing"] = np.array(beta), np.array(outgoing)
+        file["ratio"] = np.array(outgoing) / 0.5
+    return path
+
+
+def test_peaks_and_factors_stand_against_the_pass(tmp_path):
+    records = [
+        calibration(tmp_path / "first.h5", "first", BETA, OUTGOING),
+        calibration(tmp_path / "second.h5", "second", BETA[:1], OUTGOING[:1]),
+    ]
+    figure = plot_convergence(records)
+    upper, lower = figure.axes
+    first, second, incident = upper.lines
+    np.testing.assert_array_equal(first.get_xdata(), [1, 2, 3])
+    np.testing.assert_array_equal(first.get_ydata(), OUTGOING)
+    np.testing.assert_array_equal(second.get_ydata(), OUTGOING[:1])
+    np.testing.assert_array_equal(incident.get_ydata(), 0.5)
+    np.testing.assert_array_equal(lower.lines[0].get_ydata(), BETA)
+    assert upper.get_ylabel() == "peak velocity at the side (m/s)"
+    assert lower.get_ylabel() == "boundary factor β (1)"
+    assert lower.get_xlabel() == "pass"
+    texts = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert texts == [
+        "first, right absorbing P, ratio",
+        "second, right absorbing P, ratio",
+        "incident peak, 0.5 m/s",
+    ]
+
+
+def test_without_a_pass_there_is_nothing_to_show(tmp_path):
+    with pytest.raises(CaseError, match="no passes"):
+        plot_convergence([calibration(tmp_path / "calibration.h5", "empty", [], [])])

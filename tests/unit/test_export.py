@@ -1,0 +1,92 @@
+"""What ParaView is given equals the record."""
+
+import ast
+from xml.etree import ElementTree
+
+import h5py
+import meshio
+import numpy as np
+import pytest
+import pyvista
+
+from dembound.export import write_vtu
+
+
+@pytest.fixture(scope="module")
+def exported(small_run, tmp_path_factory):
+    return write_vtu(small_run, tmp_path_factory.mktemp("vtu") / "paraview")
+
+
+def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Points and point data of a snapshot, written out column by column."""
+    particles, snapshot = file["particles"], file["snapshots"][number]
+    displacement, velocity = snapshot["displacement"][:], snapshot["velocity"][:]
+    points, moved, linear, angular = (np.zeros((len(velocity), 3)) for _ in range(4))
+    for axis in range(2):
+        points[:, axis] = particles["position"][:, axis] + displacement[:, axis]
+        moved[:, axis] = displacement[:, axis]
+        linear[:, axis] = velocity[:, axis]
+    angular[:, 2] = velocity[:, 2]
+    return points, {
+        "radii": particles["radius"][:],
+        "id": np.arange(len(velocity)),
+        "linVelVec": linear,
+        "angVelVec": angular,
+        "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
+        "displacement": moved,
+        "rotation": displacement[:, 2],
+        "brick_particle": particles["brick_particle"][:],
+    }
+
+
+@pytest.mark.parametrize("number", ["0000", "0001"])
+def test_meshio_reads_back_what_the_record_holds(small_run, exported, number):
+    mesh = meshio.read(exported.parent / f"particles_{number}.vtu")
+    with h5py.File(small_run) as file:
+        points, data = expected(file, number)
+    assert all(np.abs(data[name]).max() > 0.0 for name in ("linVelVec", "angVelVec", "displacement", "rotation"))
+    np.testing.assert_array_equal(mesh.points, points)
+    assert mesh.point_data.keys() == data.keys()
+    for name, values in data.items():
+        np.testing.assert_array_equal(mesh.point_data[name], values, err_msg=name)
+
+
+def test_vtk_reads_one_vertex_per_disk(small_run, exported):
+    mesh = pyvista.read(exported.parent / "particles_0001.vtu")
+    with h5py.File(small_run) as file:
+        points, data = expected(file, "0001")
+    assert mesh.n_cells == len(points)
+    assert set(mesh.celltypes) == {pyvista.CellType.VERTEX}
+    np.testing.assert_array_equal(mesh.points, points)
+    for name, values in data.items():
+        np.testing.assert_array_equal(mesh.point_data[name], values, err_msg=name)
+
+
+def test_circle_glyphs_of_factor_two_have_the_radii(exported):
+    # as the module tells users to set ParaView's glyph filter, whose 2D circle has the diameter 1
+    mesh = pyvista.read(exported.parent / "particles_0000.vtu")
+    circle = pyvista.Circle(radius=0.5, resolution=4)
+    disks = mesh.glyph(geom=circle, scale="radii", factor=2.0, orient=False)
+    corners = disks.points.reshape(mesh.n_points, -1, 3) - mesh.points[:, None, :]
+    # VTK keeps glyph points in single precision: 6e-8 of coordinates up to 10 m
+    np.testing.assert_allclose(np.linalg.norm(corners, axis=2), 0.25, atol=2e-6)
+
+
+def test_the_index_lists_files_and_times(small_run, exported):
+    entries = ElementTree.parse(exported).getroot().findall("Collection/DataSet")
+    with h5py.File(small_run) as file:
+        times = [float(snapshot.attrs["time"]) for snapshot in file["snapshots"].values()]
+    assert [entry.get("file") for entry in entries] == ["particles_0000.vtu", "particles_0001.vtu"]
+    assert [float(entry.get("timestep")) for entry in entries] == times
+    assert pyvista.get_reader(exported).time_values == times
+
+
+def test_the_folder_holds_the_view_script_and_no_leftovers(exported):
+    names = sorted(path.name for path in exported.parent.iterdir())
+    assert names == ["particles.pvd", "particles_0000.vtu", "particles_0001.vtu", "view.py"]
+    ast.parse((exported.parent / "view.py").read_text())
+
+
+def test_a_run_without_snapshots_writes_nothing(other_run, tmp_path):
+    assert write_vtu(other_run, tmp_path / "paraview") is None
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,49 @@
+"""Records open by name; files are replaced whole."""
+
+import pytest
+
+from dembound.errors import CaseError
+from dembound.results import open_record, record_names, replacing
+
+
+def test_what_is_no_record_is_refused_by_name(tmp_path):
+    text = tmp_path / "run.h5"
+    text.write_text("not a record")
+    for path in (text, tmp_path / "missing.h5"):
+        with pytest.raises(CaseError, match=path.name):
+            open_record(path)
+
+
+def test_names_are_the_cases_names(small_run, other_run):
+    assert record_names([small_run, other_run]) == ["small", "other"]
+
+
+def test_records_of_one_name_go_by_their_paths(small_run, other_run, tmp_path):
+    twin = tmp_path / "twin.h5"
+    twin.write_bytes(small_run.read_bytes())
+    assert record_names([small_run, other_run, twin]) == [str(small_run), "other", str(twin)]
+
+
+def test_a_file_is_replaced_whole(tmp_path):
+    path = tmp_path / "file"
+    path.write_text("old")
+    with replacing(path) as part:
+        part.write_text("new")
+        assert path.read_text() == "old"
+    assert path.read_text() == "new"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "file"
+    path.write_text("old")
+
+    def write_half():
+        with replacing(path) as part:
+            part.write_text("half")
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        write_half()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]

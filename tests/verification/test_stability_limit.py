@@ -1,0 +1,62 @@
+"""The stability limit is sharp: bounded just below it, blown up just above."""
+
+import numpy as np
+import pytest
+
+from dembound.simulate import Simulation
+from dembound.stability import TOLERANCE, step_limit
+
+PERIODIC = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
+
+
+def kinetic_energy(scene, velocity):
+    return 0.5 * np.sum(np.stack([scene.mass, scene.mass, scene.inertia]) * velocity**2)
+
+
+def growth(scene, share: float, steps: int) -> float:
+    """Kinetic energy after some steps at a share of the limit, over that of the random start without strain."""
+    simulation = Simulation(scene, share * step_limit(scene), np.zeros(0))
+    simulation.velocity[:] = scene.free[:, None] * np.random.default_rng(0).standard_normal((3, scene.count))
+    start = kinetic_energy(scene, simulation.velocity)
+    simulation.advance(steps)
+    return kinetic_energy(scene, simulation.velocity) / start
+
+
+@pytest.fixture(scope="module", params=["A", "B", "C"])
+def scene(request, lab):
+    return lab.scene(request.param, (10.0, 10.0), boundary=PERIODIC)
+
+
+def test_square_lattice_has_a_closed_form(lab):
+    """ω² = 16k_s/m on the endless lattice with y held: all disks turn alike and all four contacts shear.
+
+    With k_n = K and k_s = k_r·3/R² = K/2 (bonds alone carry shear), unit m, and s = sin², c = cos² of half the phases
+    from disk to disk, x has 4K(s_x + s_y/2), rotation 4K(c_x + c_y) + 4K(s_x + s_y)/3 and their coupling squared is
+    8K² s_y c_y: 8K at zero phase, and both the trace and the other corners (6K) are below.
+    """
+    scene = lab.scene("A", (10.0, 10.0), boundary=PERIODIC)
+    limit = lab.diameter / lab.speed / np.sqrt(2.0)  # 2/√(8K/m), and √(K/m) = c/D
+    assert step_limit(scene) == pytest.approx(limit, rel=TOLERANCE)
+
+
+def test_limit_is_that_of_all_eigenvalues(lab):
+    scene = lab.scene("B", (6.0, 6.0), brick=(6.0, 6.0), held=(), boundary=PERIODIC)
+    size = 3 * scene.count
+    stiffness = np.stack(
+        [-lab.forces(scene, column.reshape(3, -1)).ravel() for column in np.eye(size)], axis=1
+    )
+    root = 1.0 / np.sqrt(np.concatenate([scene.mass, scene.mass, scene.inertia]))
+    largest = np.linalg.eigvalsh(root[:, None] * stiffness * root)[-1]
+    assert step_limit(scene) == pytest.approx(2.0 / np.sqrt(largest), rel=TOLERANCE)
+
+
+def test_bounded_below_the_limit(scene):
+    # ½mv² + ½uⁿKuⁿ⁺¹ is conserved and at least ½mv²(1 − r²) at the share r of the limit; Lanczos errs by TOLERANCE
+    share = 0.999 * (1.0 + TOLERANCE)
+    assert growth(scene, 0.999, steps=10_000) < 1.0 / (1.0 - share**2)
+
+
+def test_grows_above_the_limit(scene):
+    # the highest mode's amplitude grows by (r + √(r² − 1))² = 1.09 per step, its energy by e^178 in 1000; it has one
+    # of a few thousand parts of the energy at the start, and Lanczos errs on the unstable side. e^100 = 1e43
+    assert growth(scene, 1.001, steps=1000) > 1e40
