@@ -1,12 +1,13 @@
 """What a case would come to, without running it."""
 
 import time
+from typing import Any
 
 import numpy as np
 
 from dembound.case import Case
 from dembound.run import Plan, describe_packing, describe_side, plan
-from dembound.scene import Scene
+from dembound.scene import Scene, boundary_medium
 from dembound.simulate import Simulation
 
 FEWEST_PER_WAVELENGTH = 20.0
@@ -34,9 +35,8 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
     for name, node in scene.monitors.items():
         x, y = scene.assembly.positions[node]
         facts[f"monitor {name}"] = f"particle {node} at ({x:.3f}, {y:.3f}) m"
-    per_wavelength = particles_per_wavelength(scene)
-    warnings = []
-    for name, count in per_wavelength.items():
+    warnings = _tension_warnings(scene)
+    for name, count in particles_per_wavelength(scene).items():
         facts[f"wave {name}"] = f"{count:.0f} particles per shortest wavelength"
         if count < FEWEST_PER_WAVELENGTH:
             warnings.append(
@@ -56,6 +56,24 @@ def particles_per_wavelength(scene: Scene) -> dict[str, float]:
     }
 
 
+def _tension_warnings(scene: Scene) -> list[str]:
+    """Waves whose stress ρcv exceeds the locked-in pressure: real contacts would open, the elastic law's do not."""
+    pressure = _pressure(describe_packing(scene))
+    medium = boundary_medium(scene.case, scene.ground)
+    stresses = {name: medium.density * medium.p_wave_speed * wave.peak() for name, wave in scene.case.wave.items()}
+    return [
+        f"wave.{name}: has a stress ρcv of {stress / 1e6:.3g} MPa, above the confining stress of "
+        f"{pressure / 1e6:.3g} MPa; real contacts would open where it pulls, the elastic law keeps them closed"
+        for name, stress in stresses.items()
+        if stress > pressure
+    ]
+
+
+def _pressure(packing: dict[str, Any]) -> float:
+    """Locked-in isotropic pressure in Pa."""
+    return 0.0 - 0.5 * (packing["stress"][0] + packing["stress"][1])
+
+
 def _estimate(planned: Plan) -> float:
     """Seconds the run will take, from a few timed steps of it."""
     simulation = Simulation(planned.scene, planned.time_step, np.zeros(0, dtype=np.int64))
@@ -67,7 +85,6 @@ def _estimate(planned: Plan) -> float:
 
 def _packing_facts(scene: Scene) -> dict[str, str]:
     packing = describe_packing(scene)
-    pressure = -0.5 * (packing["stress"][0] + packing["stress"][1])
     speeds = [
         f"{name} = {packing[key]:.1f} m/s"
         for name, key in (("c_p", "p_wave_speed"), ("c_s", "s_wave_speed"))
@@ -78,7 +95,7 @@ def _packing_facts(scene: Scene) -> dict[str, str]:
         "brick": f"{packing['disks_per_brick']:,} disks, solid fraction {packing['solid_fraction']:.4f}, "
         f"{packing['coordination']:.3f} contacts per disk",
         "brick equilibrium": f"residual force ratio {packing['residual_ratio']:.1e}, "
-        f"confining stress {pressure / 1e6:.3f} MPa",
+        f"confining stress {_pressure(packing) / 1e6:.3f} MPa",
         "homogenised stiffness": f"{stiffness} GPa",
         "wave speeds": ", ".join(speeds) or "no motion is free",
     }

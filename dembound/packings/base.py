@@ -10,6 +10,9 @@ from dembound.packings.dense import Recipe, radius_range
 from dembound.table import Table, quantity
 
 Extent = tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]]
+# Confining stress over contact modulus where the case names none: 4.5 contacts per disk, and eight times the
+# stress ρcv of a wave of 0.5 m/s at 1000 m/s.
+PRESSURE = 8e-3
 # Below, a frictionless packing is so near to falling apart that it hardly comes to rest; above, overlaps of
 # a tenth of the diameter are no contacts any more.
 PRESSURES = (5e-4, 0.1)
@@ -55,7 +58,9 @@ class DensePacking(Packing):
     radius_ratio: float = quantity(unit="1", help="largest over smallest radius", ge=1.0, le=4.0)
     brick: Extent = quantity(unit="m", help="width and height of the periodic brick")
     seed: int = quantity(0, unit="1", help="seed of the random start", ge=0)
-    confining_stress: float = quantity(1e7, unit="Pa", help="locked-in isotropic pressure", gt=0.0)
+    confining_stress: float | None = quantity(
+        None, unit="Pa", help="locked-in isotropic pressure; absent: 0.8 % of the contact modulus", gt=0.0
+    )
     bond_gap: float = quantity(0.0, unit="m", help="gaps up to this are contacts too", ge=0.0)
 
     @property
@@ -73,8 +78,8 @@ class DensePacking(Packing):
 
         Raises CaseError when the confining stress is outside 5e-4 … 0.1 of the contact modulus.
         """
-        pressure = self.confining_stress / contact_modulus
         low, high = PRESSURES
+        pressure = PRESSURE if self.confining_stress is None else self.confining_stress / contact_modulus
         if not low <= pressure <= high:
             raise CaseError(
                 [

@@ -9,7 +9,7 @@ from dembound.packings.brick import Brick
 
 
 class Square(Packing):
-    """Equal disks, one to a square cell, touching their four neighbours without force (Z section 3.1)."""
+    """Equal disks, one to a square cell, touching their four neighbours without force (Z section 2.3.1)."""
 
     pattern: Literal["A"] = "A"
 

@@ -66,7 +66,13 @@ def test_edge_radii_are_adjusted_to_whole_disks():
 @pytest.mark.parametrize("modulus", [1e7, 1e12])
 def test_confining_stress_out_of_range_names_the_range(modulus):
     with pytest.raises(CaseError, match=r"packing\.confining_stress: 1e\+07 Pa .* can be packed"):
-        read(B).pack(modulus)
+        read({**B, "confining_stress": 1e7}).pack(modulus)
+
+
+def test_without_a_confining_stress_the_brick_does_not_depend_on_the_modulus():
+    soft, stiff = read(B).pack(1e6), read(B).pack(1e12)
+    assert np.array_equal(soft.positions, stiff.positions)
+    assert soft.stress[:2].mean() == pytest.approx(-8e-3, rel=1e-3)  # 0.8 %, reached within 0.1 %
 
 
 def test_bricks_are_packed_once(monkeypatch):

@@ -1,0 +1,41 @@
+"""The reference of the case file names every key there is."""
+
+from pathlib import Path
+from typing import get_args
+
+import pytest
+
+from dembound.boundaries import BoundaryTable
+from dembound.case.material import Material
+from dembound.case.monitor import Monitor
+from dembound.case.motion import Motion
+from dembound.case.output import Output
+from dembound.case.run import Run
+from dembound.packings import PackingTable
+from dembound.waves import WaveTable
+
+REFERENCE = Path(__file__).parents[2] / "docs" / "case_file.md"
+
+
+def members(union):
+    """The tables of an annotated union."""
+    return get_args(get_args(union)[0])
+
+
+TABLES = [Material, Motion, Monitor, Run, Output, *members(PackingTable), *members(BoundaryTable), *members(WaveTable)]
+
+
+@pytest.mark.parametrize("table", TABLES, ids=lambda table: table.__name__)
+def test_every_key_stands_in_the_reference(table):
+    text = REFERENCE.read_text()
+    missing = [key for key in table.model_fields if f"`{key}`" not in text and f"`{key} =" not in text]
+    assert not missing
+
+
+@pytest.mark.parametrize("union", [PackingTable, BoundaryTable, WaveTable])
+def test_every_type_stands_in_the_reference(union):
+    text = REFERENCE.read_text()
+    for table in members(union):
+        field = table.model_fields.get("type") or table.model_fields["pattern"]
+        (name,) = get_args(field.annotation)
+        assert f'"{name}"' in text
