@@ -3,8 +3,8 @@
 A pulse of peak M_in meets the side at normal incidence; M_out is the mean peak velocity of the side's particles. An
 absorbing side of impedance β/β0 answers M_out/M_in = 2/(1 + β/β0), an input side 2/(1 + β0/β); both are 1 at β0.
 
-No more is modelled than decides M_out: a strip of the scene's own bricks, long enough that nothing returns to
-the side before the peak has left it, and each pass ends then.
+No more is modelled than decides M_out: a strip of the scene's own bricks, just long enough that nothing returns
+to the side before the peak has left it, and each pass ends then.
 """
 
 from collections.abc import Callable, Iterator
@@ -16,10 +16,10 @@ import h5py
 import numpy as np
 
 from dembound import __version__
-from dembound.boundaries import Free, Periodic, Velocity, Viscous, ViscousInput
+from dembound.boundaries import BoundaryTable, Fixed, Free, Periodic, Velocity, Viscous, ViscousInput
 from dembound.case import Case
 from dembound.errors import CaseError, RunError
-from dembound.scene import Scene, boundary_medium, build, with_boundaries
+from dembound.scene import Scene, boundary_medium, build, ground_of, with_boundaries
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
 from dembound.waves import Cosine
@@ -32,8 +32,11 @@ PULSE = "calibration"
 MOST_PASSES = 40
 
 STRIP = 0.35
-"""Strip length in pulse lengths cT. The peak is at the side T/2 after the front and has fallen by a tenth 0.6 T
-after it; an echo needs 2L/c from side to side, so L > 0.3 cT keeps M_out clean, and a sixth more makes it sure."""
+"""Strip length in pulse lengths cT. The front is T/2 before the peak and needs 2L/c for an echo; a pass ends AFTER
+the peak, 0.6 T after the front, so L > 0.3 cT keeps M_out clean, and a sixth more makes it sure."""
+
+AFTER = 0.1
+"""How long a pass goes on after the peak is due at the side, in pulse lengths T: the peak may be a little late."""
 
 
 @dataclass
@@ -47,7 +50,7 @@ class Calibration:
     incident : M_in, m/s.
     beta, outgoing : per pass, the factor tried and the M_out (m/s) it gave.
     result : the calibrated factor.
-    shortened : what was left out of the scene, one sentence each.
+    shortened : how the scene calibrated on differs from the case's, one sentence each.
     particles, steps : size of the scene calibrated on, and steps of all passes.
     """
 
@@ -124,13 +127,13 @@ def calibrate(
 
     Parameters
     ----------
-    motion : by default P, or S where the scene holds the motion along the normal.
+    motion : by default P, or S where the scene holds the motion along the normal or sends only S waves that way.
     method : "impedance" solves the end's impedance relation for β0 and checks it; "ratio" multiplies β by
         M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised" takes β0 = (c_eff/c)·H/ΣD from the
         brick alone and runs nothing.
     start : first β; by default the case's.
     tolerance : ends when |M_out/M_in − 1| is below it.
-    full : use the whole scene instead of a strip.
+    full : use the whole scene, with its own boundaries all around, instead of a strip.
     report : called after every pass.
 
     Raises CaseError when the side has no dashpots or cannot move that way, RunError when β does not converge.
@@ -139,7 +142,7 @@ def calibrate(
     motion = motion or _default_motion(case, side)
     _must_move(case, side, motion)
     pulse = _pulse(case, side, motion)
-    strip, shortened = (_driven(case, side, motion, pulse), []) if full else _strip(case, side, motion, pulse)
+    strip, shortened = _whole(case, side, motion, pulse) if full else _strip(case, side, motion, pulse)
     found = Calibration(
         case=case,
         side=side,
@@ -160,7 +163,7 @@ def calibrate(
     time_step, _ = choose_step(scene)  # β does not change it: centred dashpots cost no stability
     for _ in range(MOST_PASSES):
         trial = with_boundaries(scene, _with_beta(strip, side, found.factor, beta))
-        outgoing, steps = _pass(trial, time_step, found, pulse, full)
+        outgoing, steps = _pass(trial, time_step, found, pulse)
         found.beta.append(beta)
         found.outgoing.append(outgoing)
         found.steps += steps
@@ -195,22 +198,13 @@ def _next_beta(found: Calibration) -> float:
     return beta * ratio / (2.0 - ratio) if absorbing else beta * (2.0 - ratio) / ratio
 
 
-def _pass(scene: Scene, time_step: float, found: Calibration, pulse: Cosine, full: bool) -> tuple[float, int]:
+def _pass(scene: Scene, time_step: float, found: Calibration, pulse: Cosine) -> tuple[float, int]:
     """M_out of one run (m/s) and its number of steps."""
-    side, axis = found.side, _axis_of_motion(found.side, found.motion)
     simulation = Simulation(scene, time_step, np.zeros(0, dtype=np.int64))
-    due = pulse.peak_time() + (0.0 if found.kind == "input" else _travel(scene, side, found.motion))
-
-    def peak() -> float:
-        return float(simulation.edge_peaks(side)[:, axis, 1].mean())
-
-    def passed(simulation: Simulation, record: np.ndarray) -> bool:
-        now = float(simulation.edge_velocity(side)[:, axis].mean())
-        return not full and simulation.time > due and now < 0.9 * peak()
-
-    longest = scene.case.run.duration if full else due + pulse.period
-    simulation.run(int(np.ceil(longest / time_step)), passed)
-    return peak(), simulation.steps
+    due = pulse.peak_time() + (0.0 if found.kind == "input" else _travel(scene, found.side, found.motion))
+    simulation.run(int(np.ceil((due + AFTER * pulse.period) / time_step)))
+    peaks = simulation.edge_peaks(found.side)[:, _axis_of_motion(found.side, found.motion), 1]
+    return float(peaks.mean()), simulation.steps
 
 
 def _travel(scene: Scene, side: str, motion: Motion) -> float:
@@ -239,7 +233,11 @@ def _axis_of_motion(side: str, motion: Motion) -> int:
 
 
 def _default_motion(case: Case, side: str) -> Motion:
-    return "s" if "xy"[_normal_axis(side)] in case.motion.held else "p"
+    """S where the normal motion is held, or where only S waves run between this side and the opposite one."""
+    ends = [case.boundary.get(end) for end in (side, OPPOSITE[side])]
+    driven = {motion for motion in ("p", "s") for end in ends if getattr(end, f"wave_{motion}", None)}
+    held = "xy"[_normal_axis(side)] in case.motion.held
+    return "s" if held or driven == {"s"} else "p"
 
 
 def _must_move(case: Case, side: str, motion: Motion) -> None:
@@ -278,31 +276,49 @@ def _with_beta(case: Case, side: str, factor: str, beta: float) -> Case:
 
 def _driven(case: Case, side: str, motion: Motion, pulse: Cosine) -> Case:
     """The case with the pulse as its only wave: sent from the opposite side, or let in by the side itself."""
-    table, wave = case.boundary[side], {f"wave_{motion}": PULSE}
-    boundary = {name: t for name, t in case.boundary.items() if name not in (side, OPPOSITE[side])}
+    wave = {"wave_p": None, "wave_s": None, f"wave_{motion}": PULSE}
+    boundary = {name: _at_rest(table) for name, table in case.boundary.items()}
+    table = case.boundary[side]
     if isinstance(table, ViscousInput):
-        other = {"wave_s" if motion == "p" else "wave_p": None}
-        boundary[side] = table.model_copy(update={**wave, **other})
+        boundary[side] = table.model_copy(update=wave)
     else:
-        boundary[side] = table
         boundary[OPPOSITE[side]] = Velocity(type="velocity", **wave)
     return replace(case, boundary=boundary, wave={PULSE: pulse}, monitor=())
 
 
+def _at_rest(table: BoundaryTable) -> BoundaryTable:
+    """The boundary without its waves."""
+    if isinstance(table, ViscousInput):
+        return Viscous(type="viscous", beta_p=table.beta_p, beta_s=table.beta_s)
+    return Fixed(type="fixed") if isinstance(table, Velocity) else table
+
+
+def _least_length(case: Case, axis: int, motion: Motion, pulse: Cosine) -> float:
+    """Length (m) along the normal that keeps echoes away from M_out."""
+    return STRIP * _speed_of(case, axis, motion) * pulse.period
+
+
+def _whole(case: Case, side: str, motion: Motion, pulse: Cosine) -> tuple[Case, list[str]]:
+    """The whole scene, if it is long enough to calibrate on."""
+    axis = _normal_axis(side)
+    least, length = _least_length(case, axis, motion, pulse), case.packing.size[axis]
+    if length < least:
+        raise CaseError(
+            [f"--full: the scene is {length:g} m long, echoes need {least:.4g} m to come late enough; leave it out"]
+        )
+    return _driven(case, side, motion, pulse), ["each pass ends once the peak has left the side"]
+
+
 def _strip(case: Case, side: str, motion: Motion, pulse: Cosine) -> tuple[Case, list[str]]:
-    """The least scene that decides M_out, and sentences that say what was left out."""
+    """The least scene that decides M_out, and sentences that say how it differs from the case's."""
     case = _driven(case, side, motion, pulse)
     axis = _normal_axis(side)
     bricks, brick = list(case.packing.copies), case.packing.brick_size
-    speed = case.material.p_wave_speed or _speed_of(case, axis, motion)
-    shortened = []
-    needed = max(1, int(np.ceil(STRIP * speed * pulse.period / brick[axis])))
-    if needed < bricks[axis]:
-        shortened.append(
-            f"length {needed * brick[axis]:g} m instead of {case.packing.size[axis]:g} m, "
-            "and each pass ends once the peak has left the side"
-        )
-        bricks[axis] = needed
+    bricks[axis] = max(1, int(np.ceil(_least_length(case, axis, motion, pulse) / brick[axis])))
+    shortened = [
+        f"a strip of {bricks[axis] * brick[axis]:g} m, the scene has {case.packing.size[axis]:g} m",
+        "each pass ends once the peak has left the side",
+    ]
     lateral = ("bottom", "top") if axis == 0 else ("left", "right")
     tables = [case.boundary.get(name) for name in lateral]
     plane = "xy"[1 - axis] in case.motion.held and all(t is None or isinstance(t, Free) for t in tables)
@@ -316,5 +332,6 @@ def _strip(case: Case, side: str, motion: Motion, pulse: Cosine) -> tuple[Case, 
 
 
 def _speed_of(case: Case, axis: int, motion: Motion) -> float:
-    """Wave speed (m/s) of the packing, for a case that names none."""
-    return build(case).ground.wave_speeds(axis)[0 if motion == "p" else 1]
+    """The packing's own wave speed (m/s) along an axis."""
+    ground = ground_of(case)
+    return ground.wave_speeds(axis)[0 if motion == "p" else 1]

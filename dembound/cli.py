@@ -141,7 +141,7 @@ def calibrate_side(
     case: OneCase,
     boundary: Annotated[Side, typer.Option("--boundary", "-b", help="Side to calibrate.")],
     wave: Annotated[
-        WaveType | None, typer.Option(help="P or S; by default P unless the case holds its motion.")
+        WaveType | None, typer.Option(help="P or S; by default what runs towards this side, else P.")
     ] = None,
     method: Annotated[
         CalibrationMethod,

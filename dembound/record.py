@@ -18,7 +18,6 @@ import numpy as np
 from dembound import __version__
 from dembound.simulate import Simulation
 
-COMPONENTS = ("x", "y", "rotation")
 DISPLACEMENT_UNIT = "m, m, rad"
 VELOCITY_UNIT = "m/s, m/s, rad/s"
 
@@ -103,9 +102,10 @@ class Recorder:
     def _make_histories(self) -> list[h5py.Group]:
         scene = self.simulation.scene
         wanted = {monitor.name: monitor.position for monitor in scene.case.monitor}
+        histories = self.file.create_group("histories", track_order=True)  # the case's order, not the alphabet's
         groups = []
         for name, node in scene.monitors.items():
-            group = self.file.create_group(f"histories/{name}")
+            group = histories.create_group(name)
             group.attrs["particle"] = node
             group.attrs["position"] = scene.assembly.positions[node]
             group.attrs["wanted"] = wanted[name]

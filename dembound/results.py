@@ -23,6 +23,17 @@ def open_record(path: Path) -> h5py.File:
         raise CaseError([f"{path}: cannot be read as a record of results: {error}"]) from None
 
 
+def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
+    """A snapshot of an open record by its number; negative ones count from the last.
+
+    Raises CaseError when there is no such snapshot.
+    """
+    snapshots = list(file.get("snapshots", {}).values())
+    if not -len(snapshots) <= number < len(snapshots):
+        raise CaseError([f"{file.filename}: has no snapshot {number}, it has {len(snapshots)}"])
+    return snapshots[number]
+
+
 def record_names(paths: Sequence[Path]) -> list[str]:
     """A name for each record, for legends: its case's name, or its path where two cases share a name."""
     names = []

@@ -19,6 +19,7 @@ from dembound.plot.histories import plot_histories
 from dembound.plot.scene import plot_scene
 from dembound.plot.style import save
 from dembound.record import Recorder
+from dembound.results import open_record
 from dembound.scene import Scene, build
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
@@ -172,7 +173,7 @@ def _describe_edge(scene: Scene, simulation: Simulation, side: str) -> dict[str,
 
 def _describe_monitors(record: Path) -> dict[str, Any]:
     """Peaks and arrivals of every history."""
-    with h5py.File(record) as file:
+    with open_record(record) as file:
         groups: Mapping[str, h5py.Group] = file.get("histories", {})
         return {
             name: {

@@ -93,10 +93,9 @@ def build(case: Case) -> Scene:
 
     Raises PackingError when the brick cannot be made.
     """
-    brick = case.packing.pack(nominal_moduli(case.material).emod)
-    ground = make_ground(brick, case.material, case.motion.held)
+    ground = ground_of(case)
     periodic = (_is_periodic(case, "left"), _is_periodic(case, "bottom"))
-    assembly = tile(brick, case.packing.copies, periodic)
+    assembly = tile(ground.brick, case.packing.copies, periodic)
     edges = find_edges(assembly, periodic)
     return Scene(
         case=case,
@@ -107,6 +106,12 @@ def build(case: Case) -> Scene:
         supports=_supports(case, ground, edges),
         monitors=_monitors(case, assembly),
     )
+
+
+def ground_of(case: Case) -> Ground:
+    """The case's brick, packed or from the cache, with its material."""
+    brick = case.packing.pack(nominal_moduli(case.material).emod)
+    return make_ground(brick, case.material, case.motion.held)
 
 
 def with_boundaries(scene: Scene, case: Case) -> Scene:

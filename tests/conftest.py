@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import numba
 import pytest
 
 
@@ -9,3 +10,9 @@ def session_cache(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("DEMBOUND_CACHE", str(tmp_path_factory.mktemp("bricks")))
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_thread():
+    """Test scenes are so small that threads would mostly wait for each other."""
+    numba.set_num_threads(1)

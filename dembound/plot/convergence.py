@@ -48,7 +48,7 @@ def plot_convergence(records: Sequence[Path]) -> Figure:
         label = f"incident peak, {incident:.4g} m/s"
         upper.axhline(incident, color=REFERENCE, linewidth=1.0, zorder=1, label=label)
     upper.set_ylabel("peak velocity at the side (m/s)")
-    lower.set_ylabel("boundary factor β (1)")
+    lower.set_ylabel("boundary factor β (–)")
     lower.set_xlabel("pass")
     lower.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     figure.suptitle("Calibration: β is right when the side moves as the incident wave does", fontsize=11)

@@ -26,7 +26,12 @@ class History:
 
 
 @styled
-def plot_histories(runs: Sequence[Path], component: Component | None = None, quantity: Quantity = "velocity") -> Figure:
+def plot_histories(
+    runs: Sequence[Path],
+    component: Component | None = None,
+    quantity: Quantity = "velocity",
+    monitors: Sequence[str] | None = None,
+) -> Figure:
     """One panel per monitor, on common axes; several runs lie over each other in it.
 
     Parameters
@@ -37,18 +42,19 @@ def plot_histories(runs: Sequence[Path], component: Component | None = None, qua
         what to show; by default whichever of x and y moved most in any run.
     quantity
         what to show of it, in m/s or m (rad/s or rad for the rotation).
+    monitors
+        names of those to show, in this order; by default all.
 
-    Raises CaseError when a file cannot be read or no run has a monitor.
+    Raises CaseError when a file cannot be read, no run has a monitor, or none has one of those asked for.
     """
     histories = [read_histories(path, quantity) for path in runs]
-    monitors = list(dict.fromkeys(name for run in histories for name in run))
-    if not monitors:
-        raise CaseError([f"{', '.join(map(str, runs))}: has no monitors to show"])
+    shown = _choose(runs, histories, monitors)
+    histories = [{name: run[name] for name in shown if name in run} for run in histories]
     column = _largest(histories) if component is None else COMPONENTS.index(component)
-    figure = new_figure(9.0, 1.6 + len(monitors) * np.clip(9.0 / len(monitors), 0.6, 1.6))
-    panels = figure.subplots(len(monitors), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    figure = new_figure(9.0, 1.6 + len(shown) * np.clip(9.0 / len(shown), 0.6, 1.6))
+    panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
     for index, (label, run) in enumerate(zip(record_names(runs), histories, strict=True)):
-        for panel, monitor in zip(panels, monitors, strict=True):
+        for panel, monitor in zip(panels, shown, strict=True):
             if monitor in run:
                 history = run[monitor]
                 x, y = history.position
@@ -72,6 +78,18 @@ def read_histories(path: Path, quantity: Quantity) -> dict[str, History]:
             name: History(group["time"][:], group[quantity][:], group.attrs["wanted"])
             for name, group in file.get("histories", {}).items()
         }
+
+
+def _choose(runs: Sequence[Path], histories: Sequence[dict[str, History]], wanted: Sequence[str] | None) -> list[str]:
+    """Names of the monitors to show, each once; errors as in `plot_histories`."""
+    known = list(dict.fromkeys(name for run in histories for name in run))
+    if not known:
+        raise CaseError([f"{', '.join(map(str, runs))}: has no monitors to show"])
+    if wanted is None:
+        return known
+    if unknown := [name for name in wanted if name not in known]:
+        raise CaseError([f"monitor: is {name}, must be one of {', '.join(known)}" for name in unknown])
+    return list(dict.fromkeys(wanted))
 
 
 def _largest(histories: Sequence[dict[str, History]]) -> int:

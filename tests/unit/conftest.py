@@ -1,11 +1,13 @@
-"""A small recorded run, for the tests of what reads results."""
+"""Small cases and a small recorded run that many tests start from."""
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from dembound.case import loads
+from dembound.case import STARTER, Case, loads, with_changes
 from dembound.record import Recorder
 from dembound.run import plan
 from dembound.simulate import Simulation
@@ -66,3 +68,23 @@ def small_run(tmp_path_factory) -> Path:
 def other_run(tmp_path_factory) -> Path:
     """The record of a shorter run called ``other``, without snapshots."""
     return record(tmp_path_factory.mktemp("other") / "run.h5", "other", 0)
+
+
+BAR = {
+    "packing.size": [10.0, 1.0],
+    "wave.pulse.period": 0.01,
+    "monitor": [{"name": "middle", "position": [5.0, 0.5]}],
+    "run.duration": 0.01,
+    "output.snapshots": 0,
+    "output.pictures": False,
+}
+
+
+@pytest.fixture
+def bar() -> Callable[..., Case]:
+    """Makes cases: the starter's bar cut down to 20 × 2 disks and 29 steps, with keys changed."""
+
+    def make(changes: Mapping[str, Any] | None = None, name: str = "bar") -> Case:
+        return with_changes(loads(STARTER, Path(), name), {**BAR, **(changes or {})})
+
+    return make

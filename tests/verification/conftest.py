@@ -64,8 +64,7 @@ class Lab:
             "material": {"density": DENSITY, "p_wave_speed": SPEED} | (material or {}),
             "motion": {"held": held},
             "boundary": {
-                side: {"type": table} if isinstance(table, str) else table
-                for side, table in (boundary or {}).items()
+                side: {"type": table} if isinstance(table, str) else table for side, table in (boundary or {}).items()
             },
             "wave": {"pulse": wave} if wave else {},
             "run": {"duration": duration},

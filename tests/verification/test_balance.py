@@ -21,8 +21,10 @@ def moments(scene, force):
 
 
 def rounding(terms: np.ndarray) -> float:
-    """A force sums some ten products and `terms` are summed in turn: fewer than 100 ε of their sizes, whatever the
-    signs."""
+    """What a sum of forces may be off by.
+
+    A force sums some ten products and `terms` are summed in turn: less than 100 ε of their sizes, whatever the signs.
+    """
     return 100.0 * EPS * float(np.abs(terms).sum())
 
 

@@ -53,7 +53,11 @@ def test_free_body_keeps_energy_and_momentum(lab, pattern):
         p = inertia(scene) * simulation.velocity
         zero = np.zeros_like(p)
         return np.stack(
-            [np.stack([p[0], zero[0], zero[0]]), np.stack([p[1], zero[0], zero[0]]), np.stack([x * p[1], -y * p[0], p[2]])]
+            [
+                np.stack([p[0], zero[0], zero[0]]),
+                np.stack([p[1], zero[0], zero[0]]),
+                np.stack([x * p[1], -y * p[0], p[2]]),
+            ]
         ).reshape(3, -1)
 
     start = momentum()

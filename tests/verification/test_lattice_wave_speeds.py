@@ -61,9 +61,7 @@ def test_on_axis_with_locked_rotation(lab, material, s_over_p):
     np.testing.assert_allclose(scene.ground.wave_speeds(0), expected, rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("material", "p_square", "s_square"), [(ISOTROPIC, 1.0, 0.5), (BONDS_ONLY, 0.75, 0.5)]
-)
+@pytest.mark.parametrize(("material", "p_square", "s_square"), [(ISOTROPIC, 1.0, 0.5), (BONDS_ONLY, 0.75, 0.5)])
 def test_along_the_diagonal(lab, material, p_square, s_square):
     """ρc_p² = (C11 + C12 + 2C44)/2 and ρc_s² = (C11 − C12)/2: as on axis only when k_n = k_s."""
     scene = lab.scene("A", (ROW * lab.diameter, ROW * lab.diameter), held=(), material=material, boundary=PERIODIC)

@@ -40,13 +40,11 @@ def grain(lab, speed):
 def test_travels_at_the_homogenised_speed(lab, bar):
     _, speed, _, history = bar
     measured = np.diff(PLACES) / np.diff(history.crossing(0.25, component=1))
-    print(measured/speed-1, grain(lab,speed))
     np.testing.assert_allclose(measured, speed, rtol=grain(lab, speed))
 
 
 def test_peak_is_kept(lab, bar):
     _, speed, _, history = bar
-    print(history.velocity[:, :, 1].max(axis=0)/.5-1)
     np.testing.assert_allclose(history.velocity[:, :, 1].max(axis=0), 0.5, rtol=grain(lab, speed))
 
 
@@ -63,7 +61,6 @@ def test_reflection(lab, bar):
     # the echo's steepest part is due a quarter of a pulse after its start
     echo = np.abs(history.velocity[history.times > passed + PERIOD / 8.0, -1, 1]).max() / 0.5
     unit = np.pi * lab.diameter / (4.0 * speed * PERIOD)
-    print(pattern, echo/unit)
     if pattern == "B":
         # the particles seen from outside lie in a layer of one diameter, twice that of the square lattice
         assert echo < 2.0 * unit

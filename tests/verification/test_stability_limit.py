@@ -42,9 +42,7 @@ def test_square_lattice_has_a_closed_form(lab):
 def test_limit_is_that_of_all_eigenvalues(lab):
     scene = lab.scene("B", (6.0, 6.0), brick=(6.0, 6.0), held=(), boundary=PERIODIC)
     size = 3 * scene.count
-    stiffness = np.stack(
-        [-lab.forces(scene, column.reshape(3, -1)).ravel() for column in np.eye(size)], axis=1
-    )
+    stiffness = np.stack([-lab.forces(scene, column.reshape(3, -1)).ravel() for column in np.eye(size)], axis=1)
     root = 1.0 / np.sqrt(np.concatenate([scene.mass, scene.mass, scene.inertia]))
     largest = np.linalg.eigvalsh(root[:, None] * stiffness * root)[-1]
     assert step_limit(scene) == pytest.approx(2.0 / np.sqrt(largest), rel=TOLERANCE)
@@ -53,7 +51,7 @@ def test_limit_is_that_of_all_eigenvalues(lab):
 def test_bounded_below_the_limit(scene):
     # ½mv² + ½uⁿKuⁿ⁺¹ is conserved and at least ½mv²(1 − r²) at the share r of the limit; Lanczos errs by TOLERANCE
     share = 0.999 * (1.0 + TOLERANCE)
-    assert growth(scene, 0.999, steps=10_000) < 1.0 / (1.0 - share**2)
+    assert growth(scene, 0.999, steps=2000) < 1.0 / (1.0 - share**2)
 
 
 def test_grows_above_the_limit(scene):

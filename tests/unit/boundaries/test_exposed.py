@@ -1,0 +1,64 @@
+"""Which particles make up a side."""
+
+import numpy as np
+import pytest
+
+from dembound.boundaries.exposed import exposed
+
+COLUMNS, ROWS = 6, 4
+
+
+def lattice() -> tuple[np.ndarray, np.ndarray]:
+    """Touching disks of radius 0.5, 6 × 4, numbered row after row."""
+    x, y = np.meshgrid(np.arange(COLUMNS) + 0.5, np.arange(ROWS) + 0.5)
+    return np.column_stack([x.ravel(), y.ravel()]), np.full(COLUMNS * ROWS, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("side", "expected"),
+    [("left", [0, 6, 12, 18]), ("right", [5, 11, 17, 23]), ("bottom", [0, 1, 2, 3, 4, 5]), ("top", [18, 19, 20, 21, 22, 23])],
+)
+def test_a_flat_side_is_its_outer_row_in_order(side: str, expected: list[int]) -> None:
+    positions, radii = lattice()
+
+    assert exposed(positions, radii, side).tolist() == expected
+
+
+def test_the_order_along_the_side_is_that_of_places_not_of_numbers() -> None:
+    positions, radii = lattice()
+    shuffle = np.random.default_rng(0).permutation(len(radii))
+    nodes = exposed(positions[shuffle], radii[shuffle], "left")
+
+    assert shuffle[nodes].tolist() == [0, 6, 12, 18]
+
+
+def test_a_disk_behind_a_hole_is_seen_and_one_behind_a_disk_is_not() -> None:
+    positions, radii = lattice()
+    without = np.delete(np.arange(len(radii)), 12)  # a hole in the left side, disk 13 behind it
+
+    assert without[exposed(positions[without], radii[without], "left")].tolist() == [0, 6, 13, 18]
+
+
+def test_a_narrow_gap_shows_the_disk_behind_it() -> None:
+    # two disks 0.2 apart, and a third behind the gap; a gap of 0.004 is less than 1 % of the radius: not seen
+    for gap, seen in ((0.2, [0, 2, 1]), (0.004, [0, 1])):
+        positions = np.array([[0.0, 0.0], [0.0, 1.0 + gap], [1.0, 0.5 + gap / 2.0]])
+        assert exposed(positions, np.full(3, 0.5), "left").tolist() == seen
+
+
+def test_a_periodic_side_sees_disks_reach_over_its_ends() -> None:
+    # a disk on the seam covers y in [-0.5, 0.5] and so, seen periodically over 4 m, [3.5, 4.5] too: it hides the
+    # small disk behind its image
+    positions = np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 2.0], [0.0, 3.0], [0.6, 3.7]])
+    radii = np.array([0.5, 0.5, 0.5, 0.5, 0.15])
+
+    assert exposed(positions, radii, "left", period=4.0).tolist() == [0, 1, 2, 3]
+    assert exposed(positions, radii, "left").tolist() == [0, 1, 2, 3, 4]
+
+
+def test_a_rough_side_is_seen_to_its_ground_but_not_across_the_scene() -> None:
+    # steps of one radius are part of the side; a lone corner six radii behind the face is not
+    positions = np.array([[0.0, 0.0], [0.5, 1.0], [1.0, 2.0], [3.0, 3.0]])
+
+    assert exposed(positions, np.full(4, 0.5), "left").tolist() == [0, 1, 2]
+    assert exposed(positions, np.full(4, 0.5), "right").tolist() == [3]

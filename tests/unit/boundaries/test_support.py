@@ -1,0 +1,141 @@
+"""The support table: how rows of several sides become one row per degree of freedom."""
+
+import numpy as np
+import pytest
+
+from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
+
+NODES = np.array([4, 2])
+
+
+def ramp(times: np.ndarray) -> np.ndarray:
+    return times
+
+
+def square(times: np.ndarray) -> np.ndarray:
+    return times**2
+
+
+def row(table: Supports, node: int, component: int) -> int:
+    """The number of the one row on a degree of freedom."""
+    (found,) = np.flatnonzero((table.node == node) & (table.component == component))
+    return int(found)
+
+
+def test_a_medium_gives_p_dashpots_along_the_normal_and_s_across() -> None:
+    medium = Medium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0)
+
+    # βρc by hand: 0.5·2000·1000 and 3·2000·500
+    assert medium.impedances(0.5, 3.0, normal_axis=0).tolist() == [1e6, 3e6]
+    assert medium.impedances(0.5, 3.0, normal_axis=1).tolist() == [3e6, 1e6]
+
+
+@pytest.mark.parametrize(("side", "axis", "sign"), [("left", 0, -1), ("right", 0, 1), ("bottom", 1, -1), ("top", 1, 1)])
+def test_an_edge_knows_its_normal_and_how_much_its_disks_cover(side: str, axis: int, sign: int) -> None:
+    edge = Edge(side, NODES, diameters=np.array([0.5, 1.0]), length=1.25)
+
+    assert (edge.axis, edge.sign) == (axis, sign)
+    assert edge.cover == 1.2
+
+
+def test_one_row_per_node_sorted_by_node_with_numbers_or_arrays() -> None:
+    builder = SupportBuilder()
+    builder.add(NODES, 1, preload=7.0, damping=np.array([40.0, 20.0]), stiffness=3.0)
+    table = builder.table()
+
+    assert len(table) == 2
+    assert table.node.tolist() == [2, 4]
+    assert table.component.tolist() == [1, 1]
+    assert table.preload.tolist() == [7.0, 7.0]
+    assert table.damping.tolist() == [20.0, 40.0]
+    assert table.stiffness.tolist() == [3.0, 3.0]
+    assert table.drive.tolist() == [0.0, 0.0]
+    assert table.signal.tolist() == [-1, -1]
+    assert not table.prescribed.any()
+
+
+def test_held_components_and_sides_without_particles_leave_no_rows() -> None:
+    builder = SupportBuilder(held=(0, 2))
+    for component in range(3):
+        builder.add(NODES, component, damping=1.0)
+    builder.add(np.zeros(0, dtype=np.int64), 1, damping=1.0)
+
+    assert builder.table().component.tolist() == [1, 1]
+
+
+def test_an_empty_table_drives_nothing() -> None:
+    table = SupportBuilder().table()
+
+    assert len(table) == 0
+    assert table.sample(np.zeros(3), 0.5).shape == (3, 0)
+
+
+def test_forces_of_two_sides_add_up_at_a_corner() -> None:
+    builder = SupportBuilder()
+    builder.add(NODES, 0, preload=1.0, damping=10.0, stiffness=100.0)
+    builder.add(np.array([2, 3]), 0, preload=2.0, damping=20.0, stiffness=200.0)
+    builder.add(np.array([2, 3]), 1, damping=5.0)
+    table = builder.table()
+
+    assert len(table) == 5
+    corner = row(table, 2, 0)
+    assert (table.preload[corner], table.damping[corner], table.stiffness[corner]) == (3.0, 30.0, 300.0)
+    assert table.damping[row(table, 4, 0)] == 10.0
+    assert table.damping[row(table, 2, 1)] == 5.0
+
+
+def test_drives_of_two_signals_add_up_at_a_corner() -> None:
+    builder = SupportBuilder()
+    builder.add(NODES, 0, drive=2.0, signal=ramp)
+    builder.add(np.array([2]), 0, damping=1.0)
+    builder.add(np.array([2]), 0, drive=10.0, signal=square)
+    builder.add(np.array([2]), 0, drive=100.0, signal=ramp)
+    table = builder.table()
+    values = table.sample(np.array([0.0, 3.0]), half_step=0.5)
+
+    # at t = 3: 2·3 + 10·9 + 100·3 where all three meet, 2·3 elsewhere
+    assert values[:, row(table, 2, 0)].tolist() == [0.0, 396.0]
+    assert values[:, row(table, 4, 0)].tolist() == [0.0, 6.0]
+
+
+def test_forces_are_sampled_at_whole_steps_and_prescribed_velocities_half_a_step_later() -> None:
+    builder = SupportBuilder()
+    builder.add(np.array([1]), 0, drive=2.0, signal=ramp)
+    builder.add(np.array([2]), 0, drive=2.0, signal=ramp, prescribed=True)
+    values = builder.table().sample(np.array([1.0, 2.0]), half_step=0.25)
+
+    assert values.tolist() == [[2.0, 2.5], [4.0, 4.5]]
+
+
+@pytest.mark.parametrize("prescribed_first", [True, False])
+def test_a_prescribed_row_outranks_forces(prescribed_first: bool) -> None:
+    builder = SupportBuilder()
+    rows = [
+        {"drive": 1.0, "signal": ramp, "prescribed": True},
+        {"preload": 1.0, "damping": 2.0, "stiffness": 3.0, "drive": 4.0, "signal": square},
+    ]
+    for each in rows if prescribed_first else rows[::-1]:
+        builder.add(np.array([7]), 1, **each)
+    table = builder.table()
+
+    assert table.prescribed.tolist() == [True]
+    assert (table.preload[0], table.damping[0], table.stiffness[0]) == (0.0, 0.0, 0.0)
+    assert table.sample(np.array([3.0]), half_step=0.0).tolist() == [[3.0]]
+
+
+@pytest.mark.parametrize("moving_first", [True, False])
+def test_of_two_prescribed_rows_the_moving_one_wins(moving_first: bool) -> None:
+    builder = SupportBuilder()
+    rows = [{"drive": 5.0, "signal": ramp}, {}]
+    for each in rows if moving_first else rows[::-1]:
+        builder.add(np.array([7]), 0, prescribed=True, **each)
+
+    assert builder.table().sample(np.array([2.0]), half_step=0.0).tolist() == [[10.0]]
+
+
+def test_of_two_moving_prescribed_rows_the_first_wins() -> None:
+    builder = SupportBuilder()
+    builder.add(np.array([7]), 0, prescribed=True, drive=1.0, signal=square)
+    builder.add(np.array([7]), 0, prescribed=True, drive=1.0, signal=ramp)
+
+    assert builder.table().sample(np.array([2.0]), half_step=0.0).tolist() == [[4.0]]

@@ -1,0 +1,124 @@
+"""Masses and the continuum a brick is equivalent to, against closed forms of the square lattice."""
+
+import numpy as np
+import pytest
+
+from dembound.case.material import Material
+from dembound.ground import Ground, homogenise, make_ground, nominal_moduli
+from dembound.packings.brick import Brick
+from dembound.packings.dense import Recipe, pack_dense
+from dembound.packings.square import Square
+
+DENSITY = 2500.0
+K = 2.5e9
+"""ρ c_p², Pa, for c_p = 1000 m/s."""
+
+MATERIAL = {"density": DENSITY, "p_wave_speed": 1000.0}
+
+SOLVE = 1e-9
+"""Relative error of a sparse solve: rounding times a condition number that a small brick keeps below 1e6."""
+
+
+def lattice() -> Brick:
+    return Square(size=(0.5, 0.5), radius=0.25).pack(1.25e9)
+
+
+@pytest.fixture(scope="module")
+def dense() -> Brick:
+    return pack_dense(Recipe(size=(6.0, 5.0), radius=0.25, radius_ratio=1.5, pressure=0.008, bond_gap=0.0, seed=2))
+
+
+def ground(brick: Brick, held: tuple[str, ...] = (), **material: object) -> Ground:
+    return make_ground(brick, Material(**{**MATERIAL, **material}), held)
+
+
+def test_masses_add_up_to_density_times_area(dense: Brick) -> None:
+    made = ground(dense)
+
+    # a sum of some 150 terms
+    assert made.mass.sum() == pytest.approx(DENSITY * 6.0 * 5.0, rel=1e-13)
+    # one disk density for all: mass over disk area is the same everywhere
+    np.testing.assert_allclose(made.mass / dense.radii**2, made.mass[0] / dense.radii[0] ** 2, rtol=1e-14)
+    np.testing.assert_allclose(made.inertia, made.mass * dense.radii**2 / 2.0, rtol=1e-14)
+
+
+def test_the_lattice_has_the_mass_of_its_cell() -> None:
+    # m = ρD²
+    assert ground(lattice()).mass.tolist() == [DENSITY * 0.5**2]
+
+
+@pytest.mark.parametrize(("fric", "shear"), [(0.0, 0.5 * K / 4.0), (0.5, 0.5 * K / 4.0 + 0.5 * K / 2.0)])
+def test_the_lattice_has_its_closed_form_stiffness(fric: float, shear: float) -> None:
+    # k_n = K; k_s of the bond is K/2/pb_kratio, of the contact K/2/kratio, with friction only
+    made = ground(lattice(), fric=fric, kratio=2.0, pb_kratio=4.0)
+    tensor = made.tensor
+    expected = np.array([[K, 0, 0, 0], [0, K, 0, 0], [0, 0, shear / 2, shear / 2], [0, 0, shear / 2, shear / 2]])
+
+    np.testing.assert_allclose(tensor, expected, atol=SOLVE * K)
+
+
+def test_locked_rotations_double_the_lattices_shear_stiffness() -> None:
+    made = ground(lattice(), held=("rotation",))
+
+    # each of the two gradients strains its own kind of contacts, c_s = D√(k_s/m) = √(k_s/ρ)
+    np.testing.assert_allclose(made.tensor, np.diag([K, K, K / 2.0, K / 2.0]), atol=SOLVE * K)
+    np.testing.assert_allclose(made.wave_speeds(0), [1000.0, np.sqrt(K / 2.0 / DENSITY)], rtol=SOLVE)
+
+
+def test_wave_speeds_are_the_closed_form_and_nan_where_motion_is_held() -> None:
+    # μ = 0: c_s = c_p/2
+    np.testing.assert_allclose(ground(lattice()).wave_speeds(0), [1000.0, 500.0], rtol=SOLVE)
+    np.testing.assert_allclose(ground(lattice()).wave_speeds(1), [1000.0, 500.0], rtol=SOLVE)
+    np.testing.assert_allclose(ground(lattice(), held=("y",)).wave_speeds(0), [1000.0, np.nan], rtol=SOLVE)
+    np.testing.assert_allclose(ground(lattice(), held=("y",)).wave_speeds(1), [np.nan, 500.0], rtol=SOLVE)
+
+
+def test_a_materials_own_stiffness_does_not_know_the_scenes_held_translations(dense: Brick) -> None:
+    free, held = ground(dense), ground(dense, held=("y",))
+
+    np.testing.assert_array_equal(held.material_tensor, free.tensor)
+    # where y is held the disks cannot get out of the way sideways
+    assert held.tensor[0, 0] > free.tensor[0, 0]
+
+
+def test_the_homogenised_tensor_is_a_stiffness(dense: Brick) -> None:
+    made = ground(dense, fric=0.5)
+    tensor = made.tensor
+
+    np.testing.assert_allclose(tensor, tensor.T, atol=SOLVE * K)
+    # free rotations: xy and yx are one shear, a rigid turn costs nothing
+    np.testing.assert_allclose(tensor[2], tensor[3], atol=SOLVE * K)
+    assert (np.linalg.eigvalsh(tensor[:3, :3]) > 0.0).all()
+    # relaxing can only lower the energy: nothing held lies below everything held
+    stiff = homogenise(dense, made.stiffness, (0, 1, 2))
+    assert (np.linalg.eigvalsh(stiff - tensor) > -SOLVE * K).all()
+
+
+def test_stiffness_is_that_of_the_strained_brick(dense: Brick) -> None:
+    # everything held: C11 = Σ (k_n c²·dx² + k_s s²·dx²)/A over the contacts, by hand
+    made = ground(dense, held=("x", "y", "rotation"))
+    dx, dy = dense.vectors.T
+    length = np.hypot(dx, dy)
+    c, s = dx / length, dy / length
+    by_hand = np.sum((made.stiffness.normal * c**2 + made.stiffness.shear * s**2) * dx**2) / 30.0
+
+    assert made.tensor[0, 0] == pytest.approx(by_hand, rel=1e-12)
+
+
+@pytest.mark.parametrize(("held", "axis"), [((), 0), (("y",), 0), (("x",), 1)])
+def test_an_assembly_can_be_given_the_speed_asked_for(dense: Brick, held: tuple[str, ...], axis: int) -> None:
+    nominal, matched = ground(dense, held), ground(dense, held, match="assembly")
+
+    assert matched.wave_speeds(axis)[0] == pytest.approx(1000.0, rel=SOLVE)
+    assert nominal.wave_speeds(axis)[0] != pytest.approx(1000.0, rel=1e-3)
+    # both moduli by one factor
+    assert matched.moduli.emod / nominal.moduli.emod == pytest.approx(matched.moduli.pb_emod / nominal.moduli.pb_emod)
+
+
+def test_moduli_come_from_the_speed_or_from_the_case() -> None:
+    by_speed = nominal_moduli(Material(density=DENSITY, p_wave_speed=1000.0, pb_rmul=0.5, kratio=3.0, fric=0.2))
+    given = nominal_moduli(Material(density=DENSITY, emod=3e9, pb_emod=4e9))
+
+    assert (by_speed.emod, by_speed.pb_emod, by_speed.pb_rmul) == (1.25e9, 2.5e9, 0.5)
+    assert (by_speed.kratio, by_speed.fric) == (3.0, 0.2)
+    assert (given.emod, given.pb_emod) == (3e9, 4e9)

@@ -1,0 +1,159 @@
+"""From a case to arrays."""
+
+import numpy as np
+import pytest
+from scipy.spatial.distance import cdist
+
+from dembound.case import Case
+from dembound.kernels.elastic import contact_forces
+from dembound.scene import Scene, boundary_medium, build, with_boundaries
+
+RANDOM = {
+    "packing": {"pattern": "B", "size": [12.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
+    "motion.held": [],
+}
+PERIODIC = {"boundary.bottom": {"type": "periodic"}, "boundary.top": {"type": "periodic"}}
+
+
+@pytest.fixture
+def random_scene(bar) -> Scene:
+    return build(bar(RANDOM))
+
+
+@pytest.fixture(params=["lattice", "random"])
+def case(bar, request) -> Case:
+    return bar(RANDOM if request.param == "random" else {"motion.held": []})
+
+
+def test_every_contact_stands_in_two_rows(case: Case) -> None:
+    scene = build(case)
+    rows = scene.contacts
+    owner = np.repeat(np.arange(scene.count), np.diff(rows.start))
+    i, j = scene.assembly.pairs.T
+    expected = sorted([*zip(i, j, strict=True), *zip(j, i, strict=True)])
+
+    assert len(rows.start) == scene.count + 1
+    assert list(zip(owner, rows.neighbour, strict=True)) == expected
+    assert rows.palette.shape == (2 * len(scene.ground.brick.pairs), 6)
+    assert all(array.dtype == np.uint32 for array in (rows.start, rows.neighbour, rows.kind))
+
+
+def forces(scene: Scene, u: np.ndarray) -> np.ndarray:
+    found = np.empty_like(u)
+    contact_forces(u, *scene.contacts.arrays, found)
+    return found
+
+
+def test_rows_and_palette_make_the_forces_of_the_assemblys_contacts(case: Case) -> None:
+    scene = build(case)
+    body, law = scene.assembly, scene.ground.stiffness
+    u = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
+    expected = np.zeros_like(u)
+    for (i, j), k in zip(body.pairs, body.kind, strict=True):
+        along = body.positions[j] - body.positions[i]
+        n = along / np.hypot(*along)
+        t = np.array([-n[1], n[0]])
+        apart = u[:2, j] - u[:2, i]
+        slip = t @ apart - law.arm_i[k] * u[2, i] - law.arm_j[k] * u[2, j]
+        force = law.normal[k] * (n @ apart) * n + law.shear[k] * slip * t
+        bending = law.bending[k] * (u[2, j] - u[2, i])
+        expected[:2, i] += force
+        expected[:2, j] -= force
+        expected[2, i] += law.arm_i[k] * law.shear[k] * slip + bending
+        expected[2, j] += law.arm_j[k] * law.shear[k] * slip - bending
+
+    # places in far bricks carry rounding of 1e-15 of 12 m into directions: 1e-14 of forces of size k
+    np.testing.assert_allclose(forces(scene, u), expected, atol=1e-13 * law.normal.max())
+
+
+def test_a_rigid_turn_of_a_random_body_needs_no_force(random_scene: Scene) -> None:
+    x, y = random_scene.assembly.positions.T
+    found = forces(random_scene, np.stack([-y, x, np.ones_like(x)]))
+
+    # terms of size k·12 m cancel
+    np.testing.assert_allclose(found, 0.0, atol=1e-13 * 12.0 * random_scene.ground.stiffness.normal.max())
+
+
+def test_masses_are_those_of_the_bricks_particles(random_scene: Scene) -> None:
+    # 2 × 2 bricks; a sum of some 500 terms
+    assert random_scene.mass.sum() == pytest.approx(2500.0 * 12.0 * 10.0, rel=1e-13)
+    np.testing.assert_allclose(
+        random_scene.inertia, random_scene.mass * random_scene.assembly.radii**2 / 2.0, rtol=1e-14
+    )
+
+
+def test_a_scene_takes_little_memory(bar) -> None:
+    # what the scene promises for every 2D pattern: 1 kB per particle, far from the smallest scenes' overhead
+    for changes in ({"packing.size": [50.0, 50.0]}, RANDOM):
+        scene = build(bar(changes))
+        assert 0 < scene.bytes <= 1000 * scene.count
+
+
+def test_a_monitor_is_the_nearest_particle(bar) -> None:
+    places = {"low": [0.1, 0.1], "middle": [6.2, 4.9], "high": [12.0, 10.0]}
+    scene = build(bar({**RANDOM, "monitor": [{"name": n, "position": p} for n, p in places.items()]}))
+    distances = cdist(list(places.values()), scene.assembly.positions)
+
+    assert list(scene.monitors) == list(places)
+    for distance, node in zip(distances, scene.monitors.values(), strict=True):
+        assert distance[node] == distance.min()
+
+
+def test_a_scene_without_monitors_has_none(bar) -> None:
+    assert build(bar({"monitor": []})).monitors == {}
+
+
+def test_edges_are_the_outer_rows_with_their_lengths(bar) -> None:
+    edges = build(bar()).edges
+
+    assert list(edges) == ["left", "right", "bottom", "top"]
+    assert [len(edge.nodes) for edge in edges.values()] == [2, 2, 20, 20]
+    assert [edge.length for edge in edges.values()] == [1.0, 1.0, 10.0, 10.0]
+    assert all(edge.cover == 1.0 for edge in edges.values())
+
+
+def test_periodic_sides_have_bonds_across_and_no_edge(bar) -> None:
+    open_scene, scene = build(bar()), build(bar(PERIODIC))
+
+    assert list(scene.edges) == ["left", "right"]
+    # one vertical contact more in each of the 20 columns
+    assert len(scene.assembly.pairs) == len(open_scene.assembly.pairs) + 20
+    # all are alike sideways: every disk has two vertical contacts, the ends lack one horizontal one
+    assert np.bincount(scene.assembly.pairs.ravel()).tolist() == [3, 3] + 36 * [4] + [3, 3]
+
+
+def test_supports_come_from_all_sides_but_not_for_held_motions(bar) -> None:
+    scene = build(bar({"boundary.bottom": {"type": "fixed"}, "motion.held": ["y", "rotation"]}))
+    supports = scene.supports
+
+    assert set(supports.component) == {0}
+    assert supports.prescribed.sum() == 20
+    # the upper disk of each end has the dashpot ρc_pD, the lower is fixed
+    assert sorted(supports.damping[supports.damping > 0.0]) == [2500.0 * 1000.0 * 0.5] * 2
+
+
+def test_held_components_are_marked(bar) -> None:
+    assert build(bar({"motion.held": ["y", "rotation"]})).free.tolist() == [1.0, 0.0, 0.0]
+
+
+def test_other_boundaries_on_the_same_body(bar) -> None:
+    scene = build(bar())
+    other = with_boundaries(scene, bar({"boundary.right.beta_p": 0.5}))
+
+    assert other.assembly is scene.assembly
+    assert other.contacts is scene.contacts
+    changed = other.supports.damping / scene.supports.damping
+    assert sorted(changed) == [0.5, 0.5, 1.0, 1.0]
+
+
+def test_dashpots_absorb_into_the_speeds_named_else_into_the_packings_own(bar) -> None:
+    moduli = {"density": 2500.0, "emod": 1.25e9, "pb_emod": 1.25e9}
+    media = []
+    for material in ({"density": 2500.0, "p_wave_speed": 900.0, "s_wave_speed": 300.0}, moduli):
+        case = bar({"material": material})
+        media.append(boundary_medium(case, build(case).ground))
+
+    assert (media[0].density, media[0].p_wave_speed, media[0].s_wave_speed) == (2500.0, 900.0, 300.0)
+    # the lattice with μ = 0: c_p² = (E_c + Ē_c)/ρ, c_s = c_p/2; a solve with one unknown
+    assert media[1].p_wave_speed == pytest.approx(1000.0, rel=1e-12)
+    assert media[1].s_wave_speed == pytest.approx(500.0, rel=1e-12)

@@ -1,0 +1,152 @@
+"""The loop: what it applies, watches and hands out."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from dembound.boundaries.support import SupportBuilder, Supports
+from dembound.errors import RunError
+from dembound.scene import Scene, build
+from dembound.simulate import BLOCK, Simulation
+from dembound.stability import choose_step, step_limit
+
+NOBODY = np.zeros(0, dtype=np.int64)
+MASS = 2500.0 * 0.5**2
+STEP = 0.01
+
+
+def lone_disk(bar, supports: Supports) -> Scene:
+    """One disk that nothing but its supports moves."""
+    scene = build(bar({"packing.size": [0.5, 0.5], "monitor": [], "motion.held": []}))
+    return replace(scene, supports=supports)
+
+
+def one_row(**columns: object) -> Supports:
+    """A support of particle 0 in x."""
+    builder = SupportBuilder()
+    builder.add(np.array([0]), 0, **columns)  # type: ignore[arg-type]
+    return builder.table()
+
+
+def test_a_dashpot_slows_a_disk_as_the_centred_update_says(bar) -> None:
+    simulation = Simulation(lone_disk(bar, one_row(damping=0.4 * MASS / STEP)), STEP, NOBODY)
+    simulation.velocity[0, 0] = 1.0
+    simulation.advance(5)
+
+    # (m/Δt − C/2)/(m/Δt + C/2) = 0.8/1.2 each step; rounding of five products
+    assert simulation.velocity[0, 0] == pytest.approx((0.8 / 1.2) ** 5, rel=1e-14)
+
+
+def test_spring_preload_and_drive_push_a_disk(bar) -> None:
+    drive = {"drive": 2.0 * MASS, "signal": lambda times: times}
+    simulation = Simulation(lone_disk(bar, one_row(preload=3.0 * MASS, stiffness=5.0 * MASS, **drive)), STEP, NOBODY)
+    u = v = 0.0
+    for step in range(10):
+        v += STEP * (3.0 - 5.0 * u + 2.0 * step * STEP)
+        u += STEP * v
+    simulation.advance(10)
+
+    # ten steps of a few operations
+    assert simulation.displacement[0, 0] == pytest.approx(u, rel=1e-13)
+    assert simulation.velocity[0, 0] == pytest.approx(v, rel=1e-13)
+
+
+def test_a_prescribed_disk_moves_by_the_midpoint_rule(bar) -> None:
+    row = one_row(drive=1.0, signal=lambda times: times, prescribed=True)
+    simulation = Simulation(lone_disk(bar, row), STEP, NOBODY)
+    simulation.advance(10)
+
+    # v = t is integrated exactly by midpoints: u = t²/2; ten sums
+    assert simulation.velocity[0, 0] == pytest.approx(0.095, rel=1e-14)
+    assert simulation.displacement[0, 0] == pytest.approx(0.5 * simulation.time**2, rel=1e-14)
+
+
+def simulated(bar, probes: np.ndarray = NOBODY) -> Simulation:
+    scene = build(bar())
+    return Simulation(scene, choose_step(scene)[0], probes)
+
+
+def test_held_motions_stay_zero_and_the_others_do_not(bar) -> None:
+    simulation = simulated(bar)
+    simulation.advance(29)
+
+    assert simulation.displacement[0].any()
+    assert not simulation.displacement[1].any()
+    assert not simulation.velocity[1].any()
+
+
+def test_time_goes_on_from_call_to_call(bar) -> None:
+    whole, parts = simulated(bar, np.array([0, 39])), simulated(bar, np.array([0, 39]))
+    records = [parts.advance(10), parts.advance(19)]
+
+    assert np.array_equal(np.concatenate(records), whole.advance(29))
+    assert np.array_equal(parts.displacement, whole.displacement)
+    assert np.array_equal(parts.peaks, whole.peaks)
+    assert parts.steps == 29
+    assert parts.time == 29 * parts.time_step
+
+
+def test_a_run_goes_block_by_block_to_the_step_asked_for(bar) -> None:
+    simulation, seen = simulated(bar), []
+    simulation.run(BLOCK + 10, lambda s, record: seen.append((s.steps, len(record))))
+
+    assert seen == [(BLOCK, BLOCK), (BLOCK + 10, 10)]
+
+
+def test_a_run_ends_early_when_told_so(bar) -> None:
+    simulation = simulated(bar)
+    simulation.run(10 * BLOCK, lambda s, record: s.steps >= 2 * BLOCK)
+
+    assert simulation.steps == 2 * BLOCK
+
+
+def test_peaks_of_a_side_are_the_extremes_of_its_particles(bar) -> None:
+    edges = build(bar()).edges
+    simulation = simulated(bar, edges["right"].nodes)
+    velocities = [simulation.edge_velocity("right")]
+    for _ in range(60):
+        simulation.advance(1)
+        velocities.append(simulation.edge_velocity("right"))
+    history = np.array(velocities)
+
+    assert np.array_equal(simulation.edge_peaks("right")[..., 0], history.min(axis=0))
+    assert np.array_equal(simulation.edge_peaks("right")[..., 1], history.max(axis=0))
+    # the pulse of 0.5 m/s has gone through by then, and has come to no other side's account
+    assert simulation.edge_peaks("right")[0, 0, 1] > 0.4
+    assert [len(simulation.edge_peaks(side)) for side in edges] == [2, 2, 20, 20]
+
+
+def test_the_probes_record_the_motion_of_their_particles(bar) -> None:
+    nodes = np.array([7, 31])
+    simulation = simulated(bar, nodes)
+    before = []
+    record = np.concatenate([(before.append(simulation.displacement[:, nodes].T.copy()), simulation.advance(1))[1] for _ in range(20)])
+
+    assert np.array_equal(record[..., :3], np.array(before))
+    # velocities are means over two half steps: the differences of displacements two steps apart
+    centred = (record[2:, :, :3] - record[:-2, :, :3]) / (2.0 * simulation.time_step)
+    # differences of displacements of 1e-3 m lose 1e-19 m, over a step of 4e-4 s
+    np.testing.assert_allclose(record[1:-1, :, 3:], centred, atol=1e-14)
+
+
+def test_motion_that_grows_without_bound_ends_the_run_and_says_when_and_where(bar) -> None:
+    scene = build(bar())
+    step = 2.0 * step_limit(scene)
+    simulation = Simulation(scene, step, NOBODY)
+    with pytest.raises(RunError, match=r"grew without bound: at t = [\d.]+ s near \([\d.]+, [\d.]+\) m") as caught:
+        simulation.run(100_000)
+
+    # twice the limit multiplies by −7 − √48 = −13.9 each step: 308 decimal powers are gone within 271 steps
+    assert simulation.steps <= 2 * BLOCK
+    assert f"t = {simulation.steps * step:g} s" in str(caught.value)
+    assert caught.value.exit_code == 3
+
+
+def test_a_calm_scene_stays_at_rest(bar) -> None:
+    simulation = Simulation(build(bar({"wave.pulse.start": 1.0})), 1e-4, NOBODY)
+    simulation.advance(100)
+
+    assert not simulation.displacement.any()
+    assert all(a == b for a, b in pairwise(simulation.peaks.ravel()))
