@@ -29,14 +29,16 @@ from dembound.plot.convergence import plot_convergence
 from dembound.plot.histories import plot_histories
 from dembound.plot.packing import plot_brick, plot_patterns
 from dembound.plot.style import save
-from dembound.run import run_case
+from dembound.run import foresee, run_case
 from dembound.scene import Scene, build
 from dembound.simulate import Simulation
+from dembound.view import view
 
 EXIT_CODES = """
 Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run or calibration failed; 4 a packing could
-not be made.
+not be made; 5 a file could not be read or written; 130 stopped with Ctrl-C.
 """
+CANNOT_WRITE = 5
 
 app = typer.Typer(
     name="dembound",
@@ -71,6 +73,13 @@ class WaveType(StrEnum):
     s = "s"
 
 
+class Field(StrEnum):
+    """What moves the disks of a snapshot."""
+
+    velocity = "velocity"
+    displacement = "displacement"
+
+
 class CalibrationMethod(StrEnum):
     """Ways to find β."""
 
@@ -95,7 +104,7 @@ def new(
     """Write a commented starter case."""
     if path.exists():
         raise CaseError([f"{path}: exists already, give another name"])
-    path.write_text(STARTER)
+    path.write_text(STARTER, encoding="utf-8")
     out.print(f"wrote {path}; try: dembound check {path}")
 
 
@@ -130,6 +139,8 @@ def run(
     names = [case.name for case in loaded]
     if len(set(names)) < len(names):
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
+    for case in loaded:
+        foresee(case)
     for case in loaded:
         with _progress(case.name) as step:
             folder = run_case(case, output, step)
@@ -174,7 +185,7 @@ def calibrate_side(
         full=full,
         report=_print_pass,
     )
-    folder = output / loaded.name / f"calibration_{found.side}_{found.motion}_{found.method}"
+    folder = output / f"{loaded.name}_calibration_{found.side}_{found.motion}_{found.method}"
     _print_result(found)
     for path in _leave(found, folder):
         out.print(f"wrote {path}")
@@ -185,6 +196,9 @@ def plot(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write (PNG).")] = Path("plot.png"),
     quantity: Annotated[str, typer.Option(help="velocity or displacement.")] = "velocity",
+    monitor: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Show this monitor only. May be repeated.")
+    ] = None,
     boundary: Annotated[
         Side | None, typer.Option(help="Show this side's diameters and peak velocities instead.")
     ] = None,
@@ -198,9 +212,22 @@ def plot(
     elif boundary is not None:
         figure = plot_boundary(files, boundary.value)
     else:
-        figure = plot_histories(files, quantity=quantity)  # type: ignore[arg-type]
+        figure = plot_histories(files, quantity=quantity, monitors=monitor or None)  # type: ignore[arg-type]
     save(figure, output)
     out.print(f"wrote {output}")
+
+
+@app.command("view", rich_help_panel="Results")
+def view_disks(
+    results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
+    snapshot: Annotated[int, typer.Option(help="Number of the snapshot to begin with; −1 is the last.")] = -1,
+    field: Annotated[Field, typer.Option(help="What colours the disks.")] = Field.velocity,
+    picture: Annotated[Path | None, typer.Option(help="Picture to write (PNG) instead of opening a window.")] = None,
+) -> None:
+    """Show the disks of a run in a window to zoom into, with a slider over its snapshots."""
+    view(_results_file(results), snapshot, field.value, picture)
+    if picture is not None:
+        out.print(f"wrote {picture}")
 
 
 @app.command("packing", rich_help_panel="Cases")
@@ -281,7 +308,7 @@ def _leave(found: Calibration, folder: Path) -> Iterator[Path]:
     yield folder / "summary.json"
     changed = with_changes(found.case, {f"boundary.{found.side}.{found.factor}": found.result})
     calibrated = folder / f"{found.case.name}_calibrated.toml"
-    calibrated.write_text(to_toml(changed, folder))
+    calibrated.write_text(to_toml(changed, folder), encoding="utf-8")
     yield calibrated
     if found.beta:
         save(plot_convergence([folder / "calibration.h5"]), folder / "convergence.png")
@@ -301,8 +328,7 @@ def _print_result(found: Calibration) -> None:
     if found.method == "homogenised":
         out.print("from the brick's homogenised wave speed and the side's ΣD/H; no wave was run")
         return
-    whole = "; ".join(found.shortened) if found.shortened else "the whole scene, nothing shortened"
-    out.print(f"calibrated on {found.particles} particles, {found.steps} steps in all: {whole}")
+    out.print(f"calibrated on {found.particles} particles, {found.steps} steps: {'; '.join(found.shortened)}")
 
 
 def _use(threads: int | None) -> None:
@@ -343,3 +369,6 @@ def main() -> None:
         for line in str(error).splitlines():
             err.print(f"{source}{line}", style="red", markup=False)
         sys.exit(error.exit_code)
+    except OSError as error:  # a folder that is not there, no permission, a full disk
+        err.print(f"{error.filename or 'output'}: {error.strerror or error}", style="red", markup=False)
+        sys.exit(CANNOT_WRITE)

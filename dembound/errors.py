@@ -9,6 +9,8 @@ its code. Anything else is a bug and shows a traceback.
 | 2 | bad input: the case file or the command's arguments (nothing was written) |
 | 3 | the run failed: motion grew without bound, or a calibration did not converge |
 | 4 | a packing could not be made as asked |
+| 5 | a file could not be read or written |
+| 130 | stopped with Ctrl-C |
 """
 
 from collections.abc import Iterable

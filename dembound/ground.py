@@ -13,6 +13,7 @@ from scipy.sparse import coo_matrix, csc_matrix, diags
 from scipy.sparse.linalg import splu
 
 from dembound.case.material import Material
+from dembound.errors import CaseError
 from dembound.laws import LAWS, Moduli, Stiffness, lattice_moduli
 from dembound.packings.brick import Brick
 
@@ -124,6 +125,8 @@ def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> np.
     free unless held): minimise ½ Σ k e² over the periodic displacements, a sparse linear solve. Entry [a, b] is
     the mean stress conjugate to gradient a under unit gradient b. With free rotations xy and yx are the same
     shear, so C66 = C[yx, yx]; c² = C/ρ for plane waves.
+
+    Raises CaseError when disks can move without resistance, as without bonds and friction.
     """
     motions, gradients = _elongations(brick, stiffness)
     k = diags(np.concatenate([stiffness.normal, stiffness.shear, stiffness.bending]))
@@ -135,7 +138,10 @@ def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> np.
     motions = motions[:, free]
     matrix = (motions.T @ k @ motions).tocsc()
     load = motions.T @ (k @ gradients)
-    solver = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    try:
+        solver = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    except RuntimeError:  # SuperLU's word for a singular matrix
+        raise CaseError(["material: leaves some motion without any stiffness; give bonds or friction"]) from None
     return (unrelaxed - load.T @ solver.solve(load)) / area
 
 

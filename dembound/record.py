@@ -6,7 +6,7 @@ Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset)::
     particles/              position (n, 2), radius (n,), brick_particle (n,)
     histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3); attributes particle, position, wanted
     boundaries/<side>/      particle, position, diameter, peak_velocity (q, 3, 2)
-    snapshots/<number>/     displacement (n, 3), velocity (n, 3); attribute time
+    snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; attribute time
 """
 
 from pathlib import Path

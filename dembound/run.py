@@ -14,13 +14,14 @@ import numpy as np
 
 from dembound import __version__
 from dembound.case import Case
+from dembound.errors import CaseError
 from dembound.export import write_vtu
 from dembound.plot.histories import plot_histories
 from dembound.plot.scene import plot_scene
 from dembound.plot.style import save
 from dembound.record import Recorder
 from dembound.results import open_record
-from dembound.scene import Scene, build
+from dembound.scene import Scene, build, ground_of
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
 
@@ -43,9 +44,24 @@ def plan(case: Case) -> Plan:
 
     Raises PackingError for an impossible brick and CaseError for a step above the stability limit.
     """
-    scene = build(case)
-    time_step, limit = choose_step(scene)
+    try:
+        scene = build(case)
+        time_step, limit = choose_step(scene)
+    except CaseError as error:
+        raise CaseError(error.problems, case.name) from None
     return Plan(scene, time_step, limit, max(1, int(np.ceil(case.run.duration / time_step - 1e-9))))
+
+
+def foresee(case: Case) -> None:
+    """Find what would stop a case later, as far as it can be found cheaply.
+
+    Packs its brick, which is then cached, and compares a given time step with the stability limit. Raises CaseError
+    and PackingError.
+    """
+    if case.run.time_step == "auto":
+        ground_of(case)
+    else:
+        plan(case)
 
 
 def run_case(case: Case, results: Path, on_block: Progress | None = None) -> Path:
@@ -58,6 +74,8 @@ def run_case(case: Case, results: Path, on_block: Progress | None = None) -> Pat
     """
     planned = plan(case)
     folder, partial = results / case.name, results / f"{case.name}.partial"
+    for old in (folder, partial):
+        _must_be_replaceable(old)
     if partial.exists():
         shutil.rmtree(partial)
     partial.mkdir(parents=True)
@@ -77,12 +95,18 @@ def run_case(case: Case, results: Path, on_block: Progress | None = None) -> Pat
     return folder
 
 
+def _must_be_replaceable(folder: Path) -> None:
+    """Raise CaseError where a new run would delete something that no run has written."""
+    if folder.exists() and not (folder / "run.h5").is_file():
+        raise CaseError([f"{folder}: exists and holds no run, give another --output or --name"])
+
+
 def _simulate(planned: Plan, path: Path, on_block: Progress | None) -> Simulation:
     """Advance to the end, recording histories, snapshots and boundary peaks."""
     case = planned.scene.case
     monitors = np.array(list(planned.scene.monitors.values()), dtype=np.int64)
     simulation = Simulation(planned.scene, planned.time_step, monitors)
-    count = max(1, case.output.snapshots)
+    count = min(max(1, case.output.snapshots), planned.steps)
     with Recorder(path, simulation, planned.step_limit, case.output.history_interval) as recorder:
 
         def keep(simulation: Simulation, record: np.ndarray) -> None:
@@ -106,7 +130,7 @@ def summarise(planned: Plan, simulation: Simulation, record: Path, wall_time: fl
         "particles": scene.count,
         "contacts": len(scene.assembly.pairs),
         "time_step": planned.time_step,
-        "step_limit": planned.step_limit,
+        "step_limit": planned.step_limit if np.isfinite(planned.step_limit) else None,
         "steps": simulation.steps,
         "duration": simulation.time,
         "wall_time": wall_time,
@@ -121,10 +145,10 @@ def summarise(planned: Plan, simulation: Simulation, record: Path, wall_time: fl
 
 
 def describe_packing(scene: Scene) -> dict[str, Any]:
-    """The brick in numbers; stresses and stiffnesses in Pa, speeds in m/s (null where the motion is held)."""
+    """The brick in numbers: stresses and stiffnesses in Pa, speeds along x in m/s (null where the motion is held)."""
     ground, brick = scene.ground, scene.ground.brick
     tensor = ground.material_tensor
-    p_speed, s_speed = ground.wave_speeds(1 if 0 in ground.held else 0)
+    p_speed, s_speed = ground.wave_speeds(0)
     return {
         "disks_per_brick": len(brick.radii),
         "mean_diameter": brick.mean_diameter,

@@ -146,7 +146,8 @@ def _palette(ground: Ground) -> tuple[np.ndarray, np.ndarray]:
     vectors = brick.vectors
     n = vectors / np.hypot(*vectors.T)[:, None]
     root_n, root_s = np.sqrt(law.normal), np.sqrt(law.shear)
-    common = [root_n * n[:, 0], root_n * n[:, 1], root_s / root_n]
+    ratio = np.divide(root_s, root_n, out=np.zeros_like(root_n), where=root_n > 0.0)  # a gap without bond has neither
+    common = [root_n * n[:, 0], root_n * n[:, 1], ratio]
     lines = np.empty((len(vectors), 2, 6))
     lines[:, 0] = np.stack([*common, root_s * law.arm_i, root_s * law.arm_j, law.bending], axis=1)
     lines[:, 1] = np.stack([*common, -root_s * law.arm_j, -root_s * law.arm_i, law.bending], axis=1)

@@ -12,6 +12,9 @@ from dembound.scene import Scene
 BLOCK = 256
 """Steps between two looks at a run: compiled code does not return to Python in between."""
 
+RUNAWAY = 1e4
+"""A particle this many times as fast as all waves together has left physics: resonance gives factors of ten."""
+
 
 class Simulation:
     """A scene in motion, from rest at time zero.
@@ -41,6 +44,8 @@ class Simulation:
         edges = [edge.nodes for edge in scene.edges.values()]
         self.tracked = np.concatenate(edges) if edges else np.zeros(0, dtype=np.int64)
         self.peaks = np.zeros((len(self.tracked), 3, 2))
+        waves = sum(wave.peak() for wave in scene.case.wave.values())
+        self._fastest = RUNAWAY * waves if waves else np.finfo(float).max
         self._mobility = time_step / scene.mass
         self._inverse_inertia = time_step / scene.inertia
         self._supports = NodeSupports(scene, time_step)
@@ -53,7 +58,7 @@ class Simulation:
     def advance(self, steps: int) -> np.ndarray:
         """Go on by `steps` steps; returns (steps, p, 6): displacement and velocity of the probes before each.
 
-        Raises RunError when the motion is no longer finite, saying when and where.
+        Raises RunError when the motion grows without bound, saying when and where.
         """
         times = (self.steps + np.arange(steps)) * self.time_step
         record = np.empty((steps, len(self.probes), 6))
@@ -64,7 +69,7 @@ class Simulation:
             self._mobility, self._inverse_inertia, self.scene.free, self.scene.case.material.damp,
             self.time_step,
             supports.nodes, supports.keep, supports.mobility, supports.stiffness, supports.preload,
-            supports.push(times),
+            supports.prescribed, supports.drive(times),
             self.probes, record, self.tracked, self.peaks,
         )  # fmt: skip
         self.steps += steps
@@ -96,11 +101,12 @@ class Simulation:
         return slice(sum(counts), sum(counts) + len(self.scene.edges[side].nodes))
 
     def _watch(self) -> None:
-        """Raise RunError when a particle's motion is not finite."""
-        speed = np.abs(self.velocity).max(axis=0)
-        if np.isfinite(speed.max(initial=0.0)):
+        """Raise RunError when a particle is faster than any wave could make it."""
+        speed = np.abs(self.velocity[:2]).max(axis=0)
+        sound = speed <= self._fastest  # false for what is not a number, too
+        if sound.all():
             return
-        place = self.scene.assembly.positions[int(np.argmin(np.isfinite(speed)))]
+        place = self.scene.assembly.positions[int(np.argmin(sound))]
         raise RunError(
             f"the motion grew without bound: at t = {self.time:g} s near ({place[0]:g}, {place[1]:g}) m; "
             "take a smaller run.time_step or safety"
@@ -110,10 +116,10 @@ class Simulation:
 class NodeSupports:
     """The support table as the kernel applies it, one line per supported particle and all three components.
 
-    v⁺ = keep·v + mobility·(F + F_0 − K u) + push. With the centred damper keep = (m/Δt − C/2)/(m/Δt + C/2) and
-    mobility = 1/(m/Δt + C/2); a prescribed component has both zero and its velocity as push.
+    v⁺ = keep·v + mobility·(F + F_0 − K u + drive) + prescribed·drive. With the centred damper
+    keep = (m/Δt − C/2)/(m/Δt + C/2) and mobility = 1/(m/Δt + C/2); both are zero for a prescribed component.
 
-    Attributes: nodes (k,); keep, mobility, stiffness, preload (k, 3).
+    Attributes: nodes (k,); keep, mobility, stiffness, preload, prescribed (k, 3).
     """
 
     def __init__(self, scene: Scene, time_step: float) -> None:
@@ -124,19 +130,18 @@ class NodeSupports:
         self._at = (line, table.component)
         shape = (len(self.nodes), 3)
         inertia = np.stack([scene.mass, scene.mass, scene.inertia], axis=1)[self.nodes] / time_step
-        damping, prescribed = np.zeros(shape), np.zeros(shape, dtype=bool)
+        damping, self.prescribed = np.zeros(shape), np.zeros(shape)
         self.stiffness, self.preload = np.zeros(shape), np.zeros(shape)
         damping[self._at] = table.damping
-        prescribed[self._at] = table.prescribed
+        self.prescribed[self._at] = table.prescribed
         self.stiffness[self._at] = table.stiffness
         self.preload[self._at] = table.preload
-        moves = scene.free * ~prescribed
+        moves = scene.free * (1.0 - self.prescribed)
         self.mobility = moves / (inertia + 0.5 * damping)
         self.keep = moves * (inertia - 0.5 * damping) / (inertia + 0.5 * damping)
 
-    def push(self, times: np.ndarray) -> np.ndarray:
-        """What drives add to the velocities at each time, (steps, k, 3) m/s."""
-        push = np.zeros((len(times), len(self.nodes), 3))
-        factor = np.where(self.table.prescribed, 1.0, self.mobility[self._at])
-        push[:, self._at[0], self._at[1]] = self.table.sample(times, self.half_step) * factor
-        return push
+    def drive(self, times: np.ndarray) -> np.ndarray:
+        """Driving forces at each time, (steps, k, 3) N; velocities in m/s where prescribed."""
+        drive = np.zeros((len(times), len(self.nodes), 3))
+        drive[:, self._at[0], self._at[1]] = self.table.sample(times, self.half_step)
+        return drive

@@ -1,6 +1,5 @@
 """The disks of a run in a window to zoom into, or drawn without one into a picture."""
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -8,20 +7,18 @@ from typing import TYPE_CHECKING, Literal
 
 import h5py
 import numpy as np
+from matplotlib.image import imsave
 
 from dembound.errors import DemboundError
-from dembound.results import open_record, snapshot_of
+from dembound.results import open_record, replacing, snapshot_of
 
 if TYPE_CHECKING:
     import pyvista
 
 Field = Literal["velocity", "displacement"]
-
 LABELS = {"velocity": "speed (m/s)", "displacement": "displacement (m)"}
-"""What colours the disks: the length of the field in the plane."""
 
-CORNERS = 24
-"""Corners of a disk's polygon; a multiple of four, so that it is as wide and as high as the disk."""
+CORNERS = 24  # of a disk's polygon; a multiple of four, so that it is as wide and as high as the disk
 
 # Without OpenGL, VTK does not raise but crashes, so another process tries first; it says what it would draw in.
 TRIAL = """
@@ -31,27 +28,17 @@ plotter.screenshot()
 print(plotter.render_window.GetClassName())
 """
 
-WINDOWLESS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")
-"""What VTK draws in where it finds no display."""
+WINDOWLESS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")  # what VTK draws in where it finds no display
 
 
 def view(run: Path, snapshot: int = -1, field: Field = "velocity", picture: Path | None = None) -> None:
     """Show a run's disks from above, at their undeformed places, coloured by the length of a field.
 
-    The window has a slider over the snapshots; drag to move, the wheel zooms. It returns when closed.
+    run is a ``run.h5``; snapshot the number to begin with, negative ones counting from the last; field velocity in m/s
+    or displacement in m; picture a PNG file to draw into instead of opening a window. The window has a slider over
+    several snapshots; dragging moves the scene, the wheel zooms. Returns once it is closed.
 
-    Parameters
-    ----------
-    run
-        the ``run.h5`` of a run.
-    snapshot
-        the one to begin with; negative ones count from the last.
-    field
-        velocity in m/s or displacement in m.
-    picture
-        PNG file to draw into instead of opening a window.
-
-    Raises CaseError when the file cannot be read or has no such snapshot, DemboundError without display or OpenGL.
+    Raises CaseError when the file cannot be read or has no such snapshot, DemboundError without OpenGL or a display.
     """
     with open_record(run) as file:
         first = snapshot_of(file, snapshot)
@@ -60,8 +47,8 @@ def view(run: Path, snapshot: int = -1, field: Field = "velocity", picture: Path
         if picture is None:
             plotter.show(title=f"dembound: {file.attrs['name']}")
         else:
-            plotter.screenshot(picture)
-            plotter.close()
+            with replacing(picture) as part:
+                imsave(part, plotter.screenshot(), format="png")
 
 
 def require_rendering(in_window: bool) -> None:
@@ -70,8 +57,7 @@ def require_rendering(in_window: bool) -> None:
     if tried.returncode != 0:
         raise DemboundError("view: cannot draw here, VTK finds no working OpenGL; `dembound plot` needs none")
     if in_window and tried.stdout.split()[-1] in WINDOWLESS:
-        shown = os.environ.get("DISPLAY", "")
-        raise DemboundError(f"view: no display to open a window on (DISPLAY={shown}), try --picture FILE.png")
+        raise DemboundError("view: there is no display to open a window on, see DISPLAY, or try --picture FILE.png")
 
 
 def disk_mesh(positions: np.ndarray, radii: np.ndarray) -> "pyvista.PolyData":
@@ -87,14 +73,17 @@ def disk_mesh(positions: np.ndarray, radii: np.ndarray) -> "pyvista.PolyData":
 def make_plotter(file: h5py.File, first: h5py.Group, field: Field, off_screen: bool) -> "pyvista.Plotter":
     """The scene of an open record, ready to show, at its snapshot `first`; one colour scale for the whole run."""
     import pyvista  # here, for it takes seconds and other commands can do without
+    from vtkmodules.vtkCommonCore import vtkLogger
 
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)  # to draw without a display is no reason to warn
     snapshots = list(file["snapshots"].values())
     label = LABELS[field]
     disks = disk_mesh(file["particles/position"][:], file["particles/radius"][:])
-    disks.cell_data[label] = lengths(first, field)
-    limit = max(float(lengths(each, field).max()) for each in snapshots) or 1.0
+    limit = max(lengths(each, field).max() for each in snapshots) or 1.0  # of a run at rest
     plotter = pyvista.Plotter(off_screen=off_screen, window_size=(1600, 900))
+    disks.cell_data[label] = lengths(first, field)
     plotter.add_mesh(disks, scalars=label, clim=(0.0, limit), lighting=False, scalar_bar_args={"vertical": True})
+    plotter.enable_anti_aliasing("ssaa")
 
     def show(number: float) -> None:
         shown = snapshots[round(number)]
@@ -103,12 +92,27 @@ def make_plotter(file: h5py.File, first: h5py.Group, field: Field, off_screen: b
 
     show(snapshots.index(first))
     if len(snapshots) > 1 and not off_screen:
-        last = len(snapshots) - 1
-        plotter.add_slider_widget(show, (0, last), snapshots.index(first), title="snapshot", fmt="%.0f")
-    plotter.show_bounds(xtitle="x (m)", ytitle="y (m)", show_zaxis=False, use_2d=True)
+        span, place = (0, len(snapshots) - 1), {"pointa": (0.03, 0.1), "pointb": (0.28, 0.1)}  # lower left
+        slider = plotter.add_slider_widget(show, span, value=snapshots.index(first), title="snapshot", **place)
+        slider.GetRepresentation().ShowSliderLabelOff()  # its number has decimals, and the time is shown anyway
+    look_from_above(plotter, file.attrs["size"])
+    return plotter
+
+
+def look_from_above(plotter: "pyvista.Plotter", size: np.ndarray) -> None:
+    """Put labelled axes around a scene of this size, (2,) m, and a camera above it that only moves and zooms."""
+    width, height = size
+    share = size / size.max()
+    x_labels, y_labels = 2 * np.ceil(3.0 * share).astype(int)  # even: an axis has its title at its middle
+    x_shown, y_shown = share > 0.05  # labels across a narrower scene collide
+    x_axis = {"xtitle": "x (m)", "n_xlabels": x_labels, "show_xlabels": x_shown}
+    y_axis = {"ytitle": "y (m)", "n_ylabels": y_labels, "show_ylabels": y_shown}
+    plotter.show_bounds(bounds=(0.0, width, 0.0, height, 0.0, 0.0), use_2d=True, show_zaxis=False, **x_axis, **y_axis)
     plotter.view_xy()
     plotter.enable_parallel_projection()
-    return plotter
+    plotter.enable_custom_trackball_style(left="pan")
+    across, up = plotter.window_size
+    plotter.camera.parallel_scale = 0.7 * max(height, width * up / across)  # half the window's height; 0.5 fills it
 
 
 def lengths(snapshot: h5py.Group, field: Field) -> np.ndarray:

@@ -12,7 +12,7 @@ a=$cases/long_bar_a.toml b=$cases/long_bar_b.toml b2=$cases/long_bar_b_lambda2.t
 
 echo "== Figures 2, 9, 10: the patterns, their right sides, a brick with its seams"
 dembound packing "$a" "$b" "$b2" "$c" --side right --output "$figures/fig02_10_patterns.png"
-small=(--set 'packing.brick=[10.0, 10.0]' --set 'packing.size=[10.0, 10.0]')  # so that single disks can be seen
+small=(--set 'packing.brick=[10.0, 10.0]' --set 'packing.size=[10.0, 10.0]' --set 'monitor=[]')  # so that single disks can be seen
 dembound packing "$b" --brick "${small[@]}" --output "$figures/fig09_brick_b.png"
 dembound packing "$c" --brick "${small[@]}" --output "$figures/fig09_brick_c.png"
 
@@ -25,14 +25,14 @@ echo "== Figure 6: ratio iteration on pattern B from 0.5 and 2.0"
 for start in 0.5 2.0; do
     dembound calibrate "$b" --boundary right --method ratio --start $start --name from_$start --output "$results"
 done
-dembound plot "$results"/from_{0.5,2.0}/calibration_right_p_ratio --output "$figures/fig06_iteration.png"
+dembound plot "$results"/from_{0.5,2.0}_calibration_right_p_ratio --output "$figures/fig06_iteration.png"
 
 echo "== Figures 7, 8: P4 in the passes of that iteration"
 beta_of_pass() { # START PASS, the last pass if there are fewer
     python3 -c "import json, sys
 passes = json.load(open(sys.argv[1]))['beta']
 print(passes[min(int(sys.argv[2]), len(passes)) - 1])" \
-        "$results/from_$1/calibration_right_p_ratio/summary.json" "$2"
+        "$results/from_${1}_calibration_right_p_ratio/summary.json" "$2"
 }
 for start in 0.5 2.0; do
     runs=()
@@ -52,7 +52,7 @@ for case in "$a" "$b" "$b2" "$c"; do
     dembound calibrate "$case" --boundary right --method ratio --start 1.0 --output "$results"
     dembound calibrate "$case" --boundary right --method impedance --output "$results"
     dembound calibrate "$case" --boundary right --method homogenised --output "$results"
-    records+=("$results/$name/calibration_right_p_ratio")
+    records+=("$results/${name}_calibration_right_p_ratio")
 done
 dembound plot "${records[@]}" --output "$figures/fig13_patterns.png"
 echo "figures are in $figures"

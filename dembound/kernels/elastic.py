@@ -76,21 +76,25 @@ def _kick(v, f, b, damp):
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def _supported(u, v, start, neighbour, kind, palette, nodes, keep, mobility, stiffness, preload, push, damp, out):
-    """Velocities (k, 3) of the supported nodes half a step on: v⁺ = keep·v + mobility·(F + F_0 − K u) + push.
+def _supported(
+    u, v, start, neighbour, kind, palette,
+    nodes, keep, mobility, stiffness, preload, prescribed, drive, damp, out,
+):  # fmt: skip
+    """Velocities (k, 3) of the supported nodes half a step on.
 
-    One linear update covers every boundary: a centred dashpot C has keep = (m/Δt − C/2)/(m/Δt + C/2) and mobility
-    1/(m/Δt + C/2); a prescribed component has keep = mobility = 0 and its velocity as push.
+    v⁺ = keep·v + mobility·(F + F_0 − K u + drive) + prescribed·drive. One linear update covers every boundary: a
+    centred dashpot C has keep = (m/Δt − C/2)/(m/Δt + C/2) and mobility 1/(m/Δt + C/2); a prescribed component has
+    keep = mobility = 0 and prescribed = 1, its drive being its velocity.
     """
     f = np.empty(3)
     for s in range(nodes.size):
         i = U(nodes[s])
         f[0], f[1], f[2] = _row_force(i, u, start, neighbour, kind, palette)
         for c in range(3):
-            total = f[c] + preload[s, c] - stiffness[s, c] * u[U(c), i]
+            total = f[c] + preload[s, c] - stiffness[s, c] * u[U(c), i] + drive[s, c]
             if damp > 0.0:
                 total -= damp * abs(total) * np.sign(v[U(c), i])
-            out[s, c] = keep[s, c] * v[U(c), i] + mobility[s, c] * total + push[s, c]
+            out[s, c] = keep[s, c] * v[U(c), i] + mobility[s, c] * total + prescribed[s, c] * drive[s, c]
 
 
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
@@ -98,15 +102,15 @@ def advance(
     u, spare, v,
     start, neighbour, kind, palette,
     mobility, inverse_inertia, free, damp, dt,
-    nodes, keep, node_mobility, stiffness, preload, push,
+    nodes, keep, node_mobility, stiffness, preload, prescribed, drive,
     probes, record, tracked, peaks,
 ):  # fmt: skip
-    """Advance by push.shape[0] steps of central differences, velocities living at half steps.
+    """Advance by drive.shape[0] steps of central differences, velocities living at half steps.
 
     u, spare, v : (3, n) displacement now, room for the next one, velocity half a step ago; u holds the result.
     start, neighbour, kind, palette : rows of contacts (see the module's text).
     mobility, inverse_inertia : (n,) Δt/m and Δt/I; free : (3,) 1.0, or 0.0 for a component held everywhere.
-    nodes … preload : the support table, (k,) and (k, 3); push : (steps, k, 3) m/s.
+    nodes … prescribed : the support table, (k,) and (k, 3); drive : (steps, k, 3) N, m/s where prescribed.
     probes : (p,) particles to record; record : (steps, p, 6) displacement and velocity at the start of each step,
     the velocity as the mean of its two half-step values.
     tracked : (q,) particles; peaks : (q, 3, 2) running smallest and largest velocity.
@@ -114,10 +118,10 @@ def advance(
     n = u.shape[1]
     supported = np.empty((nodes.size, 3))
     here, there = u, spare
-    for step in range(push.shape[0]):
+    for step in range(drive.shape[0]):
         _supported(
             here, v, start, neighbour, kind, palette,
-            nodes, keep, node_mobility, stiffness, preload, push[step], damp, supported,
+            nodes, keep, node_mobility, stiffness, preload, prescribed, drive[step], damp, supported,
         )  # fmt: skip
         for p in range(probes.size):
             for c in range(3):
@@ -146,5 +150,5 @@ def advance(
                 peaks[q, c, 0] = min(peaks[q, c, 0], speed)
                 peaks[q, c, 1] = max(peaks[q, c, 1], speed)
         here, there = there, here
-    if push.shape[0] % 2 == 1:
+    if drive.shape[0] % 2 == 1:
         u[:] = here

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.case.material import Material
+from dembound.errors import CaseError
 from dembound.ground import Ground, homogenise, make_ground, nominal_moduli
 from dembound.packings.brick import Brick
 from dembound.packings.dense import Recipe, pack_dense
@@ -95,14 +96,18 @@ def test_the_homogenised_tensor_is_a_stiffness(dense: Brick) -> None:
 
 
 def test_stiffness_is_that_of_the_strained_brick(dense: Brick) -> None:
-    # everything held: C11 = Σ (k_n c²·dx² + k_s s²·dx²)/A over the contacts, by hand
+    # everything held, by hand: the energy of all contacts under the mean gradients xx, yy, xy = ∂u_x/∂y, yx
     made = ground(dense, held=("x", "y", "rotation"))
     dx, dy = dense.vectors.T
-    length = np.hypot(dx, dy)
-    c, s = dx / length, dy / length
-    by_hand = np.sum((made.stiffness.normal * c**2 + made.stiffness.shear * s**2) * dx**2) / 30.0
+    n = dense.vectors / np.hypot(dx, dy)[:, None]
+    t = np.column_stack([-n[:, 1], n[:, 0]])
+    zero = np.zeros_like(dx)
+    apart = [np.column_stack(u) for u in ([dx, zero], [zero, dy], [dy, zero], [zero, dx])]
+    along, across = (np.array([np.sum(u * way, axis=1) for u in apart]) for way in (n, t))
+    by_hand = (along * made.stiffness.normal) @ along.T + (across * made.stiffness.shear) @ across.T
 
-    assert made.tensor[0, 0] == pytest.approx(by_hand, rel=1e-12)
+    # sums of some 300 terms
+    np.testing.assert_allclose(made.tensor, by_hand / 30.0, atol=1e-12 * K)
 
 
 @pytest.mark.parametrize(("held", "axis"), [((), 0), (("y",), 0), (("x",), 1)])
@@ -122,3 +127,9 @@ def test_moduli_come_from_the_speed_or_from_the_case() -> None:
     assert (by_speed.emod, by_speed.pb_emod, by_speed.pb_rmul) == (1.25e9, 2.5e9, 0.5)
     assert (by_speed.kratio, by_speed.fric) == (3.0, 0.2)
     assert (given.emod, given.pb_emod) == (3e9, 4e9)
+
+
+def test_a_material_that_resists_no_shear_is_refused(dense: Brick) -> None:
+    for brick in (lattice(), dense):
+        with pytest.raises(CaseError, match="give bonds or friction"):
+            _ = ground(brick, contact_share=1.0).tensor

@@ -3,7 +3,7 @@
 import pytest
 
 from dembound.errors import CaseError
-from dembound.results import open_record, record_names, replacing
+from dembound.results import open_record, record_names, replacing, snapshot_of
 
 
 def test_what_is_no_record_is_refused_by_name(tmp_path):
@@ -12,6 +12,18 @@ def test_what_is_no_record_is_refused_by_name(tmp_path):
     for path in (text, tmp_path / "missing.h5"):
         with pytest.raises(CaseError, match=path.name):
             open_record(path)
+
+
+@pytest.mark.parametrize(("number", "name"), [(0, "0000"), (1, "0001"), (-1, "0001"), (-2, "0000")])
+def test_snapshots_go_by_number_from_either_end(small_run, number, name):
+    with open_record(small_run) as file:
+        assert snapshot_of(file, number) == file[f"snapshots/{name}"]
+
+
+@pytest.mark.parametrize("number", [2, -3])
+def test_a_missing_snapshot_is_refused_with_the_file_and_their_number(small_run, number):
+    with open_record(small_run) as file, pytest.raises(CaseError, match=rf"run.h5: has no snapshot {number}, it has 2"):
+        snapshot_of(file, number)
 
 
 def test_names_are_the_cases_names(small_run, other_run):

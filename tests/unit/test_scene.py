@@ -157,3 +157,13 @@ def test_dashpots_absorb_into_the_speeds_named_else_into_the_packings_own(bar) -
     # the lattice with μ = 0: c_p² = (E_c + Ē_c)/ρ, c_s = c_p/2; a solve with one unknown
     assert media[1].p_wave_speed == pytest.approx(1000.0, rel=1e-12)
     assert media[1].s_wave_speed == pytest.approx(500.0, rel=1e-12)
+
+
+def test_a_gap_without_a_bond_carries_nothing(bar) -> None:
+    packing = {**RANDOM["packing"], "bond_gap": 0.02}
+    scene = build(
+        bar({**RANDOM, "packing": packing, "material": {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0, "fric": 0.5}})
+    )
+
+    assert (scene.ground.brick.gaps > 0.0).any()
+    assert np.isfinite(scene.contacts.palette).all()

@@ -27,7 +27,6 @@ def test_the_limit_of_a_lattice_that_moves_in_x_only(bar) -> None:
     # modes along x and y separate: normal springs along x, shear springs along y
     squared = free_chain(K, 20) + free_chain(0.5 * K, 4)
 
-    # the limit is not too large but for rounding: it must never be above the true one by much
     assert step_limit(scene) == pytest.approx(2.0 / np.sqrt(squared), rel=TOLERANCE)
 
 
@@ -72,7 +71,9 @@ def given(bar, step: float | str, **more: object) -> Scene:
 def test_an_automatic_step_is_the_share_of_the_limit_asked_for(bar) -> None:
     step, limit = choose_step(build(bar({"run.safety": 0.75})))
 
-    assert step == 0.75 * limit
+    # cut to four digits
+    assert 0.0 <= 1.0 - step / (0.75 * limit) < 1e-3
+    assert float(f"{step:.4g}") == pytest.approx(step, rel=1e-15)
 
 
 def test_a_given_step_is_taken_as_it_is(bar) -> None:
@@ -98,3 +99,11 @@ def test_a_scene_in_which_nothing_vibrates_needs_a_step_of_its_own(bar) -> None:
         choose_step(given(bar, "auto", **still))
 
     assert choose_step(given(bar, 1e-3, **still)) == (1e-3, np.inf)
+
+
+def test_the_limit_is_never_too_large(bar) -> None:
+    # a lattice's largest frequencies lie close, so Lanczos iteration ends early; sides as above
+    for width, height in ((20.0, 1.0), (50.0, 5.0), (20.0, 20.0)):
+        scene = build(bar({**ONLY_X, "packing.size": [width, height], "monitor": []}))
+        squared = free_chain(K, round(2 * width)) + free_chain(0.5 * K, round(2 * height))
+        assert step_limit(scene) <= 2.0 / np.sqrt(squared)

@@ -16,7 +16,12 @@ def lattice() -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize(
     ("side", "expected"),
-    [("left", [0, 6, 12, 18]), ("right", [5, 11, 17, 23]), ("bottom", [0, 1, 2, 3, 4, 5]), ("top", [18, 19, 20, 21, 22, 23])],
+    [
+        ("left", [0, 6, 12, 18]),
+        ("right", [5, 11, 17, 23]),
+        ("bottom", [0, 1, 2, 3, 4, 5]),
+        ("top", [18, 19, 20, 21, 22, 23]),
+    ],
 )
 def test_a_flat_side_is_its_outer_row_in_order(side: str, expected: list[int]) -> None:
     positions, radii = lattice()
@@ -47,12 +52,12 @@ def test_a_narrow_gap_shows_the_disk_behind_it() -> None:
 
 
 def test_a_periodic_side_sees_disks_reach_over_its_ends() -> None:
-    # a disk on the seam covers y in [-0.5, 0.5] and so, seen periodically over 4 m, [3.5, 4.5] too: it hides the
-    # small disk behind its image
-    positions = np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 2.0], [0.0, 3.0], [0.6, 3.7]])
-    radii = np.array([0.5, 0.5, 0.5, 0.5, 0.15])
+    # the last disk covers y in [3.1, 4.1] and so, seen periodically over 4 m, [-0.9, 0.1] too: its image hides the
+    # small disk at the lower end
+    positions = np.array([[0.6, 0.0], [0.0, 0.6], [0.0, 1.5], [0.0, 2.5], [0.0, 3.6]])
+    radii = np.array([0.05, 0.4, 0.5, 0.5, 0.5])
 
-    assert exposed(positions, radii, "left", period=4.0).tolist() == [0, 1, 2, 3]
+    assert exposed(positions, radii, "left", period=4.0).tolist() == [1, 2, 3, 4]
     assert exposed(positions, radii, "left").tolist() == [0, 1, 2, 3, 4]
 
 

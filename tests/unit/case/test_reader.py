@@ -289,9 +289,7 @@ def test_unreadable_files_are_named(tmp_path: Path) -> None:
 
 def test_wave_files_are_looked_for_beside_the_case(tmp_path: Path) -> None:
     (tmp_path / "quake.txt").write_text("0 0\n1 3\n2 0\n")
-    text = GOOD.replace(
-        'type = "cosine"\namplitude = -0.5\nperiod = 0.05', 'type = "file"\npath = "quake.txt"'
-    )
+    text = GOOD.replace('type = "cosine"\namplitude = -0.5\nperiod = 0.05', 'type = "file"\npath = "quake.txt"')
 
     assert loads(text, tmp_path).wave["pulse"].peak() == 3.0
     (line,) = problems(text, tmp_path / "elsewhere")

@@ -115,16 +115,12 @@ def test_values_are_shown_as_the_file_spells_them() -> None:
 
 def test_allowed_puts_schemas_into_words() -> None:
     assert (
-        allowed({"type": "integer", "minimum": 1, "maximum": 5})
-        == "a whole number no less than 1 and no more than 5"
+        allowed({"type": "integer", "minimum": 1, "maximum": 5}) == "a whole number no less than 1 and no more than 5"
     )
     assert allowed({"anyOf": [{"type": "number"}, {"type": "null"}], "unit": "m"}) == "a number (m)"
     assert allowed({"type": "string", "minLength": 1}) == "a text no shorter than 1"
 
 
 def test_unknown_offers_the_nearest_name_only_if_there_is_one() -> None:
-    assert (
-        unknown("key", "kratoi", ["fric", "kratio"])
-        == "unknown key; allowed: fric, kratio (did you mean kratio?)"
-    )
+    assert unknown("key", "kratoi", ["fric", "kratio"]) == "unknown key; allowed: fric, kratio (did you mean kratio?)"
     assert unknown("key", "zzz", ["fric", "kratio"]) == "unknown key; allowed: fric, kratio"

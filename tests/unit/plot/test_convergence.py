@@ -42,7 +42,7 @@ def test_peaks_and_factors_stand_against_the_pass(tmp_path):
     np.testing.assert_array_equal(incident.get_ydata(), 0.5)
     np.testing.assert_array_equal(lower.lines[0].get_ydata(), BETA)
     assert upper.get_ylabel() == "peak velocity at the side (m/s)"
-    assert lower.get_ylabel() == "boundary factor β (1)"
+    assert lower.get_ylabel() == "boundary factor β (–)"
     assert lower.get_xlabel() == "pass"
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
     assert texts == [

@@ -3,9 +3,12 @@
 import h5py
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from dembound import cli
 from dembound.errors import CaseError
 from dembound.plot.histories import plot_histories
+from dembound.plot.style import new_figure
 
 
 @pytest.mark.parametrize(
@@ -37,6 +40,42 @@ def test_runs_lie_over_each_other_in_different_styles(small_run, other_run):
         assert small.get_linestyle() != other.get_linestyle()
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["small", "other"]
+
+
+def test_monitors_stand_in_the_order_of_the_case(small_run):
+    names = [panel.get_title("left").split()[0] for panel in plot_histories([small_run]).axes]
+    assert names == ["front", "back"]
+
+
+def test_only_the_monitors_asked_for_are_shown_in_that_order(small_run, other_run):
+    for asked in (["back"], ["back", "front"], ["front", "front"]):
+        figure = plot_histories([small_run, other_run], monitors=asked)
+        assert [panel.get_title("left").split()[0] for panel in figure.axes] == list(dict.fromkeys(asked))
+        assert [len(panel.lines) for panel in figure.axes] == [2] * len(figure.axes)
+
+
+def test_the_component_is_that_of_the_monitors_shown(small_run, tmp_path):
+    run = tmp_path / "run.h5"
+    run.write_bytes(small_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        file["histories/back/velocity"][0, 1] = 9.0
+    assert plot_histories([run]).get_supylabel() == "velocity along y (m/s)"
+    assert plot_histories([run], monitors=["front"]).get_supylabel() == "velocity along x (m/s)"
+
+
+def test_unknown_monitors_are_refused_with_those_there(small_run):
+    with pytest.raises(CaseError, match="is P9, must be one of front, back") as refused:
+        plot_histories([small_run], monitors=["P9", "front", "P8"])
+    assert len(refused.value.problems) == 2
+
+
+def test_the_command_hands_on_the_monitors(small_run, tmp_path, monkeypatch):
+    asked = []
+    monkeypatch.setattr(cli, "plot_histories", lambda runs, **options: asked.append(options) or new_figure(1.0, 1.0))
+    for options in ([], ["--monitor", "back", "--monitor", "front"]):
+        command = ["plot", str(small_run), "-o", str(tmp_path / "plot.png"), *options]
+        assert CliRunner().invoke(cli.app, command).exit_code == 0
+    assert [options["monitors"] for options in asked] == [None, ["back", "front"]]
 
 
 def test_without_monitors_there_is_nothing_to_show(tmp_path):

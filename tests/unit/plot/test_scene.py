@@ -1,4 +1,4 @@
-"""Scenes show every disk, or their mean where disks are too small."""
+"""Scenes show every disk, or their mean where disks are too small; long ones at several moments."""
 
 import h5py
 import numpy as np
@@ -6,7 +6,8 @@ import pytest
 from matplotlib.collections import EllipseCollection
 
 from dembound.errors import CaseError
-from dembound.plot.scene import plot_scene
+from dembound.plot.disks import Window
+from dembound.plot.scene import plot_scene, strips_on_page
 
 
 def disks_of(panel):
@@ -14,18 +15,28 @@ def disks_of(panel):
     return disks
 
 
-def block(path, columns, rows, velocity):
-    """A record of columns × rows disks of diameter 1 m with one snapshot; velocity (x of the disks) in m/s."""
+def block(path, columns, rows, *velocities):
+    """A record of columns × rows disks of diameter 1 m; a velocity (x of the disks) in m/s per snapshot, each 0.5 s."""
     x, y = np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5, indexing="ij")
     positions = np.column_stack([x.ravel(), y.ravel()])
-    motion = np.zeros((len(positions), 3))
-    motion[:, 0] = velocity(positions[:, 0])
     with h5py.File(path, "w") as file:
         file.attrs["name"] = "block"
         file["particles/position"], file["particles/radius"] = positions, np.full(len(positions), 0.5)
-        file["snapshots/0000/velocity"], file["snapshots/0000/displacement"] = motion, motion
-        file["snapshots/0000"].attrs["time"] = 0.5
+        for number, velocity in enumerate(velocities):
+            group = file.create_group(f"snapshots/{number:04d}")
+            group["velocity"] = np.column_stack([velocity(positions[:, 0]), np.zeros((len(positions), 2))])
+            group.attrs["time"] = 0.5 * (number + 1)
     return path
+
+
+def pulse(place, height=1.0):
+    """A velocity: a pulse some 100 m long around x = place."""
+    return lambda x: height * np.exp(-(((x - place) / 50.0) ** 2))
+
+
+def times_beside(panels):
+    """What stands at the right end of each panel."""
+    return [text.get_text() for panel in panels for text in panel.texts if text.xyann == (8, 0)]
 
 
 @pytest.mark.parametrize(
@@ -45,10 +56,11 @@ def test_disks_have_true_sizes_places_and_values(small_run, arguments, number, c
         np.testing.assert_array_equal(disks.get_offsets(), file["particles/position"][:])
         np.testing.assert_array_equal(disks.get_array(), file[f"snapshots/{number}/{field}"][:, column])
         time = file[f"snapshots/{number}"].attrs["time"]
+        limit = max(np.abs(each[field][:, column]).max() for each in file["snapshots"].values())
     np.testing.assert_array_equal(disks.get_widths(), 0.5)
-    assert disks.get_clim() == (-np.abs(disks.get_array()).max(), np.abs(disks.get_array()).max())
+    assert disks.get_clim() == (-limit, limit)
     assert bar.get_ylabel() == label
-    assert f"t = {time:.4g} s" in figure.get_suptitle()
+    assert panel.get_title() == f"t = {time:.3g} s"
     assert (panel.get_xlabel(), panel.get_ylabel(), panel.get_aspect()) == ("x (m)", "y (m)", 1.0)
 
 
@@ -71,7 +83,7 @@ def test_small_disks_give_way_to_their_mean(tmp_path):
 
 
 def test_a_long_scene_gets_a_close_up_on_the_flank_of_the_wave(tmp_path):
-    run = block(tmp_path / "run.h5", 1000, 50, lambda x: np.exp(-(((x - 300.0) / 50.0) ** 2)))
+    run = block(tmp_path / "run.h5", 1000, 50, pulse(300.0))
     whole, part, _ = plot_scene(run).axes
     assert len(whole.images) == 1
     left, right = part.get_xlim()
@@ -86,6 +98,54 @@ def test_a_long_scene_gets_a_close_up_on_the_flank_of_the_wave(tmp_path):
     assert np.all(np.abs(disks.get_offsets()[:, 0] - 0.5 * (left + right)) < 0.5 * (right - left) + 0.5)
 
 
+def test_a_long_scene_shows_the_pulse_pass_and_leave_in_one_scale(tmp_path):
+    # the second snapshot moves most, though backwards; in the last the pulse has left but for 1 mm/s
+    motions = [pulse(200.0), pulse(500.0, -2.0), pulse(800.0), pulse(500.0, 1e-3)]
+    figure = plot_scene(block(tmp_path / "run.h5", 1000, 20, *motions))
+    *strips, part, _ = figure.axes
+    assert times_beside(strips) == ["t = 0.5 s", "t = 1 s", "t = 1.5 s", "t = 2 s"]
+    for strip, motion in zip(strips, motions, strict=True):
+        (picture,) = strip.images
+        assert picture.get_clim() == disks_of(part).get_clim()
+        assert strip.get_xlim() == (0.0, 1000.0)
+        # cells of two diameters hold the disks centred at 2k + 0.5 and 2k + 1.5
+        expected = motion(np.arange(1000) + 0.5).reshape(-1, 2).mean(axis=1)
+        np.testing.assert_allclose(picture.get_array()[0], expected, atol=1e-15)
+    assert disks_of(part).get_clim() == pytest.approx((-2.0, 2.0), rel=1e-3)  # no disk stands on the crest itself
+    assert [len(strip.patches) for strip in strips] == [0, 1, 0, 0]
+    assert [strip.get_xlabel() for strip in strips] == ["", "", "", "x (m)"]
+
+
+def test_strips_are_at_most_eight_evenly_picked_with_first_and_last(tmp_path):
+    run = block(tmp_path / "run.h5", 200, 2, *[pulse(20.0 * number) for number in range(15)])
+    assert times_beside(plot_scene(run).axes) == [f"t = {0.5 + number:.3g} s" for number in range(8)]
+
+
+@pytest.mark.parametrize(("length", "strips"), [(6.0, 1), (6.5, 4), (30.0, 8), (1000.0, 8), (1.0 / 30.0, 1)])
+def test_no_more_strips_than_fit_on_the_page(length, strips):
+    # 9.5 in / 6.5 = 1.46 in a strip, 1.58 in with the gap, so 4 in 6.5 in
+    assert strips_on_page(Window(np.zeros(2), np.array([length, 1.0]))) == strips
+
+
+def test_a_snapshot_asked_for_is_shown_alone_in_the_colours_of_the_run(tmp_path):
+    run = block(tmp_path / "run.h5", 1000, 20, pulse(200.0), pulse(500.0, 1e-3))
+    figure = plot_scene(run, 1)
+    whole, part, _ = figure.axes
+    assert times_beside([whole]) == ["t = 1 s"]
+    assert disks_of(part).get_clim() == whole.images[0].get_clim() == pytest.approx((-1.0, 1.0), rel=1e-3)
+    # the close-up is on this snapshot's own flank
+    assert abs(abs(np.mean(part.get_xlim()) - 500.0) - 41.6) < 1.0
+
+
+def test_the_component_is_the_one_that_moves_most_in_the_run(small_run, tmp_path):
+    run = tmp_path / "run.h5"
+    run.write_bytes(small_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        file["snapshots/0000/velocity"][3, 1] = -7.0
+    _, bar = plot_scene(run).axes
+    assert bar.get_ylabel() == "velocity along y (m/s)"
+
+
 def test_an_upright_scene_has_its_close_up_beside_it(tmp_path):
     whole, part, _ = plot_scene(block(tmp_path / "run.h5", 10, 200, lambda x: x)).axes
     assert np.ptp(part.get_ylim()) > np.ptp(part.get_xlim())
@@ -95,6 +155,11 @@ def test_an_upright_scene_has_its_close_up_beside_it(tmp_path):
 def test_a_scene_at_rest_is_drawn(tmp_path):
     disks = disks_of(plot_scene(block(tmp_path / "run.h5", 5, 4, np.zeros_like)).axes[0])
     assert disks.get_clim() == (-1.0, 1.0)
+
+
+def test_a_run_without_snapshots_is_refused(other_run):
+    with pytest.raises(CaseError, match="no snapshot -1, it has 0"):
+        plot_scene(other_run)
 
 
 @pytest.mark.parametrize("snapshot", [2, -3])

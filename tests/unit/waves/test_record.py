@@ -44,9 +44,7 @@ def test_record_may_begin_late_and_away_from_zero(tmp_path: Path) -> None:
 def test_frequencies_of_a_sampled_pulse(tmp_path: Path) -> None:
     t = np.arange(0.0, 0.5005, 0.001)
     pulse = 0.5 * (1.0 - np.cos(4.0 * np.pi * t))
-    wave = record(
-        tmp_path, "\n".join(f"{a!r} {b!r}" for a, b in zip(t.tolist(), pulse.tolist(), strict=True))
-    )
+    wave = record(tmp_path, "\n".join(f"{a!r} {b!r}" for a, b in zip(t.tolist(), pulse.tolist(), strict=True)))
 
     # bins are 1/(8 · 0.5 s) = 0.25 Hz. f·|V| of the Hann lobe, sin(πx)/(1 − x²), is largest at x = 0.837;
     # |V| itself, sin(πx)/[πx(1 − x²)], falls below 1 % for good at x = 2.797, and the next bin is given

@@ -1,0 +1,76 @@
+"""What a case would come to."""
+
+import numpy as np
+import pytest
+
+from dembound.check import check, particles_per_wavelength
+from dembound.scene import build
+from dembound.waves.spectrum import HANN_FADE
+
+
+def test_facts_are_those_of_the_scene(bar) -> None:
+    facts, _ = check(bar({"run.time_step": 1e-4, "boundary.right.beta_p": 0.9}))
+
+    assert facts["particles"] == "40"
+    assert facts["contacts"] == "58"
+    assert facts["steps"] == "100 for 0.01 s"
+    assert facts["time step"].startswith("0.0001 s, ")
+    assert "c_p = 1000.0 m/s" in facts["wave speeds"]
+    assert "c_s" not in facts["wave speeds"]  # y is held
+    assert facts["right side"].startswith("viscous, beta_p = 0.9, beta_s = 1; 2 particles")
+    assert facts["top side"].startswith("free; 20 particles")
+    # the disk nearest to (5, 0.5) is one of four at the same distance
+    assert facts["monitor middle"].split(" at ")[1] in {
+        f"({x}, {y}) m" for x in ("4.750", "5.250") for y in ("0.250", "0.750")
+    }
+
+
+def test_a_periodic_side_is_no_side(bar) -> None:
+    facts, _ = check(bar({"boundary.bottom": {"type": "periodic"}, "boundary.top": {"type": "periodic"}}))
+
+    assert "left side" in facts
+    assert "top side" not in facts
+
+
+def test_particles_per_wavelength_at_the_waves_highest_frequency_and_slowest_speed(bar) -> None:
+    # c_s = c_p/2 = 500 m/s, the Hann lobe fades at 3.27/T, disks are 0.5 m apart
+    for held, speed in ((["rotation"], 1000.0 / np.sqrt(2.0)), ([], 500.0), (["y"], 500.0)):
+        scene = build(bar({"motion.held": held}))
+        found = particles_per_wavelength(scene)
+        assert found == {"pulse": pytest.approx(speed * 0.01 / HANN_FADE / 0.5, rel=1e-9)}
+
+
+@pytest.mark.parametrize(("count", "warned"), [(19.9, True), (20.1, False)])
+def test_waves_with_fewer_than_twenty_particles_are_warned_of(bar, count: float, warned: bool) -> None:
+    period = count * 0.5 * HANN_FADE / 500.0
+    _, warnings = check(bar({"wave.pulse.period": period}))
+
+    assert any("fewer than 20" in warning for warning in warnings) == warned
+    if warned:
+        assert any(warning.startswith("wave.pulse: has 19.9 particles") for warning in warnings)
+
+
+def test_a_wave_stronger_than_the_locked_in_stress_is_warned_of(bar) -> None:
+    dense = {
+        "packing": {"pattern": "B", "size": [6.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
+        "monitor": [],
+        "wave.pulse.period": 1.0,
+    }
+    # the default locks in 10 MPa; ρcv = 2500·1000·v reaches that at 4 m/s; packings meet it within 0.05 %
+    for amplitude, warned in ((3.99, False), (4.01, True)):
+        _, warnings = check(bar({**dense, "wave.pulse.amplitude": amplitude}))
+        assert [warning.split(":")[0] for warning in warnings] == warned * ["wave.pulse"]
+
+
+def test_an_unstressed_lattice_is_always_warned_of(bar) -> None:
+    _, warnings = check(bar({"wave.pulse.period": 1.0, "wave.pulse.amplitude": 1e-3}))
+
+    assert len(warnings) == 1
+    assert "above the confining stress of 0 MPa" in warnings[0]
+
+
+def test_checking_writes_nothing(bar, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    check(bar())
+
+    assert not list(tmp_path.iterdir())

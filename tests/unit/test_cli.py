@@ -1,0 +1,309 @@
+"""The command line: what it writes, what it says, and the code it ends with."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numba
+import pytest
+
+from dembound import __version__, cli
+from dembound.case import load
+
+
+@dataclass
+class Answer:
+    """What a command ended with."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def dembound(tmp_path, monkeypatch, capsys) -> Callable[..., Answer]:
+    """Runs a command in an empty folder as the shell would."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: object) -> Answer:
+        monkeypatch.setattr(sys, "argv", ["dembound", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        return Answer(ended.value.code or 0, *capsys.readouterr())
+
+    return run
+
+
+@pytest.fixture
+def written(bar, tmp_path) -> Callable[..., Path]:
+    """Writes cases of the small bar to files."""
+
+    def write(name: str = "bar", changes: dict | None = None) -> Path:
+        path = tmp_path / f"{name}.toml"
+        path.write_text(bar(changes).text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def files(folder: Path) -> set[str]:
+    """All files below a folder."""
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+BLOW_UP = {"boundary.left": {"type": "velocity", "wave_p": "pulse"}, "wave.pulse.amplitude": 1e305}
+
+
+def test_the_module_is_the_command(tmp_path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "dembound", "--version"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+
+    assert done.stdout == f"dembound {__version__}\n"
+
+
+def test_version_and_help_end_well(dembound) -> None:
+    assert dembound("--version") == Answer(0, f"dembound {__version__}\n", "")
+    told = dembound("--help")
+    assert told.code == 0
+    for command in ("new", "check", "run", "calibrate", "plot"):
+        assert command in told.out
+
+
+def test_unknown_commands_and_options_are_bad_input(dembound) -> None:
+    assert dembound("fly").code == 2
+    assert dembound("run", "--fast").code == 2
+    assert dembound("calibrate", "bar.toml", "--boundary", "up").code == 2
+
+
+def test_a_new_case_can_be_run_as_it_stands(dembound, tmp_path) -> None:
+    assert dembound("new", "first.toml").code == 0
+
+    assert load(tmp_path / "first.toml").name == "first"
+    assert dembound("check", "first.toml").code == 0
+
+
+def test_new_overwrites_nothing(dembound, tmp_path) -> None:
+    (tmp_path / "mine.toml").write_text("precious")
+    answer = dembound("new", "mine.toml")
+
+    assert answer == Answer(2, "", "mine.toml: exists already, give another name\n")
+    assert (tmp_path / "mine.toml").read_text() == "precious"
+
+
+def test_all_mistakes_are_told_at_once_and_nothing_is_written(dembound, written, tmp_path) -> None:
+    path = written()
+    text = path.read_text().replace("density = 2500.0", "density = -1.0").replace('"viscous"', '"vicious"')
+    path.write_text(text + "\n[outptu]\n")
+    before = files(tmp_path)
+    answer = dembound("run", path)
+
+    assert answer.code == 2
+    assert answer.out == ""
+    lines = answer.err.splitlines()
+    assert len(lines) == 3
+    assert all(line.startswith(f"{path}: ") for line in lines)
+    for part in ("material.density", "boundary.right.type", "outptu"):
+        assert any(part in line for line in lines)
+    assert files(tmp_path) == before
+
+
+def test_a_missing_case_is_named(dembound) -> None:
+    assert dembound("run", "nowhere.toml") == Answer(2, "", "nowhere.toml: no such file\n")
+
+
+def test_check_prints_facts_and_warnings_and_writes_nothing(dembound, written, tmp_path) -> None:
+    path = written()
+    before = files(tmp_path)
+    answer = dembound("check", path)
+
+    assert answer.code == 0
+    assert "particles" in answer.out
+    assert "right side" in answer.out
+    assert "warning: wave.pulse: has " in answer.err
+    assert files(tmp_path) == before
+
+
+def test_two_cases_are_run_one_after_the_other(dembound, written, tmp_path) -> None:
+    answer = dembound("run", written("one"), written("two"), "--output", "kept")
+
+    assert answer.code == 0
+    assert answer.out.splitlines() == ["one: results in kept/one", "two: results in kept/two"]
+    for name in ("one", "two"):
+        assert json.loads((tmp_path / "kept" / name / "summary.json").read_text())["name"] == name
+
+
+def test_a_mistake_in_the_last_case_keeps_the_first_from_running(dembound, written, tmp_path) -> None:
+    good, bad = written("good"), written("bad")
+    bad.write_text(bad.read_text().replace("density", "densitty"))
+
+    assert dembound("run", good, bad).code == 2
+    assert not (tmp_path / "results").exists()
+
+
+def test_two_cases_of_one_name_are_refused(dembound, written, tmp_path) -> None:
+    path = written()
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "bar.toml").write_text(path.read_text())
+    answer = dembound("run", path, tmp_path / "other" / "bar.toml")
+
+    assert answer.code == 2
+    assert "same name" in answer.err
+
+
+def test_a_run_that_blows_up_ends_with_3_and_says_where(dembound, written, tmp_path) -> None:
+    answer = dembound("run", written(changes=BLOW_UP))
+
+    assert answer.code == 3
+    assert "grew without bound: at t = " in answer.err
+    assert [path.name for path in (tmp_path / "results").iterdir()] == ["bar.partial"]
+
+
+def test_a_packing_that_cannot_be_made_ends_with_4(dembound, written, monkeypatch) -> None:
+    from dembound.packings import bed  # a bed that may take no steps never comes to rest
+
+    monkeypatch.setattr(bed, "MAX_STEPS", 1)
+    unpacked = {"pattern": "B", "size": [5.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0], "seed": 9}
+    answer = dembound("run", written(changes={"packing": unpacked, "monitor": []}))
+
+    assert answer.code == 4
+    assert "did not come to rest" in answer.err
+
+
+def test_keys_can_be_set_and_results_named(dembound, written, tmp_path) -> None:
+    path = written()
+    answer = dembound("run", path, "--set", "boundary.right.beta_p=0.5", "--set", "title=soft end", "--name", "soft")
+
+    assert answer.code == 0
+    found = json.loads((tmp_path / "results" / "soft" / "summary.json").read_text())
+    assert found["boundaries"]["right"]["beta_p"] == 0.5
+    assert found["title"] == "soft end"
+
+
+@pytest.mark.parametrize("setting", ["beta", "boundary.right.beta_p=-1", "boundary.right.beat_p=1"])
+def test_bad_settings_are_bad_input(dembound, written, tmp_path, setting: str) -> None:
+    assert dembound("run", written(), "--set", setting).code == 2
+    assert not (tmp_path / "results").exists()
+
+
+def test_more_threads_than_cores_are_refused(dembound, written) -> None:
+    answer = dembound("run", written(), "--threads", numba.get_num_threads() + 1)
+
+    assert answer.code == 2
+    assert answer.err.startswith("--threads: ")
+
+
+def test_a_calibration_leaves_the_calibrated_case_its_passes_and_a_picture(dembound, written, tmp_path) -> None:
+    path = written(changes={"wave.pulse.period": 0.05, "boundary.right.beta_p": 0.5})
+    answer = dembound("calibrate", path, "--boundary", "right")
+
+    assert answer.code == 0
+    (calibrated,) = (tmp_path / "results").rglob("bar_calibrated.toml")
+    folder = calibrated.parent
+    assert {"bar_calibrated.toml", "calibration.h5", "convergence.png"} <= files(folder)
+    with h5py.File(folder / "calibration.h5") as file:
+        assert load(calibrated).boundary["right"].beta_p == file.attrs["result"]
+    passes = [line for line in answer.out.splitlines() if line.startswith("pass ")]
+    assert passes[0].startswith("pass  1: beta_p = 0.500000, M_out = ")
+    assert len(passes) == 2
+    assert dembound("check", calibrated).code == 0
+
+
+def test_a_homogenised_calibration_has_no_passes_to_show(dembound, written, tmp_path) -> None:
+    answer = dembound("calibrate", written(), "-b", "right", "--method", "homogenised")
+
+    assert answer.code == 0
+    assert "pass " not in answer.out
+    assert not list((tmp_path / "results").rglob("convergence.png"))
+
+
+def test_calibrating_a_side_without_dashpots_is_bad_input(dembound, written, tmp_path) -> None:
+    answer = dembound("calibrate", written(), "--boundary", "top")
+
+    assert answer.code == 2
+    assert answer.err == "boundary.top: is free, only viscous sides can be calibrated; here: left, right\n"
+    assert not (tmp_path / "results").exists()
+
+
+def test_histories_sides_and_calibrations_are_drawn(dembound, written, tmp_path) -> None:
+    dembound("run", written("one"), written("two"))
+    dembound("calibrate", written("one", {"wave.pulse.period": 0.05}), "-b", "right", "-o", "calibrated")
+    (passes,) = (tmp_path / "calibrated").rglob("calibration.h5")
+
+    assert dembound("plot", "results/one", "results/two/run.h5", "-o", "histories.png").code == 0
+    assert dembound("plot", "results/one", "-o", "displacement.png", "--quantity", "displacement").code == 0
+    assert dembound("plot", "results/one", "-o", "side.png", "--boundary", "right").code == 0
+    assert dembound("plot", passes.parent, "-o", "passes.png").code == 0
+    for name in ("histories", "displacement", "side", "passes"):
+        assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_what_cannot_be_drawn_is_bad_input(dembound, written, tmp_path) -> None:
+    dembound("run", written())
+    periodic = {"boundary.bottom": {"type": "periodic"}, "boundary.top": {"type": "periodic"}}
+    dembound("run", written("periodic", periodic))
+    for arguments, said in (
+        (["nowhere"], "nowhere: holds no results"),
+        (["bar.toml"], "bar.toml: cannot be read as a record of results"),
+        (["results/bar", "--quantity", "force"], "--quantity: is force"),
+        (["results/periodic", "--boundary", "top"], "has no particles of side top"),
+    ):
+        answer = dembound("plot", *arguments)
+        assert answer.code == 2
+        assert said in answer.err
+    assert not (tmp_path / "plot.png").exists()
+
+
+def test_bricks_are_kept_where_the_command_says_until_they_are_cleared(
+    dembound, written, tmp_path, monkeypatch
+) -> None:
+    monkeypatch.setenv("DEMBOUND_CACHE", str(tmp_path / "bricks"))
+    dense = {"pattern": "B", "size": [5.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0]}
+    dembound("check", written(changes={"packing": dense, "monitor": []}))
+    assert len(list((tmp_path / "bricks").iterdir())) == 1
+
+    assert dembound("cache").out == f"{tmp_path / 'bricks'}\n"
+    assert "deleted 1 brick" in dembound("cache", "--clear").out
+    assert not list((tmp_path / "bricks").iterdir())
+
+
+def test_running_a_case_keeps_what_its_calibration_left(dembound, written, tmp_path) -> None:
+    path = written(changes={"wave.pulse.period": 0.05})
+    dembound("calibrate", path, "--boundary", "right")
+    dembound("run", path)
+
+    assert list((tmp_path / "results").rglob("bar_calibrated.toml"))
+
+
+def test_nothing_is_deleted_that_no_run_has_written(dembound, written, tmp_path) -> None:
+    path = written()
+    (tmp_path / "bar").mkdir()
+    (tmp_path / "bar" / "notes.txt").write_text("precious")
+    answer = dembound("run", path, "--output", ".")
+
+    assert answer.code == 2
+    assert answer.err.startswith("bar: exists and holds no run")
+    assert (tmp_path / "bar" / "notes.txt").read_text() == "precious"
+
+
+def test_a_step_that_is_too_long_shows_before_the_first_case_is_run(dembound, written, tmp_path) -> None:
+    assert dembound("run", written("good"), written("bad", {"run.time_step": 5e-3})).code == 2
+    assert not (tmp_path / "results").exists()
+
+
+def test_what_cannot_be_written_is_named(dembound, written, tmp_path) -> None:
+    path = written()
+    (tmp_path / "file").write_text("")
+    dembound("run", path)
+    for arguments in (
+        ["new", "nowhere/case.toml"],
+        ["run", path, "--output", "file"],
+        ["plot", "results/bar", "-o", "nowhere/plot.png"],
+    ):
+        answer = dembound(*arguments)
+        assert answer.code == 5
+        assert len(answer.err.splitlines()) == 1
