@@ -7,7 +7,7 @@ No more is modelled than decides M_out: a strip of the scene's own bricks, just 
 to the side before the peak has left it, and each pass ends then.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -16,30 +16,21 @@ import h5py
 import numpy as np
 
 from dembound import __version__
-from dembound.boundaries import BoundaryTable, Fixed, Free, Periodic, Velocity, Viscous, ViscousInput
+from dembound.boundaries import Viscous, ViscousInput
 from dembound.case import Case
 from dembound.errors import CaseError, RunError
-from dembound.scene import Scene, boundary_medium, build, ground_of, with_boundaries
+from dembound.scene import Scene, boundary_medium, build, with_boundaries
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
+from dembound.strip import AFTER, OPPOSITE, Motion, axis_of_motion, calibration_pulse, normal_axis, strip_of, whole_of
 from dembound.waves import Cosine
 
-Motion = Literal["p", "s"]
 Method = Literal["impedance", "ratio", "homogenised"]
 
-OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
-PULSE = "calibration"
 MOST_PASSES = 40
-
-STRIP = 0.35
-"""Strip length in pulse lengths cT. The front is T/2 before the peak and needs 2L/c for an echo; a pass ends AFTER
-the peak, 0.6 T after the front, so L > 0.3 cT keeps M_out clean, and a sixth more makes it sure."""
 
 LARGEST_RATIO = 1.99
 """M_out/M_in is 2 at most; dispersion may lift a free end's a little above, where the relation has no factor."""
-
-AFTER = 0.1
-"""How long a pass goes on after the peak is due at the side, in pulse lengths T: the peak may be a little late."""
 
 
 @dataclass
@@ -146,8 +137,8 @@ def calibrate(
     table = _dashpots(case, side)
     motion = motion or _default_motion(case, side)
     _must_move(case, side, motion)
-    pulse = _pulse(case, side, motion)
-    strip, shortened = _whole(case, side, motion, pulse) if full else _strip(case, side, motion, pulse)
+    pulse = calibration_pulse(case, side, motion)
+    strip, shortened = whole_of(case, side, motion, pulse) if full else strip_of(case, side, motion, pulse)
     found = Calibration(
         case=case,
         side=side,
@@ -208,7 +199,7 @@ def _pass(scene: Scene, time_step: float, found: Calibration, pulse: Cosine) -> 
     simulation = Simulation(scene, time_step, np.zeros(0, dtype=np.int64))
     due = pulse.peak_time() + (0.0 if found.kind == "input" else _travel(scene, found.side, found.motion))
     simulation.run(int(np.ceil((due + AFTER * pulse.period) / time_step)))
-    peaks = simulation.edge_peaks(found.side)[:, _axis_of_motion(found.side, found.motion), 1]
+    peaks = simulation.edge_peaks(found.side)[:, axis_of_motion(found.side, found.motion), 1]
     return float(peaks.mean()), simulation.steps
 
 
@@ -229,114 +220,20 @@ def _dashpots(case: Case, side: str) -> Viscous | ViscousInput:
     return table
 
 
-def _normal_axis(side: str) -> int:
-    return 0 if side in ("left", "right") else 1
-
-
-def _axis_of_motion(side: str, motion: Motion) -> int:
-    return _normal_axis(side) if motion == "p" else 1 - _normal_axis(side)
-
-
 def _default_motion(case: Case, side: str) -> Motion:
     """S where the normal motion is held, or where only S waves run between this side and the opposite one."""
     ends = [case.boundary.get(end) for end in (side, OPPOSITE[side])]
     driven = {motion for motion in ("p", "s") for end in ends if getattr(end, f"wave_{motion}", None)}
-    held = "xy"[_normal_axis(side)] in case.motion.held
+    held = "xy"[normal_axis(side)] in case.motion.held
     return "s" if held or driven == {"s"} else "p"
 
 
 def _must_move(case: Case, side: str, motion: Motion) -> None:
-    name = "xy"[_axis_of_motion(side, motion)]
+    name = "xy"[axis_of_motion(side, motion)]
     if name in case.motion.held:
         raise CaseError([f"motion.held: holds {name}, the motion of {motion.upper()} waves at the side {side}"])
-
-
-def _waves_of(case: Case, motion: Motion) -> Iterator[str]:
-    """Names of the waves that drive this kind of motion, then of all others."""
-    for table in case.boundary.values():
-        name = getattr(table, f"wave_{motion}", None)
-        if name is not None:
-            yield name
-    yield from case.wave
-
-
-def _pulse(case: Case, side: str, motion: Motion) -> Cosine:
-    """The calibrating pulse: a cosine with the peak and dominant period of the case's own wave.
-
-    Without a usable wave: 1 m/s and a length of 200 mean diameters.
-    """
-    for name in _waves_of(case, motion):
-        wave = case.wave[name]
-        frequency = wave.dominant_frequency()
-        if np.isfinite(frequency) and frequency > 0.0:
-            return Cosine(type="cosine", amplitude=wave.peak(), period=1.0 / frequency)
-    speed = _speed_of(case, _normal_axis(side), motion)
-    return Cosine(type="cosine", amplitude=1.0, period=400.0 * case.packing.radius / speed)
 
 
 def _with_beta(case: Case, side: str, factor: str, beta: float) -> Case:
     table = case.boundary[side].model_copy(update={factor: beta})
     return replace(case, boundary={**case.boundary, side: table})
-
-
-def _driven(case: Case, side: str, motion: Motion, pulse: Cosine) -> Case:
-    """The case with the pulse as its only wave: sent from the opposite side, or let in by the side itself."""
-    wave = {"wave_p": None, "wave_s": None, f"wave_{motion}": PULSE}
-    boundary = {name: _at_rest(table) for name, table in case.boundary.items()}
-    table = case.boundary[side]
-    if isinstance(table, ViscousInput):
-        boundary[side] = table.model_copy(update=wave)
-    else:
-        boundary[OPPOSITE[side]] = Velocity(type="velocity", **wave)
-    return replace(case, boundary=boundary, wave={PULSE: pulse}, monitor=())
-
-
-def _at_rest(table: BoundaryTable) -> BoundaryTable:
-    """The boundary without its waves."""
-    if isinstance(table, ViscousInput):
-        return Viscous(type="viscous", beta_p=table.beta_p, beta_s=table.beta_s)
-    return Fixed(type="fixed") if isinstance(table, Velocity) else table
-
-
-def _least_length(case: Case, axis: int, motion: Motion, pulse: Cosine) -> float:
-    """Length (m) along the normal that keeps echoes away from M_out."""
-    return STRIP * _speed_of(case, axis, motion) * pulse.period
-
-
-def _whole(case: Case, side: str, motion: Motion, pulse: Cosine) -> tuple[Case, list[str]]:
-    """The whole scene, if it is long enough to calibrate on."""
-    axis = _normal_axis(side)
-    least, length = _least_length(case, axis, motion, pulse), case.packing.size[axis]
-    if length < least:
-        raise CaseError(
-            [f"--full: the scene is {length:g} m long, echoes need {least:.4g} m to come late enough; leave it out"]
-        )
-    return _driven(case, side, motion, pulse), ["each pass ends once the peak has left the side"]
-
-
-def _strip(case: Case, side: str, motion: Motion, pulse: Cosine) -> tuple[Case, list[str]]:
-    """The least scene that decides M_out, and sentences that say how it differs from the case's."""
-    case = _driven(case, side, motion, pulse)
-    axis = _normal_axis(side)
-    bricks, brick = list(case.packing.copies), case.packing.brick_size
-    bricks[axis] = max(1, int(np.ceil(_least_length(case, axis, motion, pulse) / brick[axis])))
-    shortened = [
-        f"a strip of {bricks[axis] * brick[axis]:g} m, the scene has {case.packing.size[axis]:g} m",
-        "each pass ends once the peak has left the side",
-    ]
-    lateral = ("bottom", "top") if axis == 0 else ("left", "right")
-    tables = [case.boundary.get(name) for name in lateral]
-    plane = "xy"[1 - axis] in case.motion.held and all(t is None or isinstance(t, Free) for t in tables)
-    if not plane:
-        case = replace(case, boundary={**case.boundary, **{name: Periodic(type="periodic") for name in lateral}})
-        if bricks[1 - axis] > 1 or not all(isinstance(t, Periodic) for t in tables):
-            shortened.append("one brick wide and periodic sideways")
-        bricks[1 - axis] = 1
-    size = (bricks[0] * brick[0], bricks[1] * brick[1])
-    return replace(case, packing=case.packing.model_copy(update={"size": size})), shortened
-
-
-def _speed_of(case: Case, axis: int, motion: Motion) -> float:
-    """The packing's own wave speed (m/s) along an axis."""
-    ground = ground_of(case)
-    return ground.wave_speeds(axis)[0 if motion == "p" else 1]

@@ -244,12 +244,15 @@ def test_histories_sides_and_calibrations_are_drawn(dembound, written, tmp_path)
 
 def test_what_cannot_be_drawn_is_bad_input(dembound, written, tmp_path) -> None:
     dembound("run", written())
+    (tmp_path / "passes").mkdir()
+    (tmp_path / "passes" / "calibration.h5").touch()
     periodic = {"boundary.bottom": {"type": "periodic"}, "boundary.top": {"type": "periodic"}}
     dembound("run", written("periodic", periodic))
     for arguments, said in (
         (["nowhere"], "nowhere: holds no results"),
         (["bar.toml"], "bar.toml: cannot be read as a record of results"),
-        (["results/bar", "--quantity", "force"], "--quantity: is force"),
+        (["results/bar", "--quantity", "force"], "--quantity"),
+        (["results/bar", "passes"], "make no common picture"),
         (["results/periodic", "--boundary", "top"], "has no particles of side top"),
     ):
         answer = dembound("plot", *arguments)

@@ -1,0 +1,96 @@
+"""The application all commands belong to, and the options they share."""
+
+import sys
+import tomllib
+from dataclasses import replace
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import numba
+import typer
+from rich.console import Console
+
+from dembound import __version__
+from dembound.boundaries import SIDES
+from dembound.case import Case, load, with_changes
+from dembound.errors import CaseError, DemboundError
+
+EXIT_CODES = """
+Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run or calibration failed; 4 a packing could
+not be made; 5 a file could not be read or written; 130 stopped with Ctrl-C.
+"""
+CANNOT_WRITE = 5
+
+app = typer.Typer(
+    name="dembound",
+    help="Waves in bonded particles, with artificial boundaries that really absorb.",
+    epilog=EXIT_CODES,
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+out = Console(highlight=False, soft_wrap=True)
+err = Console(stderr=True, highlight=False, soft_wrap=True)
+
+Cases = Annotated[list[Path], typer.Argument(metavar="CASE...", help="Case files (TOML).")]
+Output = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")]
+Threads = Annotated[int | None, typer.Option(min=1, help="Cores to use; all by default. Results do not depend on it.")]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change a key, e.g. boundary.right.beta_p=0.8. May be repeated."),
+]
+Name = Annotated[str | None, typer.Option(help="Name of the results folder; by default the case file's.")]
+Side = StrEnum("Side", {side: side for side in SIDES})  # type: ignore[misc]
+
+
+@app.callback(invoke_without_command=True)
+def _version(
+    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+) -> None:
+    if version:
+        out.print(f"dembound {__version__}")
+        raise typer.Exit
+
+
+def load_case(path: Path, changes: list[str] | None, name: str | None = None) -> Case:
+    """Read a case file, change keys and rename it as the options say."""
+    case = load(path)
+    if changes:
+        case = with_changes(case, dict(_setting(text) for text in changes))
+    return replace(case, name=name) if name else case
+
+
+def _setting(text: str) -> tuple[str, Any]:
+    """Key and value of ``--set key=value``; the value is TOML, or else a plain string."""
+    key, equals, value = text.partition("=")
+    if not equals or not key:
+        raise CaseError([f"--set: is {text}, must be KEY=VALUE, e.g. boundary.right.beta_p=0.8"])
+    try:
+        return key.strip(), tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return key.strip(), value.strip()
+
+
+def use_threads(threads: int | None) -> None:
+    """Set the number of threads, as far as there are that many."""
+    if threads is not None:
+        most = numba.get_num_threads()
+        if threads > most:
+            raise CaseError([f"--threads: is {threads}, must not be above {most}, the cores here"])
+        numba.set_num_threads(threads)
+
+
+def main() -> None:
+    """Run the command line; every failure a user can cause is one message and its exit code."""
+    try:
+        app()
+    except DemboundError as error:
+        source = f"{error.source}: " if isinstance(error, CaseError) and error.source else ""
+        for line in str(error).splitlines():
+            err.print(f"{source}{line}", style="red", markup=False)
+        sys.exit(error.exit_code)
+    except OSError as error:  # a folder that is not there, no permission, a full disk
+        err.print(f"{error.filename or 'output'}: {error.strerror or error}", style="red", markup=False)
+        sys.exit(CANNOT_WRITE)

@@ -1,0 +1,129 @@
+"""Commands that begin with a case: new, check, run, packing."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from dembound.boundaries.support import Edge
+from dembound.case import STARTER
+from dembound.check import check
+from dembound.cli.app import Cases, Name, Output, Settings, Side, Threads, app, err, load_case, out, use_threads
+from dembound.errors import CaseError
+from dembound.plot.packing import plot_brick, plot_patterns
+from dembound.plot.style import save
+from dembound.run import Progress as OnBlock
+from dembound.run import foresee, run_case
+from dembound.scene import Scene, build
+from dembound.simulate import Simulation
+
+RIGHT = Side("right")
+
+
+@app.command("new", rich_help_panel="Cases")
+def new(
+    path: Annotated[Path, typer.Argument(help="File to write.")] = Path("case.toml"),
+) -> None:
+    """Write a commented starter case."""
+    if path.exists():
+        raise CaseError([f"{path}: exists already, give another name"])
+    path.write_text(STARTER, encoding="utf-8")
+    out.print(f"wrote {path}; try: dembound check {path}")
+
+
+@app.command("check", rich_help_panel="Cases")
+def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None) -> None:
+    """Say what would be run: particles, bonds, time step, memory, time, resolution. Writes nothing."""
+    use_threads(threads)
+    for case in [load_case(path, changes) for path in cases]:
+        facts, warnings = check(case)
+        table = Table(title=f"{case.name}: {case.title}" if case.title else case.name, show_header=False)
+        for name, value in facts.items():
+            table.add_row(name, value)
+        out.print(table)
+        for warning in warnings:
+            err.print(f"warning: {warning}")
+
+
+@app.command("run", rich_help_panel="Cases")
+def run(
+    cases: Cases,
+    output: Output = Path("results"),
+    changes: Settings = None,
+    name: Name = None,
+    threads: Threads = None,
+) -> None:
+    """Run cases one after another; each leaves its folder of results.
+
+    All case files are read before the first is run, so a mistake in the last one costs nothing.
+    """
+    use_threads(threads)
+    loaded = [load_case(path, changes, name) for path in cases]
+    names = [case.name for case in loaded]
+    if len(set(names)) < len(names):
+        raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
+    for case in loaded:
+        foresee(case)
+    for case in loaded:
+        with _progress(case.name) as step:
+            folder = run_case(case, output, step)
+        out.print(f"{case.name}: results in {folder}")
+
+
+@app.command("packing", rich_help_panel="Cases")
+def packing(
+    cases: Cases,
+    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write (PNG).")] = Path("packing.png"),
+    side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = RIGHT,
+    brick: Annotated[bool, typer.Option("--brick", help="Show the first case's whole brick with its seams.")] = False,
+    changes: Settings = None,
+) -> None:
+    """Draw packings: one side of each case next to each other, or one brick."""
+    loaded = [load_case(path, changes) for path in cases]
+    if brick:
+        shown = build(loaded[0]).ground.brick
+        figure = plot_brick(shown.positions, shown.radii, shown.rows, shown.size, shown.pairs, shown.images)
+    else:
+        scenes = {case.name: build(case) for case in loaded}
+        figure = plot_patterns(
+            {
+                name: (scene.assembly.positions, scene.assembly.radii, _edge_of(scene, side.value).nodes)
+                for name, scene in scenes.items()
+            }
+        )
+    save(figure, output)
+    out.print(f"wrote {output}")
+
+
+def _edge_of(scene: Scene, side: str) -> Edge:
+    """A side that exists; a periodic one has no particles of its own."""
+    if side not in scene.edges:
+        raise CaseError([f"--side: is {side}, which is periodic in {scene.case.name}; here: {', '.join(scene.edges)}"])
+    return scene.edges[side]
+
+
+@contextmanager
+def _progress(name: str) -> Iterator[OnBlock]:
+    """A progress bar with rate and time left on a terminal, nothing elsewhere."""
+    if not err.is_terminal:
+        yield lambda simulation, steps: None
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:3.0f} %  {task.fields[rate]}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=err, transient=True) as progress:
+        task = progress.add_task(name, total=None, rate="")
+
+        def step(simulation: Simulation, steps: int) -> None:
+            speed = progress.tasks[0].speed
+            rate = f"{speed * simulation.scene.count / 1e6:.0f} M particle-steps/s" if speed else ""
+            progress.update(task, completed=simulation.steps, total=steps, rate=rate)
+
+        yield step

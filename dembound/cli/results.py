@@ -1,0 +1,81 @@
+"""Commands that look at results: plot, view, cache."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from dembound.cli.app import Side, app, out
+from dembound.errors import CaseError
+from dembound.packings.cache import cache_folder, clear
+from dembound.plot.boundary import plot_boundary
+from dembound.plot.convergence import plot_convergence
+from dembound.plot.histories import plot_histories
+from dembound.plot.style import save
+from dembound.view import view
+
+
+class Field(StrEnum):
+    """What of the motion is shown."""
+
+    velocity = "velocity"
+    displacement = "displacement"
+
+
+@app.command("plot", rich_help_panel="Results")
+def plot(
+    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write (PNG).")] = Path("plot.png"),
+    quantity: Annotated[Field, typer.Option(help="What of the motion to show.")] = Field.velocity,
+    monitor: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Show this monitor only. May be repeated.")
+    ] = None,
+    boundary: Annotated[
+        Side | None, typer.Option(help="Show this side's diameters and peak velocities instead.")
+    ] = None,
+) -> None:
+    """Overlay the histories of several runs, or the passes of several calibrations, in one picture."""
+    files = [results_file(path) for path in results]
+    calibrations = [file for file in files if file.name == "calibration.h5"]
+    if calibrations and len(calibrations) < len(files):
+        raise CaseError(["RESULTS: holds runs and calibrations, which make no common picture; name one kind"])
+    if calibrations:
+        figure = plot_convergence(files)
+    elif boundary is not None:
+        figure = plot_boundary(files, boundary.value)
+    else:
+        figure = plot_histories(files, quantity=quantity.value, monitors=monitor or None)
+    save(figure, output)
+    out.print(f"wrote {output}")
+
+
+@app.command("view", rich_help_panel="Results")
+def view_disks(
+    results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
+    snapshot: Annotated[int, typer.Option(help="Number of the snapshot to begin with; −1 is the last.")] = -1,
+    field: Annotated[Field, typer.Option(help="What colours the disks.")] = Field.velocity,
+    picture: Annotated[Path | None, typer.Option(help="Picture to write (PNG) instead of opening a window.")] = None,
+) -> None:
+    """Show the disks of a run in a window to zoom into, with a slider over its snapshots."""
+    view(results_file(results), snapshot, field.value, picture)
+    if picture is not None:
+        out.print(f"wrote {picture}")
+
+
+@app.command("cache", rich_help_panel="Results")
+def cache(
+    delete: Annotated[bool, typer.Option("--clear", help="Delete all cached bricks.")] = False,
+) -> None:
+    """Show where packed bricks are kept (DEMBOUND_CACHE moves it), or delete them."""
+    out.print(str(cache_folder()))
+    if delete:
+        out.print(f"deleted {clear()} bricks")
+
+
+def results_file(path: Path) -> Path:
+    """The HDF5 file a results argument stands for."""
+    for candidate in (path, path / "run.h5", path / "calibration.h5"):
+        if candidate.is_file():
+            return candidate
+    raise CaseError([f"{path}: holds no results, must be a folder with run.h5 or calibration.h5"])
