@@ -58,7 +58,7 @@ def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
     for panel in (upper, lower):
         _widen(panel)
     figure.suptitle(f"Particles of the {side} side: diameters, and peaks of their velocity", fontsize=11)
-    outside_legend(figure, [lower], columns=2)
+    outside_legend(figure, [lower], columns=1)  # the labels are long
     return figure
 
 

@@ -56,6 +56,8 @@ def plot_brick(
     title = f"Brick of {size[0]:g} m × {size[1]:g} m; disks: {len(radii)}"
     if pairs is not None and images is not None:
         ends = np.stack([positions[pairs[:, 0]], positions[pairs[:, 1]] + images * size], axis=1)
+        across = images.any(axis=1)  # shown on both faces: where it leaves the brick and where it comes in again
+        ends = np.concatenate([ends, ends[across] - (images[across] * size)[:, None, :]])
         panel.add_collection(LineCollection(list(ends), colors="black", linewidths=0.6, label="contact"), autolim=False)
         title += f", contacts: {len(pairs)}"
     _frame(panel, window)
