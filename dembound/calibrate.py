@@ -16,13 +16,13 @@ import h5py
 import numpy as np
 
 from dembound import __version__
-from dembound.boundaries import Viscous, ViscousInput
+from dembound.boundaries import OPPOSITE, Viscous, ViscousInput, normal_axis
 from dembound.case import Case
 from dembound.errors import CaseError, RunError
 from dembound.scene import Scene, boundary_medium, build, with_boundaries
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
-from dembound.strip import AFTER, OPPOSITE, Motion, axis_of_motion, calibration_pulse, normal_axis, strip_of, whole_of
+from dembound.strip import AFTER, Motion, axis_of_motion, calibration_pulse, strip_of, whole_of
 from dembound.waves import Cosine
 
 Method = Literal["impedance", "ratio", "homogenised"]
@@ -180,7 +180,7 @@ def homogenised_beta(scene: Scene, side: str, motion: Motion) -> float:
     edge = scene.edges[side]
     index = 0 if motion == "p" else 1
     own = scene.ground.wave_speeds(edge.axis)[index]
-    medium = boundary_medium(scene.case, scene.ground)
+    medium = boundary_medium(scene.case, scene.ground, edge.axis)
     nominal = (medium.p_wave_speed, medium.s_wave_speed)[index]
     return own / nominal / edge.cover
 

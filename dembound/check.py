@@ -19,9 +19,9 @@ TRIAL_STEPS = 20
 def check(case: Case) -> tuple[dict[str, str], list[str]]:
     """Facts about the run a case describes, ready to print, and warnings. Runs a few steps to estimate the time."""
     planned = plan(case)
-    scene = planned.scene
+    scene, loose = planned.scene, planned.scene.assembly.loose
     facts = {
-        "particles": f"{scene.count:,}",
+        "particles": f"{scene.count:,}" + (f"; {loose} severed ones left out" if loose else ""),
         "contacts": f"{len(scene.assembly.pairs):,}",
         "time step": f"{planned.time_step:.4g} s, {planned.time_step / planned.step_limit:.3f} of the limit "
         f"{planned.step_limit:.6g} s",
@@ -59,7 +59,7 @@ def particles_per_wavelength(scene: Scene) -> dict[str, float]:
 def _tension_warnings(scene: Scene) -> list[str]:
     """Waves whose stress ρcv exceeds the locked-in pressure: real contacts would open, the elastic law's do not."""
     pressure = _pressure(describe_packing(scene))
-    medium = boundary_medium(scene.case, scene.ground)
+    medium = boundary_medium(scene.case, scene.ground, axis=0)
     stresses = {name: medium.density * medium.p_wave_speed * wave.peak() for name, wave in scene.case.wave.items()}
     return [
         f"wave.{name}: has a stress ρcv of {stress / 1e6:.3g} MPa, above the confining stress of "

@@ -46,6 +46,7 @@ def plan(case: Case) -> Plan:
     """
     try:
         scene = build(case)
+        _ = scene.ground.material_tensor  # the summary needs it: a singular material must not end a finished run
         time_step, limit = choose_step(scene)
     except CaseError as error:
         raise CaseError(error.problems, case.name) from None
@@ -59,7 +60,7 @@ def foresee(case: Case) -> None:
     and PackingError.
     """
     if case.run.time_step == "auto":
-        ground_of(case)
+        _ = ground_of(case).material_tensor
     else:
         plan(case)
 
@@ -129,6 +130,7 @@ def summarise(planned: Plan, simulation: Simulation, record: Path, wall_time: fl
         "version": __version__,
         "particles": scene.count,
         "contacts": len(scene.assembly.pairs),
+        "loose_disks_left_out": scene.assembly.loose,
         "time_step": planned.time_step,
         "step_limit": planned.step_limit if np.isfinite(planned.step_limit) else None,
         "steps": simulation.steps,

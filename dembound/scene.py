@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from dembound.boundaries import SIDES
+from dembound.boundaries import SIDES, normal_axis
 from dembound.boundaries.exposed import exposed
 from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
 from dembound.case import Case
@@ -162,7 +162,7 @@ def find_edges(assembly: Assembly, periodic: tuple[bool, bool]) -> dict[str, Edg
     """The exposed particles of every side that is not periodic."""
     edges = {}
     for side in SIDES:
-        axis = 0 if side in ("left", "right") else 1
+        axis = normal_axis(side)
         if periodic[axis]:
             continue
         length = float(assembly.extent[1 - axis])
@@ -171,13 +171,17 @@ def find_edges(assembly: Assembly, periodic: tuple[bool, bool]) -> dict[str, Edg
     return edges
 
 
-def boundary_medium(case: Case, ground: Ground) -> Medium:
-    """What the dashpots absorb into: the wave speeds the case names, else those of the packing."""
+def boundary_medium(case: Case, ground: Ground, axis: int) -> Medium:
+    """What dashpots absorb into: the wave speeds the case names, else the packing's own along the side's normal.
+
+    axis is that of the normal, 0 (x) or 1 (y): a packing may be stiffer along one than along the other.
+    """
+    p_gradient, s_gradient = ((0, 3), (1, 2))[axis]  # of u_n and of u_s along the normal, see ground.GRADIENTS
     p_speed, s_speed = case.material.p_wave_speed, case.material.s_wave_speed
     if p_speed is None:
-        p_speed = float(np.sqrt(ground.material_tensor[0, 0] / ground.density))
+        p_speed = float(np.sqrt(ground.material_tensor[p_gradient, p_gradient] / ground.density))
     if s_speed is None:
-        s_speed = float(np.sqrt(ground.material_tensor[3, 3] / ground.density))
+        s_speed = float(np.sqrt(ground.material_tensor[s_gradient, s_gradient] / ground.density))
     return Medium(ground.density, p_speed, s_speed)
 
 
@@ -185,10 +189,10 @@ def _supports(case: Case, ground: Ground, edges: Mapping[str, Edge]) -> Supports
     """All sides' recipes in one table."""
     builder = SupportBuilder(held=ground.held)
     waves = {name: wave.velocity for name, wave in case.wave.items()}
-    medium = boundary_medium(case, ground)
     for side, table in case.boundary.items():
         if side in edges:
-            table.support(edges[side], medium, waves, builder)
+            edge = edges[side]
+            table.support(edge, boundary_medium(case, ground, edge.axis), waves, builder)
     return builder.table()
 
 

@@ -90,10 +90,6 @@ class Simulation:
         """Smallest and largest velocity so far of the particles of one edge, (k, 3, 2)."""
         return self.peaks[self._of_edge(side)]
 
-    def edge_velocity(self, side: str) -> np.ndarray:
-        """Velocity of the particles of one edge, (k, 3), half a step ago."""
-        return self.velocity[:, self.scene.edges[side].nodes].T
-
     def _of_edge(self, side: str) -> slice:
         """Where a side's particles stand among the tracked ones."""
         sides = list(self.scene.edges)

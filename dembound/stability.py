@@ -1,9 +1,9 @@
 """The largest stable time step, from the scene's own largest eigenfrequency."""
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, eigsh
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RunError
 from dembound.kernels.elastic import contact_forces
 from dembound.scene import Scene
 
@@ -21,6 +21,8 @@ def step_limit(scene: Scene, tolerance: float = TOLERANCE) -> float:
     ω_max² is the largest eigenvalue of M⁻¹K of the assembled scene, found by Lanczos iteration on M^(-1/2) K
     M^(-1/2) with held and prescribed components taken out; centred dashpots do not change it. The start vector is
     fixed, so the step is the same in every run.
+
+    Raises RunError when the iteration does not converge.
     """
     root = np.sqrt(_inverse_mass(scene))
     stiffness = _support_stiffness(scene)
@@ -40,9 +42,12 @@ def step_limit(scene: Scene, tolerance: float = TOLERANCE) -> float:
         matrix = np.stack([apply(column) for column in np.eye(size)], axis=1)
         largest = np.linalg.eigvalsh(0.5 * (matrix + matrix.T))[-1]
     else:
-        largest = eigsh(
-            operator, k=1, which="LA", v0=start, ncv=LANCZOS_VECTORS, tol=tolerance, return_eigenvectors=False
-        )[0]
+        try:
+            largest = eigsh(
+                operator, k=1, which="LA", v0=start, ncv=LANCZOS_VECTORS, tol=tolerance, return_eigenvectors=False
+            )[0]
+        except ArpackNoConvergence as error:
+            raise RunError(f"the stability limit was not found ({error})") from None
         largest *= 1.0 + tolerance  # it was found too small, by less than its residual
     return float(2.0 / np.sqrt(largest)) if largest > 0.0 else np.inf
 

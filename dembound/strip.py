@@ -9,7 +9,17 @@ from typing import Literal
 
 import numpy as np
 
-from dembound.boundaries import BoundaryTable, Fixed, Free, Periodic, Velocity, Viscous, ViscousInput
+from dembound.boundaries import (
+    OPPOSITE,
+    BoundaryTable,
+    Fixed,
+    Free,
+    Periodic,
+    Velocity,
+    Viscous,
+    ViscousInput,
+    normal_axis,
+)
 from dembound.case import Case
 from dembound.errors import CaseError
 from dembound.scene import ground_of
@@ -17,7 +27,6 @@ from dembound.waves import Cosine
 
 Motion = Literal["p", "s"]
 
-OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 PULSE = "calibration"
 STRIP = 0.35
 """Strip length in pulse lengths cT. The front is T/2 before the peak and needs 2L/c for an echo; a pass ends AFTER
@@ -25,11 +34,6 @@ the peak, 0.6 T after the front, so L > 0.3 cT keeps M_out clean, and a sixth mo
 
 AFTER = 0.1
 """How long a pass goes on after the peak is due at the side, in pulse lengths T: the peak may be a little late."""
-
-
-def normal_axis(side: str) -> int:
-    """Axis of a side's normal: 0 for left and right, 1 for bottom and top."""
-    return 0 if side in ("left", "right") else 1
 
 
 def axis_of_motion(side: str, motion: Motion) -> int:

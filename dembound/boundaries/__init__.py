@@ -10,12 +10,22 @@ from pydantic import Field
 from dembound.boundaries.fixed import Fixed
 from dembound.boundaries.free import Free
 from dembound.boundaries.periodic import Periodic
+from dembound.boundaries.sides import OPPOSITE, SIDES, normal_axis
 from dembound.boundaries.velocity import Velocity
 from dembound.boundaries.viscous import Viscous, ViscousInput
 
 BoundaryTable = Annotated[Free | Fixed | Velocity | Periodic | Viscous | ViscousInput, Field(discriminator="type")]
 """Any boundary table of a case file, told apart by its ``type``."""
 
-SIDES = ("left", "right", "bottom", "top")
-
-__all__ = ["SIDES", "BoundaryTable", "Fixed", "Free", "Periodic", "Velocity", "Viscous", "ViscousInput"]
+__all__ = [
+    "OPPOSITE",
+    "SIDES",
+    "BoundaryTable",
+    "Fixed",
+    "Free",
+    "Periodic",
+    "Velocity",
+    "Viscous",
+    "ViscousInput",
+    "normal_axis",
+]

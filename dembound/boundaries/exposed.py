@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from dembound.boundaries.sides import normal_axis
+
 SAMPLES_PER_RADIUS = 100
 """Lines of sight per smallest radius: a disk that shows less than 1 % of it counts as hidden."""
 
@@ -16,7 +18,7 @@ def exposed(positions: np.ndarray, radii: np.ndarray, side: str, period: float |
     A depth buffer over parallel lines of sight. positions (n, 2) and radii (n,) in m; side is left, right, bottom
     or top; period (m) is the scene's length along the side when it is periodic there, else None.
     """
-    axis = 0 if side in ("left", "right") else 1
+    axis = normal_axis(side)
     sign = 1.0 if side in ("right", "top") else -1.0
     outward, along = sign * positions[:, axis], positions[:, 1 - axis]
     front = outward + radii

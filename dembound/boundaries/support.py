@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from dembound.boundaries.sides import normal_axis
+
 Signal = Callable[[np.ndarray], np.ndarray]
 """A time function: times (k,) in s -> values (k,)."""
 
@@ -36,7 +38,7 @@ class Medium:
 class Edge:
     """One side of the scene: the exposed particles and the length they stand for.
 
-    nodes (k,) particle indices; diameters (k,) m; length m; axis 0 or 1 of the outward normal, sign ±1.
+    side left, right, bottom or top; nodes (k,) particle indices; diameters (k,) m; length m.
     """
 
     side: str
@@ -47,7 +49,7 @@ class Edge:
     @property
     def axis(self) -> int:
         """Axis of the normal: 0 for left and right, 1 for bottom and top."""
-        return 0 if self.side in ("left", "right") else 1
+        return normal_axis(self.side)
 
     @property
     def sign(self) -> int:

@@ -3,17 +3,15 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from dembound.boundaries import BoundaryTable, Free, Periodic
+from dembound.boundaries import OPPOSITE, BoundaryTable, Free, Periodic
 from dembound.boundaries.driven import Driven
+from dembound.case.material import Material
 from dembound.case.monitor import Monitor
 from dembound.case.motion import Motion
 from dembound.case.output import Output
 from dembound.case.run import Run
 from dembound.case.sentences import choices, show
 from dembound.packings import PackingTable
-
-OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
-"""Side -> the side across the scene."""
 
 DIRECTIONS = {"left": "xy", "right": "xy", "bottom": "yx", "top": "yx"}
 """Side -> the directions along its normal and across it."""
@@ -29,6 +27,8 @@ def problems_between(tables: Mapping[str, Any]) -> Iterator[str]:
     yield from _lonely_periodic_sides(tables["boundary"])
     if tables["motion"]:
         yield from _driven_but_held(tables["boundary"], tables["motion"])
+        if tables["material"]:
+            yield from _nothing_to_match(tables["material"], tables["motion"])
     yield from _repeated_names(tables["monitor"])
     if tables["packing"]:
         yield from _monitors_outside(tables["monitor"], tables["packing"])
@@ -66,6 +66,12 @@ def _driven_but_held(boundaries: Mapping[str, BoundaryTable | None], motion: Mot
     for side, key, _, direction in _drives(boundaries):
         if direction in motion.held:
             yield f"boundary.{side}.{key}: drives {direction}, which motion.held holds for every particle"
+
+
+def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
+    """A wave speed asked of a packing in which no P wave can run."""
+    if material.match == "assembly" and {"x", "y"} <= set(motion.held):
+        yield 'material.match: is "assembly", but motion.held holds x and y, so the packing has no P-wave speed'
 
 
 def _repeated_names(monitors: Sequence[Monitor | None]) -> Iterator[str]:

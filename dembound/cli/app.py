@@ -59,7 +59,11 @@ def load_case(path: Path, changes: list[str] | None, name: str | None = None) ->
     case = load(path)
     if changes:
         case = with_changes(case, dict(_setting(text) for text in changes))
-    return replace(case, name=name) if name else case
+    if name is None:
+        return case
+    if name != Path(name).name or name in ("", ".", ".."):
+        raise CaseError([f"--name: is {name}, must be the name of one folder"])
+    return replace(case, name=name)
 
 
 def _setting(text: str) -> tuple[str, Any]:

@@ -72,7 +72,7 @@ def _kick(v, f, b, damp):
     if damp > 0.0:
         f -= damp * abs(f) * np.sign(v)
     w = v + b * f
-    return w if abs(w) > REST else 0.0
+    return 0.0 if abs(w) <= REST else w  # what is not a number stays so, and is seen
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
@@ -94,7 +94,8 @@ def _supported(
             total = f[c] + preload[s, c] - stiffness[s, c] * u[U(c), i] + drive[s, c]
             if damp > 0.0:
                 total -= damp * abs(total) * np.sign(v[U(c), i])
-            out[s, c] = keep[s, c] * v[U(c), i] + mobility[s, c] * total + prescribed[s, c] * drive[s, c]
+            w = keep[s, c] * v[U(c), i] + mobility[s, c] * total + prescribed[s, c] * drive[s, c]
+            out[s, c] = 0.0 if abs(w) <= REST else w
 
 
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")

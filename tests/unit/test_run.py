@@ -77,7 +77,18 @@ def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> Non
     found = summary(run_case(bar({"run.duration": 0.03}), tmp_path))
 
     assert set(found) == {
-        *("name", "title", "version", "particles", "contacts", "time_step", "step_limit", "steps", "duration"),
+        *(
+            "name",
+            "title",
+            "version",
+            "particles",
+            "contacts",
+            "loose_disks_left_out",
+            "time_step",
+            "step_limit",
+            "steps",
+            "duration",
+        ),
         *("wall_time", "threads", "particle_steps_per_second", "memory_bytes", "packing", "boundaries", "monitors"),
         "reduced",
     }

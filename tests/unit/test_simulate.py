@@ -104,10 +104,10 @@ def test_a_run_ends_early_when_told_so(bar) -> None:
 def test_peaks_of_a_side_are_the_extremes_of_its_particles(bar) -> None:
     edges = build(bar()).edges
     simulation = simulated(bar, edges["right"].nodes)
-    velocities = [simulation.edge_velocity("right")]
+    velocities = [simulation.velocity[:, simulation.scene.edges["right"].nodes].T]
     for _ in range(60):
         simulation.advance(1)
-        velocities.append(simulation.edge_velocity("right"))
+        velocities.append(simulation.velocity[:, simulation.scene.edges["right"].nodes].T)
     history = np.array(velocities)
 
     assert np.array_equal(simulation.edge_peaks("right")[..., 0], history.min(axis=0))
@@ -155,6 +155,13 @@ def test_growth_is_seen_long_before_numbers_overflow(bar) -> None:
 
     # per step e^(2 acosh 1.01) = 1.33, so within a block at most 1.33^256 = 1e31 above the bound
     assert np.abs(simulation.velocity).max() < 1e40
+
+
+def test_what_is_not_a_number_ends_the_run(bar) -> None:
+    simulation = simulated(bar)
+    simulation.displacement[0, 5] = np.nan
+    with pytest.raises(RunError, match="grew without bound"):
+        simulation.advance(1)
 
 
 def test_a_calm_scene_stays_at_rest(bar) -> None:

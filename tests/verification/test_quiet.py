@@ -1,4 +1,4 @@
-"""No wave, no motion: packing, locked-in stress, seams and supports leave the scene exactly at rest."""
+"""No wave, no motion: supports and local damping start nothing, and what is to come does not show early."""
 
 import numpy as np
 import pytest

@@ -74,6 +74,13 @@ def test_a_held_direction_cannot_be_driven(name: str, key: str, direction: str) 
     ]
 
 
+def test_a_packing_that_sends_no_p_wave_can_match_no_speed() -> None:
+    match = BASE.replace("p_wave_speed = 1000.0", 'p_wave_speed = 1000.0\nmatch = "assembly"')
+    assert match != BASE
+    with pytest.raises(CaseError, match=r"material\.match: "):
+        loads(match + '[motion]\nheld = ["x", "y"]\n')
+
+
 def monitor(name: str, position: str) -> str:
     return f'[[monitor]]\nname = "{name}"\nposition = {position}\n'
 

@@ -71,7 +71,9 @@ def test_unknown_monitors_are_refused_with_those_there(small_run):
 
 def test_the_command_hands_on_the_monitors(small_run, tmp_path, monkeypatch):
     asked = []
-    monkeypatch.setattr(cli.results, "plot_histories", lambda runs, **options: asked.append(options) or new_figure(1.0, 1.0))
+    monkeypatch.setattr(
+        cli.results, "plot_histories", lambda runs, **options: asked.append(options) or new_figure(1.0, 1.0)
+    )
     for options in ([], ["--monitor", "back", "--monitor", "front"]):
         command = ["plot", str(small_run), "-o", str(tmp_path / "plot.png"), *options]
         assert CliRunner().invoke(cli.app, command).exit_code == 0
