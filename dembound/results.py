@@ -35,12 +35,16 @@ def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
 
 
 def record_names(paths: Sequence[Path]) -> list[str]:
-    """A name for each record, for legends: its case's name, or its path where two cases share a name."""
+    """A name for each record, for legends: its case's name, where two share it its folder's, else its path."""
     names = []
     for path in paths:
         with open_record(path) as file:
             names.append(str(file.attrs["name"]))
-    return [name if names.count(name) == 1 else str(path) for name, path in zip(names, paths, strict=True)]
+    folders = [path.resolve().parent.name for path in paths]
+    return [
+        name if names.count(name) == 1 else folder if folders.count(folder) == 1 else str(path)
+        for name, folder, path in zip(names, folders, paths, strict=True)
+    ]
 
 
 @contextmanager

@@ -8,6 +8,7 @@ from dembound.boundaries.support import Supports
 from dembound.errors import RunError
 from dembound.kernels.elastic import advance
 from dembound.scene import Scene
+from dembound.threads import threads_for
 
 BLOCK = 256
 """Steps between two looks at a run: compiled code does not return to Python in between."""
@@ -63,15 +64,16 @@ class Simulation:
         times = (self.steps + np.arange(steps)) * self.time_step
         record = np.empty((steps, len(self.probes), 6))
         supports = self._supports
-        advance(
-            self.displacement, self._spare, self.velocity,
-            *self.scene.contacts.arrays,
-            self._mobility, self._inverse_inertia, self.scene.free, self.scene.case.material.damp,
-            self.time_step,
-            supports.nodes, supports.keep, supports.mobility, supports.stiffness, supports.preload,
-            supports.prescribed, supports.drive(times),
-            self.probes, record, self.tracked, self.peaks,
-        )  # fmt: skip
+        with threads_for(self.scene.count):
+            advance(
+                self.displacement, self._spare, self.velocity,
+                *self.scene.contacts.arrays,
+                self._mobility, self._inverse_inertia, self.scene.free, self.scene.case.material.damp,
+                self.time_step,
+                supports.nodes, supports.keep, supports.mobility, supports.stiffness, supports.preload,
+                supports.prescribed, supports.drive(times),
+                self.probes, record, self.tracked, self.peaks,
+            )  # fmt: skip
         self.steps += steps
         self._watch()
         return record

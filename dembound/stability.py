@@ -6,6 +6,7 @@ from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 from dembound.errors import CaseError, RunError
 from dembound.kernels.elastic import contact_forces
 from dembound.scene import Scene
+from dembound.threads import threads_for
 
 TOLERANCE = 1e-3
 """Relative residual at which the eigenvalue counts as found. It is added on top, so the step comes out too small by
@@ -30,7 +31,8 @@ def step_limit(scene: Scene, tolerance: float = TOLERANCE) -> float:
 
     def apply(vector: np.ndarray) -> np.ndarray:
         u = root * vector.reshape(3, -1)
-        contact_forces(u, *scene.contacts.arrays, force)
+        with threads_for(scene.count):
+            contact_forces(u, *scene.contacts.arrays, force)
         return (root * (stiffness * u - force)).ravel()
 
     size = 3 * scene.count

@@ -32,14 +32,14 @@ type = "viscous"            # absorbs; other types: "free", "fixed", "velocity",
 [wave.pulse]
 type = "cosine"             # or "ricker", "sine_burst", "constant", "file"
 amplitude = 0.5             # m/s
-period = 0.05               # s
+period = 0.08               # s
 
 [[monitor]]
 name = "middle"
 position = [50.0, 2.5]      # m, from the lower left corner
 
 [run]
-duration = 0.25             # s
+duration = 0.3              # s
 # time_step = "auto"        # or seconds
 # safety = 0.9              # share of the stability limit that "auto" uses
 

@@ -63,14 +63,20 @@ def run(
     """
     use_threads(threads)
     loaded = [load_case(path, changes, name) for path in cases]
+    if name is not None and len(cases) > 1:
+        raise CaseError(["--name: names the results of one case, there are several here"])
     names = [case.name for case in loaded]
     if len(set(names)) < len(names):
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
     for case in loaded:
         foresee(case)
     for case in loaded:
-        with _progress(case.name) as step:
-            folder = run_case(case, output, step)
+        try:
+            with _progress(case.name) as step:
+                folder = run_case(case, output, step)
+        except KeyboardInterrupt:
+            err.print(f"{case.name}: stopped; histories so far are in {output / case.name}.partial")
+            raise
         out.print(f"{case.name}: results in {folder}")
 
 

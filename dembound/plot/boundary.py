@@ -30,7 +30,7 @@ def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
     """Diameter (upper panel) and peak velocity (lower panel) of the particles along a side, for several runs.
 
     The peak is that of the component, x or y, that moved most on the side in any run. The legend gives the
-    number of particles, the mean peak, and the largest deviation from it in per cent.
+    number of particles, the mean peak, and its standard deviation in per cent.
 
     Parameters
     ----------
@@ -81,8 +81,8 @@ def read_side(path: Path, side: str) -> Side:
 def _summary(peaks: np.ndarray) -> str:
     """Number, mean and spread in words."""
     mean = float(peaks.mean())
-    spread = 100.0 * float(np.abs(peaks - mean).max()) / mean if mean > 0.0 else 0.0
-    return f"{len(peaks)} particles, mean {mean:.4g} m/s ± {spread:.2f} %"
+    spread = 100.0 * float(peaks.std()) / mean if mean > 0.0 else 0.0
+    return f"{len(peaks)} particles, mean {mean:.4g} m/s, standard deviation {spread:.2f} %"
 
 
 def _widen(panel: Axes) -> None:

@@ -103,7 +103,7 @@ def read_motion(run: Path, snapshot: int | None, field: str, component: str | No
     """One field of a run at the moments to show; arguments and errors as in `plot_scene`."""
     with open_record(run) as file:
         positions, radii = file["particles/position"][:], file["particles/radius"][:]
-        chosen = _choose(file, snapshot, strips_on_page(Window.around(positions, radii)))
+        chosen = _choose(file, snapshot, strips_on_page(Window.around(positions, radii)), field)
         largest = np.max([np.abs(group[field][:]).max(axis=0) for group in file["snapshots"].values()], axis=0)
         column = int(np.argmax(largest[:2])) if component is None else COMPONENTS.index(component)
         way = "of rotation" if column == 2 else f"along {COMPONENTS[column]}"
@@ -128,12 +128,14 @@ def strips_on_page(scene: Window) -> int:
     return min(MOST_STRIPS, int(DRAWING[1] / (DRAWING[0] * width / length + STRIP_GAP)))
 
 
-def _choose(file: h5py.File, snapshot: int | None, most: int) -> list[h5py.Group]:
-    """The snapshot asked for, or by default `most` of them, evenly picked, the last among them."""
+def _choose(file: h5py.File, snapshot: int | None, most: int, field: str) -> list[h5py.Group]:
+    """The snapshot asked for; by default `most` of them, evenly picked, the last among them, or the liveliest one."""
     if snapshot is not None:
         return [snapshot_of(file, snapshot)]
     last = snapshot_of(file, -1)
     groups = list(last.parent.values())
+    if most == 1:
+        return [max(groups, key=lambda group: float(np.abs(group[field][:, :2]).max()))]
     backwards = np.linspace(len(groups) - 1, 0, min(most, len(groups)))
     return [groups[round(number)] for number in reversed(backwards)]
 

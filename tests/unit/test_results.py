@@ -30,10 +30,14 @@ def test_names_are_the_cases_names(small_run, other_run):
     assert record_names([small_run, other_run]) == ["small", "other"]
 
 
-def test_records_of_one_name_go_by_their_paths(small_run, other_run, tmp_path):
-    twin = tmp_path / "twin.h5"
-    twin.write_bytes(small_run.read_bytes())
-    assert record_names([small_run, other_run, twin]) == [str(small_run), "other", str(twin)]
+def test_records_of_one_name_go_by_their_folders_or_their_paths(small_run, other_run, tmp_path):
+    (tmp_path / "twin").mkdir()
+    twin, sibling = tmp_path / "twin" / "run.h5", tmp_path / "twin" / "sibling.h5"
+    for copy in (twin, sibling):
+        copy.write_bytes(small_run.read_bytes())
+    folder = small_run.parent.name
+    assert record_names([small_run, other_run, twin]) == [folder, "other", "twin"]
+    assert record_names([small_run, twin, sibling]) == [folder, str(twin), str(sibling)]
 
 
 def test_a_file_is_replaced_whole(tmp_path):

@@ -28,7 +28,7 @@ def test_the_legend_counts_and_averages_each_run(small_run, other_run):
     figure = plot_boundary([small_run, other_run], "left")
     small, other = (text.get_text() for text in figure.legends[0].get_texts())
     # the driven side has moved as the wave did, up to its crest at half a period
-    assert small == "small: 5 particles, mean 0.5 m/s ± 0.00 %"
+    assert small == "small: 5 particles, mean 0.5 m/s, standard deviation 0.00 %"
     assert other.startswith("other: 5 particles")
 
 
