@@ -68,19 +68,22 @@ def _read(text: str, folder: Path, name: str, source: str) -> Case:
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise CaseError([_syntax_problem(str(error))], source) from None
+        raise CaseError([_syntax_problem(str(error), text)], source) from None
     tables, problems = _Reader(folder).read(data)
     if problems:
         raise CaseError(problems, source)
     return Case(**tables, name=name, text=text, folder=folder)
 
 
-def _syntax_problem(message: str) -> str:
-    """Tomllib's message with the line first: ``line 7: …``."""
+def _syntax_problem(message: str, text: str) -> str:
+    """Tomllib's message with the line first: ``line 7: … in: period = fast``."""
     place = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)$", message)
     if not place:
         return message
-    return f"line {place[1]}: {message[: place.start()]}" if place[1] else f"at the end: {message[: place.start()]}"
+    what = message[: place.start()]
+    if not place[1]:
+        return f"at the end: {what}"
+    return f"line {place[1]}: {what}, in: {text.splitlines()[int(place[1]) - 1].strip()}"
 
 
 class _Reader:

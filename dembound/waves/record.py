@@ -104,8 +104,10 @@ def read_samples(path: Path) -> np.ndarray:
             warnings.simplefilter("ignore", UserWarning)  # an empty file is reported below
             samples = np.loadtxt(path, ndmin=2, encoding="utf-8")
     except ValueError as error:
-        reason = str(error).split(";")[0]
-        raise ValueError(f'path: "{path}" is not two columns of numbers apart by blanks: {reason}') from error
+        reason = str(error).split(" at row")[0]
+        raise ValueError(
+            f'path: "{path}" is not two columns of numbers, separated by blanks, not commas: {reason}'
+        ) from error
     problem = _problem(samples)
     if problem:
         raise ValueError(f'path: "{path}" {problem}')

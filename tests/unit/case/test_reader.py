@@ -253,7 +253,7 @@ def test_empty_case_names_what_is_missing() -> None:
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        ("a = 1\nb = = 2\n", "line 2: "),
+        ("a = 1\nb = = 2\n", "line 2: Invalid value, in: b = = 2"),
         ("[run]\n[run]\n", "line 2: "),
         ("a = [1", "at the end: "),
     ],
