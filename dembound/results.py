@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
+import numpy as np
 
 from dembound.errors import CaseError
 
@@ -32,6 +33,15 @@ def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
     if not -len(snapshots) <= number < len(snapshots):
         raise CaseError([f"{file.filename}: has no snapshot {number}, it has {len(snapshots)}"])
     return snapshots[number]
+
+
+def liveliest_snapshot(file: h5py.File, field: str) -> h5py.Group:
+    """The snapshot of an open record in which a disk's `field` (velocity or displacement) is largest in x or y.
+
+    Raises CaseError when there is no snapshot.
+    """
+    groups = list(snapshot_of(file, -1).parent.values())
+    return max(groups, key=lambda group: float(np.abs(group[field][:, :2]).max()))
 
 
 def record_names(paths: Sequence[Path]) -> list[str]:

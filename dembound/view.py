@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.image import imsave
 
 from dembound.errors import DemboundError
-from dembound.results import open_record, replacing, snapshot_of
+from dembound.results import liveliest_snapshot, open_record, replacing, snapshot_of
 
 if TYPE_CHECKING:
     import pyvista
@@ -31,17 +31,18 @@ print(plotter.render_window.GetClassName())
 WINDOWLESS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")  # what VTK draws in where it finds no display
 
 
-def view(run: Path, snapshot: int = -1, field: Field = "velocity", picture: Path | None = None) -> None:
+def view(run: Path, snapshot: int | None = None, field: Field = "velocity", picture: Path | None = None) -> None:
     """Show a run's disks from above, at their undeformed places, coloured by the length of a field.
 
-    run is a ``run.h5``; snapshot the number to begin with, negative ones counting from the last; field velocity in m/s
-    or displacement in m; picture a PNG file to draw into instead of opening a window. The window has a slider over
-    several snapshots; dragging moves the scene, the wheel zooms. Returns once it is closed.
+    run is a ``run.h5``; snapshot the number to begin with, negative ones counting from the last, by default the one
+    with the largest motion; field velocity in m/s or displacement in m; picture a PNG file to draw into instead of
+    opening a window. The window has a slider over several snapshots; dragging moves the scene, the wheel zooms.
+    Returns once it is closed.
 
     Raises CaseError when the file cannot be read or has no such snapshot, DemboundError without OpenGL or a display.
     """
     with open_record(run) as file:
-        first = snapshot_of(file, snapshot)
+        first = liveliest_snapshot(file, field) if snapshot is None else snapshot_of(file, snapshot)
         require_rendering(in_window=picture is None)
         plotter = make_plotter(file, first, field, off_screen=picture is not None)
         if picture is None:

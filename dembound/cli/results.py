@@ -53,7 +53,9 @@ def plot(
 @app.command("view", rich_help_panel="Results")
 def view_disks(
     results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
-    snapshot: Annotated[int, typer.Option(help="Number of the snapshot to begin with; −1 is the last.")] = -1,
+    snapshot: Annotated[
+        int | None, typer.Option(help="Number of the snapshot to begin with, −1 the last; by default the liveliest.")
+    ] = None,
     field: Annotated[Field, typer.Option(help="What colours the disks.")] = Field.velocity,
     picture: Annotated[Path | None, typer.Option(help="Picture to write (PNG) instead of opening a window.")] = None,
 ) -> None:

@@ -16,7 +16,7 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.plot.disks import Window, draw_field
 from dembound.plot.style import UNITS, new_figure, outside_legend, styled
-from dembound.results import COMPONENTS, open_record, snapshot_of
+from dembound.results import COMPONENTS, liveliest_snapshot, open_record, snapshot_of
 
 LONG = 6.0
 """A scene this many times as long as wide gets a second panel, which shows a part of it closely."""
@@ -132,10 +132,9 @@ def _choose(file: h5py.File, snapshot: int | None, most: int, field: str) -> lis
     """The snapshot asked for; by default `most` of them, evenly picked, the last among them, or the liveliest one."""
     if snapshot is not None:
         return [snapshot_of(file, snapshot)]
-    last = snapshot_of(file, -1)
-    groups = list(last.parent.values())
     if most == 1:
-        return [max(groups, key=lambda group: float(np.abs(group[field][:, :2]).max()))]
+        return [liveliest_snapshot(file, field)]
+    groups = list(snapshot_of(file, -1).parent.values())
     backwards = np.linspace(len(groups) - 1, 0, min(most, len(groups)))
     return [groups[round(number)] for number in reversed(backwards)]
 
