@@ -3,13 +3,13 @@
 import time
 from typing import Any
 
-import numba
 import numpy as np
 
 from dembound.case import Case
 from dembound.run import Plan, describe_packing, describe_side, plan
 from dembound.scene import Scene, boundary_medium
 from dembound.simulate import Simulation
+from dembound.threads import worthwhile_threads
 
 FEWEST_PER_WAVELENGTH = 20.0
 """Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
@@ -21,6 +21,7 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
     """Facts about the run a case describes, ready to print, and warnings. Runs a few steps to estimate the time."""
     planned = plan(case)
     scene, loose = planned.scene, planned.scene.assembly.loose
+    threads = worthwhile_threads(scene.count)
     facts = {
         "particles": f"{scene.count:,}" + (f"; {loose} severed ones left out" if loose else ""),
         "contacts": f"{len(scene.assembly.pairs):,}",
@@ -28,7 +29,7 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
         f"{planned.step_limit:.6g} s",
         "steps": f"{planned.steps:,} for {case.run.duration:g} s",
         "memory": f"{scene.bytes / 1e6:.3g} MB",
-        "estimated time": f"about {_estimate(planned):.2g} s on {numba.get_num_threads()} cores at most",
+        "estimated time": f"about {_estimate(planned):.2g} s with {threads} thread(s)",
     }
     facts |= _packing_facts(scene)
     for side in scene.edges:

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import h5py
-import numba
 import numpy as np
 
 from dembound import __version__
@@ -24,6 +23,7 @@ from dembound.results import open_record
 from dembound.scene import Scene, build, ground_of
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
+from dembound.threads import worthwhile_threads
 
 Progress = Callable[[Simulation, int], None]
 """Called after every block with the simulation and the number of steps it will do in all."""
@@ -136,7 +136,7 @@ def summarise(planned: Plan, simulation: Simulation, record: Path, wall_time: fl
         "steps": simulation.steps,
         "duration": simulation.time,
         "wall_time": wall_time,
-        "threads": numba.get_num_threads(),
+        "threads": worthwhile_threads(scene.count),
         "particle_steps_per_second": scene.count * simulation.steps / wall_time,
         "memory_bytes": scene.bytes,
         "packing": describe_packing(scene),

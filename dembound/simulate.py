@@ -78,15 +78,15 @@ class Simulation:
         self._watch()
         return record
 
-    def run(self, steps: int, on_block: Callable[["Simulation", np.ndarray], bool | None] | None = None) -> None:
+    def run(self, steps: int, on_block: Callable[["Simulation", np.ndarray], None] | None = None) -> None:
         """Advance to `steps` steps in all, block by block.
 
-        on_block gets the simulation and the block's record (k, p, 6); it may end the run by returning True.
+        on_block gets the simulation and the block's record (k, p, 6).
         """
         while self.steps < steps:
             record = self.advance(min(BLOCK, steps - self.steps))
-            if on_block is not None and on_block(self, record):
-                return
+            if on_block is not None:
+                on_block(self, record)
 
     def edge_peaks(self, side: str) -> np.ndarray:
         """Smallest and largest velocity so far of the particles of one edge, (k, 3, 2)."""

@@ -9,6 +9,11 @@ PARTICLES_PER_THREAD = 10_000
 """Below this a step takes less than 0.2 ms, and threads would spend much of it waiting for each other."""
 
 
+def worthwhile_threads(particles: int) -> int:
+    """Threads a scene of so many particles uses: at most as many as are allowed."""
+    return min(numba.get_num_threads(), max(1, particles // PARTICLES_PER_THREAD))
+
+
 @contextmanager
 def threads_for(particles: int) -> Iterator[None]:
     """Let compiled loops inside use no more threads than a scene of so many particles is worth.
@@ -16,7 +21,7 @@ def threads_for(particles: int) -> Iterator[None]:
     Results do not depend on it.
     """
     allowed = numba.get_num_threads()
-    numba.set_num_threads(min(allowed, max(1, particles // PARTICLES_PER_THREAD)))
+    numba.set_num_threads(worthwhile_threads(particles))
     try:
         yield
     finally:

@@ -52,11 +52,6 @@ class Edge:
         return normal_axis(self.side)
 
     @property
-    def sign(self) -> int:
-        """Direction of the outward normal along its axis."""
-        return 1 if self.side in ("right", "top") else -1
-
-    @property
     def cover(self) -> float:
         """ΣD/H: the summed diameters over the length of the side; 1 for a row of touching equal disks."""
         return float(self.diameters.sum() / self.length)

@@ -94,13 +94,6 @@ def test_a_run_goes_block_by_block_to_the_step_asked_for(bar) -> None:
     assert seen == [(BLOCK, BLOCK), (BLOCK + 10, 10)]
 
 
-def test_a_run_ends_early_when_told_so(bar) -> None:
-    simulation = simulated(bar)
-    simulation.run(10 * BLOCK, lambda s, record: s.steps >= 2 * BLOCK)
-
-    assert simulation.steps == 2 * BLOCK
-
-
 def test_peaks_of_a_side_are_the_extremes_of_its_particles(bar) -> None:
     edges = build(bar()).edges
     simulation = simulated(bar, edges["right"].nodes)

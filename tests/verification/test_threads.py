@@ -4,6 +4,7 @@ import numba
 import numpy as np
 import pytest
 
+from dembound import threads
 from dembound.simulate import Simulation
 from dembound.stability import step_limit
 
@@ -11,20 +12,22 @@ STEPS = 500
 
 
 @pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="needs two threads")
-def test_same_bits_for_one_and_two_threads(lab):
+def test_same_bits_for_one_and_two_threads(lab, monkeypatch):
+    monkeypatch.setattr(threads, "PARTICLES_PER_THREAD", 1)  # else a scene as small as this has one thread
     boundary = {"left": {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}, "right": "viscous"}
     case = {"held": (), "boundary": boundary, "wave": lab.pulse(0.02)}
-    threads = numba.get_num_threads()
+    before = numba.get_num_threads()
     results = []
     try:
         for number in (1, 2):
             numba.set_num_threads(number)
+            assert threads.worthwhile_threads(1000) == number
             scene = lab.scene("B", (60.0, 20.0), brick=(20.0, 20.0), **case)
             simulation = Simulation(scene, 0.9 * step_limit(scene), np.arange(scene.count))
             record = simulation.advance(STEPS)
             results.append((record, simulation.displacement, simulation.velocity))
     finally:
-        numba.set_num_threads(threads)
+        numba.set_num_threads(before)
     for one, two in zip(*results, strict=True):
         np.testing.assert_array_equal(one, two)
     assert np.abs(results[0][2]).max() > 0.1  # the pulses did run
