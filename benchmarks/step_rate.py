@@ -2,10 +2,11 @@
 
     python benchmarks/step_rate.py [CASE] [--threads 1 2 ...] [--steps 200] [--repeats 7]
 
-Builds a case (by default the full long bar of random disks), sets every particle in motion, compiles first, and then
-times blocks of steps. In the same run it times a plain array copy (STREAM's "copy": one stream read, one written,
-and the written one read before it is overwritten) with as many threads, on arrays of the same total size as the solver
-moves per step, so the share of the machine's memory bandwidth is a ratio measured side by side. Medians are quoted.
+Builds a case (by default the full long bar of random disks) under the elastic law and under the contact law with a
+memory, sets every particle in motion, compiles first, and then times blocks of steps. In the same run it times a plain
+array copy (STREAM's "copy": one stream read, one written, and the written one read before it is overwritten) with as
+many threads, on arrays of the same total size as the solver moves per step, so the share of the machine's memory
+bandwidth is a ratio measured side by side. Medians are quoted.
 """
 
 import argparse
@@ -16,8 +17,8 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from dembound.case import load
-from dembound.scene import Scene, build
+from dembound.case import load, with_changes
+from dembound.scene import build
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
 
@@ -30,18 +31,39 @@ def copy(source, target):
         target[i] = source[i]
 
 
-def bytes_per_step(scene: Scene) -> float:
+LAWS = {
+    "elastic": {},
+    "linearpbond, reference geometry": {"geometry": "reference"},
+    "linearpbond, updated geometry": {"geometry": "updated"},
+}
+"""What is timed -> keys of the material beside the law's name and its start."""
+
+
+def bytes_per_step(simulation: Simulation) -> float:
     """Least memory traffic of one step in bytes: every array once, palette excluded (it stays in cache).
 
     Per particle: u read (24), its successor written and fetched for writing (48), v read and written (48), Δt/m and
-    Δt/I (16), start of row (4); per contact end: neighbour and palette line (8).
+    Δt/I (16), start of row (4); per contact end: neighbour and palette line (8). With a memory each pair is read first
+    (particles and line 12, state 1, slip 8), its shear read and written (16), its force written, fetched for writing
+    and read again (96), its two ends named (8), and u, v and the steady load read once more (72 per particle).
     """
-    return 140.0 * scene.count + 8.0 * len(scene.contacts.kind)
+    scene = simulation.scene
+    if simulation.contacts is None:
+        return 140.0 * scene.count + 8.0 * len(scene.rows.kind)
+    return 212.0 * scene.count + 141.0 * len(simulation.contacts.arrays.first)
 
 
-def flops_per_step(scene: Scene) -> float:
-    """Additions and multiplications of one step: 29 per contact end, 15 per particle."""
-    return 29.0 * len(scene.contacts.kind) + 15.0 * scene.count
+def flops_per_step(simulation: Simulation) -> float:
+    """Additions and multiplications of one step, a root or quotient counted as one.
+
+    Elastic: 29 per contact end, 15 per particle. With a memory: 68 per pair for small displacements, 78 with updated
+    geometry, its two ends included, and 20 per particle.
+    """
+    scene = simulation.scene
+    if simulation.contacts is None:
+        return 29.0 * len(scene.rows.kind) + 15.0 * scene.count
+    per_pair = 78.0 if scene.case.material.geometry == "updated" else 68.0
+    return per_pair * len(simulation.contacts.arrays.first) + 20.0 * scene.count
 
 
 def median_time(work, repeats: int) -> float:
@@ -61,29 +83,40 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=7)
     options = parser.parse_args()
 
-    scene = build(load(options.case))
+    for law, keys in LAWS.items():
+        measure(law, keys, options)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    print(f"memory: process peak {peak / 1e6:.0f} MB")
+
+
+def measure(law: str, keys: dict, options: argparse.Namespace) -> None:
+    changes = {f"material.{key}": value for key, value in keys.items()}
+    if keys:
+        changes |= {"material.law": "linearpbond", "material.elastic_start": False}
+    scene = build(with_changes(load(options.case), changes))
     time_step, _ = choose_step(scene)
     simulation = Simulation(scene, time_step, np.zeros(0, dtype=np.int64))
     simulation.velocity[:] = np.random.default_rng(0).normal(0.0, 1e-3, simulation.velocity.shape)
     simulation.advance(2)
-    traffic = bytes_per_step(scene)
+    traffic, flops = bytes_per_step(simulation), flops_per_step(simulation)
     source = np.ones(int(traffic / 24))
     target = np.zeros_like(source)
     copy(source, target)
 
-    print(f"{options.case.stem}: {scene.count:,} particles, {len(scene.contacts.kind) / scene.count:.2f} contacts each")
-    print(f"per particle-step: {traffic / scene.count:.0f} bytes, {flops_per_step(scene) / scene.count:.0f} flops")
+    print(
+        f"{options.case.stem}, {law}: {scene.count:,} particles, {len(scene.rows.kind) / scene.count:.2f} contacts each"
+    )
+    print(f"per particle-step: {traffic / scene.count:.0f} bytes, {flops / scene.count:.0f} flops")
+    print(f"scene arrays: {scene.bytes / scene.count:.0f} bytes per particle")
     print("threads | million particle-steps/s | Gflop/s | GB/s moved | GB/s of a copy | share of bandwidth")
     for threads in options.threads:
         numba.set_num_threads(threads)
         step = median_time(lambda: simulation.advance(options.steps), options.repeats) / options.steps
         stream = 24 * source.size / median_time(lambda: copy(source, target), 5 * options.repeats)
         print(
-            f"{threads:7d} | {scene.count / step / 1e6:24.1f} | {flops_per_step(scene) / step / 1e9:7.2f} | "
+            f"{threads:7d} | {scene.count / step / 1e6:24.1f} | {flops / step / 1e9:7.2f} | "
             f"{traffic / step / 1e9:10.2f} | {stream / 1e9:14.2f} | {traffic / step / stream:18.0%}"
         )
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-    print(f"memory: scene arrays {scene.bytes / scene.count:.0f} bytes per particle; process peak {peak / 1e6:.0f} MB")
 
 
 if __name__ == "__main__":

@@ -4,7 +4,8 @@ A pulse of peak M_in meets the side at normal incidence; M_out is the mean peak 
 absorbing side of impedance β/β0 answers M_out/M_in = 2/(1 + β/β0), an input side 2/(1 + β0/β); both are 1 at β0.
 
 No more is modelled than decides M_out: a strip of the scene's own bricks, just long enough that nothing returns
-to the side before the peak has left it, and each pass ends then.
+to the side before the peak has left it, and each pass ends then. It is a linear medium under one wave: no loads, no
+static stage, the elastic law.
 """
 
 from collections.abc import Callable
@@ -22,7 +23,7 @@ from dembound.errors import CaseError, RunError
 from dembound.scene import Scene, boundary_medium, build, with_boundaries
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
-from dembound.strip import AFTER, Motion, axis_of_motion, calibration_pulse, strip_of, whole_of
+from dembound.strip import AFTER, Motion, axis_of_motion, calibration_pulse, linear_medium, strip_of, whole_of
 from dembound.waves import Cosine
 
 Method = Literal["impedance", "ratio", "homogenised"]
@@ -134,11 +135,12 @@ def calibrate(
     """
     if not 0.0 < tolerance < np.inf:
         raise CaseError([f"--tolerance: is {tolerance:g}, must be above 0"])
-    table = _dashpots(case, side)
+    plain, left_out = linear_medium(case)
+    table = _dashpots(plain, side)
     motion = motion or _default_motion(case, side)
     _must_move(case, side, motion)
     pulse = calibration_pulse(case, side, motion)
-    strip, shortened = whole_of(case, side, motion, pulse) if full else strip_of(case, side, motion, pulse)
+    strip, shortened = whole_of(plain, side, motion, pulse) if full else strip_of(plain, side, motion, pulse)
     found = Calibration(
         case=case,
         side=side,
@@ -146,7 +148,7 @@ def calibrate(
         method=method,
         kind="input" if isinstance(table, ViscousInput) else "absorbing",
         incident=pulse.peak(),
-        shortened=shortened,
+        shortened=[*shortened, *left_out],
     )
     scene = build(strip)
     found.particles = scene.count

@@ -5,10 +5,13 @@ from typing import Any
 
 import numpy as np
 
+from dembound.boundaries.driven import Driven
 from dembound.case import Case
-from dembound.run import Plan, describe_packing, describe_side, plan
+from dembound.loads import forces_of
+from dembound.run import plan
 from dembound.scene import Scene, boundary_medium
 from dembound.simulate import Simulation
+from dembound.summary import Plan, describe_packing, describe_side
 from dembound.threads import worthwhile_threads
 
 FEWEST_PER_WAVELENGTH = 20.0
@@ -29,14 +32,16 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
         f"{planned.step_limit:.6g} s",
         "steps": f"{planned.steps:,} for {case.run.duration:g} s",
         "memory": f"{scene.bytes / 1e6:.3g} MB",
-        "estimated time": f"about {_estimate(planned):.2g} s with {threads} thread(s)",
+        "estimated time": f"about {_estimate(planned):.2g} s with {threads} thread(s){_not_estimated(case)}",
     }
-    facts |= _packing_facts(scene)
+    facts |= _packing_facts(scene) | _law_facts(scene) | _static_facts(case)
     for side in scene.edges:
         facts[f"{side} side"] = _side_fact(scene, side)
+    facts |= _load_facts(scene)
     for name, node in scene.monitors.items():
         x, y = scene.assembly.positions[node]
         facts[f"monitor {name}"] = f"particle {node} at ({x:.3f}, {y:.3f}) m"
+    facts |= _tension_facts(scene)
     warnings = _tension_warnings(scene)
     for name, count in particles_per_wavelength(scene).items():
         facts[f"wave {name}"] = f"{count:.0f} particles per shortest wavelength"
@@ -59,16 +64,51 @@ def particles_per_wavelength(scene: Scene) -> dict[str, float]:
 
 
 def _tension_warnings(scene: Scene) -> list[str]:
-    """Waves whose stress ρcv exceeds the locked-in pressure: real contacts would open, the elastic law's do not."""
-    pressure = _pressure(describe_packing(scene))
-    medium = boundary_medium(scene.case, scene.ground, axis=0)
-    stresses = {name: medium.density * medium.p_wave_speed * wave.peak() for name, wave in scene.case.wave.items()}
+    """Waves that would open real contacts, where the elastic law keeps them closed."""
+    if scene.remembers or not _confinement(scene):  # a lattice packed without stress is told in the docs
+        return []
     return [
-        f"wave.{name}: has a stress ρcv of {stress / 1e6:.3g} MPa, above the confining stress of "
-        f"{pressure / 1e6:.3g} MPa; real contacts would open where it pulls, the elastic law keeps them closed"
-        for name, stress in stresses.items()
-        if 0.0 < pressure < stress  # a lattice packed without stress is told in the docs
+        f"wave.{name}: has a stress ρcv of {stress}; real contacts would open where it pulls, "
+        "the elastic law keeps them closed"
+        for name, stress in _strong_waves(scene).items()
     ]
+
+
+def _tension_facts(scene: Scene) -> dict[str, str]:
+    """Waves that would open contacts, where the elastic law then hands over."""
+    if not (scene.remembers and scene.case.material.elastic_start):
+        return {}
+    law = scene.case.material.law
+    return {
+        f"stress of {name}": f"ρcv = {stress}; where it pulls contacts open, and {law} takes over"
+        for name, stress in _strong_waves(scene).items()
+    }
+
+
+def _strong_waves(scene: Scene) -> dict[str, str]:
+    """Waves of boundaries whose stress ρcv exceeds the pressure on the contacts; both in words."""
+    pressure = _confinement(scene)
+    if pressure is None:
+        return {}
+    sides = [table for table in scene.case.boundary.values() if isinstance(table, Driven)]
+    driving = {name for table in sides for name in (table.wave_p, table.wave_s)}
+    medium = boundary_medium(scene.case, scene.ground, axis=0)
+    impedance = medium.density * medium.p_wave_speed
+    stresses = {name: impedance * wave.peak() for name, wave in scene.case.wave.items() if name in driving}
+    return {
+        name: f"{stress / 1e6:.3g} MPa, above the confining stress of {pressure / 1e6:.3g} MPa"
+        for name, stress in stresses.items()
+        if stress > pressure
+    }
+
+
+def _confinement(scene: Scene) -> float | None:
+    """Pressure (Pa) that keeps contacts closed at the start of the run; None where the static stage will tell."""
+    static, material = scene.case.static, scene.case.material
+    if static is not None:
+        return None if static.stress is None else 0.0 - 0.5 * (static.stress[0] + static.stress[1])
+    locked_in = material.law == "elastic" or material.locked_in
+    return _pressure(describe_packing(scene)) if locked_in else 0.0
 
 
 def _pressure(packing: dict[str, Any]) -> float:
@@ -86,6 +126,14 @@ def _estimate(planned: Plan) -> float:
         simulation.advance(TRIAL_STEPS)
         trials.append(time.perf_counter() - began)
     return min(trials) / TRIAL_STEPS * planned.steps
+
+
+def _not_estimated(case: Case) -> str:
+    """What the trials did not come to."""
+    later = ["the static stage"] * (case.static is not None)
+    if case.material.law != "elastic" and case.material.elastic_start:
+        later.append(f"what {case.material.law} takes longer once it begins")
+    return f", without {' and '.join(later)}" if later else ""
 
 
 def _packing_facts(scene: Scene) -> dict[str, str]:
@@ -106,10 +154,59 @@ def _packing_facts(scene: Scene) -> dict[str, str]:
     }
 
 
+def _law_facts(scene: Scene) -> dict[str, str]:
+    """The law, and where contacts and bonds give way."""
+    material = scene.case.material
+    if not scene.remembers:
+        return {"law": "elastic: contacts neither open nor slip, bonds do not break"}
+    start = ", elastic until a contact opens, slips or closes or a bond yields" if material.elastic_start else ""
+    bonds = "no bonds"
+    if scene.ground.moduli.pb_emod > 0.0:
+        tension, shear = (
+            "unbreakable" if strength is None else f"{strength / 1e6:.3g} MPa"
+            for strength in (material.pb_ten, material.pb_coh)
+        )
+        pressed = f" + σ·tan {material.pb_fa:g}°" if material.pb_fa > 0.0 else ""
+        bonds = f"bonds {tension} in tension, {shear}{pressed} in shear"
+    return {
+        "law": f"{material.law}{start}",
+        "strength": f"{bonds}; contacts slip at {material.fric:g} of their normal force",
+    }
+
+
+def _static_facts(case: Case) -> dict[str, str]:
+    """What acts during the static stage, and what holds."""
+    static = case.static
+    if static is None:
+        return {}
+    acting = [load.name for load in case.load if load.wave is None]
+    if static.stress is not None:
+        acting.append("σ_xx, σ_yy, σ_xy = {:.3g}, {:.3g}, {:.3g} MPa".format(*(s / 1e6 for s in static.stress)))
+    if case.material.law != "elastic" and case.material.locked_in:
+        acting.append("the locked-in stress")
+    sides = ", ".join(f"{side} {table.type}" for side, table in static.boundary.items()) or "all free"
+    return {
+        "static stage": f"under {' and '.join(acting)}, to a force ratio of {static.ratio:g}",
+        "static sides": sides,
+    }
+
+
+def _load_facts(scene: Scene) -> dict[str, str]:
+    """Particles each load acts on, its whole force, and its time factor."""
+    facts = {}
+    for load in scene.case.load:
+        nodes, forces = forces_of(load, scene.assembly, scene.mass)
+        fx, fy = forces.sum(axis=0)
+        factor = "steady" if load.wave is None else f"times wave {load.wave}"
+        facts[f"load {load.name}"] = f"({fx:.4g}, {fy:.4g}) N/m on {len(nodes):,} particle(s), {factor}"
+    return facts
+
+
 def _side_fact(scene: Scene, side: str) -> str:
     facts = describe_side(scene, side)
     factors = "".join(f", {factor} = {facts[factor]:g}" for factor in ("beta_p", "beta_s") if factor in facts)
+    half = ", half mass" if facts.get("half_mass") else ""
     return (
-        f"{facts['type']}{factors}; {facts['particles']} particles, D = {facts['diameter_min']:.3f}…"
+        f"{facts['type']}{factors}{half}; {facts['particles']} particles, D = {facts['diameter_min']:.3f}…"
         f"{facts['diameter_max']:.3f} m, ΣD/H = {facts['cover']:.4f}"
     )

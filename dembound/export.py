@@ -12,6 +12,17 @@ Every disk is a vertex at its reference position moved by its displacement (z = 
 | ``displacement`` | m | (n, 3) | since the start of the run, z = 0 |
 | ``rotation`` | rad | (n,) | since the start of the run |
 | ``brick_particle`` | 1 | (n,) | the disk of the brick that this one is a copy of |
+| ``coordNumber`` | 1 | (n,) | its intact bonds and pushing contacts, under a law with a memory (YADE's name) |
+| ``nbCracks`` | 1 | (n,) | its bonds that have broken so far (YADE's name) |
+| ``damage`` | 1 | (n,) | that number over the bonds it had at the start, 0 where it had none |
+
+Where bonds broke in the run, ``cracks.vtu`` has one vertex per broken bond, between its two disks as they stood then:
+
+| name | unit | shape | what |
+|---|---|---|---|
+| ``time`` | s | (k,) | when it broke, 0 in the static stage |
+| ``mode`` | 1 | (k,) | how: 0 in tension, 1 in shear |
+| ``particles`` | 1 | (k, 2) | ids of the two disks |
 
 To see disks in ParaView, run ``paraview --script=view.py`` in the folder, or open ``particles.pvd``, press
 Apply and run ``view.py`` from the Python shell (Run Script). By hand: representation *Point Gaussian*, shader
@@ -27,7 +38,7 @@ import h5py
 import meshio
 import numpy as np
 
-from dembound.results import open_record, replacing
+from dembound.results import cracks_until, open_record, replacing
 
 VIEW_SCRIPT = '''\
 """Shows the disks of particles.pvd in ParaView: paraview --script=view.py, or Run Script once it is open."""
@@ -66,7 +77,8 @@ def write_vtu(run: Path, folder: Path) -> Path | None:
     run
         the ``run.h5`` of a run.
     folder
-        made when it is not there; gets ``particles_0000.vtu`` …, ``particles.pvd`` and ``view.py``.
+        made when it is not there; gets ``particles_0000.vtu`` …, ``particles.pvd``, ``view.py`` and, where bonds
+        broke, ``cracks.vtu``.
 
     The PVD file is written last, so it never names a file that is not there.
 
@@ -80,33 +92,54 @@ def write_vtu(run: Path, folder: Path) -> Path | None:
         times = {}
         for number, snapshot in snapshots.items():
             name = f"particles_{number}.vtu"
-            with replacing(folder / name) as part:
-                meshio.write(part, _mesh(file["particles"], snapshot), file_format="vtu")
             times[name] = float(snapshot.attrs["time"])
+            _write(folder / name, _disks(file["particles"], snapshot, cracks_until(file, times[name])))
+        cracks = cracks_until(file, np.inf)
+        if len(cracks["time"]) > 0:
+            _write(folder / "cracks.vtu", _cracks(cracks))
     (folder / "view.py").write_text(VIEW_SCRIPT, encoding="utf-8")
     return _write_index(folder / "particles.pvd", times)
 
 
-def _mesh(particles: h5py.Group, snapshot: h5py.Group) -> meshio.Mesh:
-    """One snapshot as vertices with the point data of this module's table."""
+def _disks(particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+    """One snapshot, and the cracks until then, as vertices with the point data of this module's first table."""
     displacement, velocity = snapshot["displacement"][:], snapshot["velocity"][:]
     count = len(displacement)
-    numbers = np.arange(count)
     moved = _in_space(displacement[:, :2])
-    return meshio.Mesh(
-        _in_space(particles["position"][:]) + moved,
-        [("vertex", numbers[:, None])],
-        point_data={
-            "radii": particles["radius"][:],
-            "id": numbers,
-            "linVelVec": _in_space(velocity[:, :2]),
-            "angVelVec": np.column_stack([np.zeros((count, 2)), velocity[:, 2]]),
-            "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
-            "displacement": moved,
-            "rotation": displacement[:, 2],
-            "brick_particle": particles["brick_particle"][:],
-        },
-    )
+    bonds = particles["bonds"][:]
+    broken = np.bincount(cracks["particles"].ravel(), minlength=count)
+    data = {
+        "radii": particles["radius"][:],
+        "id": np.arange(count),
+        "linVelVec": _in_space(velocity[:, :2]),
+        "angVelVec": np.column_stack([np.zeros((count, 2)), velocity[:, 2]]),
+        "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
+        "displacement": moved,
+        "rotation": displacement[:, 2],
+        "brick_particle": particles["brick_particle"][:],
+        "nbCracks": broken,
+        "damage": broken / np.maximum(bonds, 1),  # without bonds none can break
+    }
+    if "coordination" in snapshot:
+        data["coordNumber"] = snapshot["coordination"][:]
+    return _vertices(_in_space(particles["position"][:]) + moved, data)
+
+
+def _cracks(cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+    """Cracks as vertices with the point data of this module's second table."""
+    data = {"time": cracks["time"], "mode": cracks["shear"].astype(int), "particles": cracks["particles"]}
+    return _vertices(_in_space(cracks["position"]), data)
+
+
+def _vertices(points: np.ndarray, data: dict[str, np.ndarray]) -> meshio.Mesh:
+    """One vertex per point (n, 3) m, with arrays (n, …) on them."""
+    return meshio.Mesh(points, [("vertex", np.arange(len(points))[:, None])], point_data=data)
+
+
+def _write(path: Path, mesh: meshio.Mesh) -> None:
+    """A VTU file, whole or not at all."""
+    with replacing(path) as part:
+        meshio.write(part, mesh, file_format="vtu")
 
 
 def _in_space(vectors: np.ndarray) -> np.ndarray:

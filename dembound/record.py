@@ -1,14 +1,21 @@
 """The recorder: a run in one HDF5 file. Pictures, VTU files and reports are made from that file alone.
 
-Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset)::
+Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset of numbers)::
 
     /                       attributes: case, name, version, seed, time_step, step_limit, steps, complete, …
-    particles/              position (n, 2), radius (n,), brick_particle (n,)
+    particles/              position (n, 2), radius (n,), brick_particle (n,), bonds (n,) of each at the start
     histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3); attributes particle, position, wanted
     boundaries/<side>/      particle, position, diameter, peak_velocity (q, 3, 2)
-    snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; attribute time
+    snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
+                            under a law with a memory; attribute time
+    energy/                 time and the columns of `energy.Entry`, (k,) each
+    cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
+                            displacements, positions count from the start of the run
+    laws/                   name (l,) of each law used and time (l,) it began at
+    static/                 attributes: what the static stage came to, if there was one
 """
 
+from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
 
@@ -16,7 +23,11 @@ import h5py
 import numpy as np
 
 from dembound import __version__
+from dembound.contacts import Cracks
+from dembound.energy import Entry, Ledger
+from dembound.engines import Bonded
 from dembound.simulate import Simulation
+from dembound.static import Settled
 
 DISPLACEMENT_UNIT = "m, m, rad"
 VELOCITY_UNIT = "m/s, m/s, rad/s"
@@ -31,15 +42,22 @@ class Recorder:
     simulation : the run to record; its first probes are the monitors in their order.
     step_limit : stability limit in s, kept for the record.
     interval : time between two history samples in s; 0 keeps every step.
+    settled : what the static stage came to, if there was one.
     """
 
-    def __init__(self, path: Path, simulation: Simulation, step_limit: float, interval: float) -> None:
+    def __init__(
+        self, path: Path, simulation: Simulation, step_limit: float, interval: float, settled: Settled | None = None
+    ) -> None:
         self.simulation = simulation
+        self.ledger = Ledger(simulation)
         self.stride = max(1, round(interval / simulation.time_step))
         self.file = h5py.File(path, "w")
         self._write_header(step_limit)
         self._write_particles()
         self._histories = self._make_histories()
+        self._cracks = self._make_cracks()
+        if settled is not None:
+            self._write_static(settled)
         self._done = 0
         self._snapshots = 0
 
@@ -51,6 +69,8 @@ class Recorder:
     ) -> None:
         if kind is None:
             self._write_boundaries()
+            self._write_energy()
+        self._write_laws()
         self.file.attrs["steps"] = self.simulation.steps
         self.file.attrs["complete"] = kind is None
         self.file.close()
@@ -66,14 +86,24 @@ class Recorder:
             _extend(group["displacement"], record[rows, index, :3])
             _extend(group["velocity"], record[rows, index, 3:])
         self._done += count
+        if self.simulation.contacts is not None:
+            self._append_cracks(self.simulation.contacts.take_cracks(), self.simulation.time_step)
         self.file.flush()
+
+    def enter_energy(self) -> np.ndarray:
+        """Advance by one step and enter its energies in the ledger; returns the step's probe record (1, p, 6)."""
+        return self.ledger.step()
 
     def snapshot(self) -> None:
         """Keep the whole scene as it is now."""
         group = self.file.create_group(f"snapshots/{self._snapshots:04d}")
         group.attrs["time"] = self.simulation.time
-        _write(group, "displacement", self.simulation.displacement.T, DISPLACEMENT_UNIT)
+        moved = self.simulation.displacement - self.simulation.datum
+        _write(group, "displacement", moved.T, DISPLACEMENT_UNIT)
         _write(group, "velocity", self.simulation.velocity.T, VELOCITY_UNIT)
+        contacts = self.simulation.contacts
+        if contacts is not None and isinstance(self.simulation.engine, Bonded):
+            _write(group, "coordination", contacts.coordination(), "1")
         self._snapshots += 1
 
     def _write_header(self, step_limit: float) -> None:
@@ -93,11 +123,14 @@ class Recorder:
         )
 
     def _write_particles(self) -> None:
-        assembly = self.simulation.scene.assembly
+        scene, assembly = self.simulation.scene, self.simulation.scene.assembly
+        bonded = scene.ground.moduli.pb_emod > 0.0
+        bonds = np.bincount(assembly.pairs.ravel(), minlength=scene.count) * int(bonded)
         group = self.file.create_group("particles")
         _write(group, "position", assembly.positions, "m")
         _write(group, "radius", assembly.radii, "m")
         _write(group, "brick_particle", assembly.brick_particle, "1")
+        _write(group, "bonds", bonds, "1")
 
     def _make_histories(self) -> list[h5py.Group]:
         scene = self.simulation.scene
@@ -115,10 +148,51 @@ class Recorder:
                 ("displacement", (3,), DISPLACEMENT_UNIT),
                 ("velocity", (3,), VELOCITY_UNIT),
             ):
-                made = group.create_dataset(dataset, shape=(0, *width), maxshape=(None, *width), dtype="f8")
-                made.attrs["unit"] = unit
+                _make(group, dataset, width, "f8", unit)
             groups.append(group)
         return groups
+
+    def _make_cracks(self) -> h5py.Group:
+        group = self.file.create_group("cracks")
+        _make(group, "time", (), "f8", "s")
+        _make(group, "position", (2,), "f8", "m")
+        _make(group, "particles", (2,), "i8", "1")
+        _make(group, "shear", (), "?", "1")
+        return group
+
+    def _append_cracks(self, cracks: Cracks, time_step: float) -> None:
+        _extend(self._cracks["time"], cracks.step * time_step)
+        before = 0.5 * self.simulation.datum[:2, cracks.pair].sum(axis=2).T  # of the middle, until the run began
+        _extend(self._cracks["position"], cracks.position - before)
+        _extend(self._cracks["particles"], cracks.pair)
+        _extend(self._cracks["shear"], cracks.shear)
+
+    def _write_static(self, settled: Settled) -> None:
+        group = self.file.create_group("static")
+        group.attrs.update(
+            {
+                "steps": settled.steps,
+                "ratio": settled.ratio,
+                "carried": settled.carried,
+                "left": settled.left,
+                "stress": settled.stress,
+                "cracks": len(settled.cracks),
+            }
+        )
+        displacement = settled.start.displacement
+        _write(group, "displacement", displacement.T, DISPLACEMENT_UNIT)
+        self._append_cracks(settled.cracks, 0.0)  # before the run began
+
+    def _write_energy(self) -> None:
+        group = self.file.create_group("energy")
+        for field, column in zip(fields(Entry), self.ledger.columns.T, strict=True):
+            _write(group, field.name, column, "s" if field.name == "time" else "J/m")
+
+    def _write_laws(self) -> None:
+        group = self.file.create_group("laws")
+        names, steps = zip(*self.simulation.laws, strict=True)
+        group.create_dataset("name", data=list(names))
+        _write(group, "time", np.array(steps) * self.simulation.time_step, "s")
 
     def _write_boundaries(self) -> None:
         scene = self.simulation.scene
@@ -130,6 +204,11 @@ class Recorder:
             _write(group, "position", scene.assembly.positions[edge.nodes], "m")
             _write(group, "diameter", edge.diameters, "m")
             _write(group, "peak_velocity", self.simulation.edge_peaks(side), VELOCITY_UNIT)
+
+
+def _make(group: h5py.Group, name: str, width: tuple[int, ...], kind: str, unit: str) -> None:
+    """An empty dataset that rows of this width can be appended to."""
+    group.create_dataset(name, shape=(0, *width), maxshape=(None, *width), dtype=kind).attrs["unit"] = unit
 
 
 def _write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:

@@ -44,6 +44,44 @@ def liveliest_snapshot(file: h5py.File, field: str) -> h5py.Group:
     return max(groups, key=lambda group: float(np.abs(group[field][:, :2]).max()))
 
 
+def cracks_until(file: h5py.File, time: float) -> dict[str, np.ndarray]:
+    """The bonds of an open record that have broken at a time in s, those of the static stage included.
+
+    Columns time (k,) s, position (k, 2) m, particles (k, 2), shear (k,) bool, in the order the bonds broke.
+    """
+    cracks = {name: dataset[:] for name, dataset in file["cracks"].items()}
+    broken = cracks["time"] <= time
+    return {name: column[broken] for name, column in cracks.items()}
+
+
+def laws_in_words(laws: Sequence[tuple[str, float]]) -> str:
+    """The laws of a run, each with the time in s it began at, such as "elastic law to 0.012 s, then linearpbond"."""
+    (first, _), *later = laws
+    return f"{first} law" + ("".join(f" to {time:.3g} s, then {name}" for name, time in later) or " all through")
+
+
+def laws_of(file: h5py.File) -> list[tuple[str, float]]:
+    """The laws of an open record, each with the time in s it began at; none if the run was cut off before it told."""
+    if "laws" not in file:
+        return []
+    return list(zip(file["laws/name"].asstr()[:], file["laws/time"][:].tolist(), strict=True))
+
+
+def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
+    """The energy ledger of an open record: its columns (k,) by name, time in s and energies in J per metre.
+
+    One more column, relative_error, is the error in parts of the most that boundaries or loads have brought in.
+
+    Raises CaseError when there is no entry.
+    """
+    columns = {name: dataset[:] for name, dataset in file.get("energy", {}).items()}
+    if not columns or len(columns["time"]) == 0:
+        raise CaseError([f"{file.filename}: has no entries in its energy ledger"])
+    scale = max(np.abs(columns["outside"]).max(), np.abs(columns["load"]).max())
+    columns["relative_error"] = columns["error"] / scale if scale > 0.0 else np.zeros_like(columns["error"])
+    return columns
+
+
 def record_names(paths: Sequence[Path]) -> list[str]:
     """A name for each record, for legends: its case's name, where two share it its folder's, else its path."""
     names = []

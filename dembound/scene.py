@@ -9,29 +9,15 @@ from scipy.spatial import cKDTree
 
 from dembound.boundaries import SIDES, normal_axis
 from dembound.boundaries.exposed import exposed
+from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
 from dembound.case import Case
+from dembound.contacts import ContactList
 from dembound.ground import Ground, make_ground, nominal_moduli
+from dembound.kernels.tables import Rows
+from dembound.laws import LAWS
+from dembound.loads import drive, steady
 from dembound.packings.tiling import Assembly, tile
-
-
-@dataclass(frozen=True)
-class ContactRows:
-    """Every particle's contacts, as the kernels read them.
-
-    start (n + 1,) uint32: row of particle i is start[i]:start[i + 1]; neighbour (e,) uint32; kind (e,) uint32, a
-    line of palette (2b, 6), whose columns kernels/elastic.py explains. Each contact stands in two rows.
-    """
-
-    start: np.ndarray
-    neighbour: np.ndarray
-    kind: np.ndarray
-    palette: np.ndarray
-
-    @property
-    def arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """The four arrays in the order the kernels take them."""
-        return self.start, self.neighbour, self.kind, self.palette
 
 
 @dataclass(frozen=True)
@@ -43,16 +29,16 @@ class Scene:
     case : where it came from.
     ground : brick and material.
     assembly : the tiled brick: positions (n, 2) m, radii (n,) m, brick_particle (n,), contacts.
-    contacts : rows of contacts for the kernels.
+    rows : contacts of the elastic law for the kernels.
     edges : side -> its exposed particles, for every side that is not periodic.
-    supports : the table of what pushes from outside.
+    supports : the table of what pushes from outside, loads that follow a wave included.
     monitors : name -> particle.
     """
 
     case: Case
     ground: Ground
     assembly: Assembly
-    contacts: ContactRows
+    rows: Rows
     edges: Mapping[str, Edge]
     supports: Supports
     monitors: Mapping[str, int]
@@ -64,13 +50,22 @@ class Scene:
 
     @cached_property
     def mass(self) -> np.ndarray:
-        """(n,) kg."""
-        return self.ground.mass[self.assembly.brick_particle]
+        """(n,) kg, of which particles on sides with half mass keep their half."""
+        return self.ground.mass[self.assembly.brick_particle] * self._mass_factor
 
     @cached_property
     def inertia(self) -> np.ndarray:
-        """(n,) kg·m²."""
-        return self.ground.inertia[self.assembly.brick_particle]
+        """(n,) kg·m², halved with the mass."""
+        return self.ground.inertia[self.assembly.brick_particle] * self._mass_factor
+
+    @cached_property
+    def _mass_factor(self) -> np.ndarray:
+        return mass_factor(self.count, self.edges, self.case.boundary)
+
+    @cached_property
+    def steady_load(self) -> np.ndarray:
+        """(3, n) forces and moments (N, N·m) of the loads that are always there."""
+        return steady(self.case, self.assembly, self.mass)
 
     @cached_property
     def free(self) -> np.ndarray:
@@ -80,11 +75,24 @@ class Scene:
         return free
 
     @property
+    def remembers(self) -> bool:
+        """Whether the scene's law has a memory: contacts that open and slide, bonds that break."""
+        return self.case.material.law != "elastic"
+
+    def contact_list(self) -> ContactList:
+        """The scene's pairs, with nothing in their memory."""
+        periodic = (_is_periodic(self.case, "left"), _is_periodic(self.case, "bottom"))
+        periods = tuple(
+            float(size) if wraps else None for size, wraps in zip(self.assembly.size, periodic, strict=True)
+        )
+        return ContactList(self.ground, self.case.material, self.assembly, periods)  # type: ignore[arg-type]
+
+    @property
     def bytes(self) -> int:
         """Memory of the particle, contact and state arrays."""
         state = 9 * 8 * self.count  # u, its successor and v
         step = 4 * 8 * self.count  # mass, inertia and their mobilities
-        arrays = (*self.contacts.arrays, *vars(self.assembly).values())
+        arrays = (*self.rows, *vars(self.assembly).values())
         return state + step + sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
 
 
@@ -101,9 +109,9 @@ def build(case: Case) -> Scene:
         case=case,
         ground=ground,
         assembly=assembly,
-        contacts=contact_rows(assembly, ground),
+        rows=contact_rows(assembly, ground),
         edges=edges,
-        supports=_supports(case, ground, edges),
+        supports=_supports(case, ground, assembly, edges),
         monitors=_monitors(case, assembly),
     )
 
@@ -116,14 +124,14 @@ def ground_of(case: Case) -> Ground:
 
 def with_boundaries(scene: Scene, case: Case) -> Scene:
     """The same body under the boundaries of another case; only what stands in [boundary.*] and [wave.*] counts."""
-    return replace(scene, case=case, supports=_supports(case, scene.ground, scene.edges))
+    return replace(scene, case=case, supports=_supports(case, scene.ground, scene.assembly, scene.edges))
 
 
 def _is_periodic(case: Case, side: str) -> bool:
     return side in case.boundary and case.boundary[side].type == "periodic"
 
 
-def contact_rows(assembly: Assembly, ground: Ground) -> ContactRows:
+def contact_rows(assembly: Assembly, ground: Ground) -> Rows:
     """Sort the contacts into one row per particle, over a palette of the brick's contact constants.
 
     The palette's lines are put in the order the rows use them, so that walking along the particles also walks
@@ -137,7 +145,7 @@ def contact_rows(assembly: Assembly, ground: Ground) -> ContactRows:
     order = np.lexsort((neighbour, owner))
     start = np.zeros(len(assembly.radii) + 1, dtype=np.uint32)
     np.cumsum(np.bincount(owner, minlength=len(assembly.radii)), out=start[1:])
-    return ContactRows(start, neighbour[order].astype(np.uint32), kind[order].astype(np.uint32), palette)
+    return Rows(start, neighbour[order].astype(np.uint32), kind[order].astype(np.uint32), palette)
 
 
 def _palette(ground: Ground) -> tuple[np.ndarray, np.ndarray]:
@@ -167,12 +175,12 @@ def find_edges(assembly: Assembly, periodic: tuple[bool, bool]) -> dict[str, Edg
             continue
         length = float(assembly.extent[1 - axis])
         nodes = exposed(assembly.positions, assembly.radii, side, period=length if periodic[1 - axis] else None)
-        edges[side] = Edge(side, nodes, 2.0 * assembly.radii[nodes], length)
+        edges[side] = Edge(side, nodes, assembly.positions[nodes], 2.0 * assembly.radii[nodes], length)
     return edges
 
 
 def boundary_medium(case: Case, ground: Ground, axis: int) -> Medium:
-    """What dashpots absorb into: the wave speeds the case names, else the packing's own along the side's normal.
+    """What a side stands for: the wave speeds the case names, else the packing's own along the side's normal.
 
     axis is that of the normal, 0 (x) or 1 (y): a packing may be stiffer along one than along the other.
     """
@@ -182,17 +190,23 @@ def boundary_medium(case: Case, ground: Ground, axis: int) -> Medium:
         p_speed = float(np.sqrt(ground.material_tensor[p_gradient, p_gradient] / ground.density))
     if s_speed is None:
         s_speed = float(np.sqrt(ground.material_tensor[s_gradient, s_gradient] / ground.density))
-    return Medium(ground.density, p_speed, s_speed)
+
+    def mirror_stiffness(diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        between = LAWS[ground.law](ground.moduli, 0.5 * diameters, 0.5 * diameters, diameters)
+        return between.normal, between.bending
+
+    return Medium(ground.density, p_speed, s_speed, mirror_stiffness)
 
 
-def _supports(case: Case, ground: Ground, edges: Mapping[str, Edge]) -> Supports:
-    """All sides' recipes in one table."""
+def _supports(case: Case, ground: Ground, assembly: Assembly, edges: Mapping[str, Edge]) -> Supports:
+    """All sides' recipes and all driven loads in one table."""
     builder = SupportBuilder(held=ground.held)
-    waves = {name: wave.velocity for name, wave in case.wave.items()}
     for side, table in case.boundary.items():
         if side in edges:
             edge = edges[side]
-            table.support(edge, boundary_medium(case, ground, edge.axis), waves, builder)
+            table.support(edge, boundary_medium(case, ground, edge.axis), case.wave, builder)
+    factor = mass_factor(len(assembly.radii), edges, case.boundary)
+    drive(case, assembly, ground.mass[assembly.brick_particle] * factor, builder)
     return builder.table()
 
 

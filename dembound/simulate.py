@@ -1,20 +1,38 @@
 """The loop: advance a scene in time, watch that it stays sound."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from dembound.boundaries.support import Supports
+from dembound.contacts import ContactList
+from dembound.engines import Bonded, Elastic
 from dembound.errors import RunError
-from dembound.kernels.elastic import advance
+from dembound.kernels import tables
 from dembound.scene import Scene
 from dembound.threads import threads_for
 
 BLOCK = 256
 """Steps between two looks at a run: compiled code does not return to Python in between."""
 
+DRIVEN_BYTES = 64e6
+"""Most memory for the drives of a block; many driven particles make blocks shorter."""
+
 RUNAWAY = 1e4
 """A particle this many times as fast as all waves together has left physics: resonance gives factors of ten."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """A body at rest to start from: displacements (3, n) since it was built, its pairs, and whether they remember.
+
+    contacts is None, and remembers false, where the scene's law has no memory.
+    """
+
+    displacement: np.ndarray
+    contacts: ContactList | None
+    remembers: bool
 
 
 class Simulation:
@@ -25,31 +43,91 @@ class Simulation:
     scene : what moves.
     time_step : Δt in s; the caller has compared it with the stability limit.
     probes : (p,) particles whose motion `advance` returns at every step.
+    start : a body that has settled; whatever pushes its particles is balanced from then on. None: as built.
+    damp : local damping coefficient; None: the material's.
+    settling : whether the locked-in stress may relax at the cuts.
+    load : (3, n) steady forces and moments (N, N·m); None: the scene's own.
 
     Attributes
     ----------
     displacement, velocity : (3, n) m and rad, m/s and rad/s; velocities are half a time step behind.
+    datum : (3, n) displacement at the start.
+    load : (3, n) steady forces and moments on all particles (N, N·m) beside those of contacts.
     steps : steps done.
+    laws : name of each law used and the step it began with.
+    work : (2, 4) J, see kernels.tables.Log.
     tracked : (q,) the particles of all edges, in the order of `scene.edges`.
     peaks : (q, 3, 2) smallest and largest velocity of each so far.
     """
 
-    def __init__(self, scene: Scene, time_step: float, probes: np.ndarray) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        time_step: float,
+        probes: np.ndarray,
+        *,
+        start: Start | None = None,
+        damp: float | None = None,
+        settling: bool = False,
+        load: np.ndarray | None = None,
+    ) -> None:
         self.scene = scene
         self.time_step = time_step
         self.probes = np.asarray(probes, dtype=np.int64)
         self.steps = 0
-        self.displacement = np.zeros((3, scene.count))
+        self.datum = np.zeros((3, scene.count)) if start is None else start.displacement
+        self.displacement = self.datum.copy()
         self.velocity = np.zeros((3, scene.count))
         self._spare = np.zeros((3, scene.count))
         edges = [edge.nodes for edge in scene.edges.values()]
         self.tracked = np.concatenate(edges) if edges else np.zeros(0, dtype=np.int64)
         self.peaks = np.zeros((len(self.tracked), 3, 2))
-        waves = sum(wave.peak() for wave in scene.case.wave.values())
-        self._fastest = RUNAWAY * waves if waves else np.finfo(float).max
-        self._mobility = time_step / scene.mass
-        self._inverse_inertia = time_step / scene.inertia
+        self.work = np.zeros((2, 4))
+        self._damp = scene.case.material.damp if damp is None else damp
+        self._fastest = _runaway_speed(scene)
         self._supports = NodeSupports(scene, time_step)
+        self._mobility = self._where_unsupported(time_step / scene.mass)
+        self._inverse_inertia = self._where_unsupported(time_step / scene.inertia)
+        self.contacts: ContactList | None = None
+        if scene.remembers:
+            self.contacts = scene.contact_list() if start is None else start.contacts
+        steady = scene.steady_load if load is None else load
+        self._begin(steady, settled=start is not None, remembers=bool(start and start.remembers), settling=settling)
+
+    def _begin(self, load: np.ndarray, *, settled: bool, remembers: bool, settling: bool) -> None:
+        """Choose the law to begin with, and the steady load that goes with it."""
+        elastic = Elastic(self.scene, self.contacts)
+        self.engine: Elastic | Bonded = elastic
+        self.laws = [(elastic.name, 0)]
+        if settled:
+            springs = self._supports.springs_at(self.datum)
+            self.load = springs - self._resting_force(elastic, remembers)
+            self._elastic_load = springs - elastic.force(self.datum)
+        else:
+            at_first = self._resting_force(elastic, remembers)
+            self.load = load - (0.0 if settling else at_first)
+            self._elastic_load = self.load + at_first  # that law does not feel what is locked in
+        if not self._elastic_load.any():
+            self._elastic_load = np.zeros((3, 0))
+        if remembers or (self.contacts is not None and not self.scene.case.material.elastic_start):
+            self.laws = []
+            self._hand_over(fresh=not remembers)
+
+    def _resting_force(self, elastic: Elastic, remembers: bool) -> np.ndarray:
+        """Contact forces (3, n) of the body at rest at the datum."""
+        if self.contacts is None:
+            return elastic.force(self.datum)
+        if not remembers:
+            self.contacts.adopt(self.datum)
+        return self.contacts.forces(self.datum)
+
+    def _hand_over(self, fresh: bool = True) -> None:
+        """From here on the law with a memory; fresh: it remembers nothing yet."""
+        assert self.contacts is not None
+        if fresh:
+            self.contacts.adopt(self.displacement - self.time_step * self.velocity)  # its first push adds this step
+        self.engine = Bonded(self.contacts)
+        self.laws.append((self.engine.name, self.steps))
 
     @property
     def time(self) -> float:
@@ -59,24 +137,39 @@ class Simulation:
     def advance(self, steps: int) -> np.ndarray:
         """Go on by `steps` steps; returns (steps, p, 6): displacement and velocity of the probes before each.
 
-        Raises RunError when the motion grows without bound, saying when and where.
+        Displacements count from the start. Raises RunError when the motion grows without bound, saying when and where.
         """
-        times = (self.steps + np.arange(steps)) * self.time_step
         record = np.empty((steps, len(self.probes), 6))
-        supports = self._supports
+        at_once = max(1, int(DRIVEN_BYTES / (24 * max(1, len(self._supports.nodes)))))
+        done = 0
         with threads_for(self.scene.count):
-            advance(
-                self.displacement, self._spare, self.velocity,
-                *self.scene.contacts.arrays,
-                self._mobility, self._inverse_inertia, self.scene.free, self.scene.case.material.damp,
-                self.time_step,
-                supports.nodes, supports.keep, supports.mobility, supports.stiffness, supports.preload,
-                supports.prescribed, supports.drive(times),
-                self.probes, record, self.tracked, self.peaks,
-            )  # fmt: skip
-        self.steps += steps
+            while done < steps:
+                done += self._advance(min(at_once, steps - done), record[done:])
+        record[..., :3] -= self.datum[:, self.probes].T
+        if self.contacts is not None:
+            self.contacts.note_cracks(self.displacement)
         self._watch()
         return record
+
+    def _advance(self, steps: int, record: np.ndarray) -> int:
+        """Up to `steps` steps under one law; returns those done."""
+        times = (self.steps + np.arange(steps)) * self.time_step
+        elastic = isinstance(self.engine, Elastic)
+        body = tables.Body(
+            self._mobility,
+            self._inverse_inertia,
+            self.scene.free,
+            self._elastic_load if elastic else self.load,
+            self._damp,
+            self.time_step,
+        )
+        log = tables.Log(self.probes, record[:steps], self.tracked, self.peaks, self.work)
+        supports = self._supports.table(times)
+        done = self.engine.advance(self.displacement, self._spare, self.velocity, self.steps, body, supports, log)
+        self.steps += done
+        if self.engine.ended:
+            self._hand_over()
+        return done
 
     def run(self, steps: int, on_block: Callable[["Simulation", np.ndarray], None] | None = None) -> None:
         """Advance to `steps` steps in all, block by block.
@@ -98,6 +191,11 @@ class Simulation:
         counts = [len(self.scene.edges[s].nodes) for s in sides[: sides.index(side)]]
         return slice(sum(counts), sum(counts) + len(self.scene.edges[side].nodes))
 
+    def _where_unsupported(self, mobility: np.ndarray) -> np.ndarray:
+        """Mobility (n,) of the particles the support table does not move."""
+        mobility[self._supports.nodes] = 0.0
+        return mobility
+
     def _watch(self) -> None:
         """Raise RunError when a particle is faster than any wave could make it."""
         speed = np.abs(self.velocity[:2]).max(axis=0)
@@ -111,35 +209,47 @@ class Simulation:
         )
 
 
+def _runaway_speed(scene: Scene) -> float:
+    """Speed (m/s) that no particle can have; without a limit where more than waves moves them."""
+    waves = sum(wave.peak() for wave in scene.case.wave.values())
+    free = scene.case.load or scene.remembers
+    return RUNAWAY * waves if waves and not free else float(np.finfo(float).max)
+
+
 class NodeSupports:
-    """The support table as the kernel applies it, one line per supported particle and all three components.
+    """The support table as the kernels apply it, one line per supported particle and all three components.
 
-    v⁺ = keep·v + mobility·(F + F_0 − K u + drive) + prescribed·drive. With the centred damper
-    keep = (m/Δt − C/2)/(m/Δt + C/2) and mobility = 1/(m/Δt + C/2); both are zero for a prescribed component.
-
-    Attributes: nodes (k,); keep, mobility, stiffness, preload, prescribed (k, 3).
+    Attributes: nodes (k,); inertia, keep, mobility, stiffness, prescribed (k, 3), see kernels.tables.Supports.
     """
 
     def __init__(self, scene: Scene, time_step: float) -> None:
-        table = scene.supports
-        self.table: Supports = table
-        self.half_step = 0.5 * time_step
-        self.nodes, line = np.unique(table.node, return_inverse=True)
-        self._at = (line, table.component)
-        shape = (len(self.nodes), 3)
-        inertia = np.stack([scene.mass, scene.mass, scene.inertia], axis=1)[self.nodes] / time_step
-        damping, self.prescribed = np.zeros(shape), np.zeros(shape)
-        self.stiffness, self.preload = np.zeros(shape), np.zeros(shape)
-        damping[self._at] = table.damping
-        self.prescribed[self._at] = table.prescribed
-        self.stiffness[self._at] = table.stiffness
-        self.preload[self._at] = table.preload
+        self._rows: Supports = scene.supports
+        self._half_step = 0.5 * time_step
+        self.nodes, line = np.unique(self._rows.node, return_inverse=True)
+        self._at = (line, self._rows.component)
+        self.inertia = np.stack([scene.mass, scene.mass, scene.inertia], axis=1)[self.nodes] / time_step
+        damping = self._spread(self._rows.damping)
+        self.stiffness, self.prescribed = self._spread(self._rows.stiffness), self._spread(self._rows.prescribed)
         moves = scene.free * (1.0 - self.prescribed)
-        self.mobility = moves / (inertia + 0.5 * damping)
-        self.keep = moves * (inertia - 0.5 * damping) / (inertia + 0.5 * damping)
+        self.mobility = moves / (self.inertia + 0.5 * damping)
+        self.keep = moves * (self.inertia - 0.5 * damping) / (self.inertia + 0.5 * damping)
 
-    def drive(self, times: np.ndarray) -> np.ndarray:
-        """Driving forces at each time, (steps, k, 3) N; velocities in m/s where prescribed."""
+    def table(self, times: np.ndarray) -> tables.Supports:
+        """All of it for steps that begin at `times` (steps,) s."""
         drive = np.zeros((len(times), len(self.nodes), 3))
-        drive[:, self._at[0], self._at[1]] = self.table.sample(times, self.half_step)
-        return drive
+        drive[:, self._at[0], self._at[1]] = self._rows.sample(times, self._half_step)
+        return tables.Supports(
+            self.nodes, self.inertia, self.keep, self.mobility, self.stiffness, self.prescribed, drive
+        )
+
+    def springs_at(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces (3, n) that take the springs' zero to displacements (3, n)."""
+        force = np.zeros_like(displacement)
+        force[:, self.nodes] = self.stiffness.T * displacement[:, self.nodes]
+        return force
+
+    def _spread(self, column: np.ndarray) -> np.ndarray:
+        """A column of the table as (k, 3), zero where it has no row."""
+        spread = np.zeros((len(self.nodes), 3))
+        spread[self._at] = column
+        return spread

@@ -16,12 +16,15 @@ LANCZOS_VECTORS = 8
 """Krylov vectors kept: few, as they are the largest arrays of all."""
 
 
-def step_limit(scene: Scene, tolerance: float = TOLERANCE) -> float:
-    """Largest stable step 2/ω_max of central differences (s), for a relative eigenvalue residual `tolerance`.
+def step_limit(scene: Scene, tolerance: float = TOLERANCE, damp: float | None = None) -> float:
+    """Largest stable step 2/(ω_max √(1 + damp)) of central differences (s), for a relative residual `tolerance`.
+
+    damp is the local damping coefficient, None: the material's. At the limit forces oppose velocities at every step, so
+    that local damping makes them 1 + damp times as strong.
 
     ω_max² is the largest eigenvalue of M⁻¹K of the assembled scene, found by Lanczos iteration on M^(-1/2) K
     M^(-1/2) with held and prescribed components taken out; centred dashpots do not change it. The start vector is
-    fixed, so the step is the same in every run.
+    fixed, so the step is the same in every run. Under a law with a memory the limit also holds for loose disks.
 
     Raises RunError when the iteration does not converge.
     """
@@ -32,15 +35,15 @@ def step_limit(scene: Scene, tolerance: float = TOLERANCE) -> float:
     def apply(vector: np.ndarray) -> np.ndarray:
         u = root * vector.reshape(3, -1)
         with threads_for(scene.count):
-            contact_forces(u, *scene.contacts.arrays, force)
+            contact_forces(u, scene.rows, force)
         return (root * (stiffness * u - force)).ravel()
 
     size = 3 * scene.count
     operator = LinearOperator((size, size), matvec=apply, dtype=float)
     start = np.random.default_rng(0).standard_normal(size) * (root.ravel() > 0.0)
     if not start.any():
-        return np.inf
-    if size < 20:
+        largest = 0.0
+    elif size < 20:
         matrix = np.stack([apply(column) for column in np.eye(size)], axis=1)
         largest = np.linalg.eigvalsh(0.5 * (matrix + matrix.T))[-1]
     else:
@@ -51,7 +54,21 @@ def step_limit(scene: Scene, tolerance: float = TOLERANCE) -> float:
         except ArpackNoConvergence as error:
             raise RunError(f"the stability limit was not found ({error})") from None
         largest *= 1.0 + tolerance  # it was found too small, by less than its residual
-    return float(2.0 / np.sqrt(largest)) if largest > 0.0 else np.inf
+    if scene.remembers:
+        largest = max(largest, _loose_eigenvalue(scene))
+    damp = scene.case.material.damp if damp is None else damp
+    return float(2.0 / np.sqrt(largest * (1.0 + damp))) if largest > 0.0 else np.inf
+
+
+def _loose_eigenvalue(scene: Scene) -> float:
+    """Bound ω² (1/s²) of the smallest disks rolling on six neighbours each: what broken or loose ground may come to.
+
+    Contacts alone. On the hexagonal lattice the normal springs give at most 6k_n/m, and the tangential ones 24k_s/m,
+    when all disks turn alike; the sum bounds both together.
+    """
+    moduli = scene.ground.moduli
+    shear = moduli.emod / moduli.kratio if moduli.fric > 0.0 else 0.0
+    return (6.0 * moduli.emod + 24.0 * shear) / float(scene.ground.mass.min())
 
 
 def _inverse_mass(scene: Scene) -> np.ndarray:

@@ -16,10 +16,13 @@ from dembound.boundaries import (
     Free,
     Periodic,
     Velocity,
+    Viscoelastic,
+    ViscoelasticInput,
     Viscous,
     ViscousInput,
     normal_axis,
 )
+from dembound.boundaries.viscous import Dashpots
 from dembound.case import Case
 from dembound.errors import CaseError
 from dembound.scene import ground_of
@@ -64,6 +67,26 @@ def calibration_pulse(case: Case, side: str, motion: Motion) -> Cosine:
     return Cosine(type="cosine", amplitude=1.0, period=400.0 * case.packing.radius / speed)
 
 
+def linear_medium(case: Case) -> tuple[Case, list[str]]:
+    """The case as what β is about, dashpots on a linear medium, and sentences that say what was left out.
+
+    Springs reflect whatever β is; loads, a static stage and a law with a memory add what is no wave's.
+    """
+    boundary = {
+        side: table.without_springs() if isinstance(table, Viscoelastic | ViscoelasticInput) else table
+        for side, table in case.boundary.items()
+    }
+    material = case.material.model_copy(update={"law": "elastic"})
+    left_out = {
+        "viscoelastic sides without their springs": boundary != case.boundary,
+        "no static stage": case.static is not None,
+        "no loads": bool(case.load),
+        "the elastic law": case.material.law != material.law,
+    }
+    plain = replace(case, boundary=boundary, material=material, static=None, load=())
+    return plain, [sentence for sentence, applies in left_out.items() if applies]
+
+
 def _driven(case: Case, side: str, motion: Motion, pulse: Cosine) -> Case:
     """The case with the pulse as its only wave: sent from the opposite side, or let in by the side itself."""
     wave = {"wave_p": None, "wave_s": None, f"wave_{motion}": PULSE}
@@ -79,7 +102,7 @@ def _driven(case: Case, side: str, motion: Motion, pulse: Cosine) -> Case:
 def _at_rest(table: BoundaryTable) -> BoundaryTable:
     """The boundary without its waves."""
     if isinstance(table, ViscousInput):
-        return Viscous(type="viscous", beta_p=table.beta_p, beta_s=table.beta_s)
+        return Viscous(type="viscous", **table.model_dump(include=set(Dashpots.model_fields)))
     return Fixed(type="fixed") if isinstance(table, Velocity) else table
 
 

@@ -10,13 +10,15 @@ import numpy as np
 from matplotlib.image import imsave
 
 from dembound.errors import DemboundError
-from dembound.results import liveliest_snapshot, open_record, replacing, snapshot_of
+from dembound.results import cracks_until, liveliest_snapshot, open_record, replacing, snapshot_of
 
 if TYPE_CHECKING:
     import pyvista
 
 Field = Literal["velocity", "displacement"]
 LABELS = {"velocity": "speed (m/s)", "displacement": "displacement (m)"}
+
+CRACKS = "red"  # told from every disk; black would be lost on those at rest
 
 CORNERS = 24  # of a disk's polygon; a multiple of four, so that it is as wide and as high as the disk
 
@@ -32,7 +34,7 @@ WINDOWLESS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")  # what VTK draws
 
 
 def view(run: Path, snapshot: int | None = None, field: Field = "velocity", picture: Path | None = None) -> None:
-    """Show a run's disks from above, at their undeformed places, coloured by the length of a field.
+    """Show a run's disks from above, at their undeformed places, coloured by the length of a field, and its cracks.
 
     run is a ``run.h5``; snapshot the number to begin with, negative ones counting from the last, by default the one
     with the largest motion; field velocity in m/s or displacement in m; picture a PNG file to draw into instead of
@@ -89,6 +91,7 @@ def make_plotter(file: h5py.File, first: h5py.Group, field: Field, off_screen: b
     def show(number: float) -> None:
         shown = snapshots[round(number)]
         disks.cell_data[label] = lengths(shown, field)
+        show_cracks(plotter, cracks_until(file, shown.attrs["time"])["position"])
         plotter.add_text(f"{file.attrs['name']}: t = {shown.attrs['time']:.3g} s", name="time", font_size=12)
 
     show(snapshots.index(first))
@@ -98,6 +101,15 @@ def make_plotter(file: h5py.File, first: h5py.Group, field: Field, off_screen: b
         slider.GetRepresentation().ShowSliderLabelOff()  # its number has decimals, and the time is shown anyway
     look_from_above(plotter, file.attrs["size"])
     return plotter
+
+
+def show_cracks(plotter: "pyvista.Plotter", positions: np.ndarray) -> None:
+    """Mark broken bonds at positions (k, 2) m by points, in place of those marked before."""
+    plotter.remove_actor("cracks", render=False)
+    if len(positions) > 0:
+        raised = np.column_stack([positions, np.ones(len(positions))])  # from above, no height shows
+        plotter.add_points(raised, color=CRACKS, point_size=6.0, name="cracks", reset_camera=False)
+        plotter.renderer.ResetCameraClippingRange()
 
 
 def look_from_above(plotter: "pyvista.Plotter", size: np.ndarray) -> None:

@@ -10,11 +10,17 @@ from pydantic import Field
 from dembound.boundaries.fixed import Fixed
 from dembound.boundaries.free import Free
 from dembound.boundaries.periodic import Periodic
+from dembound.boundaries.roller import Roller
 from dembound.boundaries.sides import OPPOSITE, SIDES, normal_axis
+from dembound.boundaries.symmetry import Symmetry
 from dembound.boundaries.velocity import Velocity
+from dembound.boundaries.viscoelastic import Viscoelastic, ViscoelasticInput
 from dembound.boundaries.viscous import Viscous, ViscousInput
 
-BoundaryTable = Annotated[Free | Fixed | Velocity | Periodic | Viscous | ViscousInput, Field(discriminator="type")]
+BoundaryTable = Annotated[
+    Free | Fixed | Roller | Symmetry | Velocity | Periodic | Viscous | ViscousInput | Viscoelastic | ViscoelasticInput,
+    Field(discriminator="type"),
+]
 """Any boundary table of a case file, told apart by its ``type``."""
 
 __all__ = [
@@ -24,7 +30,11 @@ __all__ = [
     "Fixed",
     "Free",
     "Periodic",
+    "Roller",
+    "Symmetry",
     "Velocity",
+    "Viscoelastic",
+    "ViscoelasticInput",
     "Viscous",
     "ViscousInput",
     "normal_axis",

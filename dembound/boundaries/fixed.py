@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Literal
 
-from dembound.boundaries.support import Edge, Medium, Signal, SupportBuilder
+from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
 from dembound.table import Table
 
 
@@ -12,7 +12,7 @@ class Fixed(Table):
 
     type: Literal["fixed"]
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Signal], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
         """Prescribe zero velocity for all three components."""
         for component in range(3):
             supports.add(edge.nodes, component, prescribed=True)

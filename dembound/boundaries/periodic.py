@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Literal
 
-from dembound.boundaries.support import Edge, Medium, Signal, SupportBuilder
+from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
 from dembound.table import Table
 
 
@@ -12,5 +12,5 @@ class Periodic(Table):
 
     type: Literal["periodic"]
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Signal], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
         """Add nothing: the seam bonds already hold the side."""

@@ -2,14 +2,15 @@
 
 Every boundary type is a recipe that fills rows of this one table, and one kernel applies it::
 
-    F = preload − damping · v − stiffness · u + drive · signal(t)          (Z eqs 4-6, 13-18)
+    F = Σ drive · signal(t) − damping · v − stiffness · u          (Z eqs 4-6, 13-18)
 
-or, for a prescribed row, v = drive · signal(t) whatever the forces. A side may meet another at a corner:
+or, for a prescribed row, v = Σ drive · signal(t) whatever the forces. A side may meet another at a corner:
 rows on the same degree of freedom then add up, and a prescribed one outranks the rest.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
@@ -19,13 +20,33 @@ Signal = Callable[[np.ndarray], np.ndarray]
 """A time function: times (k,) in s -> values (k,)."""
 
 
+class Incident(Protocol):
+    """A wave that a side may let in."""
+
+    def velocity(self, t: np.ndarray) -> np.ndarray:
+        """Particle velocity, m/s, at the times t, s; same shape as t."""
+
+    def displacement(self, t: np.ndarray) -> np.ndarray:
+        """Particle displacement, m, at the times t, s; same shape as t."""
+
+
 @dataclass(frozen=True)
 class Medium:
-    """What the dashpots absorb into: bulk density (kg/m³) and nominal wave speeds (m/s)."""
+    """What a side is made to stand for.
+
+    density kg/m³, bulk; p_wave_speed, s_wave_speed m/s, nominal; mirror_stiffness: diameters (k,) m -> stiffness of
+    the contact and bond between two touching disks of that diameter, normal (k,) N/m and bending (k,) N·m/rad.
+    """
 
     density: float
     p_wave_speed: float
     s_wave_speed: float
+    mirror_stiffness: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = ρc_s² in Pa."""
+        return self.density * self.s_wave_speed**2
 
     def impedances(self, beta_p: float, beta_s: float, normal_axis: int) -> np.ndarray:
         """Dashpot constants per metre of boundary, (2,) in Pa·s/m: βρc, P along the normal, S across it."""
@@ -38,11 +59,12 @@ class Medium:
 class Edge:
     """One side of the scene: the exposed particles and the length they stand for.
 
-    side left, right, bottom or top; nodes (k,) particle indices; diameters (k,) m; length m.
+    side left, right, bottom or top; nodes (k,) particle indices; positions (k, 2) m; diameters (k,) m; length m.
     """
 
     side: str
     nodes: np.ndarray
+    positions: np.ndarray
     diameters: np.ndarray
     length: float
 
@@ -59,36 +81,38 @@ class Edge:
 
 @dataclass(frozen=True)
 class Supports:
-    """The table. All columns have length r.
+    """The table: r rows, one per supported degree of freedom, and the d drives that act on them.
 
-    node, component (0 x, 1 y, 2 rotation); preload N; damping N·s/m; stiffness N/m; drive N (or m/s where
-    prescribed) per unit of signal; signal index into `signals`, -1 for none; prescribed bool.
+    Of rows: node; component (0 x, 1 y, 2 rotation); damping N·s/m; stiffness N/m (N·m/rad of a rotation); prescribed
+    bool. Of drives, any number to a row: drive_row; drive N (m/s where prescribed) per unit of signal; drive_signal,
+    the signal's index.
     """
 
     node: np.ndarray
     component: np.ndarray
-    preload: np.ndarray
     damping: np.ndarray
     stiffness: np.ndarray
-    drive: np.ndarray
-    signal: np.ndarray
     prescribed: np.ndarray
+    drive_row: np.ndarray
+    drive: np.ndarray
+    drive_signal: np.ndarray
     signals: tuple[Signal, ...] = ()
 
     def __len__(self) -> int:
         return len(self.node)
 
     def sample(self, times: np.ndarray, half_step: float) -> np.ndarray:
-        """Drive of every row at each time, (steps, r): forces at `times`, prescribed velocities half a step on.
+        """All that drives every row at each time, (steps, r): forces at `times`, prescribed velocities half a step on.
 
         Forces act at whole steps; velocities live at half steps, so a prescribed one is sampled there.
         """
         values = np.zeros((len(times), len(self)))
+        late = self.prescribed[self.drive_row]
         for index, signal in enumerate(self.signals):
             for prescribed, shift in ((False, 0.0), (True, half_step)):
-                rows = np.flatnonzero((self.signal == index) & (self.prescribed == prescribed))
-                if len(rows):
-                    values[:, rows] = signal(times + shift)[:, None] * self.drive[rows]
+                chosen = np.flatnonzero((self.drive_signal == index) & (late == prescribed))
+                if len(chosen):  # a signal drives a row once, so that no row stands here twice
+                    values[:, self.drive_row[chosen]] += signal(times + shift)[:, None] * self.drive[chosen]
         return values
 
 
@@ -105,14 +129,16 @@ class SupportBuilder:
         nodes: np.ndarray,
         component: int,
         *,
-        preload: float | np.ndarray = 0.0,
         damping: float | np.ndarray = 0.0,
         stiffness: float | np.ndarray = 0.0,
         drive: float | np.ndarray = 0.0,
         signal: Signal | None = None,
         prescribed: bool = False,
     ) -> None:
-        """Add one row per node for one component; numbers or arrays (k,). Held components are left out."""
+        """Add one row per node, each node once, for one component; numbers or arrays (k,).
+
+        Rows added to the same degree of freedom become one, with all their drives. Held components are left out.
+        """
         if component in self.held or len(nodes) == 0:
             return
         index = -1
@@ -122,78 +148,51 @@ class SupportBuilder:
         columns: dict[str, float | np.ndarray] = {
             "node": nodes,
             "component": component,
-            "preload": preload,
             "damping": damping,
             "stiffness": stiffness,
+            "prescribed": prescribed,
             "drive": drive,
             "signal": index,
-            "prescribed": prescribed,
         }
         self._rows.append({name: np.broadcast_to(value, np.shape(nodes)) for name, value in columns.items()})
 
     def table(self) -> Supports:
         """Merge rows on the same degree of freedom and sort them by node.
 
-        Dampings, stiffnesses and preloads add; drives of different signals become one signal of their own; a
-        prescribed row replaces all others, and of two prescribed rows the moving one wins.
+        Dampings, stiffnesses and drives add; a prescribed row replaces all others, of two prescribed rows the moving
+        one wins, and of two moving ones the first.
         """
-        columns = {
-            name: np.concatenate([rows[name] for rows in self._rows]) if self._rows else np.zeros(0)
-            for name in (
-                "node",
-                "component",
-                "preload",
-                "damping",
-                "stiffness",
-                "drive",
-                "signal",
-                "prescribed",
-            )
-        }
-        columns["prescribed"] = columns["prescribed"].astype(bool)
-        for name in ("node", "component", "signal"):
-            columns[name] = columns[name].astype(np.int64)
-        key = columns["node"] * 3 + columns["component"]
-        unique, row_of = np.unique(key, return_inverse=True)
-        outranked = self._outranked(columns, row_of, len(unique))
-        merged = {name: np.zeros(len(unique)) for name in ("preload", "damping", "stiffness", "drive")}
-        for name in ("preload", "damping", "stiffness"):
-            np.add.at(merged[name], row_of[~outranked], columns[name][~outranked])
-        signal = np.full(len(unique), -1)
-        signals = list(self._signals)
-        prescribed = np.zeros(len(unique), dtype=bool)
-        np.logical_or.at(prescribed, row_of, columns["prescribed"])
-        for i in np.flatnonzero((columns["signal"] >= 0) & ~outranked):
-            row = row_of[i]
-            if signal[row] < 0:
-                signal[row], merged["drive"][row] = columns["signal"][i], columns["drive"][i]
-                continue
-            first, second = signals[signal[row]], signals[columns["signal"][i]]
-            signals.append(_sum_of(first, merged["drive"][row], second, columns["drive"][i]))
-            signal[row], merged["drive"][row] = len(signals) - 1, 1.0
+        node, component, signal = (self._column(name, np.int64) for name in ("node", "component", "signal"))
+        damping, stiffness, drive = (self._column(name, np.float64) for name in ("damping", "stiffness", "drive"))
+        prescribed = self._column("prescribed", np.bool_)
+        unique, row_of = np.unique(3 * node + component, return_inverse=True)
+        kept = ~_outranked(row_of, len(unique), prescribed, signal >= 0)
+        driven = kept & (signal >= 0)
         return Supports(
             node=unique // 3,
             component=unique % 3,
-            signal=signal,
-            prescribed=prescribed,
-            signals=tuple(signals),
-            **merged,
+            damping=np.bincount(row_of, weights=kept * damping, minlength=len(unique)),
+            stiffness=np.bincount(row_of, weights=kept * stiffness, minlength=len(unique)),
+            prescribed=np.bincount(row_of, weights=prescribed, minlength=len(unique)) > 0,
+            drive_row=row_of[driven],
+            drive=drive[driven],
+            drive_signal=signal[driven],
+            signals=tuple(self._signals),
         )
 
-    @staticmethod
-    def _outranked(columns: dict[str, np.ndarray], row_of: np.ndarray, count: int) -> np.ndarray:
-        """Rows (r,) bool that another row on the same degree of freedom replaces."""
-        rank = columns["prescribed"].astype(int) * (1 + (columns["signal"] >= 0))
-        best = np.zeros(count, dtype=int)
-        np.maximum.at(best, row_of, rank)
-        outranked = rank < best[row_of]
-        # of several equally ranked prescriptions keep the first
-        prescribed = np.flatnonzero((rank > 0) & ~outranked)
-        _, first = np.unique(row_of[prescribed], return_index=True)
-        outranked[np.delete(prescribed, first)] = True
-        return outranked
+    def _column(self, name: str, kind: type[np.generic]) -> np.ndarray:
+        """One column of all rows added so far."""
+        return np.concatenate([np.zeros(0, kind), *(rows[name] for rows in self._rows)]).astype(kind)
 
 
-def _sum_of(first: Signal, factor: float, second: Signal, other: float) -> Signal:
-    """The signal factor · first + other · second."""
-    return lambda times: factor * first(times) + other * second(times)
+def _outranked(row_of: np.ndarray, count: int, prescribed: np.ndarray, moving: np.ndarray) -> np.ndarray:
+    """Which of the rows added another one on the same degree of freedom replaces; all (a,), bool but for row_of."""
+    rank = prescribed * (1 + moving.astype(int))
+    best = np.zeros(count, dtype=int)
+    np.maximum.at(best, row_of, rank)
+    outranked = rank < best[row_of]
+    # of several equally ranked prescriptions keep the first
+    leading = np.flatnonzero((rank > 0) & ~outranked)
+    _, first = np.unique(row_of[leading], return_index=True)
+    outranked[np.delete(leading, first)] = True
+    return outranked

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Literal
 
 from dembound.boundaries.driven import Driven
-from dembound.boundaries.support import Edge, Medium, Signal, SupportBuilder
+from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
 
 
 class Velocity(Driven):
@@ -12,13 +12,13 @@ class Velocity(Driven):
 
     type: Literal["velocity"]
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Signal], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
         """Prescribe v = wave(t) along each named direction and v = 0 along the other."""
         for component, name in enumerate(self.waves_by_axis(edge.axis)):
             supports.add(
                 edge.nodes,
                 component,
                 drive=1.0 if name else 0.0,
-                signal=waves[name] if name else None,
+                signal=waves[name].velocity if name else None,
                 prescribed=True,
             )

@@ -7,16 +7,23 @@ Z eqs 3-6. A dashpot of constant βρcD per edge particle of diameter D stands f
 from collections.abc import Mapping
 from typing import Literal
 
+import numpy as np
+
 from dembound.boundaries.driven import Driven
-from dembound.boundaries.support import Edge, Medium, Signal, SupportBuilder
+from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
 from dembound.table import Table, quantity
 
 
 class Dashpots(Table):
-    """The two calibration factors of a side with dashpots."""
+    """A side with dashpots: their two calibration factors, and how much mass they stand at."""
 
     beta_p: float = quantity(1.0, unit="1", help="factor of the P dashpots, along the side's normal", ge=0.0)
     beta_s: float = quantity(1.0, unit="1", help="factor of the S dashpots, across the side's normal", ge=0.0)
+    half_mass: bool = quantity(False, unit="1", help="whether the side's particles have half their mass and inertia")
+
+    def dampings(self, edge: Edge, medium: Medium) -> np.ndarray:
+        """Dashpot constants βρcD (2, k) in N·s/m of the edge's particles along x and y (Z eq. 4)."""
+        return np.outer(medium.impedances(self.beta_p, self.beta_s, edge.axis), edge.diameters)
 
 
 class Viscous(Dashpots):
@@ -24,10 +31,10 @@ class Viscous(Dashpots):
 
     type: Literal["viscous"]
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Signal], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
         """One dashpot per edge particle and direction."""
-        for component, impedance in enumerate(medium.impedances(self.beta_p, self.beta_s, edge.axis)):
-            supports.add(edge.nodes, component, damping=impedance * edge.diameters)
+        for component, damping in enumerate(self.dampings(edge, medium)):
+            supports.add(edge.nodes, component, damping=damping)
 
 
 class ViscousInput(Dashpots, Driven):
@@ -35,16 +42,10 @@ class ViscousInput(Dashpots, Driven):
 
     type: Literal["viscous_input"]
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Signal], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
         """The absorbing dashpots, plus the force that makes the incident wave pass."""
         names = self.waves_by_axis(edge.axis)
-        for component, impedance in enumerate(medium.impedances(self.beta_p, self.beta_s, edge.axis)):
-            name = names[component]
-            dashpots = impedance * edge.diameters
-            supports.add(
-                edge.nodes,
-                component,
-                damping=dashpots,
-                drive=2.0 * dashpots if name else 0.0,
-                signal=waves[name] if name else None,
-            )
+        for component, damping in enumerate(self.dampings(edge, medium)):
+            supports.add(edge.nodes, component, damping=damping)
+            if name := names[component]:
+                supports.add(edge.nodes, component, drive=2.0 * damping, signal=waves[name].velocity)

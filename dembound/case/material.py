@@ -8,12 +8,17 @@ from dembound.table import Table, quantity
 
 WAVE_SPEED_KEYS = ("match", "contact_share")
 MODULI_KEYS = ("emod", "pb_emod")
+STRENGTH_KEYS = ("pb_ten", "pb_coh")
+HISTORY_KEYS = (*STRENGTH_KEYS, "pb_fa", "locked_in", "geometry", "elastic_start")
+"""Keys of the law that remembers what contacts and bonds went through."""
 
 
 class Material(Table):
-    """What the particles are made of: bulk density, and contact and bond stiffness in PFC's words.
+    """What the particles are made of: bulk density, and contact and bond properties in PFC's words.
 
-    Stiffness is given either by the wave speed wanted (Z eqs 9-11) or by the two moduli.
+    Stiffness is given either by the wave speed wanted (Z eqs 9-11) or by the two moduli. The law "elastic" has no
+    history; "linearpbond" is PFC's linear contact, without tension and with Coulomb friction, plus a parallel bond
+    that breaks for good.
     """
 
     density: float = quantity(..., unit="kg/m³", help="bulk density: mass over scene area", gt=0.0)
@@ -40,11 +45,30 @@ class Material(Table):
     fric: float = quantity(0.0, unit="1", help="friction coefficient of the contacts", ge=0.0)
     pb_rmul: float = quantity(1.0, unit="1", help="bond radius over the smaller disk's radius", gt=0.0)
     damp: float = quantity(0.0, unit="1", help="local damping coefficient; 0 for waves", ge=0.0, lt=1.0)
-    law: Literal["elastic"] = quantity("elastic", unit="1", help="how contacts and bonds push")
+    law: Literal["elastic", "linearpbond"] = quantity("elastic", unit="1", help="how contacts and bonds push")
+    pb_ten: float | None = quantity(
+        None, unit="Pa", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0
+    )
+    pb_coh: float | None = quantity(None, unit="Pa", help="cohesion of the bonds; absent: unbreakable in shear", gt=0.0)
+    pb_fa: float = quantity(0.0, unit="degrees", help="friction angle of the bonds", ge=0.0, lt=90.0)
+    locked_in: bool = quantity(
+        True, unit="1", help="whether contacts carry the stress the brick was packed under; false: they just touch"
+    )
+    geometry: Literal["updated", "reference"] = quantity(
+        "updated",
+        unit="1",
+        help="whether normals and arms follow the motion or intact bonds keep those of the start",
+    )
+    elastic_start: bool = quantity(
+        True,
+        unit="1",
+        help="whether the faster elastic law serves until a contact opens, slips or closes or a bond yields",
+    )
 
     @model_validator(mode="after")
-    def _one_source_of_stiffness(self) -> "Material":
+    def _consistent(self) -> "Material":
         problems = self._problems_with_moduli() if self.p_wave_speed is None else self._problems_with_speed()
+        problems += self._problems_with_strength() if self.law == "linearpbond" else self._problems_without_history()
         if problems:
             raise ValueError("\n".join(problems))
         return self
@@ -69,4 +93,21 @@ class Material(Table):
         for key in WAVE_SPEED_KEYS:
             if key in self.model_fields_set:
                 problems.append(f"{key}: is only allowed together with p_wave_speed")
+        return problems
+
+    def _problems_without_history(self) -> list[str]:
+        """Keys that mean nothing to a law without history."""
+        return [
+            f'{key}: is only allowed with law = "linearpbond"' for key in HISTORY_KEYS if key in self.model_fields_set
+        ]
+
+    def _problems_with_strength(self) -> list[str]:
+        """Mistakes in the strength of the bonds."""
+        problems = []
+        if "pb_fa" in self.model_fields_set and self.pb_coh is None:
+            problems.append("pb_fa: is only allowed together with pb_coh, the strength it adds to")
+        no_bonds = "pb_emod = 0" if self.pb_emod == 0.0 else "contact_share = 1" if self.contact_share == 1.0 else None
+        if no_bonds:
+            given = [key for key in STRENGTH_KEYS if getattr(self, key) is not None]
+            problems += [f"{key}: is the strength of bonds, but {no_bonds} leaves none" for key in given]
         return problems

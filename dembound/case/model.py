@@ -5,11 +5,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from dembound.boundaries import BoundaryTable
+from dembound.case.load import Load
 from dembound.case.material import Material
 from dembound.case.monitor import Monitor
 from dembound.case.motion import Motion
 from dembound.case.output import Output
 from dembound.case.run import Run
+from dembound.case.static import Static
 from dembound.packings import PackingTable
 from dembound.waves import WaveTable
 
@@ -23,8 +25,9 @@ class Case:
     title : one line for pictures and reports; may be empty.
     packing, material, motion, run, output : the tables of these names.
     boundary : side -> table, in the order left, right, bottom, top; an absent side is free.
+    static : the table of this name; None: no static stage.
     wave : name -> table.
-    monitor : in the order of the file.
+    load, monitor : in the order of the file.
     name : the file's name without folder and ending.
     text : the TOML text the case was read from.
     folder : where relative paths in the case start.
@@ -37,7 +40,9 @@ class Case:
     material: Material
     motion: Motion
     boundary: Mapping[str, BoundaryTable]
+    static: Static | None
     wave: Mapping[str, WaveTable]
+    load: tuple[Load, ...]
     monitor: tuple[Monitor, ...]
     run: Run
     output: Output

@@ -9,6 +9,9 @@ class Output(Table):
     history_interval: float = quantity(
         0.0, unit="s", help="time between two samples of the histories; 0: every step", ge=0.0
     )
+    energy_interval: float = quantity(
+        0.0, unit="s", help="time between two entries of the energy ledger; 0: a hundred over the run", ge=0.0
+    )
     snapshots: int = quantity(
         0, unit="1", help="number of whole-scene snapshots, evenly spaced, the last at the end", ge=0
     )

@@ -5,12 +5,15 @@ from typing import Any
 
 from dembound.boundaries import OPPOSITE, BoundaryTable, Free, Periodic
 from dembound.boundaries.driven import Driven
+from dembound.boundaries.viscous import Dashpots
+from dembound.case.load import Load
 from dembound.case.material import Material
 from dembound.case.monitor import Monitor
 from dembound.case.motion import Motion
 from dembound.case.output import Output
 from dembound.case.run import Run
-from dembound.case.sentences import choices, show
+from dembound.case.sentences import choices, numbered, show
+from dembound.case.static_problems import static_problems
 from dembound.packings import PackingTable
 
 DIRECTIONS = {"left": "xy", "right": "xy", "bottom": "yx", "top": "yx"}
@@ -21,17 +24,23 @@ def problems_between(tables: Mapping[str, Any]) -> Iterator[str]:
     """Check the tables of a case against each other.
 
     `tables` has the fields of `Case` as keys. A table that is invalid on its own is None, and so is an
-    invalid entry of `boundary`, `wave` or `monitor`: checks that would need it are left out.
+    invalid entry of `boundary`, `wave`, `load` or `monitor`: checks that would need it are left out.
     """
-    yield from _unknown_waves(tables["boundary"], tables["wave"])
+    yield from _unknown_waves(tables["boundary"], tables["load"], tables["wave"])
     yield from _lonely_periodic_sides(tables["boundary"])
     if tables["motion"]:
         yield from _driven_but_held(tables["boundary"], tables["motion"])
+        yield from _loaded_but_held(tables["load"], tables["motion"])
         if tables["material"]:
             yield from _nothing_to_match(tables["material"], tables["motion"])
-    yield from _repeated_names(tables["monitor"])
     if tables["packing"]:
-        yield from _monitors_outside(tables["monitor"], tables["packing"])
+        yield from _half_masses_on_rough_sides(tables["boundary"], tables["packing"])
+    for key in ("load", "monitor"):
+        yield from _repeated_names(key, tables[key])
+        if tables["packing"]:
+            yield from _places_outside(key, tables[key], tables["packing"].size)
+    if tables["static"]:
+        yield from static_problems(*(tables[key] for key in ("static", "boundary", "load", "material", "motion")))
     if tables["run"]:
         yield from _steps_too_long(tables["run"], tables["output"])
 
@@ -45,12 +54,16 @@ def _drives(boundaries: Mapping[str, BoundaryTable | None]) -> Iterator[tuple[st
                     yield side, key, name, direction
 
 
-def _unknown_waves(boundaries: Mapping[str, BoundaryTable | None], waves: Mapping[str, object]) -> Iterator[str]:
-    """Sides that name a wave the case does not define."""
-    for side, key, name, _ in _drives(boundaries):
+def _unknown_waves(
+    boundaries: Mapping[str, BoundaryTable | None], loads: Sequence[Load | None], waves: Mapping[str, object]
+) -> Iterator[str]:
+    """Sides and loads that name a wave the case does not define."""
+    named = [(f"boundary.{side}.{key}", name) for side, key, name, _ in _drives(boundaries)]
+    named += [(f"{place}.wave", load.wave) for place, load in numbered("load", loads) if load.wave is not None]
+    for place, name in named:
         if name not in waves:
             defined = f"defined: {choices(name, waves)}" if waves else "none is defined"
-            yield f"boundary.{side}.{key}: {show(name)} is not a wave of this case; {defined}"
+            yield f"{place}: {show(name)} is not a wave of this case; {defined}"
 
 
 def _lonely_periodic_sides(boundaries: Mapping[str, BoundaryTable | None]) -> Iterator[str]:
@@ -68,36 +81,48 @@ def _driven_but_held(boundaries: Mapping[str, BoundaryTable | None], motion: Mot
             yield f"boundary.{side}.{key}: drives {direction}, which motion.held holds for every particle"
 
 
+def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:
+    """Loads along a direction in which nothing can move."""
+    for place, load in numbered("load", loads):
+        for axis in load.axes:
+            if "xy"[axis] in motion.held:
+                yield f"{place}.{load.key}: acts along {'xy'[axis]}, which motion.held holds for every particle"
+
+
+def _half_masses_on_rough_sides(boundaries: Mapping[str, BoundaryTable | None], packing: PackingTable) -> Iterator[str]:
+    """Sides whose particles are halved though they do not stand in one row."""
+    for side, boundary in boundaries.items():
+        if isinstance(boundary, Dashpots) and boundary.half_mass and packing.pattern == "B":
+            yield f"boundary.{side}.half_mass: is for regular edges, patterns A and C; the packing is B"
+
+
 def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
     """A wave speed asked of a packing in which no P wave can run."""
     if material.match == "assembly" and {"x", "y"} <= set(motion.held):
         yield 'material.match: is "assembly", but motion.held holds x and y, so the packing has no P-wave speed'
 
 
-def _repeated_names(monitors: Sequence[Monitor | None]) -> Iterator[str]:
-    """Monitors whose histories would overwrite one another."""
+def _repeated_names(key: str, tables: Sequence[Load | Monitor | None]) -> Iterator[str]:
+    """Loads or monitors whose results would overwrite one another."""
     first: dict[str, int] = {}
-    for number, monitor in enumerate(monitors, start=1):
-        if monitor and first.setdefault(monitor.name, number) != number:
-            yield f"monitor[{number}].name: {show(monitor.name)} is taken by monitor[{first[monitor.name]}]"
+    for number, table in enumerate(tables, start=1):
+        if table and first.setdefault(table.name, number) != number:
+            yield f"{key}[{number}].name: {show(table.name)} is taken by {key}[{first[table.name]}]"
 
 
-def _monitors_outside(monitors: Sequence[Monitor | None], packing: PackingTable) -> Iterator[str]:
-    """Monitors that lie where no particle can be."""
-    for number, monitor in enumerate(monitors, start=1):
-        if monitor and not all(0.0 <= x <= size for x, size in zip(monitor.position, packing.size, strict=True)):
-            yield (
-                f"monitor[{number}, {monitor.name}].position: is {show(monitor.position)}, "
-                f"must be in the scene, [0, 0] to {show(packing.size)} (m)"
-            )
+def _places_outside(key: str, tables: Sequence[Load | Monitor | None], size: tuple[float, float]) -> Iterator[str]:
+    """Loads or monitors that lie where no particle can be."""
+    for place, table in numbered(key, tables):
+        for where in ("position", "region"):
+            values = getattr(table, where, None) or ()
+            if not all(0.0 <= value <= size[i % 2] for i, value in enumerate(values)):
+                yield f"{place}.{where}: is {show(values)}, must be in the scene, [0, 0] to {show(size)} (m)"
 
 
 def _steps_too_long(run: Run, output: Output | None) -> Iterator[str]:
     """Intervals that the run is over before."""
     if run.time_step != "auto" and run.time_step > run.duration:
         yield f"run.time_step: is {run.time_step:g}, must be at most run.duration, {run.duration:g} (s)"
-    if output and output.history_interval > run.duration:
-        yield (
-            f"output.history_interval: is {output.history_interval:g}, "
-            f"must be at most run.duration, {run.duration:g} (s)"
-        )
+    for key in ("history_interval", "energy_interval"):
+        if output and (interval := getattr(output, key)) > run.duration:
+            yield f"output.{key}: is {interval:g}, must be at most run.duration, {run.duration:g} (s)"

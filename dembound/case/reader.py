@@ -11,6 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic_core import to_json
 
 from dembound.boundaries import SIDES, BoundaryTable
+from dembound.case.load import Load
 from dembound.case.material import Material
 from dembound.case.model import Case
 from dembound.case.monitor import Monitor
@@ -19,6 +20,7 @@ from dembound.case.output import Output
 from dembound.case.problems import problems_between
 from dembound.case.run import Run
 from dembound.case.sentences import describe, show, unknown
+from dembound.case.static import Static, StaticSide
 from dembound.errors import CaseError
 from dembound.packings import PackingTable
 from dembound.waves import WaveTable
@@ -32,7 +34,10 @@ SINGLE_TABLES: Mapping[str, TypeAdapter[Any]] = {
 }
 TITLE: TypeAdapter[Any] = TypeAdapter(str)
 BOUNDARY: TypeAdapter[Any] = TypeAdapter(BoundaryTable)
+STATIC: TypeAdapter[Any] = TypeAdapter(Static)
+STATIC_SIDE: TypeAdapter[Any] = TypeAdapter(StaticSide)
 WAVE: TypeAdapter[Any] = TypeAdapter(WaveTable)
+LOAD: TypeAdapter[Any] = TypeAdapter(Load)
 MONITOR: TypeAdapter[Any] = TypeAdapter(Monitor)
 
 KEYS = tuple(field.name for field in fields(Case) if field.compare)
@@ -99,9 +104,11 @@ class _Reader:
         tables = {"title": self._valid("title", data.get("title", ""), TITLE)}
         for key, kind in SINGLE_TABLES.items():
             tables[key] = self._valid(key, data.get(key, {}), kind)
-        tables["boundary"] = self._sides(data.get("boundary", {}))
+        tables["boundary"] = self._sides("boundary", data.get("boundary", {}), BOUNDARY)
+        tables["static"] = self._static(data["static"]) if "static" in data else None
         tables["wave"] = self._named("wave", data.get("wave", {}), WAVE)
-        tables["monitor"] = self._numbered(data.get("monitor", []))
+        tables["load"] = self._numbered("load", data.get("load", []), LOAD)
+        tables["monitor"] = self._numbered("monitor", data.get("monitor", []), MONITOR)
         self.problems += problems_between(tables)
         return tables, self.problems
 
@@ -124,21 +131,29 @@ class _Reader:
             return {}
         return {name: self._valid(f"{path}.{name}", table, kind) for name, table in raw.items()}
 
-    def _sides(self, raw: object) -> dict[str, Any]:
-        """The boundary tables in the order of the sides."""
+    def _sides(self, path: str, raw: object, kind: TypeAdapter[Any]) -> dict[str, Any]:
+        """The tables of sides, in the order of the sides."""
         if isinstance(raw, Mapping):
             strange = [name for name in raw if name not in SIDES]
-            self.problems += [f"boundary.{name}: {unknown('side', name, SIDES)}" for name in strange]
+            self.problems += [f"{path}.{name}: {unknown('side', name, SIDES)}" for name in strange]
             raw = {side: raw[side] for side in SIDES if side in raw}
-        return self._named("boundary", raw, BOUNDARY)
+        return self._named(path, raw, kind)
 
-    def _numbered(self, raw: object) -> tuple[Any, ...]:
-        """The monitors, counted from 1 in error texts."""
+    def _static(self, raw: object) -> Static | None:
+        """The static stage. Its sides are validated one by one, and an invalid one is None in it."""
+        if not isinstance(raw, Mapping):
+            return self._valid("static", raw, STATIC)
+        sides = self._sides("static.boundary", raw.get("boundary", {}), STATIC_SIDE)
+        static = self._valid("static", {key: value for key, value in raw.items() if key != "boundary"}, STATIC)
+        return static and static.model_copy(update={"boundary": sides})
+
+    def _numbered(self, key: str, raw: object, kind: TypeAdapter[Any]) -> tuple[Any, ...]:
+        """The tables of a list, counted from 1 in error texts."""
         if not isinstance(raw, list):
-            self.problems.append(f"monitor: is {show(raw)}, must be made of tables [[monitor]]")
+            self.problems.append(f"{key}: is {show(raw)}, must be made of tables [[{key}]]")
             return ()
         paths = []
         for number, table in enumerate(raw, start=1):
             named = isinstance(table, Mapping) and isinstance(table.get("name"), str)
-            paths.append(f"monitor[{number}, {table['name']}]" if named else f"monitor[{number}]")
-        return tuple(self._valid(path, table, MONITOR) for path, table in zip(paths, raw, strict=True))
+            paths.append(f"{key}[{number}, {table['name']}]" if named else f"{key}[{number}]")
+        return tuple(self._valid(path, table, kind) for path, table in zip(paths, raw, strict=True))

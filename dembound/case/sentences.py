@@ -96,6 +96,13 @@ def choices(name: str, known: Collection[str]) -> str:
     return ", ".join(known) + (f" (did you mean {alike[0]}?)" if alike else "")
 
 
+def numbered(key: str, tables: Iterable[Any]) -> Iterator[tuple[str, Any]]:
+    """The valid tables of a list, each with its place, such as ``monitor[1, top]``; invalid ones are None."""
+    for number, table in enumerate(tables, start=1):
+        if table:
+            yield f"{key}[{number}, {table.name}]", table
+
+
 def show(value: object) -> str:
     """A value as the case file spells it; tables and long values are shortened."""
     if isinstance(value, Mapping):

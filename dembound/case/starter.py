@@ -27,10 +27,11 @@ wave_p = "pulse"            # moves along the side's normal; wave_s moves across
 # beta_p = 1.0              # factor of the P dashpots; `dembound calibrate` finds it
 
 [boundary.right]
-type = "viscous"            # absorbs; other types: "free", "fixed", "velocity", "periodic"
+type = "viscous"            # absorbs; "viscoelastic" absorbs and holds; other types: "free", "fixed",
+                            # "roller", "symmetry", "velocity", "periodic", "viscoelastic_input"
 
 [wave.pulse]
-type = "cosine"             # or "ricker", "sine_burst", "constant", "file"
+type = "cosine"             # or "cubic_spline", "ricker", "sine_burst", "constant", "file"
 amplitude = 0.5             # m/s
 period = 0.08               # s
 
@@ -46,6 +47,7 @@ duration = 0.3              # s
 [output]
 snapshots = 5               # whole-scene snapshots, the last at the end
 # history_interval = 0.0    # s; 0: every step
+# energy_interval = 0.0     # s; 0: a hundred over the run
 # pictures = true
 """
 """Text of the starter case."""

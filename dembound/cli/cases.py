@@ -1,9 +1,10 @@
 """Commands that begin with a case: new, check, run, packing."""
 
+import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
@@ -14,9 +15,11 @@ from dembound.case import STARTER
 from dembound.check import check
 from dembound.cli.app import Cases, Name, Output, Settings, Side, Threads, app, err, load_case, out, use_threads
 from dembound.errors import CaseError
+from dembound.half_space import write_exact
 from dembound.plot.packing import plot_brick, plot_patterns
 from dembound.plot.style import save
-from dembound.run import Progress as OnBlock
+from dembound.results import laws_in_words
+from dembound.run import Progress as RunProgress
 from dembound.run import foresee, run_case
 from dembound.scene import Scene, build
 from dembound.simulate import Simulation
@@ -77,7 +80,26 @@ def run(
         except KeyboardInterrupt:
             err.print(f"{case.name}: stopped; histories so far are in {output / case.name}.partial")
             raise
+        facts = outcome(json.loads((folder / "summary.json").read_text()), remembers=case.material.law != "elastic")
+        if facts:
+            out.print(f"{case.name}: {'; '.join(facts)}")
         out.print(f"{case.name}: results in {folder}")
+
+
+def outcome(summary: dict[str, Any], *, remembers: bool) -> list[str]:
+    """What happened in a run, in words, from its summary: its static stage, and what a law that remembers came to."""
+    facts = []
+    if (static := summary["static"]) is not None:
+        broken = f", breaking {static['cracks']:,} bonds" if static["cracks"] else ""
+        facts.append(f"settled in {static['steps']:,} steps to a force ratio of {static['ratio']:.1e}{broken}")
+    if remembers:
+        facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
+        tension, shear = summary["cracks"]["tension"], summary["cracks"]["shear"]
+        if tension + shear > 0:
+            facts.append(f"{tension + shear:,} bonds broke ({tension:,} tension, {shear:,} shear)")
+        if error := summary["energy"]["relative_error"]:  # zero where nothing came in
+            facts.append(f"energy closes to {error:.1g}")
+    return facts
 
 
 @app.command("packing", rich_help_panel="Cases")
@@ -112,11 +134,29 @@ def _edge_of(scene: Scene, side: str) -> Edge:
     return scene.edges[side]
 
 
+@app.command("exact", rich_help_panel="Cases")
+def exact(
+    path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of Lamb's problem.")],
+    output: Output = Path("results"),
+    changes: Settings = None,
+    name: Name = None,
+) -> None:
+    """Write the exact motion of the half-space that a case of Lamb's problem stands for, at its own monitors.
+
+    It is plotted and compared like a run. Its folder is named after the case with "_exact", or by --name.
+    """
+    case = load_case(path, changes, name or f"{path.stem}_exact")
+    folder = output / case.name
+    folder.mkdir(parents=True, exist_ok=True)
+    write_exact(case, folder / "run.h5")
+    out.print(f"{case.name}: exact histories in {folder}")
+
+
 @contextmanager
-def _progress(name: str) -> Iterator[OnBlock]:
+def _progress(name: str) -> Iterator[RunProgress]:
     """A progress bar with rate and time left on a terminal, nothing elsewhere."""
     if not err.is_terminal:
-        yield lambda simulation, steps: None
+        yield RunProgress()
         return
     columns = (
         TextColumn("{task.description}"),
@@ -124,12 +164,23 @@ def _progress(name: str) -> Iterator[OnBlock]:
         TextColumn("{task.percentage:3.0f} %  {task.fields[rate]}"),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=err, transient=True) as progress:
-        task = progress.add_task(name, total=None, rate="")
+    with Progress(*columns, console=err, transient=True) as bar:
+        yield _Bar(bar, name)
 
-        def step(simulation: Simulation, steps: int) -> None:
-            speed = progress.tasks[0].speed
-            rate = f"{speed * simulation.scene.count / 1e6:.0f} M particle-steps/s" if speed else ""
-            progress.update(task, completed=simulation.steps, total=steps, rate=rate)
 
-        yield step
+class _Bar(RunProgress):
+    """A run's progress as a bar."""
+
+    def __init__(self, bar: Progress, name: str) -> None:
+        self.bar, self.name = bar, name
+        self.task = bar.add_task(name, total=None, rate="")
+
+    def settling(self, steps: int, ratio: float) -> None:
+        """The static stage: no one knows how long it takes."""
+        self.bar.update(self.task, description=f"{self.name}: settling, {steps:,} steps, force ratio {ratio:.1e}")
+
+    def running(self, simulation: Simulation, steps: int) -> None:
+        """The run itself."""
+        speed = self.bar.tasks[0].speed
+        rate = f"{speed * simulation.scene.count / 1e6:.0f} M particle-steps/s" if speed else ""
+        self.bar.update(self.task, description=self.name, completed=simulation.steps, total=steps, rate=rate)

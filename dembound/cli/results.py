@@ -5,12 +5,15 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.table import Column, Table
 
 from dembound.cli.app import Side, app, out
+from dembound.compare import compare
 from dembound.errors import CaseError
 from dembound.packings.cache import cache_folder, clear
 from dembound.plot.boundary import plot_boundary
 from dembound.plot.convergence import plot_convergence
+from dembound.plot.energy import plot_energy
 from dembound.plot.histories import plot_histories
 from dembound.plot.style import save
 from dembound.view import view
@@ -34,13 +37,18 @@ def plot(
     boundary: Annotated[
         Side | None, typer.Option(help="Show this side's diameters and peak velocities instead.")
     ] = None,
+    energy: Annotated[bool, typer.Option("--energy", help="Show the energy ledger of one run instead.")] = False,
 ) -> None:
     """Overlay the histories of several runs, or the passes of several calibrations, in one picture."""
     files = [results_file(path) for path in results]
     calibrations = [file for file in files if file.name == "calibration.h5"]
     if calibrations and len(calibrations) < len(files):
         raise CaseError(["RESULTS: holds runs and calibrations, which make no common picture; name one kind"])
-    if calibrations:
+    if energy and len(files) > 1:
+        raise CaseError(["--energy: shows one run, here are several"])
+    if energy:
+        figure = plot_energy(files[0])
+    elif calibrations:
         figure = plot_convergence(files)
     elif boundary is not None:
         figure = plot_boundary(files, boundary.value)
@@ -73,6 +81,23 @@ def cache(
     out.print(str(cache_folder()))
     if delete:
         out.print(f"deleted {clear()} bricks")
+
+
+@app.command("compare", rich_help_panel="Results")
+def compare_histories(
+    reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="Results to measure against.")],
+    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
+    quantity: Annotated[Field, typer.Option(help="What of the motion to compare.")] = Field.velocity,
+) -> None:
+    """Say how far the histories of runs are from those of a reference, monitor by monitor."""
+    found = compare(results_file(reference), [results_file(path) for path in results], quantity.value)
+    heads = ("run", "monitor", "along", "RMS", "largest", "at the end", "there")
+    columns = (Column(head, overflow="fold") for head in heads)
+    table = Table(*columns, title=f"{quantity.value} beside {reference}")
+    for line in found:
+        numbers = (f"{line.rms:.3%}", f"{line.peak:.3%}", f"{line.last:.4g}", f"{line.reference_last:.4g}")
+        table.add_row(line.run, line.monitor, line.component, *numbers)
+    out.print(table)
 
 
 def results_file(path: Path) -> Path:

@@ -16,16 +16,12 @@ so that N = √k_n n·Δu, S = √k_s (t·Δu − l_iθ_i − l_jθ_j), and the 
 import numpy as np
 from numba import njit, prange
 
-U = np.uint64  # unsigned indices spare numba's test for negative ones
+from dembound.kernels.common import CHUNKS, FASTMATH, U
+from dembound.kernels.contacts import moved, slack
+from dembound.kernels.step import damping_work, kick, note_after, note_before, support_velocities
 
-FASTMATH = {"contract", "nsz"}
-"""Fused multiply-add only: it rounds less and does not depend on threads."""
-
-REST = 1e-250
-"""Speeds below this count as rest: they would decay into denormal numbers, which are a hundred times slower."""
-
-CHUNKS = 128
-"""Pieces of the particle range handed to the threads; it has no effect on the result."""
+DONE, LAW_ENDS, LIST_ENDS = 0, 1, 2
+"""Why a kernel returned: all steps are done; a contact is about to leave the elastic law; the list of pairs is old."""
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
@@ -57,8 +53,9 @@ def _row_force(i, u, start, neighbour, kind, palette):
 
 
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
-def contact_forces(u, start, neighbour, kind, palette, force):
+def contact_forces(u, rows, force):
     """Fill force (3, n) with the contact forces and moments (N, N·m) of displacements and rotations u (3, n)."""
+    start, neighbour, kind, palette = rows
     n = u.shape[1]
     for chunk in prange(CHUNKS):
         for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
@@ -66,90 +63,106 @@ def contact_forces(u, start, neighbour, kind, palette, force):
             force[U(0), i], force[U(1), i], force[U(2), i] = _row_force(i, u, start, neighbour, kind, palette)
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
-def _kick(v, f, b, damp):
-    """Half-step velocity after a force f, local damping included (Cundall: −damp·|F|·sign(v))."""
-    if damp > 0.0:
-        f -= damp * abs(f) * np.sign(v)
-    w = v + b * f
-    return 0.0 if abs(w) <= REST else w  # what is not a number stays so, and is seen
-
-
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def _supported(
-    u, v, start, neighbour, kind, palette,
-    nodes, keep, mobility, stiffness, preload, prescribed, drive, damp, out,
-):  # fmt: skip
-    """Velocities (k, 3) of the supported nodes half a step on.
-
-    v⁺ = keep·v + mobility·(F + F_0 − K u + drive) + prescribed·drive. One linear update covers every boundary: a
-    centred dashpot C has keep = (m/Δt − C/2)/(m/Δt + C/2) and mobility 1/(m/Δt + C/2); a prescribed component has
-    keep = mobility = 0 and prescribed = 1, its drive being its velocity.
-    """
-    f = np.empty(3)
+def _node_forces(u, rows, nodes, load, force):
+    """Fill force (k, 3) with contact forces and steady loads at some nodes."""
     for s in range(nodes.size):
         i = U(nodes[s])
-        f[0], f[1], f[2] = _row_force(i, u, start, neighbour, kind, palette)
-        for c in range(3):
-            total = f[c] + preload[s, c] - stiffness[s, c] * u[U(c), i] + drive[s, c]
-            if damp > 0.0:
-                total -= damp * abs(total) * np.sign(v[U(c), i])
-            w = keep[s, c] * v[U(c), i] + mobility[s, c] * total + prescribed[s, c] * drive[s, c]
-            out[s, c] = 0.0 if abs(w) <= REST else w
+        force[s, 0], force[s, 1], force[s, 2] = _row_force(i, u, rows.start, rows.neighbour, rows.kind, rows.palette)
+        if load.shape[1] > 0:
+            for c in range(3):
+                force[s, c] += load[c, i]
 
 
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
-def advance(
-    u, spare, v,
-    start, neighbour, kind, palette,
-    mobility, inverse_inertia, free, damp, dt,
-    nodes, keep, node_mobility, stiffness, preload, prescribed, drive,
-    probes, record, tracked, peaks,
-):  # fmt: skip
-    """Advance by drive.shape[0] steps of central differences, velocities living at half steps.
-
-    u, spare, v : (3, n) displacement now, room for the next one, velocity half a step ago; u holds the result.
-    start, neighbour, kind, palette : rows of contacts (see the module's text).
-    mobility, inverse_inertia : (n,) Δt/m and Δt/I; free : (3,) 1.0, or 0.0 for a component held everywhere.
-    nodes … prescribed : the support table, (k,) and (k, 3); drive : (steps, k, 3) N, m/s where prescribed.
-    probes : (p,) particles to record; record : (steps, p, 6) displacement and velocity at the start of each step,
-    the velocity as the mean of its two half-step values.
-    tracked : (q,) particles; peaks : (q, 3, 2) running smallest and largest velocity.
-    """
+def _move(u, v, rows, body, spare, fastest, arms, damped):
+    """One step of all particles; fastest (chunks,) gets surface speeds if there are arms, damped (chunks, 2) work."""
+    start, neighbour, kind, palette = rows
+    mobility, inverse_inertia, free, load, damp, step = body
     n = u.shape[1]
+    loaded = load.shape[1] > 0
+    watched = arms.size > 0
+    for chunk in prange(CHUNKS):
+        most = 0.0
+        whole = 0.0
+        half = 0.0
+        for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
+            i = U(p)
+            fx, fy, moment = _row_force(i, u, start, neighbour, kind, palette)
+            if loaded:
+                fx += load[U(0), i]
+                fy += load[U(1), i]
+                moment += load[U(2), i]
+            vx = kick(v[U(0), i], fx, free[0] * mobility[i], damp)
+            vy = kick(v[U(1), i], fy, free[1] * mobility[i], damp)
+            spin = kick(v[U(2), i], moment, free[2] * inverse_inertia[i], damp)
+            if damp > 0.0:
+                for w, c, f, b in (
+                    (vx, 0, fx, free[0] * mobility[i]),
+                    (vy, 1, fy, free[1] * mobility[i]),
+                    (spin, 2, moment, free[2] * inverse_inertia[i]),
+                ):
+                    taken, up_to = damping_work(v[U(c), i], w, f, b, damp, step)
+                    whole += taken
+                    half += up_to
+            if watched:
+                most = max(most, np.sqrt(vx * vx + vy * vy) + arms[i] * abs(spin))
+            v[U(0), i] = vx
+            v[U(1), i] = vy
+            v[U(2), i] = spin
+            spare[U(0), i] = u[U(0), i] + step * vx
+            spare[U(1), i] = u[U(1), i] + step * vy
+            spare[U(2), i] = u[U(2), i] + step * spin
+        fastest[chunk] = most
+        damped[chunk, 0] = whole
+        damped[chunk, 1] = half
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def advance(u, spare, v, rows, body, supports, log, watch):
+    """Advance by up to supports.drive.shape[0] steps; returns the steps done and why it stopped.
+
+    u, spare, v : (3, n) displacement now, room for the next one, velocity half a step ago; u holds the result. The
+    other bundles are explained in tables.py. A watch with arms lets no step begin in which the contact law would
+    answer otherwise: it measures how far every pair is from that, and again when surfaces have travelled half of it.
+    """
+    steps = supports.drive.shape[0]
+    nodes = supports.nodes
     supported = np.empty((nodes.size, 3))
+    at_nodes = np.empty((nodes.size, 3))
+    fastest = np.zeros(CHUNKS)
+    damped = np.zeros((CHUNKS, 2))
+    watched = watch.arms.size > 0
+    travelled = 0.0
+    room = 0.0
     here, there = u, spare
-    for step in range(drive.shape[0]):
-        _supported(
-            here, v, start, neighbour, kind, palette,
-            nodes, keep, node_mobility, stiffness, preload, prescribed, drive[step], damp, supported,
-        )  # fmt: skip
-        for p in range(probes.size):
-            for c in range(3):
-                record[step, p, c] = here[c, probes[p]]
-                record[step, p, 3 + c] = 0.5 * v[c, probes[p]]
-        for chunk in prange(CHUNKS):
-            for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
-                i = U(p)
-                fx, fy, moment = _row_force(i, here, start, neighbour, kind, palette)
-                v[U(0), i] = _kick(v[U(0), i], fx, free[0] * mobility[i], damp)
-                v[U(1), i] = _kick(v[U(1), i], fy, free[1] * mobility[i], damp)
-                v[U(2), i] = _kick(v[U(2), i], moment, free[2] * inverse_inertia[i], damp)
-                there[U(0), i] = here[U(0), i] + dt * v[U(0), i]
-                there[U(1), i] = here[U(1), i] + dt * v[U(1), i]
-                there[U(2), i] = here[U(2), i] + dt * v[U(2), i]
-        for s in range(nodes.size):
-            for c in range(3):
-                v[c, nodes[s]] = supported[s, c]
-                there[c, nodes[s]] = here[c, nodes[s]] + dt * supported[s, c]
-        for p in range(probes.size):
-            for c in range(3):
-                record[step, p, 3 + c] += 0.5 * v[c, probes[p]]
-        for q in range(tracked.size):
-            for c in range(3):
-                speed = v[c, tracked[q]]
-                peaks[q, c, 0] = min(peaks[q, c, 0], speed)
-                peaks[q, c, 1] = max(peaks[q, c, 1], speed)
+    done = steps
+    why = DONE
+    for step in range(steps):
+        if watched and 2.0 * travelled >= room:
+            listed = watch.skin - 2.0 * moved(here, watch.origin)
+            room = min(slack(here, watch.contacts, watch.limits), listed)
+            travelled = 0.0
+            if room < 0.0:
+                done = step
+                why = LIST_ENDS if listed < 0.0 else LAW_ENDS
+                break
+        _node_forces(here, rows, nodes, body.load, at_nodes)
+        support_velocities(here, v, at_nodes, supports, supports.drive[step], body, supported, log.work)
+        note_before(step, here, v, log)
+        _move(here, v, rows, body, there, fastest, watch.arms, damped)
+        note_after(step, here, v, there, supports, supported, body, log)
+        if body.damp > 0.0:
+            log.work[1, 1] += damped[:, 1].sum()
+            log.work[0, 1] += damped[:, 0].sum()
+        if watched:
+            most = fastest.max()
+            for s in range(nodes.size):
+                most = max(
+                    most, np.hypot(supported[s, 0], supported[s, 1]) + watch.arms[nodes[s]] * abs(supported[s, 2])
+                )
+            travelled += body.step * most
         here, there = there, here
-    if drive.shape[0] % 2 == 1:
+    if done % 2 == 1:
         u[:] = here
+    return done, why

@@ -16,7 +16,15 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.plot.disks import Window, draw_field
 from dembound.plot.style import UNITS, new_figure, outside_legend, styled
-from dembound.results import COMPONENTS, liveliest_snapshot, open_record, snapshot_of
+from dembound.results import (
+    COMPONENTS,
+    cracks_until,
+    laws_in_words,
+    laws_of,
+    liveliest_snapshot,
+    open_record,
+    snapshot_of,
+)
 
 LONG = 6.0
 """A scene this many times as long as wide gets a second panel, which shows a part of it closely."""
@@ -36,14 +44,18 @@ MOST_STRIPS = 8
 STRIP_GAP = 0.12
 """Inches between two strips."""
 
+CRACKS = {"bond broken in tension": ("o", 3.0), "bond broken in shear": ("x", 14.0)}
+"""What the legend calls the two kinds of cracks, and the shape and size of their marks."""
+
 
 @dataclass(frozen=True)
 class Motion:
     """One field of the disks at k moments of a run.
 
     positions (n, 2) and radii (n,) in m, before the motion; times (k,) in s; values (k, n) the field; limit, the end
-    of its colour scale: the largest |value| in any snapshot of the run, 1 for a run at rest; monitors: name -> place
-    (2,) m; field in words and its unit; name of the case.
+    of its colour scale: the largest |value| in any snapshot of the run, 1 for a run at rest; cracks: at each moment
+    those so far, as by `cracks_until`; monitors: name -> place (2,) m; field in words and its unit; name of the case;
+    laws in words, empty if one law served all through.
     """
 
     positions: np.ndarray
@@ -51,10 +63,12 @@ class Motion:
     times: np.ndarray
     values: np.ndarray
     limit: float
+    cracks: list[dict[str, np.ndarray]]
     monitors: dict[str, np.ndarray]
     field: str
     unit: str
     name: str
+    laws: str
 
     @cached_property
     def window(self) -> Window:
@@ -71,7 +85,8 @@ def plot_scene(
 ) -> Figure:
     """The scene at a snapshot, at its undeformed places, with the monitors; colours mean the same all through a run.
 
-    A very long scene gets one more panel that shows a part of it closely.
+    Bonds that have broken by then are marked where they stood. A very long scene gets one more panel that shows a part
+    of it closely.
 
     Parameters
     ----------
@@ -94,7 +109,8 @@ def plot_scene(
     else:
         figure, panels, colours = _draw_whole(shown)
     figure.colorbar(colours, ax=panels, label=f"{shown.field} ({shown.unit})", shrink=0.9, pad=0.02)
-    figure.suptitle(f"{shown.name}: {shown.field} of {len(shown.radii)} disks", fontsize=11)
+    title = f"{shown.name}: {shown.field} of {len(shown.radii)} disks"
+    figure.suptitle("\n".join(filter(None, [title, shown.laws])), fontsize=11)
     outside_legend(figure, panels, columns=3)
     return figure
 
@@ -107,16 +123,20 @@ def read_motion(run: Path, snapshot: int | None, field: str, component: str | No
         largest = np.max([np.abs(group[field][:]).max(axis=0) for group in file["snapshots"].values()], axis=0)
         column = int(np.argmax(largest[:2])) if component is None else COMPONENTS.index(component)
         way = "of rotation" if column == 2 else f"along {COMPONENTS[column]}"
+        times = np.array([group.attrs["time"] for group in chosen])
+        laws = laws_of(file)
         return Motion(
             positions=positions,
             radii=radii,
-            times=np.array([group.attrs["time"] for group in chosen]),
+            times=times,
             values=np.array([group[field][:, column] for group in chosen]),
             limit=float(largest[column]) or 1.0,
+            cracks=[cracks_until(file, time) for time in times],
             monitors={name: group.attrs["position"] for name, group in file.get("histories", {}).items()},
             field=f"{field} {way}",
             unit=UNITS[field][column],
             name=str(file.attrs["name"]),
+            laws=laws_in_words(laws) if len(laws) > 1 else "",
         )
 
 
@@ -209,6 +229,7 @@ def close_up(shown: Motion, index: int) -> Window:
 def _draw_panel(panel: Axes, shown: Motion, index: int, window: Window, scale: float) -> ScalarMappable:
     """A window of the scene at one of its moments, at `scale` pixels per metre."""
     colours = draw_field(panel, window, shown.positions, shown.radii, shown.values[index], shown.limit, scale)
+    _mark_cracks(panel, shown.cracks[index])
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         if pixels > 45:
             axis.set_label_text(f"{name} (m)")
@@ -216,6 +237,15 @@ def _draw_panel(panel: Axes, shown: Motion, index: int, window: Window, scale: f
         else:
             axis.set_major_locator(NullLocator())  # two labels would collide
     return colours
+
+
+def _mark_cracks(panel: Axes, cracks: dict[str, np.ndarray]) -> None:
+    """A mark at each broken bond."""
+    for shear, (label, (mark, size)) in enumerate(CRACKS.items()):
+        places = cracks["position"][cracks["shear"] == shear]
+        if len(places) > 0:
+            x, y = places.T
+            panel.scatter(x, y, s=size, marker=mark, color="black", linewidths=0.8, label=label)
 
 
 def _mark_monitors(panel: Axes, shown: Motion) -> None:

@@ -1,4 +1,4 @@
-"""Waves: named velocity histories that drive sides, one type a file.
+"""Waves: named velocity histories that drive sides, or time factors of loads, one type a file.
 
 A new type is one file and its class's name in the list below.
 """
@@ -12,9 +12,10 @@ from dembound.waves.cosine import Cosine
 from dembound.waves.record import Record
 from dembound.waves.ricker import Ricker
 from dembound.waves.sine_burst import SineBurst
+from dembound.waves.spline import CubicSpline
 from dembound.waves.wave import Wave
 
-WaveTable = Annotated[Cosine | Ricker | SineBurst | Constant | Record, Field(discriminator="type")]
+WaveTable = Annotated[Cosine | CubicSpline | Ricker | SineBurst | Constant | Record, Field(discriminator="type")]
 """Any wave table of a case file, told apart by its ``type``."""
 
-__all__ = ["Constant", "Cosine", "Record", "Ricker", "SineBurst", "Wave", "WaveTable"]
+__all__ = ["Constant", "Cosine", "CubicSpline", "Record", "Ricker", "SineBurst", "Wave", "WaveTable"]

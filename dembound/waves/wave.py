@@ -20,7 +20,10 @@ NonZero = Annotated[float, AfterValidator(_not_zero)]
 
 
 class Wave(Table, ABC):
-    """A velocity history that is at rest before `start` and known at every time."""
+    """A velocity history that is at rest before `start` and known at every time.
+
+    As the factor of a load its values are pure numbers.
+    """
 
     start: float = quantity(0.0, unit="s", help="time at which the wave begins", ge=0.0)
 

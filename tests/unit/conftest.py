@@ -70,6 +70,32 @@ def other_run(tmp_path_factory) -> Path:
     return record(tmp_path_factory.mktemp("other") / "run.h5", "other", 0)
 
 
+BRITTLE = {
+    "material.law": "linearpbond",
+    "material.pb_ten": 1e6,
+    "material.pb_coh": 1e6,
+    "wave.push.amplitude": -1.0,
+    "wave.push.start": 0.002,
+    "wave.shake.amplitude": 2.0,
+    "wave.shake.start": 0.002,
+}
+"""Bonds that break in tension and in shear where their end is pulled away and sideways, but not at once."""
+
+
+@pytest.fixture(scope="session")
+def cracked_run(tmp_path_factory) -> Path:
+    """The record of a run called ``cracked`` whose bonds break, with two snapshots and two entries of the ledger."""
+    planned = plan(with_changes(loads(CASE, Path(), "cracked"), BRITTLE))
+    simulation = Simulation(planned.scene, planned.time_step, np.array(list(planned.scene.monitors.values())))
+    path = tmp_path_factory.mktemp("cracked") / "run.h5"
+    with Recorder(path, simulation, planned.step_limit, 0.0) as recorder:
+        for _ in range(2):
+            recorder.append(recorder.enter_energy())
+            recorder.append(simulation.advance(planned.steps // 2))
+            recorder.snapshot()
+    return path
+
+
 BAR = {
     "packing.size": [10.0, 1.0],
     "wave.pulse.period": 0.01,

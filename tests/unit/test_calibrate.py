@@ -108,7 +108,10 @@ def test_a_scene_too_short_to_keep_echoes_away_is_not_used_whole(bar) -> None:
     ("driven", "at_rest"),
     [
         ({"type": "velocity", "wave_s": "pulse"}, {"type": "fixed"}),
-        ({"type": "viscous_input", "wave_s": "pulse", "beta_s": 0.3}, {"type": "viscous", "beta_s": 0.3}),
+        (
+            {"type": "viscous_input", "wave_s": "pulse", "beta_s": 0.3, "half_mass": True},
+            {"type": "viscous", "beta_s": 0.3, "half_mass": True},
+        ),
     ],
 )
 def test_other_sides_keep_their_supports_but_not_their_waves(long_bar, driven: dict, at_rest: dict) -> None:
@@ -119,6 +122,45 @@ def test_other_sides_keep_their_supports_but_not_their_waves(long_bar, driven: d
 
     # a fixed side also lets rotations stand still, so these are held in both
     assert passes[0].outgoing == passes[1].outgoing
+
+
+@pytest.mark.parametrize(
+    ("side", "kind", "plain"), [("right", "viscoelastic", "viscous"), ("left", "viscoelastic_input", "viscous_input")]
+)
+def test_viscoelastic_sides_are_calibrated_without_their_springs(long_bar, side: str, kind: str, plain: str) -> None:
+    dashpots = {"beta_p": 0.7} | ({"wave_p": "pulse"} if side == "left" else {})
+    springs = {"distance": 1.0, "alpha_n": 5.0}
+    found, expected = (
+        calibrate(long_bar({f"boundary.{side}": table}), side)
+        for table in ({"type": kind, **dashpots, **springs}, {"type": plain, **dashpots})
+    )
+
+    assert (found.beta, found.outgoing, found.kind) == (expected.beta, expected.outgoing, expected.kind)
+    assert found.shortened == [*expected.shortened, "viscoelastic sides without their springs"]
+
+
+def test_loads_static_stage_and_law_are_left_out_of_a_calibration(long_bar) -> None:
+    busy = {
+        "material": {"density": 2500.0, "p_wave_speed": 1000.0, "law": "linearpbond", "pb_ten": 1.0, "fric": 0.3},
+        "static": {"boundary": {"right": {"type": "fixed"}}},
+        "load": [
+            {"name": "weight", "acceleration": [9.81, 0.0]},
+            {"name": "tap", "force": [1e6, 0.0], "position": [5.0, 0.5], "wave": "tapping"},
+        ],
+        "wave.tapping": {"type": "constant", "amplitude": 1.0},
+    }
+    plain = {"material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.3}}
+    for full in (False, True):
+        found, expected = (calibrate(long_bar(changes), "right", start=0.5, full=full) for changes in (busy, plain))
+        assert (found.beta, found.outgoing) == (expected.beta, expected.outgoing)
+        assert found.shortened == [*expected.shortened, "no static stage", "no loads", "the elastic law"]
+
+
+def test_half_masses_stay_in_a_calibration(long_bar) -> None:
+    half, whole = (calibrate(long_bar({"boundary.right.half_mass": asks}), "right") for asks in (True, False))
+
+    # with steps near the limit a half mass leaves no error in the end, a whole one shifts the peak
+    assert half.ratio[0] != whole.ratio[0]
 
 
 def test_the_pulse_is_as_strong_as_the_cases_own_wave(long_bar) -> None:

@@ -25,6 +25,12 @@ def test_facts_are_those_of_the_scene(bar) -> None:
     }
 
 
+def test_a_side_says_that_its_masses_are_halved(bar) -> None:
+    facts, _ = check(bar({"run.time_step": 1e-4, "boundary.right.half_mass": True}))
+
+    assert facts["right side"].startswith("viscous, beta_p = 1, beta_s = 1, half mass; 2 particles")
+
+
 def test_a_periodic_side_is_no_side(bar) -> None:
     facts, _ = check(bar({"boundary.bottom": {"type": "periodic"}, "boundary.top": {"type": "periodic"}}))
 
@@ -60,6 +66,83 @@ def test_a_wave_stronger_than_the_locked_in_stress_is_warned_of(bar) -> None:
     for amplitude, warned in ((3.99, False), (4.01, True)):
         _, warnings = check(bar({**dense, "wave.pulse.amplitude": amplitude}))
         assert [warning.split(":")[0] for warning in warnings] == warned * ["wave.pulse"]
+
+
+def test_waves_of_loads_have_no_stress(bar) -> None:
+    tap = {"name": "tap", "force": [1.0, 0.0], "position": [5.0, 0.5], "wave": "tapping"}
+    hammer = {"load": [tap], "wave.tapping": {"type": "cosine", "amplitude": 1e9, "period": 1.0}}
+    facts, warnings = check(bar({**hammer, "material.law": "linearpbond", "wave.pulse.period": 1.0}))
+
+    assert "stress of pulse" in facts
+    assert "stress of tapping" not in facts
+    assert warnings == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "pressure"),
+    [
+        ({}, "0"),  # a lattice is packed without stress
+        ({"static": {"stress": [-3e5, -1e5, 7e5]}}, "0.2"),
+        ({"static": {"stress": [0.0, 0.0, 0.0]}}, "0"),
+        ({"static": {"stress": [-3e6, -3e6, 0.0]}}, None),
+        ({"static": {}}, None),  # what the stage leaves cannot be known before
+        ({"material.elastic_start": False}, None),
+    ],
+)
+def test_with_a_memory_a_strong_wave_is_no_warning_but_where_the_law_changes(bar, changes, pressure) -> None:
+    facts, warnings = check(bar({"material.law": "linearpbond", "wave.pulse.period": 1.0, **changes}))
+
+    assert warnings == []
+    if pressure is None:
+        assert "stress of pulse" not in facts
+    else:  # 2500·1000·0.5 Pa
+        assert facts["stress of pulse"] == (
+            f"ρcv = 1.25 MPa, above the confining stress of {pressure} MPa; "
+            "where it pulls contacts open, and linearpbond takes over"
+        )
+
+
+@pytest.mark.parametrize(
+    ("material", "law", "strength"),
+    [
+        ({}, "elastic: contacts neither open nor slip, bonds do not break", None),
+        (
+            {"law": "linearpbond", "pb_coh": 2e6, "pb_fa": 30.0, "fric": 0.5},
+            "linearpbond, elastic until a contact opens, slips or closes or a bond yields",
+            "bonds unbreakable in tension, 2 MPa + σ·tan 30° in shear; contacts slip at 0.5 of their normal force",
+        ),
+        (
+            {"law": "linearpbond", "pb_ten": 1.5e6, "elastic_start": False},
+            "linearpbond",
+            "bonds 1.5 MPa in tension, unbreakable in shear; contacts slip at 0 of their normal force",
+        ),
+        (
+            {"law": "linearpbond", "contact_share": 1.0, "fric": 0.5},
+            "linearpbond, elastic until a contact opens, slips or closes or a bond yields",
+            "no bonds; contacts slip at 0.5 of their normal force",
+        ),
+    ],
+)
+def test_the_law_is_told_with_its_strength(bar, material, law, strength) -> None:
+    facts, _ = check(bar({f"material.{key}": value for key, value in material.items()}))
+
+    assert facts["law"] == law
+    assert facts.get("strength") == strength
+    assert ("once it begins" in facts["estimated time"]) == ("elastic until" in law)
+
+
+def test_loads_and_the_static_stage_are_told(bar) -> None:
+    weight = {"name": "weight", "acceleration": [10.0, 0.0]}
+    tap = {"name": "tap", "force": [1e6, 0.0], "region": [0.0, 0.0, 1.0, 1.0], "wave": "pulse"}
+    static = {"stress": [-1e6, -2e6, 0.0], "boundary": {"left": {"type": "fixed"}}}
+    facts, _ = check(bar({"load": [weight, tap], "static": static}))
+
+    # 40 disks of 625 kg; two of them in each of two columns in the region
+    assert facts["load weight"] == "(2.5e+05, 0) N/m on 40 particle(s), steady"
+    assert facts["load tap"] == "(1e+06, 0) N/m on 4 particle(s), times wave pulse"
+    assert facts["static stage"] == "under weight and σ_xx, σ_yy, σ_xy = -1, -2, 0 MPa, to a force ratio of 1e-05"
+    assert facts["static sides"] == "left fixed"
+    assert facts["estimated time"].endswith(", without the static stage")
 
 
 def test_a_lattice_without_stress_is_not_warned_of(bar) -> None:

@@ -13,6 +13,7 @@ import pytest
 
 from dembound import __version__, cli
 from dembound.case import load
+from dembound.cli.cases import outcome
 
 
 @dataclass
@@ -137,6 +138,42 @@ def test_two_cases_are_run_one_after_the_other(dembound, written, tmp_path) -> N
         assert json.loads((tmp_path / "kept" / name / "summary.json").read_text())["name"] == name
 
 
+def test_a_run_ends_by_telling_what_happened(dembound, written, tmp_path) -> None:
+    breaking = {
+        "material.law": "linearpbond",
+        "material.pb_ten": 1e6,
+        "boundary.left": {"type": "velocity", "wave_p": "pulse"},
+        "wave.pulse.amplitude": -5.0,
+    }
+    answer = dembound("run", written(changes=breaking))
+
+    found = json.loads((tmp_path / "results" / "bar" / "summary.json").read_text())
+    told, _ = answer.out.splitlines()
+    laws, cracks, energy = told.removeprefix("bar: ").split("; ")
+    assert laws == f"elastic law to {found['laws'][1]['from']:.3g} s, then linearpbond"
+    count = found["cracks"]["tension"]
+    assert count > 0
+    assert cracks == f"{count} bonds broke ({count} tension, 0 shear)"
+    assert energy == f"energy closes to {found['energy']['relative_error']:.1g}"
+
+
+def test_only_what_applies_is_told() -> None:
+    elastic = {"static": None, "laws": [{"law": "elastic", "from": 0.0}]}
+    quiet = {"cracks": {"tension": 0, "shear": 0}, "energy": {"relative_error": 0.0}}
+    settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0}
+    stage = "settled in 3,100 steps to a force ratio of 9.8e-06"
+
+    assert outcome(elastic, remembers=False) == []
+    assert outcome(elastic | {"static": settled}, remembers=False) == [stage]
+    assert outcome(elastic | quiet, remembers=True) == ["elastic law all through"]
+    broken = {"cracks": {"tension": 1200, "shear": 30}, "static": settled | {"cracks": 1100}}
+    assert outcome(elastic | quiet | broken, remembers=True) == [
+        f"{stage}, breaking 1,100 bonds",
+        "elastic law all through",
+        "1,230 bonds broke (1,200 tension, 30 shear)",
+    ]
+
+
 def test_a_mistake_in_the_last_case_keeps_the_first_from_running(dembound, written, tmp_path) -> None:
     good, bad = written("good"), written("bad")
     bad.write_text(bad.read_text().replace("density", "densitty"))
@@ -237,8 +274,9 @@ def test_histories_sides_and_calibrations_are_drawn(dembound, written, tmp_path)
     assert dembound("plot", "results/one", "results/two/run.h5", "-o", "histories.png").code == 0
     assert dembound("plot", "results/one", "-o", "displacement.png", "--quantity", "displacement").code == 0
     assert dembound("plot", "results/one", "-o", "side.png", "--boundary", "right").code == 0
+    assert dembound("plot", "results/one", "-o", "energy.png", "--energy").code == 0
     assert dembound("plot", passes.parent, "-o", "passes.png").code == 0
-    for name in ("histories", "displacement", "side", "passes"):
+    for name in ("histories", "displacement", "side", "energy", "passes"):
         assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")
 
 
@@ -254,6 +292,7 @@ def test_what_cannot_be_drawn_is_bad_input(dembound, written, tmp_path) -> None:
         (["results/bar", "--quantity", "force"], "--quantity"),
         (["results/bar", "passes"], "make no common picture"),
         (["results/periodic", "--boundary", "top"], "has no particles of side top"),
+        (["results/bar", "results/periodic", "--energy"], "--energy: shows one run"),
     ):
         answer = dembound("plot", *arguments)
         assert answer.code == 2

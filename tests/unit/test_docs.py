@@ -6,11 +6,13 @@ from typing import get_args
 import pytest
 
 from dembound.boundaries import BoundaryTable
+from dembound.case.load import Load
 from dembound.case.material import Material
 from dembound.case.monitor import Monitor
 from dembound.case.motion import Motion
 from dembound.case.output import Output
 from dembound.case.run import Run
+from dembound.case.static import Static, StaticSide
 from dembound.packings import PackingTable
 from dembound.waves import WaveTable
 
@@ -22,7 +24,17 @@ def members(union):
     return get_args(get_args(union)[0])
 
 
-TABLES = [Material, Motion, Monitor, Run, Output, *members(PackingTable), *members(BoundaryTable), *members(WaveTable)]
+UNIONS = [PackingTable, BoundaryTable, StaticSide, WaveTable]
+TABLES = [
+    Material,
+    Motion,
+    Static,
+    Load,
+    Monitor,
+    Run,
+    Output,
+    *(table for union in UNIONS for table in members(union)),
+]
 
 
 @pytest.mark.parametrize("table", TABLES, ids=lambda table: table.__name__)
@@ -32,7 +44,7 @@ def test_every_key_stands_in_the_reference(table):
     assert not missing
 
 
-@pytest.mark.parametrize("union", [PackingTable, BoundaryTable, WaveTable])
+@pytest.mark.parametrize("union", UNIONS)
 def test_every_type_stands_in_the_reference(union):
     text = REFERENCE.read_text()
     for table in members(union):

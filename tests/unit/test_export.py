@@ -36,6 +36,8 @@ def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.nda
         "displacement": moved,
         "rotation": displacement[:, 2],
         "brick_particle": particles["brick_particle"][:],
+        "nbCracks": np.zeros(len(velocity)),
+        "damage": np.zeros(len(velocity)),
     }
 
 
@@ -85,6 +87,36 @@ def test_the_folder_holds_the_view_script_and_no_leftovers(exported):
     names = sorted(path.name for path in exported.parent.iterdir())
     assert names == ["particles.pvd", "particles_0000.vtu", "particles_0001.vtu", "view.py"]
     ast.parse((exported.parent / "view.py").read_text())
+
+
+def test_cracks_and_damage_are_counted_up_to_each_snapshot(cracked_run, tmp_path):
+    write_vtu(cracked_run, tmp_path)
+    with h5py.File(cracked_run) as file:
+        bonds, cracks = file["particles/bonds"][:], {name: values[:] for name, values in file["cracks"].items()}
+        for number, snapshot in file["snapshots"].items():
+            data = meshio.read(tmp_path / f"particles_{number}.vtu").point_data
+            counted = np.zeros(len(bonds), dtype=int)
+            for time, pair in zip(cracks["time"], cracks["particles"], strict=True):
+                counted[pair] += time <= snapshot.attrs["time"]
+            np.testing.assert_array_equal(data["nbCracks"], counted)
+            np.testing.assert_array_equal(data["damage"], counted / bonds)
+            np.testing.assert_array_equal(data["coordNumber"], snapshot["coordination"][:])
+        broken = [np.count_nonzero(cracks["time"] <= each.attrs["time"]) for each in file["snapshots"].values()]
+    assert 0 < broken[0] < broken[1] == len(cracks["time"])
+
+
+def test_each_crack_is_a_vertex_where_it_was(cracked_run, tmp_path):
+    write_vtu(cracked_run, tmp_path)
+    mesh = pyvista.read(tmp_path / "cracks.vtu")
+    with h5py.File(cracked_run) as file:
+        cracks = {name: values[:] for name, values in file["cracks"].items()}
+    assert set(mesh.celltypes) == {pyvista.CellType.VERTEX}
+    np.testing.assert_array_equal(mesh.points[:, :2], cracks["position"])
+    np.testing.assert_array_equal(mesh.points[:, 2], 0.0)
+    np.testing.assert_array_equal(mesh.point_data["time"], cracks["time"])
+    np.testing.assert_array_equal(mesh.point_data["mode"], np.where(cracks["shear"], 1, 0))
+    np.testing.assert_array_equal(mesh.point_data["particles"], cracks["particles"])
+    assert set(mesh.point_data["mode"]) == {0, 1}
 
 
 def test_a_run_without_snapshots_writes_nothing(other_run, tmp_path):

@@ -1,5 +1,6 @@
 """The record of a run: what was kept comes back, and says whether it is whole."""
 
+from dataclasses import fields
 from pathlib import Path
 
 import h5py
@@ -7,12 +8,35 @@ import numpy as np
 import pytest
 
 from dembound import __version__
+from dembound.energy import Entry
 from dembound.record import Recorder
 from dembound.scene import build
-from dembound.simulate import Simulation
+from dembound.simulate import Simulation, Start
+from dembound.stability import choose_step
 
 STEP = 3e-4
 MONITORS = {"monitor": [{"name": "front", "position": [0.0, 0.0]}, {"name": "back", "position": [9.9, 0.9]}]}
+
+
+ORDER = np.argsort([field.name for field in fields(Entry)])
+"""Places of the ledger's columns in the alphabetical order in which a file lists its datasets."""
+
+
+def breaking(bar, shift: float | None = None) -> Simulation:
+    """A bar of brittle bonds whose end is pulled away; shift (m) is how far a static stage has brought it along x."""
+    brittle = {
+        "material.law": "linearpbond",
+        "material.pb_ten": 1e6,
+        "boundary.left": {"type": "velocity", "wave_p": "pulse"},
+        "wave.pulse.amplitude": -5.0,
+    }
+    scene = build(bar({**MONITORS, **brittle}))
+    start = None
+    if shift is not None:
+        displacement = np.zeros((3, scene.count))
+        displacement[0] = shift
+        start = Start(displacement, scene.contact_list(), remembers=False)
+    return Simulation(scene, choose_step(scene)[0], np.array(list(scene.monitors.values())), start=start)
 
 
 @pytest.fixture
@@ -87,6 +111,9 @@ def test_scene_and_sides_are_kept(tmp_path, simulation) -> None:
         assert np.array_equal(file["particles/position"], scene.assembly.positions)
         assert np.array_equal(file["particles/radius"], scene.assembly.radii)
         assert np.array_equal(file["particles/brick_particle"], scene.assembly.brick_particle)
+        # two rows of twenty: a neighbour across, and two along but for the ends
+        ends = np.isin(scene.assembly.positions[:, 0], (0.25, 9.75))
+        assert np.array_equal(file["particles/bonds"], np.where(ends, 2, 3))
         assert set(file["boundaries"]) == set(scene.edges)
         side = file["boundaries/right"]
         assert np.array_equal(side["particle"], scene.edges["right"].nodes)
@@ -123,10 +150,83 @@ def test_every_dataset_has_its_unit(tmp_path, simulation) -> None:
 
     with h5py.File(tmp_path / "run.h5") as file:
         file.visititems(note)
-    assert len(units) == 3 + 2 * 3 + 4 * 4 + 2
+    assert units.pop("laws/name") == ""  # text has none
+    assert len(units) == 4 + 2 * 3 + 4 * 4 + 2 + 10 + 4 + 1
     assert all(units.values())
-    assert units["histories/front/time"] == "s"
+    assert units["histories/front/time"] == units["energy/time"] == units["laws/time"] == "s"
+    assert units["energy/kinetic"] == "J/m"
     assert units["snapshots/0000/velocity"] == units["boundaries/left/peak_velocity"] == "m/s, m/s, rad/s"
+
+
+def test_energies_are_entered_where_they_are_asked_for(tmp_path, simulation) -> None:
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        kept.append(simulation.advance(10))
+        record = kept.enter_energy()
+        kept.append(record)
+        kept.append(simulation.advance(7))
+        kept.append(kept.enter_energy())
+
+    assert record.shape == (1, 2, 6)
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert np.array_equal(file["energy/time"], np.array([10, 18]) * STEP)
+        for name, column in zip(file["energy"], kept.ledger.columns.T[ORDER], strict=True):
+            assert np.array_equal(file["energy"][name], column)
+        assert file["energy/outside"][1] > 0.0
+        assert len(file["histories/front/time"]) == 19
+
+
+def test_cracks_laws_and_coordination_are_kept(tmp_path, bar) -> None:
+    simulation = breaking(bar)
+    steps = 60
+    with Recorder(tmp_path / "run.h5", simulation, step_limit=4e-4, interval=0.0) as kept:
+        for _ in range(3):
+            kept.append(simulation.advance(steps // 3))
+        kept.snapshot()
+
+    began = next(step for name, step in simulation.laws if name == "linearpbond")
+    with h5py.File(tmp_path / "run.h5") as file:
+        cracks = file["cracks"]
+        assert [name.decode() for name in file["laws/name"]] == ["elastic", "linearpbond"]
+        assert file["laws/time"][:].tolist() == [0.0, began * simulation.time_step]
+        assert len(cracks["time"]) > 0
+        assert cracks["time"][0] >= file["laws/time"][1]
+        assert np.all(np.diff(cracks["time"]) >= 0.0)
+        assert not cracks["shear"][:].any()  # pulled apart along the lattice
+        # bonds along x, between neighbours that lie on either side of the crack
+        first, second = simulation.scene.assembly.positions[cracks["particles"][:].T]
+        np.testing.assert_allclose(second - first, np.tile([0.5, 0.0], (len(first), 1)), atol=1e-12)
+        middle = 0.5 * (first + second)
+        np.testing.assert_allclose(cracks["position"][:], middle, atol=np.abs(simulation.displacement).max())
+        ends = np.bincount(cracks["particles"][:].ravel(), minlength=simulation.scene.count)
+        bonds = np.bincount(simulation.scene.assembly.pairs.ravel(), minlength=simulation.scene.count)
+        # a contact without bond that pushes counts, too
+        coordination = file["snapshots/0000/coordination"][:]
+        assert np.all(coordination <= bonds)
+        assert np.all(coordination >= bonds - ends)
+        assert np.any(coordination < bonds)
+
+
+def test_a_material_without_bonds_has_none(tmp_path, bar) -> None:
+    material = {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0, "fric": 0.5}
+    scene = build(bar({"material": material, "monitor": []}))
+    with recorder(tmp_path / "run.h5", Simulation(scene, STEP, np.zeros(0))) as kept:
+        kept.append(kept.simulation.advance(1))
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert not file["particles/bonds"][:].any()
+
+
+def test_cracks_stand_where_bonds_were_counting_from_the_start(tmp_path, bar) -> None:
+    simulation = breaking(bar, shift=100.0)
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        kept.append(simulation.advance(60))
+
+    moved = simulation.displacement - simulation.datum
+    with h5py.File(tmp_path / "run.h5") as file:
+        ends = simulation.scene.assembly.positions[file["cracks/particles"][:]]
+        assert len(ends) > 0
+        # between the two at the start, and no farther than anything has moved since
+        np.testing.assert_allclose(file["cracks/position"], ends.mean(axis=1), atol=np.abs(moved).max())
 
 
 def test_a_run_that_fails_leaves_its_histories_and_is_not_complete(tmp_path, simulation) -> None:

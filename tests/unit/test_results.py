@@ -1,9 +1,20 @@
-"""Records open by name; files are replaced whole."""
+"""Records open by name and tell what happened; files are replaced whole."""
 
+import h5py
+import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.results import open_record, record_names, replacing, snapshot_of
+from dembound.results import (
+    cracks_until,
+    energy_of,
+    laws_in_words,
+    laws_of,
+    open_record,
+    record_names,
+    replacing,
+    snapshot_of,
+)
 
 
 def test_what_is_no_record_is_refused_by_name(tmp_path):
@@ -24,6 +35,69 @@ def test_snapshots_go_by_number_from_either_end(small_run, number, name):
 def test_a_missing_snapshot_is_refused_with_the_file_and_their_number(small_run, number):
     with open_record(small_run) as file, pytest.raises(CaseError, match=rf"run.h5: has no snapshot {number}, it has 2"):
         snapshot_of(file, number)
+
+
+def test_cracks_are_those_up_to_a_time_that_time_included(cracked_run):
+    with open_record(cracked_run) as file:
+        times = file["cracks/time"][:]
+        moment = times[len(times) // 2]
+        found = cracks_until(file, moment)
+        count = np.count_nonzero(times <= moment)
+        assert 0 < count < len(times)
+        for name, values in file["cracks"].items():
+            np.testing.assert_array_equal(found[name], values[:count])
+        assert len(cracks_until(file, -1.0)["position"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("laws", "words"),
+    [
+        ([("elastic", 0.0)], "elastic law all through"),
+        ([("linearpbond", 0.0)], "linearpbond law all through"),
+        ([("elastic", 0.0), ("linearpbond", 0.01234)], "elastic law to 0.0123 s, then linearpbond"),
+    ],
+)
+def test_laws_are_told_in_words(laws, words):
+    assert laws_in_words(laws) == words
+
+
+def test_laws_come_with_the_times_they_began_at(small_run, cracked_run, tmp_path):
+    with open_record(small_run) as file:
+        assert laws_of(file) == [("elastic", 0.0)]
+    with open_record(cracked_run) as file:
+        first, (name, time) = laws_of(file)
+        assert (first, name) == (("elastic", 0.0), "linearpbond")
+        assert 0.002 <= time <= file["cracks/time"][0]  # no wave is sent before
+    cut_off = tmp_path / "run.h5"
+    h5py.File(cut_off, "w").close()
+    with open_record(cut_off) as file:
+        assert laws_of(file) == []
+
+
+def ledger(path, **columns):
+    with h5py.File(path, "w") as file:
+        for name, values in columns.items():
+            file[f"energy/{name}"] = np.array(values)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("outside", "load", "relative"),
+    [([0.0, 4.0], [0.0, -2.0], [0.0, 0.25]), ([0.0, 1.0], [0.0, -5.0], [0.0, 0.2]), ([0.0, 0.0], [0.0, 0.0], [0, 0])],
+)
+def test_the_error_of_the_ledger_is_measured_by_the_most_that_came_in(tmp_path, outside, load, relative):
+    columns = {"time": [0.0, 1.0], "outside": outside, "load": load, "error": [0.0, 1.0]}
+    with open_record(ledger(tmp_path / "run.h5", **columns)) as file:
+        found = energy_of(file)
+    assert found.pop("relative_error").tolist() == relative
+    assert {name: values.tolist() for name, values in found.items()} == columns
+
+
+@pytest.mark.parametrize("columns", [{}, {"time": [], "outside": [], "load": [], "error": []}])
+def test_a_ledger_without_entries_is_refused(tmp_path, columns):
+    path = ledger(tmp_path / "run.h5", **columns)
+    with open_record(path) as file, pytest.raises(CaseError, match=r"run\.h5: has no entries in its energy ledger"):
+        energy_of(file)
 
 
 def test_names_are_the_cases_names(small_run, other_run):

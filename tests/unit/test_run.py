@@ -8,12 +8,22 @@ import pytest
 
 from dembound.case import Case
 from dembound.errors import CaseError, RunError
-from dembound.run import arrival, describe_packing, plan, run_case
-from dembound.scene import build
+from dembound.run import Progress, plan, run_case
+from dembound.simulate import Simulation
 
 GRIP = {"type": "velocity", "wave_p": "pulse"}
 BLOW_UP = {"boundary.left": GRIP, "wave.pulse.amplitude": 1e305}
 """A motion so large that forces overflow."""
+
+HANGING = {
+    "material.damp": 0.0,
+    "wave.pulse.start": 1.0,
+    "boundary.left": {"type": "fixed"},
+    "boundary.right": {"type": "free"},
+    "load": [{"name": "weight", "acceleration": [9.81, 0.0]}],
+    "static": {"ratio": 1e-6, "boundary": {"left": {"type": "fixed"}}},
+}
+"""The bar hangs from its left end while it settles and after."""
 
 
 def no_numbers_but_finite(constant: str) -> None:
@@ -90,7 +100,7 @@ def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> Non
             "duration",
         ),
         *("wall_time", "threads", "particle_steps_per_second", "memory_bytes", "packing", "boundaries", "monitors"),
-        "reduced",
+        *("laws", "static", "cracks", "energy", "reduced"),
     }
     assert (found["name"], found["particles"], found["contacts"]) == ("bar", 40, 2 * 19 + 20)
     assert found["duration"] == pytest.approx(found["steps"] * found["time_step"], rel=1e-15)
@@ -100,6 +110,12 @@ def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> Non
     assert found["packing"]["C66"] == pytest.approx(0.625e9, rel=1e-12)
     assert found["packing"]["p_wave_speed"] == pytest.approx(1000.0, rel=1e-12)
     assert found["packing"]["s_wave_speed"] is None
+    assert found["laws"] == [{"law": "elastic", "from": 0.0}]
+    assert found["static"] is None
+    assert found["cracks"] == {"tension": 0, "shear": 0}
+    # the books close to rounding: some 80 steps of sums over 40 particles of 1.1e-16 each
+    assert found["energy"]["relative_error"] < 1e-12
+    assert found["energy"]["outside"] != 0.0
 
 
 def test_the_summary_describes_the_sides(bar, tmp_path) -> None:
@@ -133,19 +149,59 @@ def test_the_summary_tells_when_the_wave_came(bar, tmp_path) -> None:
     assert middle["peak_velocity"] == pytest.approx(0.5, rel=0.05)
 
 
-def test_the_packing_is_described_where_a_motion_is_held(bar) -> None:
-    described = describe_packing(build(bar({"motion.held": ["y", "rotation"]})))
+class Heard(Progress):
+    """Writes down what it is told."""
 
-    assert described["p_wave_speed"] == pytest.approx(1000.0, rel=1e-12)
-    assert described["s_wave_speed"] is None
+    def __init__(self) -> None:
+        self.static: list[tuple[int, float]] = []
+        self.blocks: list[tuple[int, int]] = []
+
+    def settling(self, steps: int, ratio: float) -> None:
+        self.static.append((steps, ratio))
+
+    def running(self, simulation: Simulation, steps: int) -> None:
+        self.blocks.append((simulation.steps, steps))
 
 
 def test_progress_is_told_after_every_block(bar, tmp_path) -> None:
-    seen = []
-    run_case(bar({"run.duration": 0.2}), tmp_path, lambda simulation, steps: seen.append((simulation.steps, steps)))
+    heard = Heard()
+    run_case(bar({"run.duration": 0.2}), tmp_path, heard)
 
-    assert seen[0] == (256, seen[-1][0])
-    assert seen[-1][0] == seen[-1][1]
+    done = [steps for steps, _ in heard.blocks]
+    (total,) = {of for _, of in heard.blocks}
+    assert heard.static == []
+    assert done == sorted(done)
+    assert done[-1] == total > 256
+    assert np.diff([0, *done]).max() <= 256
+
+
+def test_energies_are_entered_a_hundred_times_or_as_often_as_asked(bar, tmp_path) -> None:
+    usual = {"run.time_step": 1e-4, "run.duration": 0.025}
+    for name, changes, wanted in (
+        ("usual", {}, np.arange(0.0, 250.0, 2.0)),
+        ("asked", {"output.energy_interval": 1e-3}, np.arange(0.0, 250.0, 10.0)),
+    ):
+        with h5py.File(run_case(bar({**usual, **changes}, name), tmp_path) / "run.h5") as file:
+            # ten times a step of 1e-4 s, each product rounded
+            np.testing.assert_allclose(file["energy/time"], 1e-4 * wanted, rtol=1e-15)
+
+
+def test_a_static_stage_is_run_first_and_recorded(bar, tmp_path) -> None:
+    heard = Heard()
+    folder = run_case(bar(HANGING), tmp_path, heard)
+
+    static = summary(folder)["static"]
+    assert heard.static[-1] == (static["steps"], static["ratio"])
+    assert static["ratio"] <= 1e-6 < heard.static[0][1]
+    # 40 disks of 625 kg hang from two; the mean of their weights and of what is left is what the record says
+    assert static["carried"] == pytest.approx(40 * 625.0 * 9.81 / 2, rel=1e-4)
+    assert static["cracks"] == 0
+    with h5py.File(folder / "run.h5") as file:
+        assert file["static"].attrs["steps"] == static["steps"]
+        assert file["static/displacement"].shape == (40, 3)
+        assert file["static/displacement"][:, 0].max() > 0.0
+        # histories and snapshots count from where the stage ended
+        assert np.abs(file["snapshots/0000/displacement"][:, 0]).max() < 1e-6 * file["static/displacement"][:, 0].max()
 
 
 def test_a_run_that_fails_leaves_a_partial_folder_with_what_there_was(bar, tmp_path) -> None:
@@ -187,37 +243,3 @@ def test_the_same_case_gives_the_same_bits(bar, tmp_path) -> None:
             histories.append(file["histories/middle/velocity"][:])
 
     assert np.array_equal(*histories)
-
-
-TIME = np.arange(5.0)
-
-
-def test_arrival_is_where_half_the_peak_is_passed_between_two_samples() -> None:
-    velocity = np.column_stack([[0.0, 1.0, 4.0, 1.0, 0.0], np.zeros(5)])
-
-    # half of 4 lies a third of the way from 1 to 4
-    assert arrival(TIME, velocity) == {
-        "component": "x",
-        "peak_velocity": 4.0,
-        "peak_time": 2.0,
-        "arrival": pytest.approx(4.0 / 3.0, rel=1e-15),
-    }
-
-
-def test_arrival_takes_the_component_that_moves_most_and_keeps_its_sign() -> None:
-    velocity = np.column_stack([np.full(5, 0.1), [0.0, 0.0, -2.0, 0.0, 1.5]])
-
-    assert arrival(TIME, velocity) == {"component": "y", "peak_velocity": -2.0, "peak_time": 2.0, "arrival": 1.5}
-
-
-def test_a_motion_that_is_there_from_the_start_arrives_then() -> None:
-    assert arrival(TIME, np.ones((5, 2)))["arrival"] == 0.0
-
-
-def test_nothing_arrives_at_rest() -> None:
-    assert arrival(TIME, np.zeros((5, 2))) == {
-        "component": "x",
-        "peak_velocity": 0.0,
-        "peak_time": None,
-        "arrival": None,
-    }

@@ -27,7 +27,7 @@ def case(bar, request) -> Case:
 
 def test_every_contact_stands_in_two_rows(case: Case) -> None:
     scene = build(case)
-    rows = scene.contacts
+    rows = scene.rows
     owner = np.repeat(np.arange(scene.count), np.diff(rows.start))
     i, j = scene.assembly.pairs.T
     expected = sorted([*zip(i, j, strict=True), *zip(j, i, strict=True)])
@@ -40,7 +40,7 @@ def test_every_contact_stands_in_two_rows(case: Case) -> None:
 
 def forces(scene: Scene, u: np.ndarray) -> np.ndarray:
     found = np.empty_like(u)
-    contact_forces(u, *scene.contacts.arrays, found)
+    contact_forces(u, scene.rows, found)
     return found
 
 
@@ -141,9 +141,37 @@ def test_other_boundaries_on_the_same_body(bar) -> None:
     other = with_boundaries(scene, bar({"boundary.right.beta_p": 0.5}))
 
     assert other.assembly is scene.assembly
-    assert other.contacts is scene.contacts
+    assert other.rows is scene.rows
     changed = other.supports.damping / scene.supports.damping
     assert sorted(changed) == [0.5, 0.5, 1.0, 1.0]
+
+
+def test_edges_know_where_their_particles_are(bar) -> None:
+    scene = build(bar())
+    for edge in scene.edges.values():
+        assert (edge.positions == scene.assembly.positions[edge.nodes]).all()
+
+
+def test_a_mirror_image_is_held_like_a_touching_disk(bar) -> None:
+    scene = build(bar({"motion.held": [], "boundary.top": {"type": "symmetry"}}))
+    supports, law = scene.supports, scene.ground.stiffness
+    top = np.isin(supports.node, scene.edges["top"].nodes)
+
+    # all disks of the lattice are alike, so its own contacts are what stands between disk and image
+    for component, stiffness in ((1, law.normal[0]), (2, law.bending[0])):
+        chosen = supports.stiffness[top & (supports.component == component)]
+        np.testing.assert_allclose(chosen, 20 * [2.0 * stiffness], rtol=1e-14)
+
+
+def test_half_masses_follow_the_boundaries(bar) -> None:
+    whole = build(bar())
+    half = build(bar({"boundary.right.half_mass": True}))
+    right = half.edges["right"].nodes
+
+    assert (half.mass / whole.mass)[right].tolist() == [0.5, 0.5]
+    assert (half.inertia / whole.inertia)[right].tolist() == [0.5, 0.5]
+    assert np.delete(half.mass, right).tolist() == np.delete(whole.mass, right).tolist()
+    assert with_boundaries(half, whole.case).mass.tolist() == whole.mass.tolist()
 
 
 def test_dashpots_absorb_into_the_speeds_named_else_into_the_packings_own(bar) -> None:
@@ -166,4 +194,4 @@ def test_a_gap_without_a_bond_carries_nothing(bar) -> None:
     )
 
     assert (scene.ground.brick.gaps > 0.0).any()
-    assert np.isfinite(scene.contacts.palette).all()
+    assert np.isfinite(scene.rows.palette).all()

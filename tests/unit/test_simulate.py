@@ -38,12 +38,12 @@ def test_a_dashpot_slows_a_disk_as_the_centred_update_says(bar) -> None:
     assert simulation.velocity[0, 0] == pytest.approx((0.8 / 1.2) ** 5, rel=1e-14)
 
 
-def test_spring_preload_and_drive_push_a_disk(bar) -> None:
+def test_spring_and_drive_push_a_disk(bar) -> None:
     drive = {"drive": 2.0 * MASS, "signal": lambda times: times}
-    simulation = Simulation(lone_disk(bar, one_row(preload=3.0 * MASS, stiffness=5.0 * MASS, **drive)), STEP, NOBODY)
+    simulation = Simulation(lone_disk(bar, one_row(stiffness=5.0 * MASS, **drive)), STEP, NOBODY)
     u = v = 0.0
     for step in range(10):
-        v += STEP * (3.0 - 5.0 * u + 2.0 * step * STEP)
+        v += STEP * (2.0 * step * STEP - 5.0 * u)
         u += STEP * v
     simulation.advance(10)
 
@@ -163,3 +163,66 @@ def test_a_calm_scene_stays_at_rest(bar) -> None:
 
     assert not simulation.displacement.any()
     assert not simulation.peaks.any()
+
+
+def test_a_steady_load_moves_a_disk(bar) -> None:
+    scene = lone_disk(bar, SupportBuilder().table())
+    load = MASS * np.array([[2.0], [-3.0], [0.0]])
+    simulation = Simulation(scene, STEP, NOBODY, load=load)
+    simulation.advance(10)
+
+    # 55 = 1 + … + 10 steps' worth of a Δt²
+    np.testing.assert_allclose(simulation.velocity[:, 0], [0.2, -0.3, 0.0], rtol=1e-14)
+    np.testing.assert_allclose(simulation.displacement[:, 0], [55 * 2e-4, -55 * 3e-4, 0.0], rtol=1e-14)
+
+
+def test_local_damping_is_the_materials_unless_told_otherwise(bar) -> None:
+    body = {"packing.size": [0.5, 0.5], "monitor": [], "motion.held": [], "boundary": {}, "wave": {}}
+    scene = build(bar({**body, "material.damp": 0.5}))
+    load = MASS * np.array([[1.0], [0.0], [0.0]])
+    own, other = Simulation(scene, STEP, NOBODY, load=load), Simulation(scene, STEP, NOBODY, load=load, damp=0.2)
+    for simulation in (own, other):
+        simulation.advance(11)
+
+    # the first step finds it at rest
+    assert own.velocity[0, 0] == pytest.approx(STEP * (1.0 + 10 * 0.5), rel=1e-14)
+    assert other.velocity[0, 0] == pytest.approx(STEP * (1.0 + 10 * 0.8), rel=1e-14)
+
+
+PACKED = {
+    "packing": {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]},
+    "material.law": "linearpbond",
+    "motion.held": [],
+    "boundary": {},
+    "wave": {},
+    "monitor": [],
+}
+
+
+def test_what_is_locked_in_is_balanced_unless_the_body_shall_settle(bar) -> None:
+    scene = build(bar(PACKED))
+    step, _ = choose_step(scene)
+    calm, settling = Simulation(scene, step, NOBODY), Simulation(scene, step, NOBODY, settling=True)
+    for simulation in (calm, settling):
+        simulation.advance(20)
+
+    assert not calm.velocity.any()
+    # cut faces lack the push of 10 MPa: outwards
+    outwards = scene.assembly.positions - 2.0
+    assert np.sum(outwards.T * settling.displacement[:2]) > 0.0
+
+
+@pytest.mark.parametrize("elastic_start", [True, False])
+def test_the_law_with_a_memory_takes_over_where_it_must(bar, elastic_start: bool) -> None:
+    scene = build(bar({**PACKED, "material.elastic_start": elastic_start}))
+    simulation = Simulation(scene, choose_step(scene)[0], NOBODY)
+    assert simulation.laws == ([("elastic", 0)] if elastic_start else [("linearpbond", 0)])
+    simulation.advance(5)
+    assert len(simulation.laws) == 1
+
+    simulation.velocity[:2] = np.random.default_rng(1).uniform(-5.0, 5.0, (2, scene.count))
+    simulation.advance(50)
+    names, steps = zip(*simulation.laws, strict=True)
+    assert names == (("elastic", "linearpbond") if elastic_start else ("linearpbond",))
+    assert steps[0] == 0
+    assert not elastic_start or 5 < steps[1] < 55

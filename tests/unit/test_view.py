@@ -72,6 +72,27 @@ def drawn(run, path, *options):
 
 
 @pytest.mark.usefixtures("drawing")
+def test_cracks_are_shown_up_to_their_snapshot(cracked_run, tmp_path):
+    # a run at rest, of which only the first crack is left, moved into a disk and to the time of the last snapshot
+    run = tmp_path / "run.h5"
+    run.write_bytes(cracked_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        for snapshot in file["snapshots"].values():
+            snapshot["velocity"][:] = 0.0
+        for dataset in file["cracks"].values():
+            dataset.resize(1, axis=0)
+        file["cracks/time"][0] = snapshot.attrs["time"]
+        file["cracks/position"][0] = 7.75, 1.25
+    red = [
+        np.argwhere(picture[..., 0] - picture[..., 1] > 0.5)
+        for picture in (drawn(run, tmp_path / "picture.png", "--snapshot", str(number)) for number in (0, 1))
+    ]
+    assert len(red[0]) == 0
+    # the scene, 10 m × 2.5 m, is 1600 / 1.4 pixels wide and lies in the middle; a pixel of rounding
+    np.testing.assert_allclose(red[1].mean(axis=0), [450.0, 800.0 + (7.75 - 5.0) * 1600.0 / 14.0], atol=1.0)
+
+
+@pytest.mark.usefixtures("drawing")
 def test_a_picture_shows_the_snapshot_asked_for(small_run, tmp_path):
     # a run at rest but for the left half in the last snapshot
     run = tmp_path / "run.h5"

@@ -8,9 +8,13 @@ import numpy as np
 import pytest
 import tomli_w
 
+from dembound.boundaries.support import SupportBuilder
 from dembound.case import Case, loads
+from dembound.ground import make_ground
 from dembound.kernels.elastic import contact_forces
-from dembound.scene import Scene, build
+from dembound.packings.brick import Brick
+from dembound.packings.tiling import Assembly
+from dembound.scene import Scene, build, contact_rows, find_edges, with_boundaries
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
 
@@ -51,22 +55,32 @@ class Lab:
         material: dict[str, Any] | None = None,
         boundary: dict[str, Any] | None = None,
         wave: dict[str, Any] | None = None,
+        load: Sequence[dict[str, Any]] = (),
+        static: dict[str, Any] | None = None,
         duration: float = 1.0,
         **packing: Any,
     ) -> Case:
-        """A case on `size` (m); random patterns are λ = 1.5 on a 10 x 10 m brick unless `packing` says otherwise."""
+        """A case on `size` (m); random patterns are λ = 1.5 on a 10 x 10 m brick unless `packing` says otherwise.
+
+        A material that names its moduli has no wave speed given.
+        """
         if pattern != "A":
             packing = {"radius_ratio": 1.5, "brick": BRICK, "seed": 1} | packing
         if pattern == "C":
             packing = {"edge_radius": 0.26} | packing
+        material = {"density": DENSITY} | (material or {})
+        if "emod" not in material:
+            material["p_wave_speed"] = SPEED
         tables = {
             "packing": {"pattern": pattern, "size": size, "radius": RADIUS} | packing,
-            "material": {"density": DENSITY, "p_wave_speed": SPEED} | (material or {}),
+            "material": material,
             "motion": {"held": held},
             "boundary": {
                 side: {"type": table} if isinstance(table, str) else table for side, table in (boundary or {}).items()
             },
             "wave": {"pulse": wave} if wave else {},
+            "load": [{"name": f"load{k}", **table} for k, table in enumerate(load)],
+            **({"static": static} if static else {}),
             "run": {"duration": duration},
         }
         return loads(tomli_w.dumps(tables))
@@ -74,6 +88,26 @@ class Lab:
     def scene(self, pattern: str, size: tuple[float, float], **words: Any) -> Scene:
         """The scene of `case`."""
         return build(self.case(pattern, size, **words))
+
+    def disks(
+        self, positions: np.ndarray, radii: np.ndarray, pairs: Sequence[tuple[int, int]] = (), **words: Any
+    ) -> Scene:
+        """Disks at positions (n, 2) m, of radii (n,) m, of which `pairs` are bonded; the words are those of `case`.
+
+        Each weighs ρ(2R)², as it would in a square lattice.
+        """
+        positions, radii = np.asarray(positions, dtype=float), np.asarray(radii, dtype=float)
+        bonds = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+        box = np.array([np.sum((2.0 * radii) ** 2), 1.0])  # its area is what sets the mass
+        case = self.case("A", (self.diameter, self.diameter), **words)
+        nothing = np.zeros_like(bonds), np.zeros((len(radii), 2), bool), np.zeros(3)
+        brick = Brick(box, positions, radii, bonds, *nothing, residual_ratio=0.0)
+        ground = make_ground(brick, case.material, case.motion.held)
+        twins, kinds = np.arange(len(radii), dtype=np.int32), np.arange(len(bonds), dtype=np.int32)
+        assembly = Assembly(positions, radii, twins, bonds.astype(np.int32), kinds, (1, 1), box, box)
+        edges = find_edges(assembly, (False, False))
+        rows = contact_rows(assembly, ground)
+        return with_boundaries(Scene(case, ground, assembly, rows, edges, SupportBuilder().table(), {}), case)
 
     def pulse(self, period: float) -> dict[str, Any]:
         """Z's cosine pulse, 0.5 m/s high."""
@@ -108,7 +142,7 @@ class Lab:
     def forces(self, scene: Scene, displacement: np.ndarray) -> np.ndarray:
         """Contact forces and moments (3, n) of displacements and rotations (3, n)."""
         force = np.empty_like(displacement)
-        contact_forces(displacement, *scene.contacts.arrays, force)
+        contact_forces(displacement, scene.rows, force)
         return force
 
 

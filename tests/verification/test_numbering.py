@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.scene import ContactRows, contact_rows, find_edges, with_boundaries
+from dembound.kernels.tables import Rows
+from dembound.scene import contact_rows, find_edges, with_boundaries
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
 
@@ -38,17 +39,17 @@ def renumbered(scene, number):
         kind=body.kind[order],
     )
     edges = find_edges(body, (False, False))
-    scene = replace(scene, assembly=body, contacts=contact_rows(body, scene.ground), edges=edges)
+    scene = replace(scene, assembly=body, rows=contact_rows(body, scene.ground), edges=edges)
     return with_boundaries(scene, scene.case)
 
 
 def rows_in_old_order(scene, number):
     """The rows of contacts under new numbers, each row's contacts in the order of the old one."""
-    contacts, old = scene.contacts, np.argsort(number)
+    contacts, old = scene.rows, np.argsort(number)
     counts = np.diff(contacts.start.astype(int))
     start = np.concatenate([[0], np.cumsum(counts[old])])
     entries = np.concatenate([np.arange(contacts.start[i], contacts.start[i + 1]) for i in old])
-    return ContactRows(
+    return Rows(
         start.astype(np.uint32),
         number[contacts.neighbour[entries]].astype(np.uint32),
         contacts.kind[entries],
@@ -81,7 +82,7 @@ def test_same_motion(scene, number):
 
 def test_same_bits_when_rows_keep_their_order(scene, number):
     step = choose_step(scene)[0]
-    other = replace(renumbered(scene, number), contacts=rows_in_old_order(scene, number))
+    other = replace(renumbered(scene, number), rows=rows_in_old_order(scene, number))
     before, after = motion(scene, step), motion(other, step)
     np.testing.assert_array_equal(after.velocity[:, number], before.velocity)
     np.testing.assert_array_equal(after.displacement[:, number], before.displacement)

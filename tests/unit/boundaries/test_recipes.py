@@ -6,32 +6,56 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from dembound.boundaries import BoundaryTable, Fixed, Free, Periodic, Velocity, Viscous, ViscousInput
-from dembound.boundaries.support import Edge, Medium, Signal, SupportBuilder, Supports
+from dembound.boundaries import (
+    BoundaryTable,
+    Fixed,
+    Free,
+    Periodic,
+    Roller,
+    Symmetry,
+    Velocity,
+    Viscoelastic,
+    ViscoelasticInput,
+    Viscous,
+    ViscousInput,
+)
+from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder, Supports
+from dembound.errors import CaseError
 
-MEDIUM = Medium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0)
+
+def mirror_stiffness(diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return np.full(2, 7.0), 3.0 * diameters
+
+
+MEDIUM = Medium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0, mirror_stiffness=mirror_stiffness)
 DIAMETERS = np.array([0.5, 1.0])
+POSITIONS = np.array([[0.25, 4.0], [0.5, 3.0]])
 P = 2000.0 * 1000.0 * DIAMETERS
 """ρ c_p D, N·s/m."""
 S = 2000.0 * 500.0 * DIAMETERS
 TIME = 3.0
 
 
-def push(times: np.ndarray) -> np.ndarray:
-    return times
+class Ramp:
+    """v = a·t, u = a·t²/2."""
+
+    def __init__(self, slope: float) -> None:
+        self.slope = slope
+
+    def velocity(self, t: np.ndarray) -> np.ndarray:
+        return self.slope * t
+
+    def displacement(self, t: np.ndarray) -> np.ndarray:
+        return 0.5 * self.slope * t**2
 
 
-def shake(times: np.ndarray) -> np.ndarray:
-    return 10.0 * times
-
-
-WAVES: Mapping[str, Signal] = {"push": push, "shake": shake}
+WAVES: Mapping[str, Incident] = {"push": Ramp(1.0), "shake": Ramp(10.0)}
 
 
 def rows(table: BoundaryTable, side: str) -> Supports:
     """What a boundary table makes of a side of two particles, 5 and 6."""
     builder = SupportBuilder()
-    table.support(Edge(side, np.array([5, 6]), DIAMETERS, 1.5), MEDIUM, WAVES, builder)
+    table.support(Edge(side, np.array([5, 6]), POSITIONS, DIAMETERS, 1.5), MEDIUM, WAVES, builder)
     return builder.table()
 
 
@@ -98,8 +122,125 @@ def test_a_driven_side_moves_with_its_wave_is_held_across_and_may_turn(side: str
     assert set(supports.component) == {0, 1}
 
 
-@pytest.mark.parametrize("kind", [Velocity, ViscousInput])
-def test_a_driven_side_must_name_a_wave(kind: type[Velocity] | type[ViscousInput]) -> None:
-    name = "velocity" if kind is Velocity else "viscous_input"
+@pytest.mark.parametrize(("side", "normal"), [("left", 0), ("top", 1)])
+def test_a_roller_holds_the_normal_motion_alone(side: str, normal: int) -> None:
+    supports = rows(Roller(type="roller"), side)
+
+    assert supports.node.tolist() == [5, 6]
+    assert supports.component.tolist() == [normal, normal]
+    assert supports.prescribed.all()
+    assert not supports.sample(np.array([TIME]), 0.0).any()
+
+
+@pytest.mark.parametrize(("side", "normal"), [("left", 0), ("top", 1)])
+def test_a_mirror_image_pushes_along_the_normal_and_turns_back(side: str, normal: int) -> None:
+    supports = rows(Symmetry(type="symmetry"), side)
+
+    # elongation 2u_n and bending 2θ on stiffnesses 7 and 3D
+    assert column(supports, "stiffness", normal).tolist() == [14.0, 14.0]
+    assert column(supports, "stiffness", 2).tolist() == [3.0, 6.0]
+    assert len(supports) == 4
+    assert not supports.damping.any()
+    assert not supports.prescribed.any()
+
+
+NEAR = {"alpha_n": 2.0, "alpha_s": 0.25, "distance": 40.0}
+G = 2000.0 * 500.0**2
+"""ρc_s², Pa."""
+
+
+@pytest.mark.parametrize(("side", "normal"), [("left", 0), ("top", 1)])
+def test_a_viscoelastic_side_has_springs_besides_the_dashpots(side: str, normal: int) -> None:
+    supports = rows(Viscoelastic(type="viscoelastic", beta_p=0.8, beta_s=0.4, **NEAR), side)
+
+    # Z eq. 17: K = αGD/L; products of the same factors in another order differ by rounding
+    np.testing.assert_allclose(column(supports, "stiffness", normal), 2.0 * G * DIAMETERS / 40.0, rtol=1e-15)
+    np.testing.assert_allclose(column(supports, "stiffness", 1 - normal), 0.25 * G * DIAMETERS / 40.0, rtol=1e-15)
+    np.testing.assert_allclose(column(supports, "damping", normal), 0.8 * P, rtol=1e-15)
+    np.testing.assert_allclose(column(supports, "damping", 1 - normal), 0.4 * S, rtol=1e-15)
+    assert len(supports) == 4
+    assert len(supports.drive) == 0
+
+
+@pytest.mark.parametrize(("given", "modulus"), [({}, 6e8), ({"poisson_ratio": 0.25}, 4.8e8)])
+def test_springs_take_the_modulus_given(given: dict[str, float], modulus: float) -> None:
+    table = Viscoelastic(type="viscoelastic", young_modulus=1.2e9, distance=40.0, **given)
+
+    # G = E/(2(1 + ν)), α_n = 1 and α_s = 0.5 by default
+    np.testing.assert_allclose(column(rows(table, "left"), "stiffness", 0), modulus * DIAMETERS / 40.0, rtol=1e-15)
+    np.testing.assert_allclose(column(rows(table, "left"), "stiffness", 1), modulus * DIAMETERS / 80.0, rtol=1e-15)
+
+
+def test_springs_weaken_with_each_particles_distance_from_the_source() -> None:
+    supports = rows(Viscoelastic(type="viscoelastic", source=(3.25, 8.0)), "left")
+
+    # 3-4-5 triangle, and hypot(2.75, 5)
+    distances = np.array([5.0, np.sqrt(32.5625)])
+    np.testing.assert_allclose(column(supports, "stiffness", 0), G * DIAMETERS / distances, rtol=1e-15)
+
+
+def test_a_source_within_a_particle_of_the_side_is_refused() -> None:
+    # the second particle's surface is 0.5 m from its centre
+    with pytest.raises(CaseError, match=r"^boundary\.left\.source: lies in a particle"):
+        rows(Viscoelastic(type="viscoelastic", source=(0.5, 3.49)), "left")
+    assert len(rows(Viscoelastic(type="viscoelastic", source=(0.5, 2.49)), "left")) == 4
+
+
+@pytest.mark.parametrize(("side", "normal"), [("left", 0), ("top", 1)])
+def test_a_viscoelastic_input_side_also_holds_on_to_the_incident_displacement(side: str, normal: int) -> None:
+    table = ViscoelasticInput(type="viscoelastic_input", beta_p=0.8, wave_p="push", wave_s="shake", **NEAR)
+    supports = rows(table, side)
+    springs = np.outer([2.0, 0.25], G * DIAMETERS / 40.0)
+
+    # Z eq. 18: 2βρcD·v_i + KD·u_i with v_i = at and u_i = at²/2 at t = 3, a = 1 and 10
+    np.testing.assert_allclose(column(supports, "push", normal), 2.0 * 0.8 * P * 3.0 + springs[0] * 4.5, rtol=1e-15)
+    np.testing.assert_allclose(column(supports, "push", 1 - normal), 2.0 * S * 30.0 + springs[1] * 45.0, rtol=1e-15)
+    np.testing.assert_allclose(column(supports, "damping", normal), 0.8 * P, rtol=1e-15)
+    np.testing.assert_allclose(column(supports, "stiffness", normal), springs[0], rtol=1e-15)
+    assert len(supports) == 4
+
+
+def test_a_viscoelastic_input_side_only_absorbs_and_holds_in_the_direction_without_a_wave() -> None:
+    supports = rows(ViscoelasticInput(type="viscoelastic_input", wave_p="push", **NEAR), "bottom")
+
+    assert column(supports, "push", 0).tolist() == [0.0, 0.0]
+    assert column(supports, "stiffness", 0).all()
+
+
+def test_a_viscoelastic_side_without_its_springs_is_viscous() -> None:
+    dashpots = {"beta_p": 0.8, "beta_s": 0.4, "half_mass": True}
+
+    assert Viscoelastic(type="viscoelastic", **dashpots, **NEAR).without_springs() == Viscous(
+        type="viscous", **dashpots
+    )
+    assert ViscoelasticInput(
+        type="viscoelastic_input", wave_s="shake", **dashpots, **NEAR
+    ).without_springs() == ViscousInput(type="viscous_input", wave_s="shake", **dashpots)
+
+
+@pytest.mark.parametrize(
+    ("keys", "mistake"),
+    [
+        ({}, "exactly one of distance and source"),
+        ({"distance": 1.0, "source": (0.0, 0.0)}, "exactly one of distance and source"),
+        ({"distance": 0.0}, "greater than 0"),
+        ({"distance": 1.0, "poisson_ratio": 0.2}, "poisson_ratio: needs young_modulus"),
+        ({"distance": 1.0, "young_modulus": 1e9, "poisson_ratio": -1.0}, "greater than -1"),
+        ({"distance": 1.0, "young_modulus": 1e9, "poisson_ratio": 0.51}, "less than or equal to 0.5"),
+        ({"distance": 1.0, "alpha_s": -0.1}, "greater than or equal to 0"),
+    ],
+)
+def test_springs_need_one_distance_and_a_possible_modulus(keys: dict[str, object], mistake: str) -> None:
+    with pytest.raises(ValidationError, match=mistake):
+        Viscoelastic(type="viscoelastic", **keys)
+
+
+@pytest.mark.parametrize("kind", [Velocity, ViscousInput, ViscoelasticInput])
+def test_a_driven_side_must_name_a_wave(kind: type[Velocity | ViscousInput | ViscoelasticInput]) -> None:
+    name, springs = {
+        Velocity: ("velocity", {}),
+        ViscousInput: ("viscous_input", {}),
+        ViscoelasticInput: ("viscoelastic_input", NEAR),
+    }[kind]
     with pytest.raises(ValidationError, match="names no wave"):
-        kind(type=name)
+        kind(type=name, **springs)

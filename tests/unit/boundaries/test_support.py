@@ -16,6 +16,13 @@ def square(times: np.ndarray) -> np.ndarray:
     return times**2
 
 
+def no_mirror(diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return 0.0 * diameters, 0.0 * diameters
+
+
+MEDIUM = Medium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0, mirror_stiffness=no_mirror)
+
+
 def row(table: Supports, node: int, component: int) -> int:
     """The number of the one row on a degree of freedom."""
     (found,) = np.flatnonzero((table.node == node) & (table.component == component))
@@ -23,16 +30,18 @@ def row(table: Supports, node: int, component: int) -> int:
 
 
 def test_a_medium_gives_p_dashpots_along_the_normal_and_s_across() -> None:
-    medium = Medium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0)
-
     # βρc by hand: 0.5·2000·1000 and 3·2000·500
-    assert medium.impedances(0.5, 3.0, normal_axis=0).tolist() == [1e6, 3e6]
-    assert medium.impedances(0.5, 3.0, normal_axis=1).tolist() == [3e6, 1e6]
+    assert MEDIUM.impedances(0.5, 3.0, normal_axis=0).tolist() == [1e6, 3e6]
+    assert MEDIUM.impedances(0.5, 3.0, normal_axis=1).tolist() == [3e6, 1e6]
+
+
+def test_a_medium_has_the_shear_modulus_of_its_s_waves() -> None:
+    assert MEDIUM.shear_modulus == 5e8  # 2000·500²
 
 
 @pytest.mark.parametrize(("side", "axis"), [("left", 0), ("right", 0), ("bottom", 1), ("top", 1)])
 def test_an_edge_knows_its_normal_and_how_much_its_disks_cover(side: str, axis: int) -> None:
-    edge = Edge(side, NODES, diameters=np.array([0.5, 1.0]), length=1.25)
+    edge = Edge(side, NODES, positions=np.zeros((2, 2)), diameters=np.array([0.5, 1.0]), length=1.25)
 
     assert edge.axis == axis
     assert edge.cover == 1.2
@@ -40,17 +49,15 @@ def test_an_edge_knows_its_normal_and_how_much_its_disks_cover(side: str, axis: 
 
 def test_one_row_per_node_sorted_by_node_with_numbers_or_arrays() -> None:
     builder = SupportBuilder()
-    builder.add(NODES, 1, preload=7.0, damping=np.array([40.0, 20.0]), stiffness=3.0)
+    builder.add(NODES, 1, damping=np.array([40.0, 20.0]), stiffness=3.0)
     table = builder.table()
 
     assert len(table) == 2
     assert table.node.tolist() == [2, 4]
     assert table.component.tolist() == [1, 1]
-    assert table.preload.tolist() == [7.0, 7.0]
     assert table.damping.tolist() == [20.0, 40.0]
     assert table.stiffness.tolist() == [3.0, 3.0]
-    assert table.drive.tolist() == [0.0, 0.0]
-    assert table.signal.tolist() == [-1, -1]
+    assert len(table.drive) == 0
     assert not table.prescribed.any()
 
 
@@ -72,14 +79,14 @@ def test_an_empty_table_drives_nothing() -> None:
 
 def test_forces_of_two_sides_add_up_at_a_corner() -> None:
     builder = SupportBuilder()
-    builder.add(NODES, 0, preload=1.0, damping=10.0, stiffness=100.0)
-    builder.add(np.array([2, 3]), 0, preload=2.0, damping=20.0, stiffness=200.0)
+    builder.add(NODES, 0, damping=10.0, stiffness=100.0)
+    builder.add(np.array([2, 3]), 0, damping=20.0, stiffness=200.0)
     builder.add(np.array([2, 3]), 1, damping=5.0)
     table = builder.table()
 
     assert len(table) == 5
     corner = row(table, 2, 0)
-    assert (table.preload[corner], table.damping[corner], table.stiffness[corner]) == (3.0, 30.0, 300.0)
+    assert (table.damping[corner], table.stiffness[corner]) == (30.0, 300.0)
     assert table.damping[row(table, 4, 0)] == 10.0
     assert table.damping[row(table, 2, 1)] == 5.0
 
@@ -98,6 +105,18 @@ def test_drives_of_two_signals_add_up_at_a_corner() -> None:
     assert values[:, row(table, 4, 0)].tolist() == [0.0, 6.0]
 
 
+def test_a_row_may_have_several_drives_of_one_side() -> None:
+    builder = SupportBuilder()
+    builder.add(NODES, 1, damping=3.0, drive=np.array([4.0, 2.0]), signal=ramp)
+    builder.add(NODES, 1, drive=0.5, signal=square)
+    table = builder.table()
+
+    assert table.node.tolist() == [2, 4]
+    assert table.damping.tolist() == [3.0, 3.0]
+    # 2·3 + 9/2 on particle 2 and 4·3 + 9/2 on particle 4
+    assert table.sample(np.array([3.0]), half_step=0.5).tolist() == [[10.5, 16.5]]
+
+
 def test_forces_are_sampled_at_whole_steps_and_prescribed_velocities_half_a_step_later() -> None:
     builder = SupportBuilder()
     builder.add(np.array([1]), 0, drive=2.0, signal=ramp)
@@ -112,14 +131,14 @@ def test_a_prescribed_row_outranks_forces(prescribed_first: bool) -> None:
     builder = SupportBuilder()
     rows = [
         {"drive": 1.0, "signal": ramp, "prescribed": True},
-        {"preload": 1.0, "damping": 2.0, "stiffness": 3.0, "drive": 4.0, "signal": square},
+        {"damping": 2.0, "stiffness": 3.0, "drive": 4.0, "signal": square},
     ]
     for each in rows if prescribed_first else rows[::-1]:
         builder.add(np.array([7]), 1, **each)
     table = builder.table()
 
     assert table.prescribed.tolist() == [True]
-    assert (table.preload[0], table.damping[0], table.stiffness[0]) == (0.0, 0.0, 0.0)
+    assert (table.damping[0], table.stiffness[0]) == (0.0, 0.0)
     assert table.sample(np.array([3.0]), half_step=0.0).tolist() == [[3.0]]
 
 

@@ -44,3 +44,43 @@ def test_incomplete_or_doubled_stiffness_is_refused(keys: dict[str, float], line
         Material(density=2500.0, **keys)
     found = str(caught.value.errors()[0]["ctx"]["error"]).splitlines()
     assert [line.startswith(start) for line, start in zip(found, lines, strict=True)] == [True] * len(lines)
+
+
+STIFFNESS = {"emod": 1e9, "pb_emod": 1e9}
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {},
+        {"pb_ten": 1e6, "pb_coh": 2e6, "pb_fa": 30.0},
+        {"locked_in": False, "geometry": "reference", "elastic_start": False},
+        {"pb_emod": 0.0},
+    ],
+)
+def test_breakable_bonds_are_accepted(keys: dict[str, float]) -> None:
+    material = Material(density=2500.0, law="linearpbond", **(STIFFNESS | keys))
+    assert {key: getattr(material, key) for key in keys} == keys
+
+
+@pytest.mark.parametrize("key", ["pb_ten", "pb_coh", "pb_fa", "locked_in", "geometry", "elastic_start"])
+def test_keys_of_the_law_with_history_need_it(key: str) -> None:
+    value = {"locked_in": True, "geometry": "updated", "elastic_start": True}.get(key, 1.0)
+    with pytest.raises(ValueError, match=f'{key}: is only allowed with law = "linearpbond"'):
+        Material(density=2500.0, **STIFFNESS, **{key: value})
+
+
+@pytest.mark.parametrize(
+    ("keys", "line"),
+    [
+        ({**STIFFNESS, "pb_fa": 30.0}, "pb_fa: is only allowed together with pb_coh"),
+        ({"emod": 1e9, "pb_emod": 0.0, "pb_ten": 1.0}, "pb_ten: is the strength of bonds, but pb_emod = 0 leaves none"),
+        (
+            {"p_wave_speed": 1e3, "contact_share": 1.0, "pb_coh": 1.0},
+            "pb_coh: is the strength of bonds, but contact_share = 1 leaves none",
+        ),
+    ],
+)
+def test_strength_without_what_it_needs_is_refused(keys: dict[str, float], line: str) -> None:
+    with pytest.raises(ValueError, match=line):
+        Material(density=2500.0, law="linearpbond", **keys)

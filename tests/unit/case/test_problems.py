@@ -20,9 +20,9 @@ duration = 0.1
 WAVES = '[wave.push]\ntype = "constant"\namplitude = 1.0\n[wave.shake]\ntype = "constant"\namplitude = 1.0\n'
 
 
-def problems(extra: str) -> list[str]:
+def problems(extra: str, base: str = BASE) -> list[str]:
     try:
-        loads(BASE + extra)
+        loads(base + extra)
     except CaseError as error:
         return error.problems
     return []
@@ -74,6 +74,30 @@ def test_a_held_direction_cannot_be_driven(name: str, key: str, direction: str) 
     ]
 
 
+@pytest.mark.parametrize(
+    ("kind", "more"),
+    [
+        ("viscous", ""),
+        ("viscous_input", 'wave_p = "push"'),
+        ("viscoelastic", "distance = 1.0"),
+        ("viscoelastic_input", 'distance = 1.0\nwave_p = "push"'),
+    ],
+)
+def test_half_masses_are_for_regular_edges(kind: str, more: str) -> None:
+    random = 'pattern = "B"\nradius_ratio = 1.5\nbrick = [5.0, 5.0]'
+    edged = random.replace('"B"', '"C"') + "\nedge_radius = 0.26"
+    table = WAVES + side("right", kind, more)
+
+    assert problems(table + "half_mass = true\n") == []
+    for pattern, mistakes in (
+        (edged, []),
+        (random, ["boundary.right.half_mass: is for regular edges, patterns A and C; the packing is B"]),
+    ):
+        text = BASE.replace('pattern = "A"', pattern)
+        assert problems(table + "half_mass = true\n", text) == mistakes
+        assert problems(table, text) == []
+
+
 def test_a_packing_that_sends_no_p_wave_can_match_no_speed() -> None:
     match = BASE.replace("p_wave_speed = 1000.0", 'p_wave_speed = 1000.0\nmatch = "assembly"')
     assert match != BASE
@@ -100,10 +124,11 @@ def test_monitor_names_are_unique() -> None:
 
 
 def test_intervals_fit_into_the_run() -> None:
-    assert problems("time_step = 0.1\n[output]\nhistory_interval = 0.1\n") == []
-    assert problems("time_step = 0.2\n[output]\nhistory_interval = 0.3\n") == [
+    assert problems("time_step = 0.1\n[output]\nhistory_interval = 0.1\nenergy_interval = 0.1\n") == []
+    assert problems("time_step = 0.2\n[output]\nhistory_interval = 0.3\nenergy_interval = 0.4\n") == [
         "run.time_step: is 0.2, must be at most run.duration, 0.1 (s)",
         "output.history_interval: is 0.3, must be at most run.duration, 0.1 (s)",
+        "output.energy_interval: is 0.4, must be at most run.duration, 0.1 (s)",
     ]
 
 

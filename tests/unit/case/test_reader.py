@@ -63,7 +63,8 @@ def test_a_good_case_is_read_as_it_stands() -> None:
     assert case.wave["pulse"].peak() == 0.5
     assert case.monitor[0].position == (0.0, 5.0)
     assert (case.run.duration, case.run.time_step, case.run.safety) == (0.1, "auto", 0.9)
-    assert (case.output.history_interval, case.output.snapshots, case.output.pictures) == (0.0, 3, True)
+    assert (case.output.history_interval, case.output.energy_interval) == (0.0, 0.0)
+    assert (case.output.snapshots, case.output.pictures) == (3, True)
 
 
 def test_optional_tables_may_be_absent() -> None:
@@ -75,6 +76,7 @@ def test_optional_tables_may_be_absent() -> None:
     case = loads(text)
 
     assert (case.title, case.boundary, case.wave, case.monitor, case.motion.held) == ("", {}, {}, (), ())
+    assert (case.static, case.load) == (None, ())
 
 
 @pytest.mark.parametrize(
@@ -147,7 +149,7 @@ def test_optional_tables_may_be_absent() -> None:
         # choices
         ('pattern = "A"', 'pattern = "D"', 'packing.pattern: is "D", must be one of "A", "B", "C"'),
         ('pattern = "A"\n', "", 'packing.pattern: is missing, must be one of "A", "B", "C"'),
-        ("[motion]", 'law = "glue"\n[motion]', 'material.law: is "glue", must be "elastic"'),
+        ("[motion]", 'law = "glue"\n[motion]', 'material.law: is "glue", must be one of "elastic", "linearpbond"'),
         (
             "[motion]",
             'match = "us"\n[motion]',
@@ -190,8 +192,8 @@ def test_optional_tables_may_be_absent() -> None:
         (
             "[output]",
             "[outputs]",
-            "outputs: unknown table; allowed: title, packing, material, motion, boundary, wave, monitor, "
-            "run, output (did you mean output?)",
+            "outputs: unknown table; allowed: title, packing, material, motion, boundary, static, wave, load, "
+            "monitor, run, output (did you mean output?)",
         ),
         (
             "[output]\nsnapshots = 3",
@@ -199,6 +201,8 @@ def test_optional_tables_may_be_absent() -> None:
             'output: is [{"snapshots": 3}], must be a table',
         ),
         ("[[monitor]]", "[monitor]", "monitor: is a table, must be made of tables [[monitor]]"),
+        ("[[monitor]]", "[load]\n[[monitor]]", "load: is a table, must be made of tables [[load]]"),
+        ("[motion]", "[[static]]\n[motion]", "static: is [{}], must be a table"),
         # messages of the tables themselves
         (
             "size = [10, 5.0]",

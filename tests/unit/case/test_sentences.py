@@ -15,16 +15,23 @@ from dembound.table import Table, quantity
 FULL: dict[str, Any] = {
     "title": "full",
     "packing": {"pattern": "A", "size": [10.0, 5.0], "radius": 0.25},
-    "material": {"density": 2500.0, "p_wave_speed": 1e3, "kratio": 1.0, "damp": 0.1, "law": "elastic"},
+    "material": {"density": 2500.0, "p_wave_speed": 1e3, "kratio": 1.0, "damp": 0.1, "law": "linearpbond"}
+    | {"pb_ten": 1e6, "pb_coh": 2e6, "pb_fa": 30.0, "locked_in": False, "geometry": "reference", "elastic_start": True},
     "motion": {"held": ["y"]},
     "boundary": {"left": {"type": "viscous_input", "wave_p": "w", "beta_p": 1.0}, "right": {"type": "fixed"}},
+    "static": {"stress": [0.0, 0.0, 1.0], "ratio": 1e-4, "damp": 0.5, "max_steps": 10}
+    | {"boundary": {"left": {"type": "fixed"}, "bottom": {"type": "roller"}}},
     "wave": {
         "w": {"type": "cosine", "amplitude": 1.0, "period": 1.0, "start": 0.0},
         "s": {"type": "sine_burst", "amplitude": 1.0, "frequency": 1.0, "cycles": 2, "taper": True},
     },
+    "load": [
+        {"name": "a", "force": [1.0, 0.0], "region": [0.0, 0.0, 1.0, 1.0], "wave": "w"},
+        {"name": "b", "acceleration": [1.0, 0.0], "position": [0.0, 0.0]},
+    ],
     "monitor": [{"name": "a", "position": [0.0, 0.0]}],
     "run": {"duration": 1.0, "time_step": 0.1, "safety": 0.5},
-    "output": {"history_interval": 0.0, "snapshots": 1, "pictures": False},
+    "output": {"history_interval": 0.0, "energy_interval": 0.0, "snapshots": 1, "pictures": False},
 }
 
 # of every TOML kind one that is wrong nearly everywhere

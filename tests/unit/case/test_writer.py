@@ -56,6 +56,15 @@ def test_changes_make_tables_that_are_not_there() -> None:
     assert changed.wave["tap"].peak() == 1.0
 
 
+def test_changes_reach_tables_inside_tables() -> None:
+    changed = with_changes(
+        loads(STARTER), {"static.stress": [-1e6, -1e6, 0.0], "static.boundary.bottom.type": "roller"}
+    )
+    assert changed.static.boundary["bottom"].type == "roller"
+    with pytest.raises(CaseError, match=r'static\.boundary\.bottom\.type: is "viscous", must be one of'):
+        with_changes(changed, {"static.boundary.bottom.type": "viscous"})
+
+
 def test_wrong_changes_are_refused_like_wrong_files() -> None:
     case = loads(STARTER)
     with pytest.raises(CaseError, match=r"boundary\.left\.beta_p: is -1"):

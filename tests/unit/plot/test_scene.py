@@ -21,6 +21,7 @@ def block(path, columns, rows, *velocities):
     positions = np.column_stack([x.ravel(), y.ravel()])
     with h5py.File(path, "w") as file:
         file.attrs["name"] = "block"
+        file["cracks/time"], file["cracks/position"], file["cracks/shear"] = [], np.zeros((0, 2)), np.zeros(0, bool)
         file["particles/position"], file["particles/radius"] = positions, np.full(len(positions), 0.5)
         for number, velocity in enumerate(velocities):
             group = file.create_group(f"snapshots/{number:04d}")
@@ -62,6 +63,25 @@ def test_disks_have_true_sizes_places_and_values(small_run, arguments, number, c
     assert bar.get_ylabel() == label
     assert panel.get_title() == f"t = {time:.3g} s"
     assert (panel.get_xlabel(), panel.get_ylabel(), panel.get_aspect()) == ("x (m)", "y (m)", 1.0)
+
+
+@pytest.mark.parametrize("snapshot", [0, 1])
+def test_bonds_broken_by_then_are_marked_by_how_they_broke(cracked_run, snapshot):
+    figure = plot_scene(cracked_run, snapshot)
+    marks = {each.get_label(): each.get_offsets() for each in figure.axes[0].collections if "bond" in each.get_label()}
+    with h5py.File(cracked_run) as file:
+        cracks = file["cracks"]
+        past = cracks["time"][:] <= file[f"snapshots/{snapshot:04d}"].attrs["time"]
+        for label, shear in (("bond broken in tension", False), ("bond broken in shear", True)):
+            np.testing.assert_array_equal(marks[label], cracks["position"][past & (cracks["shear"][:] == shear)])
+            assert len(marks[label]) > 0
+
+
+def test_the_title_tells_when_the_law_changed(small_run, cracked_run):
+    with h5py.File(cracked_run) as file:
+        began = file["laws/time"][1]
+    assert plot_scene(cracked_run).get_suptitle().endswith(f"disks\nelastic law to {began:.3g} s, then linearpbond")
+    assert plot_scene(small_run).get_suptitle().endswith("disks")
 
 
 def test_monitors_are_named_where_they_are(small_run):

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from dembound.waves import Constant, Cosine, Ricker, SineBurst
+from dembound.waves import Constant, Cosine, CubicSpline, Ricker, SineBurst
 from dembound.waves.wave import Shape
 
 WAVES = [
     Cosine(type="cosine", start=0.3, amplitude=0.5, period=0.4),
     Cosine(type="cosine", amplitude=-2.0, period=1.5),
+    CubicSpline(type="cubic_spline", start=0.2, amplitude=0.6, period=0.8),
     Ricker(type="ricker", start=0.1, amplitude=-0.7, frequency=3.0),
     SineBurst(type="sine_burst", start=0.2, amplitude=1.3, frequency=5.0, cycles=1),
     SineBurst(type="sine_burst", amplitude=1.3, frequency=5.0, cycles=4),
@@ -80,6 +81,28 @@ def test_cosine_follows_its_equation() -> None:
     assert wave.displacement(np.array([0.5, 9.0])) == pytest.approx([0.125, 0.125], rel=1e-14)
     assert wave.duration() == 0.5
     assert wave.dominant_frequency() == 2.0
+
+
+def test_cubic_spline_follows_its_equation() -> None:
+    wave = CubicSpline(type="cubic_spline", amplitude=0.5, period=2.0)
+    tau = np.linspace(-0.2, 1.2, 141)
+    terms = zip((1.0, -4.0, 6.0, -4.0, 1.0), (0.0, 0.25, 0.5, 0.75, 1.0), strict=True)
+    printed = 0.5 * 16.0 * sum(factor * np.maximum(tau - shift, 0.0) ** 3 for factor, shift in terms)
+
+    # Z eq. 19 as printed: its terms reach 8·6·1.2³ = 80, so it is known to 80 · 1e-16 times a few
+    assert wave.velocity(2.0 * tau) == pytest.approx(printed, abs=1e-13)
+    # quarters of the pulse: 0, 1/4, 1, 1/4, 0 of M; and its area 3MT/8, at once and for ever
+    assert wave.velocity(np.array([0.0, 0.5, 1.0, 1.5, 2.0, 1e9])).tolist() == [0.0, 0.125, 0.5, 0.125, 0.0, 0.0]
+    assert wave.displacement(np.array([2.0, 1e9])).tolist() == [0.375, 0.375]
+    assert (wave.duration(), wave.dominant_frequency()) == (2.0, 0.5)
+
+
+def test_cubic_spline_fades_where_its_spectrum_says() -> None:
+    wave = CubicSpline(type="cubic_spline", amplitude=1.0, period=4.0)
+
+    # at T = 4 s the spectrum is sinc⁴f; the root is known to 1e-15, and sinc⁴'s slope there is below 0.1
+    assert np.sinc(wave.highest_frequency()) ** 4 == pytest.approx(0.01, rel=1e-12)
+    assert wave.highest_frequency() == pytest.approx(2.952 / 4.0, abs=1.3e-4)  # the docs round to 0.001/2
 
 
 def test_ricker_troughs_and_vanishing_displacement() -> None:

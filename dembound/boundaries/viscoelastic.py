@@ -1,0 +1,105 @@
+"""Viscoelastic boundaries for disks: viscous ones with springs to a far fixed point, which stop the drift.
+
+Z eqs 13-18. For waves that spread from a source at distance L, springs of α_n G/L along the normal and α_s G/L
+across it stand for the medium beyond besides the dashpots. G is given as a modulus, or is that of the medium.
+"""
+
+from collections.abc import Mapping
+from typing import Literal
+
+import numpy as np
+from pydantic import model_validator
+
+from dembound.boundaries.driven import Driven
+from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
+from dembound.boundaries.viscous import Dashpots, Viscous, ViscousInput
+from dembound.errors import CaseError
+from dembound.table import Table, quantity
+
+
+class Springs(Table):
+    """A side with springs: stiffness α·G/L·D per edge particle of diameter D (Z eqs 14, 17)."""
+
+    alpha_n: float = quantity(1.0, unit="1", help="factor α_n of the springs along the side's normal", ge=0.0)
+    alpha_s: float = quantity(0.5, unit="1", help="factor α_s of the springs across the side's normal", ge=0.0)
+    young_modulus: float | None = quantity(
+        None, unit="Pa", help="E of the springs' G = E/(2(1 + ν)); absent: G = ρc_s² of the dashpots' medium", gt=0.0
+    )
+    poisson_ratio: float | None = quantity(
+        None, unit="1", help="ν of the springs' G; absent: 0 where young_modulus is given", gt=-1.0, le=0.5
+    )
+    distance: float | None = quantity(None, unit="m", help="distance L from the source of the waves", gt=0.0)
+    source: tuple[float, float] | None = quantity(
+        None, unit="m", help="where the waves come from; L is each particle's own distance from there"
+    )
+
+    @model_validator(mode="after")
+    def _fit_together(self) -> "Springs":
+        if self.poisson_ratio is not None and self.young_modulus is None:
+            raise ValueError("poisson_ratio: needs young_modulus; without it G is that of the medium")
+        if (self.distance is None) == (self.source is None):
+            raise ValueError("must have exactly one of distance and source, which say how far away waves begin")
+        return self
+
+    def stiffnesses(self, edge: Edge, medium: Medium) -> np.ndarray:
+        """Spring constants αGD/L (2, k) in N/m of the edge's particles along x and y.
+
+        Raises CaseError when the source lies in one of these particles.
+        """
+        along_normal, across = self.alpha_n, self.alpha_s
+        factors = [along_normal, across] if edge.axis == 0 else [across, along_normal]
+        return np.outer(factors, self._shear_modulus(medium) * edge.diameters / self._distances(edge))
+
+    def _shear_modulus(self, medium: Medium) -> float:
+        if self.young_modulus is None:
+            return medium.shear_modulus
+        return self.young_modulus / (2.0 * (1.0 + (self.poisson_ratio or 0.0)))
+
+    def _distances(self, edge: Edge) -> np.ndarray:
+        """Distances L (k,) in m of the edge's particles from the source."""
+        if self.source is None:
+            return np.full(len(edge.nodes), self.distance)
+        distances = np.hypot(*(edge.positions - self.source).T)
+        if (distances < 0.5 * edge.diameters).any():
+            raise CaseError([f"boundary.{edge.side}.source: lies in a particle of this side, must lie away from it"])
+        return distances
+
+
+class Viscoelastic(Dashpots, Springs):
+    """Absorbs and holds: F = −βρcD·v − K·D·u, K = α_n G/L along the normal and α_s G/L across (Z eq. 17)."""
+
+    type: Literal["viscoelastic"]
+
+    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+        """One dashpot and one spring per edge particle and direction."""
+        dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
+        for component in range(2):
+            supports.add(edge.nodes, component, damping=dampings[component], stiffness=stiffnesses[component])
+
+    def without_springs(self) -> Viscous:
+        """The same side with its dashpots alone."""
+        return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields)))
+
+
+class ViscoelasticInput(Dashpots, Springs, Driven):
+    """Absorbs, holds and lets a wave in: F = −βρcD·v − K·D·u + 2βρcD·v_i + K·D·u_i (Z eq. 18).
+
+    v_i and u_i are velocity and displacement of the incident wave.
+    """
+
+    type: Literal["viscoelastic_input"]
+
+    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+        """Dashpots and springs, plus the forces that make the incident wave pass."""
+        dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
+        for component, name in enumerate(self.waves_by_axis(edge.axis)):
+            damping, stiffness = dampings[component], stiffnesses[component]
+            supports.add(edge.nodes, component, damping=damping, stiffness=stiffness)
+            if name:
+                supports.add(edge.nodes, component, drive=2.0 * damping, signal=waves[name].velocity)
+                supports.add(edge.nodes, component, drive=stiffness, signal=waves[name].displacement)
+
+    def without_springs(self) -> ViscousInput:
+        """The same side with its dashpots alone."""
+        shared = {*Dashpots.model_fields, *Driven.model_fields}
+        return ViscousInput(type="viscous_input", **self.model_dump(include=shared))

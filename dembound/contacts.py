@@ -1,0 +1,297 @@
+"""The pairs of a scene: who touches or may soon touch whom, kept up to date as particles move."""
+
+from dataclasses import dataclass, fields
+from itertools import product
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from dembound.case.material import Material
+from dembound.ground import Ground
+from dembound.kernels import contacts as kernel
+from dembound.kernels.common import CHUNKS
+from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SHEAR, UPDATED
+from dembound.kernels.tables import Contacts, Limits
+from dembound.laws import pair_lines
+from dembound.packings.tiling import Assembly
+
+SKIN = 0.1
+"""Pairs are listed while their gap is below this share of the mean diameter: they are looked for anew once a particle
+has moved by half of it."""
+
+
+@dataclass(frozen=True)
+class Cracks:
+    """Bonds that broke, k of them in the order they did.
+
+    step (k,) int64; pair (k, 2) int64 particles; position (k, 2) m, between the two at the end of the block of steps
+    in which it broke; shear (k,) bool, broken in shear, not in tension.
+    """
+
+    step: np.ndarray
+    pair: np.ndarray
+    position: np.ndarray
+    shear: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.step)
+
+
+def limits_of(material: Material) -> Limits:
+    """Where contacts and bonds of a material give way; the elastic law never does."""
+    unbreakable = material.law == "elastic"
+    return Limits(
+        friction=float(material.fric),
+        tension=np.inf if unbreakable or material.pb_ten is None else material.pb_ten,
+        cohesion=np.inf if unbreakable or material.pb_coh is None else material.pb_coh,
+        tan_fa=float(np.tan(np.radians(material.pb_fa))) if material.pb_coh is not None else 0.0,
+        geometry=REFERENCE if unbreakable else {"updated": UPDATED, "reference": BONDED}[material.geometry],
+    )
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """A list of pairs: first, second (b,) particles, image (b, 2) whole periods between, line (b,) of the palette."""
+
+    first: np.ndarray
+    second: np.ndarray
+    image: np.ndarray
+    line: np.ndarray
+
+
+class ContactList:
+    """All pairs of a scene that push or may soon push, with their memory.
+
+    Parameters
+    ----------
+    ground : brick and material.
+    assembly : where the particles are at the start.
+    periods : length (m) of the scene along x and y where it is periodic, else None.
+
+    Attributes
+    ----------
+    arrays : the pairs as the kernels read them.
+    limits : where they give way.
+    origin : (2, n) m, displacements at which the list was made.
+    skin : m, gap up to which it is complete.
+    arms : (n,) m, the longest arm of each particle's contacts and bonds.
+    """
+
+    def __init__(
+        self, ground: Ground, material: Material, assembly: Assembly, periods: tuple[float | None, float | None]
+    ) -> None:
+        self.ground = ground
+        self.assembly = assembly
+        self.periods = periods
+        self.limits = limits_of(material)
+        self.locked_in = material.law == "linearpbond" and material.locked_in
+        self.searches = self.limits.geometry != REFERENCE
+        self.skin = SKIN * ground.brick.mean_diameter
+        self.origin = np.zeros((2, len(assembly.radii)))
+        self._bonds = _brick_lines(ground, gaps_close=self.searches, locked_in=self.locked_in)
+        first, second = assembly.pairs.T.astype(np.int64)
+        pairs = Pairs(first, second, self._images(first, second, self._bonds[assembly.kind, :2]), assembly.kind)
+        bonded = np.full(len(first), INTACT if ground.moduli.pb_emod > 0.0 else NONE, dtype=np.uint8)
+        zero = np.zeros(len(first))
+        self._palette = self._bonds
+        self._list(pairs, bonded, zero, zero, np.full(len(first), -1))
+        self.bonds = np.bincount(assembly.pairs.ravel(), minlength=len(assembly.radii)) * int(bonded.any())
+        widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
+        self.arms = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
+        self._cracks: list[Cracks] = []
+        if self.searches:
+            self.search(np.zeros((3, len(assembly.radii))))
+
+    def adopt(self, displacement: np.ndarray) -> None:
+        """Take over from the elastic law at displacements (3, n): nothing has slid so far."""
+        kernel.adopt(displacement, self.arrays)
+
+    def forces(self, displacement: np.ndarray, *, reference: bool = False) -> np.ndarray:
+        """Forces and moments (3, n) on the particles at displacements (3, n) reached at rest.
+
+        The pairs' own forces are left in `arrays`. reference: with the geometry of the start, as under the elastic law.
+        """
+        elastic = self.limits._replace(geometry=REFERENCE, tension=np.inf, cohesion=np.inf)
+        limits = elastic if reference else self.limits
+        still = np.zeros_like(displacement)
+        kernel.push(displacement, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 2)))
+        return self.last_forces()
+
+    def last_forces(self) -> np.ndarray:
+        """Forces and moments (3, n) on the particles from the pairs' last forces."""
+        force = np.empty((3, len(self.assembly.radii)))
+        kernel.sum_forces(self.arrays, force)
+        return force
+
+    def search(self, displacement: np.ndarray) -> None:
+        """List the pairs anew for displacements (3, n): near ones come in, those far apart and unbonded go."""
+        self.note_cracks(displacement)
+        here = self.assembly.positions + displacement[:2].T
+        old, count = self.arrays, len(self.assembly.radii)
+        near, image = _near_pairs(here, self.assembly.radii, self.skin, self.periods)
+        vectors = displacement[:2, old.second].T - displacement[:2, old.first].T + old.palette[old.kind, :2]
+        gap = np.hypot(*vectors.T) - self.assembly.radii[old.first] - self.assembly.radii[old.second]
+        kept = (old.state == INTACT) | (gap <= self.skin)
+        keys = _keys(old.first[kept], old.second[kept], self._image[kept], count)
+        fresh = ~np.isin(_keys(near[:, 0], near[:, 1], image, count), keys)
+        first, second = near[fresh].T
+        new = len(first)
+        vectors = self.assembly.positions[second] - self.assembly.positions[first] + image[fresh] * self._period()
+        radii = self.assembly.radii
+        lines = pair_lines(
+            self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
+        )
+        # lines of earlier searches that are still in use move up behind the brick's own
+        own = len(self._bonds)
+        used, line = np.unique(old.kind[kept], return_inverse=True)
+        extra = used >= own
+        place = used.astype(np.int64)
+        place[extra] = own + np.arange(np.count_nonzero(extra))
+        self._palette = np.vstack([self._bonds, self._palette[used[extra]], lines])
+        pairs = Pairs(
+            np.concatenate([old.first[kept], first]),
+            np.concatenate([old.second[kept], second]),
+            np.concatenate([self._image[kept], image[fresh]]),
+            np.concatenate([place[line], own + np.count_nonzero(extra) + np.arange(new)]),
+        )
+        self._list(
+            pairs,
+            np.concatenate([old.state[kept], np.full(new, NONE, dtype=np.uint8)]),
+            np.concatenate([old.shear[kept], np.zeros(new)]),
+            np.concatenate([old.slip[kept], np.zeros(new)]),
+            np.concatenate([old.cracked[kept], np.full(new, -1)]),
+        )
+        self.origin = displacement[:2].copy()
+
+    def note_cracks(self, displacement: np.ndarray) -> None:
+        """Write down the bonds that broke since the last time; displacement (3, n) is that of now."""
+        pairs = self.arrays
+        broken = np.flatnonzero(pairs.cracked >= 0)
+        broken = broken[np.argsort(pairs.cracked[broken], kind="stable")]
+        if len(broken) == 0:
+            return
+        first, second = pairs.first[broken].astype(np.int64), pairs.second[broken].astype(np.int64)
+        half = 0.5 * pairs.palette[pairs.kind[broken], :2]
+        middle = self.assembly.positions[first] + half + 0.5 * (displacement[:2, first] + displacement[:2, second]).T
+        shear = pairs.state[broken] == SHEAR
+        self._cracks.append(Cracks(pairs.cracked[broken], np.column_stack([first, second]), middle, shear))
+        pairs.cracked[broken] = -1
+
+    def take_cracks(self) -> Cracks:
+        """The bonds that broke since this was last called."""
+        nothing = Cracks(np.zeros(0, np.int64), np.zeros((0, 2), np.int64), np.zeros((0, 2)), np.zeros(0, np.bool_))
+        noted, self._cracks = [nothing, *self._cracks], []
+        columns = (np.concatenate([getattr(part, field.name) for part in noted]) for field in fields(Cracks))
+        return Cracks(*columns)
+
+    def coordination(self) -> np.ndarray:
+        """Number (n,) of intact bonds and pushing contacts of every particle, from the pairs' last forces."""
+        pairs = self.arrays
+        acts = (pairs.state == INTACT) | pairs.force[:, :2].any(axis=1)
+        ends = np.concatenate([pairs.first[acts], pairs.second[acts]])
+        return np.bincount(ends, minlength=len(self.assembly.radii))
+
+    def _list(self, pairs: Pairs, state: np.ndarray, shear: np.ndarray, slip: np.ndarray, cracked: np.ndarray) -> None:
+        """Sort the pairs, and list the ends of each particle."""
+        order = np.lexsort((pairs.image[:, 1], pairs.image[:, 0], pairs.second, pairs.first))
+        self._image = pairs.image[order]
+        first, second = pairs.first[order], pairs.second[order]
+        count, b = len(self.assembly.radii), len(order)
+        owner = np.concatenate([first, second])
+        end = np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
+        start = np.zeros(count + 1, dtype=np.uint32)
+        np.cumsum(np.bincount(owner, minlength=count), out=start[1:])
+        self.arrays = Contacts(
+            first=first.astype(np.uint32),
+            second=second.astype(np.uint32),
+            kind=pairs.line[order].astype(np.uint32),
+            palette=self._palette,
+            state=state[order],
+            shear=shear[order],
+            slip=slip[order],
+            cracked=cracked[order],
+            force=np.zeros((b, 4)),
+            start=start,
+            end=end[np.lexsort((end, owner))].astype(np.uint32),
+        )
+
+    def _images(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+        """Whole periods (b, 2) that a pair's vector goes beyond the difference of its positions."""
+        inside = self.assembly.positions[second] - self.assembly.positions[first]
+        return np.rint((vectors - inside) / self.assembly.size).astype(np.int64)
+
+    def _period(self) -> np.ndarray:
+        return np.array([period or 0.0 for period in self.periods])
+
+
+def plain_contacts(ground: Ground, assembly: Assembly) -> Contacts:
+    """The contacts of the elastic law, without memory, forces and rows: what its strain energy takes."""
+    first, second = assembly.pairs.T.astype(np.uint32)
+    bonded = INTACT if ground.moduli.pb_emod > 0.0 else NONE
+    nothing = np.zeros(0)
+    return Contacts(
+        first=first,
+        second=second,
+        kind=assembly.kind.astype(np.uint32),
+        palette=_brick_lines(ground, gaps_close=False, locked_in=False),
+        state=np.full(len(first), bonded, dtype=np.uint8),
+        shear=nothing,
+        slip=nothing,
+        cracked=np.zeros(0, dtype=np.int64),
+        force=np.zeros((0, 4)),
+        start=first[:0],
+        end=first[:0],
+    )
+
+
+def _brick_lines(ground: Ground, *, gaps_close: bool, locked_in: bool) -> np.ndarray:
+    """Palette lines of the brick's contacts; the words are those of `pair_lines`."""
+    brick = ground.brick
+    first, second = brick.radii[brick.pairs].T
+    return pair_lines(
+        ground.moduli,
+        first,
+        second,
+        brick.vectors,
+        bonded=ground.moduli.pb_emod > 0.0,
+        gaps_close=gaps_close,
+        locked_in=locked_in,
+    )
+
+
+def _keys(first: np.ndarray, second: np.ndarray, image: np.ndarray, count: int) -> np.ndarray:
+    """One number per pair, whichever way round it is listed."""
+    turned = (first > second) | ((first == second) & ((image[:, 0] < 0) | ((image[:, 0] == 0) & (image[:, 1] < 0))))
+    low = np.where(turned, second, first).astype(np.int64)
+    high = np.where(turned, first, second).astype(np.int64)
+    image = np.where(turned[:, None], -image, image)
+    return ((low * count + high) * 3 + image[:, 0] + 1) * 3 + image[:, 1] + 1
+
+
+def _near_pairs(
+    positions: np.ndarray, radii: np.ndarray, skin: float, periods: tuple[float | None, float | None]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs (b, 2) of disks with gaps up to skin (m), and the periods (b, 2) between them, each pair once.
+
+    positions (n, 2), radii (n,) in m. Particles may have drifted out of the period; what counts are differences.
+    """
+    reach = 2.0 * radii.max() + skin
+    period = np.array([length or 0.0 for length in periods])
+    tree = cKDTree(positions)
+    inside = tree.query_pairs(reach, output_type="ndarray").astype(np.int64)
+    found = [(inside, np.zeros_like(inside))]
+    for way in _half_of_the_images(periods):
+        across = tree.sparse_distance_matrix(cKDTree(positions + way * period), reach, output_type="ndarray")
+        met = np.column_stack([across["i"], across["j"]]).astype(np.int64)
+        found.append((met, np.broadcast_to(way, met.shape)))
+    pairs = np.concatenate([listed for listed, _ in found])
+    image = np.concatenate([images for _, images in found])
+    gap = np.hypot(*(positions[pairs[:, 1]] + image * period - positions[pairs[:, 0]]).T) - radii[pairs].sum(axis=1)
+    near = gap <= skin
+    return pairs[near], image[near]
+
+
+def _half_of_the_images(periods: tuple[float | None, float | None]) -> list[np.ndarray]:
+    """Neighbouring images of a periodic scene, one of each opposite two: the other lists the same pairs."""
+    steps = [(-1, 0, 1) if period else (0,) for period in periods]
+    return [np.array(image) for image in product(*steps) if image > (0, 0)]

@@ -1,0 +1,97 @@
+"""The two ways a scene is stepped: the history-free elastic law, and the contact law with a memory.
+
+Both move the same displacements with the same supports and records; they differ in how contacts push.
+"""
+
+import numpy as np
+
+from dembound.contacts import ContactList
+from dembound.kernels import bonded, elastic
+from dembound.kernels.tables import Body, Contacts, Limits, Log, Supports, Watch
+from dembound.scene import Scene
+
+_IDS, _NUMBERS = np.zeros(0, dtype=np.uint32), np.zeros(0)
+UNWATCHED = Watch(
+    contacts=Contacts(
+        first=_IDS,
+        second=_IDS,
+        kind=_IDS,
+        palette=np.zeros((0, 12)),
+        state=np.zeros(0, dtype=np.uint8),
+        shear=_NUMBERS,
+        slip=_NUMBERS,
+        cracked=np.zeros(0, dtype=np.int64),
+        force=np.zeros((0, 4)),
+        start=_IDS,
+        end=_IDS,
+    ),
+    limits=Limits(0.0, np.inf, np.inf, 0.0, 0),
+    origin=np.zeros((2, 0)),
+    skin=0.0,
+    arms=_NUMBERS,
+)
+"""For a scene whose own law is the elastic one."""
+
+
+class Elastic:
+    """The history-free law (kernels/elastic.py), on watch if the scene's law is another one.
+
+    Parameters
+    ----------
+    scene : what moves.
+    contacts : the pairs to watch; None where the elastic law is the scene's own.
+    """
+
+    name = "elastic"
+
+    def __init__(self, scene: Scene, contacts: ContactList | None) -> None:
+        self.scene = scene
+        self.contacts = contacts
+        self.ended = False
+
+    def force(self, displacement: np.ndarray) -> np.ndarray:
+        """Contact forces and moments (3, n) at displacements (3, n), those of the start left out."""
+        force = np.empty_like(displacement)
+        elastic.contact_forces(displacement, self.scene.rows, force)
+        return force
+
+    def advance(
+        self, u: np.ndarray, spare: np.ndarray, v: np.ndarray, number: int, body: Body, supports: Supports, log: Log
+    ) -> int:
+        """Advance by the steps of supports.drive, or as far as the law holds; returns the steps done.
+
+        `ended` turns true where the next step needs the law with a memory.
+        """
+        done, why = elastic.advance(u, spare, v, self.scene.rows, body, supports, log, self._watch())
+        if why == elastic.LIST_ENDS:
+            self.contacts.search(u)  # type: ignore[union-attr]  # only a watch ends early
+        self.ended = why == elastic.LAW_ENDS
+        return int(done)
+
+    def _watch(self) -> Watch:
+        contacts = self.contacts
+        if contacts is None:
+            return UNWATCHED
+        return Watch(contacts.arrays, contacts.limits, contacts.origin, contacts.skin, contacts.arms)
+
+
+class Bonded:
+    """The contact law with a memory (kernels/bonded.py), on a list of pairs that knows what went before."""
+
+    name = "linearpbond"
+    ended = False
+
+    def __init__(self, contacts: ContactList) -> None:
+        self.contacts = contacts
+
+    def advance(
+        self, u: np.ndarray, spare: np.ndarray, v: np.ndarray, number: int, body: Body, supports: Supports, log: Log
+    ) -> int:
+        """Advance by the steps of supports.drive, or until pairs must be looked for anew; returns the steps done."""
+        contacts = self.contacts
+        done, why = bonded.advance(
+            u, spare, v, number, contacts.arrays, contacts.limits, contacts.origin, contacts.skin, body, supports, log
+        )
+        if why == elastic.LIST_ENDS:
+            contacts.search(u)
+        return int(done)

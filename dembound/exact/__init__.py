@@ -1,0 +1,8 @@
+"""Exact solutions that results are shown beside, one problem a file.
+
+They know nothing of disks, cases or runs: plain numbers and arrays in, arrays out.
+"""
+
+from dembound.exact.lamb import rayleigh_speed, surface_displacement
+
+__all__ = ["rayleigh_speed", "surface_displacement"]

@@ -1,0 +1,261 @@
+"""Contacts with a memory: PFC2D's linear contact (no tension, Coulomb friction) with a parallel bond that breaks.
+
+A pair's motion is three numbers: the distance of the centres, the tangential displacement `shear` of the two surfaces
+(counted along the path, as the tangent turns with the pair) and the relative rotation. The bond answers all three from
+its unloaded state; the contact answers overlap and the part of `shear` that has not slid. No other history is needed:
+in two dimensions a shear force has one component, which turns with the pair by itself.
+
+A palette line (12,) of a pair with first disk i and second disk j:
+
+    [d_x, d_y, |d|, touch, (R_i − R_j)/2, k_n, k_s, k̄_n A, k̄_s A, k̄_n J, 1/A, R̄/J]
+
+d is the vector from i to j at the start, touch the distance at which the contact begins to push; then the contact's
+stiffnesses and the bond's. Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j.
+"""
+
+import numpy as np
+from numba import njit, prange
+
+from dembound.kernels.common import CHUNKS, FASTMATH, U
+
+NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
+"""States of a pair: without bond, bonded, bond broken in tension, in shear."""
+
+UPDATED, BONDED, REFERENCE = 0, 1, 2
+"""Geometries: normals and arms follow the motion; those of intact bonds stay as at the start; all stay, and contacts
+that are closed at the start neither open nor slide."""
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+def _pair(c, u, first, second, kind, palette):
+    """Particles of a pair, its palette line, and the displacements of j relative to i."""
+    i = U(first[c])
+    j = U(second[c])
+    k = U(kind[c])
+    return i, j, k, u[U(0), j] - u[U(0), i], u[U(1), j] - u[U(1), i]
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+def _reference_strain(i, j, k, dx, dy, u, palette):
+    """Normal and tangent at the start, distance, stretch, shear of a pair for small displacements."""
+    rest = palette[k, U(2)]
+    nx = palette[k, U(0)] / rest
+    ny = palette[k, U(1)] / rest
+    stretch = nx * dx + ny * dy
+    arm_i = 0.5 * rest + palette[k, U(4)]
+    shear = nx * dy - ny * dx - arm_i * u[U(2), i] - (rest - arm_i) * u[U(2), j]
+    return nx, ny, rest, stretch, shear
+
+
+@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+def push(u, v, step, number, contacts, limits, lost):
+    """Fill contacts.force for displacements u (3, n) reached with velocities v (3, n) after a step (s).
+
+    Slides contacts and breaks bonds that have come to their limits; number is that of the step. lost (chunks, 2) gets
+    what friction and cracks took in this step, J.
+    """
+    first, second, kind, palette, state, all_shear, all_slip, cracked, force, _, _ = contacts
+    friction, tension, cohesion, tan_fa, geometry = limits
+    b = first.size
+    for chunk in prange(CHUNKS):
+        rubbed = 0.0
+        broken = 0.0
+        for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
+            c = U(p)
+            i, j, k, dx, dy = _pair(c, u, first, second, kind, palette)
+            was = all_shear[c]
+            intact = state[c] == INTACT
+            if geometry == REFERENCE or (geometry == BONDED and intact):
+                nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, palette)
+                overlap = palette[k, U(3)] - distance - stretch
+                arm_i = 0.5 * distance + palette[k, U(4)]
+                arm_j = distance - arm_i
+            else:
+                dx += palette[k, U(0)]
+                dy += palette[k, U(1)]
+                distance = np.sqrt(dx * dx + dy * dy)
+                nx = dx / distance
+                ny = dy / distance
+                stretch = distance - palette[k, U(2)]
+                overlap = palette[k, U(3)] - distance
+                arm_i = 0.5 * distance + palette[k, U(4)]
+                arm_j = distance - arm_i
+                slide = nx * (v[U(1), j] - v[U(1), i]) - ny * (v[U(0), j] - v[U(0), i])
+                shear = was + step * (slide - arm_i * v[U(2), i] - arm_j * v[U(2), j])
+            all_shear[c] = shear
+            N = palette[k, U(5)] * overlap
+            S = palette[k, U(6)] * (shear - all_slip[c])
+            if geometry != REFERENCE or palette[k, U(3)] < palette[k, U(2)]:
+                N = max(N, 0.0)
+                most = friction * N
+                if abs(S) > most:
+                    before = palette[k, U(6)] * (was - all_slip[c])
+                    S = np.copysign(most, S)
+                    slip = shear - (S / palette[k, U(6)])
+                    rubbed += 0.5 * (before + S) * (slip - all_slip[c])
+                    all_slip[c] = slip
+            pull = -N
+            moment = 0.0
+            if intact:
+                turn = u[U(2), j] - u[U(2), i]
+                Fn = palette[k, U(7)] * stretch
+                Fs = palette[k, U(8)] * shear
+                M = palette[k, U(9)] * turn
+                stress = Fn * palette[k, U(10)]
+                holds = True
+                if stress + abs(M) * palette[k, U(11)] >= tension:
+                    state[c] = TENSION
+                    holds = False
+                elif abs(Fs) * palette[k, U(10)] >= cohesion - stress * tan_fa:
+                    state[c] = SHEAR
+                    holds = False
+                if holds:
+                    pull += Fn
+                    S += Fs
+                    moment = M
+                else:
+                    cracked[c] = number
+                    opening = nx * (v[U(0), j] - v[U(0), i]) + ny * (v[U(1), j] - v[U(1), i])
+                    turning = v[U(2), j] - v[U(2), i]
+                    broken += 0.5 * (Fn * (stretch - step * opening) + Fs * was + M * (turn - step * turning))
+            fx = pull * nx - S * ny
+            fy = pull * ny + S * nx
+            force[c, U(0)] = fx
+            force[c, U(1)] = fy
+            force[c, U(2)] = arm_i * S + moment
+            force[c, U(3)] = arm_j * S - moment
+        lost[chunk, 0] = rubbed
+        lost[chunk, 1] = broken
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+def ends_force(i, force, start, end):
+    """Force (x, y) and moment on particle i: its row of contact ends, summed in order."""
+    fx = 0.0
+    fy = 0.0
+    moment = 0.0
+    for e in range(start[i], start[i + U(1)]):
+        c = U(end[e]) >> U(1)
+        side = U(end[e]) & U(1)
+        sign = 1.0 - 2.0 * np.float64(side)
+        fx += sign * force[c, U(0)]
+        fy += sign * force[c, U(1)]
+        moment += force[c, U(2) + side]
+    return fx, fy, moment
+
+
+@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+def sum_forces(contacts, total):
+    """Fill total (3, n) with the forces and moments that the pairs' last forces come to."""
+    n = total.shape[1]
+    for chunk in prange(CHUNKS):
+        for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
+            i = U(p)
+            total[U(0), i], total[U(1), i], total[U(2), i] = ends_force(i, contacts.force, contacts.start, contacts.end)
+
+
+@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+def adopt(u, contacts):
+    """Set the pairs' tangential displacements to those of small displacements u (3, n): no closed contact has slid."""
+    first, second, kind, palette, _, shear, slip, _, _, _, _ = contacts
+    for p in prange(first.size):
+        c = U(p)
+        i, j, k, dx, dy = _pair(c, u, first, second, kind, palette)
+        _, _, distance, stretch, sheared = _reference_strain(i, j, k, dx, dy, u, palette)
+        shear[c] = sheared
+        slip[c] = sheared if palette[k, U(3)] < distance + stretch else 0.0
+
+
+@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+def moved(u, origin):
+    """Largest displacement (m) since the displacements origin (2, n)."""
+    n = u.shape[1]
+    most = np.zeros(CHUNKS)
+    for chunk in prange(CHUNKS):
+        square = 0.0
+        for i in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
+            square = max(square, (u[0, i] - origin[0, i]) ** 2 + (u[1, i] - origin[1, i]) ** 2)
+        most[chunk] = square
+    return np.sqrt(most.max())
+
+
+@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+def slack(u, contacts, limits):
+    """How far (m) two surfaces may move against each other before a pair leaves the elastic law; negative: it has.
+
+    A pair leaves it where a contact opens, closes or slides, or a bond reaches its strength. Stretch, shear and R̄ times
+    the relative rotation all change by no more than the surfaces move, which bounds each condition from below.
+    """
+    first, second, kind, palette, state, _, _, _, _, _, _ = contacts
+    friction, tension, cohesion, tan_fa, _ = limits
+    b = first.size
+    least = np.full(CHUNKS, np.inf)
+    for chunk in prange(CHUNKS):
+        room = np.inf
+        for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
+            c = U(p)
+            i, j, k, dx, dy = _pair(c, u, first, second, kind, palette)
+            _, _, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, palette)
+            kn = palette[k, U(5)]
+            ks = palette[k, U(6)]
+            overlap = palette[k, U(3)] - distance - stretch
+            if palette[k, U(3)] >= distance:
+                room = min(room, overlap)
+                if ks > 0.0:
+                    room = min(room, (friction * kn * overlap - ks * abs(shear)) / (ks + friction * kn))
+            else:
+                room = min(room, -overlap)
+            if state[c] == INTACT:
+                # per length of relative motion: tension k̄, bending k̄ R̄·(1/R̄), shear k̄_s
+                per_area = palette[k, U(10)]
+                bending = palette[k, U(9)] * palette[k, U(11)]
+                stress = palette[k, U(7)] * stretch * per_area
+                turned = bending * abs(u[U(2), j] - u[U(2), i])
+                normal = palette[k, U(7)] * per_area
+                sheared = palette[k, U(8)] * per_area
+                room = min(room, (tension - stress - turned) / (2.0 * normal))
+                strength = cohesion - stress * tan_fa - sheared * abs(shear)
+                room = min(room, strength / (sheared + normal * tan_fa))
+        least[chunk] = room
+    return least.min()
+
+
+@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+def strain_energy(u, contacts, geometry):
+    """Energy (J) stored in contacts and in bonds at displacements u (3, n), with the tangential ones of the last push.
+
+    With the geometry REFERENCE shear and slip are not read.
+    """
+    first, second, kind, palette, state, all_shear, slip, _, _, _, _ = contacts
+    b = first.size
+    stored = np.zeros((CHUNKS, 2))
+    for chunk in prange(CHUNKS):
+        in_contacts = 0.0
+        in_bonds = 0.0
+        for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
+            c = U(p)
+            i, j, k, dx, dy = _pair(c, u, first, second, kind, palette)
+            intact = state[c] == INTACT
+            if geometry == REFERENCE or (geometry == BONDED and intact):
+                _, _, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, palette)
+                overlap = palette[k, U(3)] - distance - stretch
+            else:
+                distance = np.hypot(dx + palette[k, U(0)], dy + palette[k, U(1)])
+                stretch = distance - palette[k, U(2)]
+                overlap = palette[k, U(3)] - distance
+                shear = all_shear[c]
+            slid = shear
+            if palette[k, U(3)] < palette[k, U(2)] and overlap <= 0.0:  # apart, as at the start
+                overlap = 0.0
+                slid = 0.0
+            elif geometry != REFERENCE:
+                overlap = max(overlap, 0.0)
+                slid -= slip[c]
+            in_contacts += 0.5 * (palette[k, U(5)] * overlap * overlap + palette[k, U(6)] * slid * slid)
+            if intact:
+                turn = u[U(2), j] - u[U(2), i]
+                in_bonds += 0.5 * (palette[k, U(7)] * stretch * stretch + palette[k, U(8)] * shear * shear)
+                in_bonds += 0.5 * palette[k, U(9)] * turn * turn
+        stored[chunk, 0] = in_contacts
+        stored[chunk, 1] = in_bonds
+    return stored[:, 0].sum(), stored[:, 1].sum()

@@ -1,0 +1,114 @@
+"""The arrays kernels take, bundled by what they describe. n particles, b contacts, e = 2b contact ends, k nodes."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Rows(NamedTuple):
+    """Contacts of the elastic law, one row per particle.
+
+    Row i is start[i]:start[i + 1] of neighbour (e,) and kind (e,), the latter a line of palette (p, 6); see elastic.py.
+    """
+
+    start: np.ndarray
+    neighbour: np.ndarray
+    kind: np.ndarray
+    palette: np.ndarray
+
+
+class Contacts(NamedTuple):
+    """Contacts with a memory, each listed once; see contacts.py for the columns of palette and force.
+
+    first, second, kind : (b,) uint32 particles and line of palette (p, 12).
+    state : (b,) uint8, see contacts.py; shear, slip : (b,) m, the tangential displacement since the start and the part
+    of it that slid; cracked : (b,) int64, step in which the bond broke, else −1; force : (b, 4).
+    start, end : rows of contact ends per particle, end (e,) uint32 = 2·contact + (0 first, 1 second).
+    """
+
+    first: np.ndarray
+    second: np.ndarray
+    kind: np.ndarray
+    palette: np.ndarray
+    state: np.ndarray
+    shear: np.ndarray
+    slip: np.ndarray
+    cracked: np.ndarray
+    force: np.ndarray
+    start: np.ndarray
+    end: np.ndarray
+
+
+class Limits(NamedTuple):
+    """Where contacts and bonds give way.
+
+    friction, tan_fa : pure numbers; tension, cohesion : Pa; geometry : one of those in contacts.py.
+    """
+
+    friction: float
+    tension: float
+    cohesion: float
+    tan_fa: float
+    geometry: int
+
+
+class Body(NamedTuple):
+    """What turns forces into motion.
+
+    mobility, inverse_inertia : (n,) Δt/m and Δt/I; free : (3,) 1, or 0 for a component held everywhere; load : (3, n)
+    steady forces N and moments N·m, or (3, 0) for none; damp : local damping; step : Δt in s.
+    """
+
+    mobility: np.ndarray
+    inverse_inertia: np.ndarray
+    free: np.ndarray
+    load: np.ndarray
+    damp: float
+    step: float
+
+
+class Supports(NamedTuple):
+    """The support table on k nodes, all components: v⁺ = keep·v + mobility·(F − K u + drive) + prescribed·drive.
+
+    nodes (k,); inertia (k, 3) m/Δt; keep, mobility, stiffness, prescribed (k, 3); drive (steps, k, 3) in N, or m/s
+    where prescribed. A centred dashpot C has keep = (m/Δt − C/2)/(m/Δt + C/2) and mobility 1/(m/Δt + C/2); a
+    prescribed component has keep = mobility = 0 and prescribed = 1.
+    """
+
+    nodes: np.ndarray
+    inertia: np.ndarray
+    keep: np.ndarray
+    mobility: np.ndarray
+    stiffness: np.ndarray
+    prescribed: np.ndarray
+    drive: np.ndarray
+
+
+class Log(NamedTuple):
+    """What is written down at every step.
+
+    probes : (p,) particles; record : (steps, p, 6) their displacement and velocity at the start of each step, the
+    velocity as the mean of its two half-step values. tracked : (q,) particles; peaks : (q, 3, 2) smallest and largest
+    velocity so far. work : (2, 4) J done on the body by supports, taken by damping, friction and cracks, column by
+    column; row 0 up to the half step reached, row 1 up to the last whole step.
+    """
+
+    probes: np.ndarray
+    record: np.ndarray
+    tracked: np.ndarray
+    peaks: np.ndarray
+    work: np.ndarray
+
+
+class Watch(NamedTuple):
+    """What tells whether the elastic law still holds; arms of length 0: nobody asks.
+
+    contacts, limits : the pairs and where they give way; origin : (2, n) displacements at which the list of pairs was
+    made; skin : m, the gap up to which it holds pairs; arms : (n,) m, longest arm of a particle's contacts.
+    """
+
+    contacts: Contacts
+    limits: Limits
+    origin: np.ndarray
+    skin: float
+    arms: np.ndarray

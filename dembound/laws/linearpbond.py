@@ -1,0 +1,52 @@
+"""PFC's linear parallel-bond law: contacts without tension and with friction, bonds with a strength.
+
+At rest it is as stiff as the elastic law; how contacts and bonds give way is in kernels/contacts.py.
+"""
+
+import numpy as np
+
+from dembound.laws.elastic import Moduli, springs, touching
+
+
+def pair_lines(
+    moduli: Moduli,
+    radius_i: np.ndarray,
+    radius_j: np.ndarray,
+    vectors: np.ndarray,
+    *,
+    bonded: bool,
+    gaps_close: bool = True,
+    locked_in: bool = True,
+) -> np.ndarray:
+    """Constants (b, 12) of pairs, in the columns that kernels/contacts.py explains.
+
+    Parameters
+    ----------
+    moduli : micro-parameters.
+    radius_i, radius_j : (b,) m.
+    vectors : (b, 2) m, from i to j at the start.
+    bonded : whether the pairs have bonds.
+    gaps_close : whether pairs with a gap have a contact that pushes once it closes; the elastic law knows none.
+    locked_in : whether overlaps push from the start; otherwise overlapping disks just touch.
+    """
+    distance = np.hypot(*vectors.T)
+    pair = springs(moduli, radius_i, radius_j)
+    closed = touching(radius_i, radius_j, distance)
+    acts = closed | gaps_close
+    sum_of_radii = np.maximum(radius_i + radius_j, np.where(closed, distance, 0.0))
+    has_bond = float(bonded)
+    return np.column_stack(
+        [
+            vectors,
+            distance,
+            sum_of_radii if locked_in else np.where(closed, distance, sum_of_radii),
+            (radius_i - radius_j) / 2.0,
+            np.where(acts, pair.contact_normal, 0.0),
+            np.where(acts, pair.contact_shear, 0.0),
+            has_bond * pair.bond_normal,
+            has_bond * pair.bond_shear,
+            has_bond * pair.bending,
+            1.0 / pair.area,
+            1.5 / pair.bond_radius**2,  # R̄/J
+        ]
+    )

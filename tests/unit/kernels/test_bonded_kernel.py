@@ -1,0 +1,121 @@
+"""The step of pairs with a memory against the same law and the same leapfrog written down plainly."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dembound.kernels.bonded import advance
+from dembound.kernels.contacts import BONDED, INTACT, SHEAR, TENSION, UPDATED, moved
+from dembound.kernels.elastic import DONE, LIST_ENDS
+from dembound.kernels.tables import Contacts, Limits, Log
+
+PARTICLES, PAIRS = 25, 60
+STEP = 0.1
+WEAK = Limits(friction=0.5, tension=0.3, cohesion=0.25, tan_fa=0.6, geometry=UPDATED)
+FAR = 1e3
+
+
+def start() -> tuple[np.ndarray, np.ndarray]:
+    """Random displacement and velocity (3, n)."""
+    return tuple(np.random.default_rng(5).uniform(-0.1, 0.1, (2, 3, PARTICLES)))
+
+
+def run_kernel(
+    pairs: Contacts, limits: Limits, model, u: np.ndarray, v: np.ndarray, *, number: int = 0, skin: float = FAR
+) -> tuple[int, int, Log]:
+    """Advance u and v in place; steps done, why it stopped, and the log of all particles."""
+    body, supports, log = model.bundles()
+    origin = np.zeros((2, PARTICLES))
+    done, why = advance(u, np.empty_like(u), v, number, pairs, limits, origin, skin, body, supports, log)
+    return done, why, log
+
+
+def close(found: np.ndarray, expected: np.ndarray) -> None:
+    """Equal but for rounding: 20 steps of some 100 operations of 1.1e-16 each, on values of size 1."""
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13)
+
+
+def law_of(plain, pairs: Contacts, limits: Limits, number: int = 0):
+    """The plain law on a copy of the pairs, and the forces it answers each step with."""
+    law = plain(Contacts(*(column.copy() for column in pairs)), limits)
+    numbers = iter(range(number, 10_000))
+    return law, lambda u, v: law.push(u, v, STEP, next(numbers))
+
+
+@pytest.mark.parametrize("geometry", [UPDATED, BONDED])
+@pytest.mark.parametrize(("damp", "steps"), [(0.0, 19), (0.0, 20), (0.3, 20)])
+def test_steps_are_those_of_a_plain_leapfrog(
+    stepped, random_pairs, plain, geometry: int, damp: float, steps: int
+) -> None:
+    pairs, limits = random_pairs(PARTICLES, PAIRS), WEAK._replace(geometry=geometry)
+    model = stepped(PARTICLES, steps, STEP, damp=damp)
+    law, forces = law_of(plain, pairs, limits, number=100)
+    u, v = start()
+    states = model.leapfrog(forces, u, v)
+    done, why, log = run_kernel(pairs, limits, model, u, v, number=100)
+
+    assert (done, why) == (steps, DONE)
+    close(u, states[-1][0])
+    close(v, states[-1][1])
+    assert np.array_equal(pairs.state, law.arrays.state)
+    assert np.array_equal(pairs.cracked, law.arrays.cracked)
+    close(pairs.slip, law.arrays.slip)
+    close(log.work[:, :2], model.work[:, :2])
+    close(log.work[:, 2:], [law.lost, law.lost])
+    # bonds held and broke either way, the first not in the first step
+    assert {INTACT, TENSION, SHEAR} <= set(pairs.state)
+    assert pairs.cracked.max() > 100
+    assert law.lost.all()
+
+
+def test_a_run_may_be_cut_anywhere(stepped, random_pairs) -> None:
+    results = []
+    for parts in ([slice(0, 15)], [slice(0, 4), slice(4, 9), slice(9, 15)]):
+        pairs, (u, v) = random_pairs(PARTICLES, PAIRS), start()
+        model = stepped(PARTICLES, 15, STEP, damp=0.3)
+        for part in parts:
+            run_kernel(pairs, WEAK, replace(model, push=model.push[part]), u, v, number=part.start)
+        results.append((u, v, pairs.cracked))
+
+    for one, other in zip(*results, strict=True):
+        assert np.array_equal(one, other)
+
+
+def test_no_step_begins_with_a_list_that_is_too_old(stepped, random_pairs, plain) -> None:
+    pairs, model = random_pairs(PARTICLES, PAIRS), stepped(PARTICLES, 200, STEP)
+    _, forces = law_of(plain, pairs, WEAK)
+    u, v = start()
+    u[:2] *= 0.1
+    states = model.leapfrog(forces, u, v)
+    done, why, _ = run_kernel(pairs, WEAK, model, u, v, skin=0.3)
+
+    far = np.array([moved(then, np.zeros((2, PARTICLES))) for then, _, _ in states])
+    assert why == LIST_ENDS
+    assert 1 < done < 200
+    assert done == np.argmax(2.0 * far > 0.3)
+    close(u, states[done][0])
+    close(v, states[done][1])
+
+
+def test_an_old_list_is_not_even_pushed_once(stepped, random_pairs) -> None:
+    pairs, (u, v) = random_pairs(PARTICLES, PAIRS), start()
+    before = u.copy()
+    done, why, log = run_kernel(pairs, WEAK, stepped(PARTICLES, 5, STEP), u, v, skin=0.05)
+
+    assert (done, why) == (0, LIST_ENDS)
+    assert np.array_equal(u, before)
+    assert not pairs.force.any()
+    assert not log.work.any()
+
+
+def test_the_record_holds_the_state_at_the_start_of_each_step(stepped, random_pairs, plain) -> None:
+    pairs, model = random_pairs(PARTICLES, PAIRS), stepped(PARTICLES, 9, STEP)
+    _, forces = law_of(plain, pairs, WEAK)
+    u, v = start()
+    states = model.leapfrog(forces, u, v)[:-1]
+    _, _, log = run_kernel(pairs, WEAK, model, u, v)
+
+    for row, (then, before, after) in zip(log.record, states, strict=True):
+        close(row[:, :3].T, then)
+        close(row[:, 3:].T, 0.5 * (before + after))

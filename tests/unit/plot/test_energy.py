@@ -1,0 +1,37 @@
+"""The ledger is drawn column by column, its error apart."""
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.errors import CaseError
+from dembound.plot.energy import COLUMNS, plot_energy
+
+
+def test_every_column_that_is_not_zero_is_a_line(cracked_run):
+    figure = plot_energy(cracked_run)
+    upper, lower = figure.axes
+    drawn = {line.get_label(): line for line in upper.lines}
+    with h5py.File(cracked_run) as file:
+        ledger = {name: values[:] for name, values in file["energy"].items()}
+    assert ledger.keys() == {"time", "error", *COLUMNS}
+    for name, label in COLUMNS.items():
+        if np.any(ledger[name]):
+            np.testing.assert_array_equal(drawn.pop(label).get_data(), [ledger["time"], ledger[name]])
+    assert drawn == {}
+    assert np.any(ledger["kinetic"])
+    assert not np.any(ledger["damping"])
+    (error,) = lower.lines
+    np.testing.assert_array_equal(error.get_ydata(), ledger["error"] / np.abs(ledger["outside"]).max())
+
+
+def test_units_and_the_name_are_told(cracked_run):
+    figure = plot_energy(cracked_run)
+    upper, lower = figure.axes
+    assert (upper.get_ylabel(), lower.get_xlabel()) == ("energy (J per metre of thickness)", "time (s)")
+    assert figure.get_suptitle().startswith("cracked: ")
+
+
+def test_a_run_without_entries_is_refused(small_run):
+    with pytest.raises(CaseError, match="no entries in its energy ledger"):
+        plot_energy(small_run)

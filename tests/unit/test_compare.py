@@ -1,0 +1,50 @@
+"""Histories beside those of a reference run."""
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.compare import compare
+from dembound.errors import CaseError
+
+TIME = np.linspace(0.0, 1.0, 101)
+
+
+def record(path, name, histories):
+    """A record with histories of motion along x and y, name -> (time, x, y)."""
+    with h5py.File(path, "w") as file:
+        file.attrs["name"] = name
+        for monitor, (time, x, y) in histories.items():
+            group = file.create_group(f"histories/{monitor}")
+            group["time"] = time
+            group["velocity"] = np.column_stack([x, y, np.zeros_like(time)])
+            group.attrs["wanted"] = (0.0, 0.0)
+    return path
+
+
+def test_differences_are_those_of_the_liveliest_component(tmp_path):
+    nothing = np.zeros_like(TIME)
+    reference = record(tmp_path / "a.h5", "a", {"P": (TIME, nothing + 0.1, TIME), "Q": (TIME, TIME, nothing)})
+    # twice as finely sampled and half as long; x is wrong too, but y moves most
+    time = np.linspace(0.0, 0.5, 101)
+    run = record(tmp_path / "b.h5", "b", {"P": (time, np.zeros_like(time), 1.1 * time), "R": (time, time, time)})
+
+    (found,) = compare(reference, [run], "velocity")
+
+    assert (found.run, found.monitor, found.component) == ("b", "P", "y")
+    assert found.rms == pytest.approx(0.1)
+    assert found.peak == pytest.approx(0.1)
+    assert (found.last, found.reference_last) == (pytest.approx(0.55), pytest.approx(0.5))
+
+
+def test_runs_without_a_common_monitor_are_refused(tmp_path):
+    paths = [record(tmp_path / f"{name}.h5", name, {name: (TIME, TIME, TIME)}) for name in "ab"]
+    with pytest.raises(CaseError, match="shares no monitor"):
+        compare(paths[0], paths[1:], "velocity")
+
+
+def test_a_reference_at_rest_is_refused(tmp_path):
+    reference = record(tmp_path / "a.h5", "a", {"P": (TIME, 0.0 * TIME, 0.0 * TIME)})
+    run = record(tmp_path / "b.h5", "b", {"P": (TIME, TIME, TIME)})
+    with pytest.raises(CaseError, match="does not move"):
+        compare(reference, [run], "velocity")

@@ -1,0 +1,153 @@
+"""The static stage: where it comes to rest, and what it says when it cannot."""
+
+import numpy as np
+import pytest
+
+from dembound import static as module
+from dembound.errors import CaseError, RunError
+from dembound.scene import Scene, build
+from dembound.simulate import Simulation
+from dembound.stability import choose_step
+from dembound.static import mean_stress, settle
+
+G = 9.81
+MASS = 2500.0 * 0.5**2
+K = 2500.0 * 1000.0**2
+"""Normal stiffness of a lattice contact and its bond, N/m."""
+
+BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
+FIXED = {"type": "fixed"}
+WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -G]}]}
+STANDING = {**BODY, **WEIGHT, "packing.size": [1.0, 2.0]}
+WRAP = {"left": {"type": "periodic"}, "right": {"type": "periodic"}}
+
+
+def scene(bar, **changes: object) -> Scene:
+    """A scene whose static stage stands on the bottom and goes on to 1e-8 unless `changes` say otherwise."""
+    return build(bar({**BODY, "static": {"ratio": 1e-8, "boundary": {"bottom": FIXED}}, **changes}))
+
+
+@pytest.mark.parametrize("law", ["elastic", "linearpbond"])
+def test_a_lattice_sinks_under_its_weight_as_its_columns_say(bar, law: str) -> None:
+    settled = settle(scene(bar, **{**STANDING, "material.law": law}))
+    # disk by disk from below: the contacts carry the weight of three, two and one disks
+    sunk = np.cumsum([0.0, 3.0, 2.0, 1.0]) * MASS * G / K
+    found = np.sort(settled.start.displacement[1])[::-1].reshape(4, 2)
+
+    # the ratio of 1e-8 leaves 1e-8 of the mean contact force; four springs in a row; half of that for moved normals
+    np.testing.assert_allclose(found, np.repeat(-sunk[:, None], 2, axis=1), atol=1e-6 * sunk[-1])
+    assert settled.ratio <= 1e-8
+    assert settled.steps % module.LOOK == 0
+    # two disks carry all eight: three each besides their own weight
+    assert settled.carried == pytest.approx(4.0 * MASS * G, rel=1e-6)
+    assert settled.left < 1e-7 * settled.carried
+    assert len(settled.cracks) == 0
+    assert (settled.start.contacts is None) == (law == "elastic")
+
+
+def test_looks_are_told_from_far_to_near(bar) -> None:
+    looks: list[tuple[int, float]] = []
+    settled = settle(scene(bar, **STANDING), lambda steps, ratio: looks.append((steps, ratio)))
+
+    assert [steps for steps, _ in looks] == list(range(module.LOOK, settled.steps + 1, module.LOOK))
+    assert looks[-1] == (settled.steps, settled.ratio)
+    assert all(ratio > 1e-8 for _, ratio in looks[:-1])
+
+
+def test_the_scene_itself_keeps_its_own_supports(bar) -> None:
+    body = scene(bar, **STANDING)
+    settle(body)
+
+    assert len(body.supports) == 0
+    assert not np.any(body.assembly.positions[:, 1] < 0.0)
+
+
+STRESS = (-1e6, -2e6, 0.4e6)
+
+
+@pytest.mark.parametrize(
+    ("law", "stress"), [("elastic", STRESS), ("linearpbond", (-1e6, -2e6, 0.0)), ("linearpbond", (1e6, 2e6, 0.0))]
+)
+def test_the_stress_asked_for_is_reached(bar, law: str, stress: tuple[float, float, float]) -> None:
+    static = {"ratio": 1e-8, "stress": stress}
+    settled = settle(scene(bar, static=static, **{"packing.size": [8.0, 8.0], "material.law": law}))
+
+    # evenly pulled rows bear the stress evenly, but for strains σ/(K/2), bonds being alone in tension, and turns
+    # σ_xy/(K/4), by which vectors and normals change
+    strain = max(2.0 * 2e6 / K, 4.0 * 0.4e6 / K)
+    np.testing.assert_allclose(settled.stress[:2], stress[:2], rtol=0.0, atol=4.0 * strain * 2e6)
+    # the two outer rows of the 16, which no couple helps to turn, bear between all and none of their share of the shear
+    assert stress[2] <= settled.stress[2] + 1e-6 * 2e6
+    assert settled.stress[2] - 1e-6 * 2e6 <= 16.0 / 14.0 * stress[2]
+    # nobody is held: the outer disks carry the tractions
+    assert settled.left < 1e-6 * settled.carried
+
+
+def test_mean_stress_is_that_of_the_contacts_inside(bar) -> None:
+    body = scene(bar, **{"packing.size": [8.0, 8.0], "material.law": "linearpbond"})
+    contacts = body.contact_list()
+    # one force on the first disk of all pairs along x, another along y
+    pairs = contacts.arrays
+    pairs.force[:, :2] = np.where(np.abs(pairs.palette[pairs.kind, :1]) > 0.0, [3.0, 4.0], [5.0, 6.0])
+    stress = mean_stress(body, contacts, np.zeros((3, 256)))
+
+    # f ⊗ d / D² with d = (D, 0) or (0, D), the shear the mean of both
+    np.testing.assert_allclose(stress, [3.0 / 0.5, 6.0 / 0.5, 0.5 * (4.0 + 5.0) / 0.5], rtol=1e-13)
+
+
+def test_a_settled_body_has_left_its_forces_behind(bar) -> None:
+    body = scene(bar, **STANDING)
+    settled = settle(body)
+    simulation = Simulation(body, choose_step(body)[0], np.array([0, 7]), start=settled.start)
+    record = simulation.advance(100)
+
+    # not even the steady weight moves it, though nothing holds it now; motion counts from here
+    assert not simulation.velocity.any()
+    assert not record.any()
+    assert np.array_equal(simulation.displacement, settled.start.displacement)
+    # what pulls at the bottom disks is what held them
+    assert simulation.load[1].sum() == pytest.approx(0.0, abs=1e-9 * 8.0 * MASS * G)
+    assert np.count_nonzero(simulation.load[1] > 2.0 * MASS * G) == 2
+
+
+def test_a_stage_of_too_few_steps_says_how_far_it_came(bar) -> None:
+    static = {"ratio": 1e-8, "max_steps": 100, "boundary": {"bottom": FIXED}}
+    looks: list[float] = []
+    with pytest.raises(RunError, match=r"in 100 steps, static\.ratio asks for 1e-08; .*static\.max_steps") as caught:
+        settle(scene(bar, **{**STANDING, "static": static}), lambda _, ratio: looks.append(ratio))
+
+    assert f"came to a force ratio of {looks[-1]:.3g} in" in str(caught.value)
+    assert len(looks) == 1
+
+
+def test_a_body_that_slides_without_end_stalls(bar) -> None:
+    # two rows of loose disks of which the upper, held at its height, has nothing to stop it
+    loose = {"material.law": "linearpbond", "material.contact_share": 1.0, "material.fric": 0.1}
+    push = {"name": "push", "acceleration": [G, 0.0]}
+    changes = {"packing.size": [1.0, 1.0], "motion.held": ["y", "rotation"], "boundary": WRAP, "load": [push]}
+    looks: list[float] = []
+    with pytest.raises(RunError, match=r"stalls at a force ratio of .*is the body held") as caught:
+        settle(scene(bar, **{**changes, **loose}), lambda _, ratio: looks.append(ratio))
+
+    assert f"a force ratio of {looks[-1]:.3g} after {len(looks) * module.LOOK:,} steps" in str(caught.value)
+    assert len(looks) * module.LOOK >= module.PATIENCE
+
+
+def test_stress_along_a_periodic_axis_is_refused(bar) -> None:
+    with pytest.raises(CaseError, match=r"static\.stress: cannot be applied to periodic sides"):
+        settle(scene(bar, boundary=WRAP, static={"stress": STRESS}, **{"packing.size": [1.0, 1.0]}))
+
+
+def test_bonds_may_break_on_the_way(bar) -> None:
+    hanging = {"packing.size": [0.5, 4.0], "motion.held": ["x", "rotation"], "material.law": "linearpbond"}
+    # the top bond of eight would carry seven weights over 0.5 m: 7 · 625 · 9.81/0.5 Pa
+    limit = 7.0 * MASS * G / 0.5
+    static = {"ratio": 1e-6, "boundary": {"top": FIXED, "bottom": FIXED}}
+    held = settle(scene(bar, **WEIGHT, **hanging, static=static, **{"material.pb_ten": limit}))
+    weak = settle(scene(bar, **WEIGHT, **hanging, static=static, **{"material.pb_ten": 0.3 * limit}))
+
+    assert len(held.cracks) == 0
+    assert len(weak.cracks) == 1
+    assert weak.cracks.position[0, 1] == pytest.approx(3.5, abs=1e-3)  # below the fixed top disk
+    assert not weak.cracks.shear[0]
+    assert weak.start.remembers

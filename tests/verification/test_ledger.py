@@ -1,0 +1,67 @@
+"""The energy ledger closes: exactly under the elastic law, nearly where contacts open, slide and break.
+
+A pulse enters a block of random disks through a viscous side, is reflected by free ones and leaves through another.
+"""
+
+import numpy as np
+import pytest
+
+from dembound.energy import Ledger
+from dembound.scene import build
+from dembound.simulate import Simulation
+from dembound.stability import choose_step
+
+
+def ledger_of(lab, material: dict, amplitude: float = 0.5) -> Ledger:
+    """The books of some 400 steps, an entry every twenty."""
+    case = lab.case(
+        "B",
+        (40.0, 10.0),
+        held=(),
+        material=material,
+        boundary={"left": {"type": "viscous_input", "wave_p": "pulse"}, "bottom": "viscous"},
+        wave={"type": "cosine", "amplitude": amplitude, "period": 0.02},
+        confining_stress=2e6,
+    )
+    scene = build(case)
+    ledger = Ledger(Simulation(scene, choose_step(scene)[0], np.zeros(0)))
+    for _ in range(20):
+        ledger.step()
+        ledger.simulation.advance(19)
+    return ledger
+
+
+def error(ledger: Ledger) -> float:
+    """Largest error over the largest work from outside."""
+    return max(abs(entry.error) for entry in ledger.entries) / max(abs(entry.outside) for entry in ledger.entries)
+
+
+@pytest.mark.parametrize("damp", [0.0, 0.3])
+def test_elastic_books_close(lab, damp):
+    """To rounding: 400 steps of sums, each rounded by ε of the total."""
+    ledger = ledger_of(lab, {"damp": damp})
+    assert error(ledger) < 400 * np.finfo(float).eps
+    last = ledger.entries[-1]
+    assert last.kinetic > 0.0 and last.contact > 0.0 and last.bond > 0.0  # noqa: PT018
+    assert (last.damping > 0.0) == (damp > 0.0)
+    assert last.friction == last.crack == 0.0
+
+
+def test_opening_contacts_leave_a_trace(lab):
+    """A contact that opens or closes within a step misjudges its work by at most ½k(Δu_n)² once.
+
+    With strains v/c per step and disk that is (cΔt/D · v/c)²: some 1e-7 of the energy of the disks concerned, times
+    their few openings.
+    """
+    ledger = ledger_of(lab, {"law": "linearpbond", "fric": 0.5, "geometry": "reference"})
+    assert ledger.entries[-1].friction > 0.0
+    assert error(ledger) < 1e-5
+
+
+def test_breaking_bonds_leave_more(lab):
+    """Broken bodies clap: contacts meet at speeds of the order of v itself, and open and close all along."""
+    material = {"law": "linearpbond", "fric": 0.5, "pb_ten": 1e5, "pb_coh": 1e5}
+    ledger = ledger_of(lab, material)
+    last = ledger.entries[-1]
+    assert last.crack > 0.1 * last.kinetic
+    assert error(ledger) < 1e-2

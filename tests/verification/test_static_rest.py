@@ -1,0 +1,57 @@
+"""A settled body stays at rest once the boundaries of the run take over, whatever holds it (Z eqs 5, 6)."""
+
+import numpy as np
+import pytest
+
+from dembound.case import with_changes
+from dembound.scene import build
+from dembound.simulate import Simulation
+from dembound.stability import choose_step
+from dembound.static import settle
+
+ROLLERS = {"left": {"type": "roller"}, "right": {"type": "roller"}, "bottom": {"type": "fixed"}}
+GRAVITY = [{"name": "gravity", "acceleration": [0.0, -9.81]}]
+SIDES = {
+    "left": {"type": "viscoelastic", "distance": 10.0},
+    "right": "viscous",
+    "bottom": {"type": "viscous_input", "wave_s": "pulse"},
+}
+
+
+def waiting(lab, pattern, material, changes):
+    """A scene whose wave comes only after the test."""
+    wave = {"type": "cosine", "amplitude": 0.5, "period": 0.05, "start": 100.0}
+    case = lab.case(pattern, (20.0, 20.0), held=(), material=material, boundary=SIDES, wave=wave)
+    return build(with_changes(case, changes))
+
+
+@pytest.mark.parametrize("material", [{}, {"law": "linearpbond", "fric": 0.5}], ids=["elastic", "linearpbond"])
+@pytest.mark.parametrize("pattern", ["A", "B", "C"])
+def test_nothing_moves_after_gravity(lab, pattern, material):
+    scene = waiting(lab, pattern, material, {"static": {"boundary": ROLLERS}, "load": GRAVITY})
+    settled = settle(scene)
+    assert settled.ratio <= 1e-5
+    assert settled.left < 1e-3 * settled.carried
+    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0), start=settled.start)
+    simulation.run(2000)
+    # F_0 is minus the force the same kernel gave; the springs' part of it, which is not, is rounded
+    assert np.abs(simulation.velocity).max() < 1e-9 * 0.5
+
+
+@pytest.mark.parametrize("pattern", ["A", "B", "C"])
+def test_nothing_moves_with_locked_in_stress_alone(lab, pattern):
+    """Without a static stage the cuts' unbalanced forces are balanced from the start."""
+    scene = waiting(lab, pattern, {"law": "linearpbond", "fric": 0.5, "elastic_start": False}, {})
+    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0))
+    assert pattern == "A" or np.abs(simulation.load).max() > 0.0
+    simulation.run(500)
+    assert np.abs(simulation.velocity).max() == 0.0
+
+
+def test_the_stress_asked_for_is_there(lab):
+    wanted = np.array([-2e6, -5e6, 0.5e6])
+    scene = waiting(lab, "B", {"law": "linearpbond", "fric": 0.5}, {"static": {"stress": wanted.tolist()}})
+    # at worst a rim one disk wide carries nothing and the rest so much more; and 800 particles inside, each contact
+    # force scattering by its own size, know the mean pressure to 1/√(2.2·800) = 2.4 %
+    rim = 2.0 * 0.5 / 20.0
+    assert np.all(np.abs(settle(scene).stress - wanted) < rim * np.abs(wanted) + 0.024 * 3.5e6)
