@@ -5,8 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from dembound.boundaries import SIDES, Periodic
 from dembound.boundaries.driven import Driven
 from dembound.case import Case
+from dembound.ground import Ground
 from dembound.loads import forces_of
 from dembound.run import plan
 from dembound.scene import Scene, boundary_medium
@@ -23,10 +25,10 @@ TRIAL_STEPS, TRIALS = 20, 3
 def check(case: Case) -> tuple[dict[str, str], list[str]]:
     """Facts about the run a case describes, ready to print, and warnings. Runs a few steps to estimate the time."""
     planned = plan(case)
-    scene, loose = planned.scene, planned.scene.assembly.loose
+    scene = planned.scene
     threads = worthwhile_threads(scene.count)
     facts = {
-        "particles": f"{scene.count:,}" + (f"; {loose} severed ones left out" if loose else ""),
+        "particles": _particles(scene),
         "contacts": f"{len(scene.assembly.pairs):,}",
         "time step": f"{planned.time_step:.4g} s, {planned.time_step / planned.step_limit:.3f} of the limit "
         f"{planned.step_limit:.6g} s",
@@ -34,7 +36,7 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
         "memory": f"{scene.bytes / 1e6:.3g} MB",
         "estimated time": f"about {_estimate(planned):.2g} s with {threads} thread(s){_not_estimated(case)}",
     }
-    facts |= _packing_facts(scene) | _law_facts(scene) | _static_facts(case)
+    facts |= _packing_facts(scene) | _law_facts(scene) | _hole_facts(case) | _static_facts(case)
     for side in scene.edges:
         facts[f"{side} side"] = _side_fact(scene, side)
     facts |= _load_facts(scene)
@@ -42,7 +44,7 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
         x, y = scene.assembly.positions[node]
         facts[f"monitor {name}"] = f"particle {node} at ({x:.3f}, {y:.3f}) m"
     facts |= _tension_facts(scene)
-    warnings = _tension_warnings(scene)
+    warnings = precautions(case, scene.ground) + _tension_warnings(scene)
     for name, count in particles_per_wavelength(scene).items():
         facts[f"wave {name}"] = f"{count:.0f} particles per shortest wavelength"
         if count < FEWEST_PER_WAVELENGTH:
@@ -51,6 +53,27 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
                 f"{FEWEST_PER_WAVELENGTH:g}; the packing will disperse it"
             )
     return facts, warnings
+
+
+def precautions(case: Case, ground: Ground) -> list[str]:
+    """Warnings of what a run will do that was probably not meant; the ground is the case's own."""
+    if case.static is not None:
+        return []
+    warnings = [
+        f"load.{load.name}: is steady, and without [static] falls on the body at t = 0; viscous sides creep under it"
+        for load in case.load
+        if load.wave is None
+    ]
+    material, pressure = case.material, _pressure(ground)
+    carried = material.law == "linearpbond" and material.locked_in
+    cut = any(not isinstance(case.boundary.get(side), Periodic) for side in SIDES)
+    if carried and cut and material.pb_ten is not None and pressure > material.pb_ten:
+        warnings.append(
+            f"material.locked_in: {pressure / 1e6:.3g} MPa are locked in and balanced by constant forces on the cut "
+            f"sides, above pb_ten = {material.pb_ten / 1e6:.3g} MPa; give [static], a lower confining_stress, or "
+            "locked_in = false"
+        )
+    return warnings
 
 
 def particles_per_wavelength(scene: Scene) -> dict[str, float]:
@@ -108,12 +131,12 @@ def _confinement(scene: Scene) -> float | None:
     if static is not None:
         return None if static.stress is None else 0.0 - 0.5 * (static.stress[0] + static.stress[1])
     locked_in = material.law == "elastic" or material.locked_in
-    return _pressure(describe_packing(scene)) if locked_in else 0.0
+    return _pressure(scene.ground) if locked_in else 0.0
 
 
-def _pressure(packing: dict[str, Any]) -> float:
+def _pressure(ground: Ground) -> float:
     """Locked-in isotropic pressure in Pa."""
-    return 0.0 - 0.5 * (packing["stress"][0] + packing["stress"][1])
+    return 0.0 - 0.5 * ground.moduli.emod * float(ground.brick.stress[0] + ground.brick.stress[1])
 
 
 def _estimate(planned: Plan) -> float:
@@ -136,6 +159,20 @@ def _not_estimated(case: Case) -> str:
     return f", without {' and '.join(later)}" if later else ""
 
 
+def _particles(scene: Scene) -> str:
+    """How many there are, and were."""
+    loose = scene.assembly.loose
+    before = f", {scene.before.count:,} before the excavation" if scene.before is not None else ""
+    severed = f"; {loose:,} severed {'disk' if loose == 1 else 'disks'} left out" if loose else ""
+    return f"{scene.count:,}{before}{severed}"
+
+
+def _hole_facts(case: Case) -> dict[str, str]:
+    """Shape of every hole, and when it is made."""
+    stages = {"before": "there from the start", "after": "excavated once the body has settled"}
+    return {f"hole {hole.name}": f"{hole.type}, {stages[hole.stage]}" for hole in case.hole}
+
+
 def _packing_facts(scene: Scene) -> dict[str, str]:
     packing = describe_packing(scene)
     speeds = [
@@ -148,7 +185,7 @@ def _packing_facts(scene: Scene) -> dict[str, str]:
         "brick": f"{packing['disks_per_brick']:,} disk(s), solid fraction {packing['solid_fraction']:.4f}, "
         f"{packing['coordination']:.3f} contacts per disk",
         "brick equilibrium": f"residual force ratio {packing['residual_ratio']:.1e}, "
-        f"confining stress {_pressure(packing) / 1e6:.3f} MPa",
+        f"confining stress {_pressure(scene.ground) / 1e6:.3f} MPa",
         "homogenised stiffness": f"{stiffness} GPa",
         "wave speeds": ", ".join(speeds) or "no motion is free",
     }
@@ -207,6 +244,18 @@ def _side_fact(scene: Scene, side: str) -> str:
     factors = "".join(f", {factor} = {facts[factor]:g}" for factor in ("beta_p", "beta_s") if factor in facts)
     half = ", half mass" if facts.get("half_mass") else ""
     return (
-        f"{facts['type']}{factors}{half}; {facts['particles']} particles, D = {facts['diameter_min']:.3f}…"
-        f"{facts['diameter_max']:.3f} m, ΣD/H = {facts['cover']:.4f}"
+        f"{facts['type']}{factors}{half}{_springs_in_words(facts)}; {facts['particles']} particles, "
+        f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['cover']:.4f}"
+    )
+
+
+def _springs_in_words(side: dict[str, Any]) -> str:
+    """The springs of a described side, if it has any."""
+    if "alpha_n" not in side:
+        return ""
+    nearest, farthest = side["distance_min"], side["distance_max"]
+    reach = f"{nearest:.4g}" + (f"…{farthest:.4g}" if farthest > nearest else "")
+    return (
+        f"; springs α_n = {side['alpha_n']:g}, α_s = {side['alpha_s']:g}, "
+        f"G = {side['shear_modulus'] / 1e9:.4g} GPa, L = {reach} m"
     )

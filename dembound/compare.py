@@ -7,6 +7,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.plot.histories import History, Quantity, read_histories
+from dembound.plot.style import UNITS
 from dembound.results import COMPONENTS, record_names
 
 
@@ -14,7 +15,8 @@ from dembound.results import COMPONENTS, record_names
 class Difference:
     """One monitor of a run beside the reference, in the component that moves most there.
 
-    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; last, reference_last : the values at the end.
+    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; last, reference_last : the values at the end;
+    unit : theirs; place, reference_place : where the monitor was asked for in both, m.
     """
 
     run: str
@@ -24,6 +26,9 @@ class Difference:
     peak: float
     last: float
     reference_last: float
+    unit: str
+    place: tuple[float, float]
+    reference_place: tuple[float, float]
 
 
 def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Difference]:
@@ -34,7 +39,7 @@ def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Diffe
     names = record_names([reference, *runs])[1:]
     wanted = read_histories(reference, quantity)
     found = [
-        _difference(name, monitor, history, wanted[monitor])
+        _difference(name, monitor, history, wanted[monitor], UNITS[quantity])
         for name, path in zip(names, runs, strict=True)
         for monitor, history in read_histories(path, quantity).items()
         if monitor in wanted
@@ -44,7 +49,9 @@ def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Diffe
     return found
 
 
-def _difference(run: str, monitor: str, history: History, reference: History) -> Difference:
+def _difference(
+    run: str, monitor: str, history: History, reference: History, units: tuple[str, str, str]
+) -> Difference:
     """One monitor's difference."""
     column = int(np.argmax(np.abs(reference.motion[:, :2]).max(axis=0)))
     end = min(history.time[-1], reference.time[-1])
@@ -62,4 +69,7 @@ def _difference(run: str, monitor: str, history: History, reference: History) ->
         peak=float(np.abs(error).max() / np.abs(expected).max()),
         last=float(motion[-1]),
         reference_last=float(expected[-1]),
+        unit=units[column],
+        place=tuple(history.position.tolist()),
+        reference_place=tuple(reference.position.tolist()),
     )

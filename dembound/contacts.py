@@ -13,6 +13,7 @@ from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SHEAR, UPDATED
 from dembound.kernels.tables import Contacts, Limits
 from dembound.laws import pair_lines
+from dembound.packings.column import Seam
 from dembound.packings.tiling import Assembly
 
 SKIN = 0.1
@@ -35,6 +36,12 @@ class Cracks:
 
     def __len__(self) -> int:
         return len(self.step)
+
+    def among(self, kept: np.ndarray) -> "Cracks":
+        """Those between two of the particles kept (m,), ascending, and numbered as these are."""
+        inside = np.isin(self.pair, kept).all(axis=1)
+        pair = np.searchsorted(kept, self.pair[inside])
+        return Cracks(self.step[inside], pair, self.position[inside], self.shear[inside])
 
 
 def limits_of(material: Material) -> Limits:
@@ -67,6 +74,7 @@ class ContactList:
     ground : brick and material.
     assembly : where the particles are at the start.
     periods : length (m) of the scene along x and y where it is periodic, else None.
+    seam : the free-field column in the assembly and its seam with the body, if there is one.
 
     Attributes
     ----------
@@ -78,11 +86,24 @@ class ContactList:
     """
 
     def __init__(
-        self, ground: Ground, material: Material, assembly: Assembly, periods: tuple[float | None, float | None]
+        self,
+        ground: Ground,
+        material: Material,
+        assembly: Assembly,
+        periods: tuple[float | None, float | None],
+        seam: Seam | None = None,
     ) -> None:
         self.ground = ground
         self.assembly = assembly
         self.periods = periods
+        self.seam = seam
+        count = len(assembly.radii)
+        self._bodies = [(slice(0, count), periods)]
+        if seam is not None:
+            self._bodies = [(slice(0, seam.count), (seam.width, periods[1])), (slice(seam.count, count), periods)]
+        self._periods = np.zeros((count, 2))
+        for body, lengths in self._bodies:
+            self._periods[body] = [length or 0.0 for length in lengths]
         self.limits = limits_of(material)
         self.locked_in = material.law == "linearpbond" and material.locked_in
         self.searches = self.limits.geometry != REFERENCE
@@ -118,25 +139,42 @@ class ContactList:
         return self.last_forces()
 
     def last_forces(self) -> np.ndarray:
-        """Forces and moments (3, n) on the particles from the pairs' last forces."""
+        """Forces and moments (3, n) on the particles from the pairs' last forces, those across a seam included."""
         force = np.empty((3, len(self.assembly.radii)))
         kernel.sum_forces(self.arrays, force)
+        if self.seam is not None:
+            force[:, self.seam.node] += self._across_the_seam(self.seam)
         return force
+
+    def _across_the_seam(self, seam: Seam) -> np.ndarray:
+        """Forces and moments (3, k) that the seam's nodes get through their twins, from the pairs' last forces."""
+        ends = self.seam_ends()
+        pair, side = ends >> 1, ends & 1
+        sign = 1.0 - 2.0 * side
+        pushes = np.stack([*(sign * self.arrays.force[pair, :2].T), self.arrays.force[pair, 2 + side]])
+        across = np.zeros((3, len(seam.node)))
+        row = np.repeat(np.arange(len(seam.node)), seam.many)
+        for component in range(3):
+            np.add.at(across[component], row, pushes[component])
+        return across
 
     def search(self, displacement: np.ndarray) -> None:
         """List the pairs anew for displacements (3, n): near ones come in, those far apart and unbonded go."""
         self.note_cracks(displacement)
         here = self.assembly.positions + displacement[:2].T
+        if not np.isfinite(here).all():
+            return  # the loop's watch will say so
         old, count = self.arrays, len(self.assembly.radii)
-        near, image = _near_pairs(here, self.assembly.radii, self.skin, self.periods)
+        near, image = self._near(here)
         vectors = displacement[:2, old.second].T - displacement[:2, old.first].T + old.palette[old.kind, :2]
         gap = np.hypot(*vectors.T) - self.assembly.radii[old.first] - self.assembly.radii[old.second]
         kept = (old.state == INTACT) | (gap <= self.skin)
+        kept[self.seam_ends() >> 1] = True
         keys = _keys(old.first[kept], old.second[kept], self._image[kept], count)
         fresh = ~np.isin(_keys(near[:, 0], near[:, 1], image, count), keys)
         first, second = near[fresh].T
         new = len(first)
-        vectors = self.assembly.positions[second] - self.assembly.positions[first] + image[fresh] * self._period()
+        vectors = self.assembly.positions[second] - self.assembly.positions[first] + image[fresh] * self._periods[first]
         radii = self.assembly.radii
         lines = pair_lines(
             self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
@@ -163,6 +201,17 @@ class ContactList:
         )
         self.origin = displacement[:2].copy()
 
+    def inherit(self, other: "ContactList", kept: np.ndarray) -> None:
+        """Take the pairs, with their memory, of a list of more particles, of which this one's are `kept` (n,)."""
+        number = np.full(len(other.assembly.radii), -1)
+        number[kept] = np.arange(len(kept))
+        old = other.arrays
+        first, second = number[old.first], number[old.second]
+        left = (first >= 0) & (second >= 0)
+        self._palette, self.origin = other._palette, other.origin[:, kept]
+        pairs = Pairs(first[left], second[left], other._image[left], old.kind[left])
+        self._list(pairs, old.state[left], old.shear[left], old.slip[left], old.cracked[left])
+
     def note_cracks(self, displacement: np.ndarray) -> None:
         """Write down the bonds that broke since the last time; displacement (3, n) is that of now."""
         pairs = self.arrays
@@ -183,6 +232,20 @@ class ContactList:
         noted, self._cracks = [nothing, *self._cracks], []
         columns = (np.concatenate([getattr(part, field.name) for part in noted]) for field in fields(Cracks))
         return Cracks(*columns)
+
+    def seam_ends(self) -> np.ndarray:
+        """Contact ends (e,) at which the seam's twins feel what is beyond it, in the order of the seam's contacts."""
+        seam, count = self.seam, len(self.assembly.radii)
+        if seam is None:
+            return np.zeros(0, dtype=np.int64)
+        owner = np.repeat(seam.twin[seam.node], seam.many)
+        vectors = self._bonds[seam.kind, :2] * np.where(seam.second, -1.0, 1.0)[:, None]
+        image = self._images(owner, seam.near, vectors)
+        listed = _keys(self.arrays.first, self.arrays.second, self._image, count)
+        order = np.argsort(listed)
+        pair = order[np.searchsorted(listed, _keys(owner, seam.near, image, count), sorter=order)]
+        turned = (self.arrays.first[pair] != owner) | (self._image[pair] != image).any(axis=1)
+        return 2 * pair + turned
 
     def coordination(self) -> np.ndarray:
         """Number (n,) of intact bonds and pushing contacts of every particle, from the pairs' last forces."""
@@ -218,15 +281,23 @@ class ContactList:
     def _images(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> np.ndarray:
         """Whole periods (b, 2) that a pair's vector goes beyond the difference of its positions."""
         inside = self.assembly.positions[second] - self.assembly.positions[first]
-        return np.rint((vectors - inside) / self.assembly.size).astype(np.int64)
+        periods = self._periods[first]
+        wraps = np.divide(vectors - inside, periods, out=np.zeros_like(inside), where=periods > 0.0)
+        return np.rint(wraps).astype(np.int64)
 
-    def _period(self) -> np.ndarray:
-        return np.array([period or 0.0 for period in self.periods])
+    def _near(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pairs (b, 2) within the skin at positions (n, 2) and the periods between them, body by body."""
+        found = []
+        for body, periods in self._bodies:
+            near, image = _near_pairs(positions[body], self.assembly.radii[body], self.skin, periods)
+            found.append((near + body.start, image))
+        pairs, images = zip(*found, strict=True)
+        return np.concatenate(pairs), np.concatenate(images)
 
 
 def plain_contacts(ground: Ground, assembly: Assembly) -> Contacts:
     """The contacts of the elastic law, without memory, forces and rows: what its strain energy takes."""
-    first, second = assembly.pairs.T.astype(np.uint32)
+    first, second = assembly.pairs.T.astype(np.uint32, order="C")
     bonded = INTACT if ground.moduli.pb_emod > 0.0 else NONE
     nothing = np.zeros(0)
     return Contacts(
@@ -245,10 +316,13 @@ def plain_contacts(ground: Ground, assembly: Assembly) -> Contacts:
 
 
 def _brick_lines(ground: Ground, *, gaps_close: bool, locked_in: bool) -> np.ndarray:
-    """Palette lines of the brick's contacts; the words are those of `pair_lines`."""
+    """Palette lines (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
+
+    The words are those of `pair_lines`.
+    """
     brick = ground.brick
     first, second = brick.radii[brick.pairs].T
-    return pair_lines(
+    lines = pair_lines(
         ground.moduli,
         first,
         second,
@@ -257,6 +331,10 @@ def _brick_lines(ground: Ground, *, gaps_close: bool, locked_in: bool) -> np.nda
         gaps_close=gaps_close,
         locked_in=locked_in,
     )
+    half = lines.copy()
+    half[:, 5:10] *= 0.5  # stiffnesses
+    half[:, 10:] *= 2.0  # and areas and sections with them, so that stresses stay
+    return np.vstack([lines, half])
 
 
 def _keys(first: np.ndarray, second: np.ndarray, image: np.ndarray, count: int) -> np.ndarray:

@@ -50,9 +50,14 @@ class Elastic:
         self.ended = False
 
     def force(self, displacement: np.ndarray) -> np.ndarray:
-        """Contact forces and moments (3, n) at displacements (3, n), those of the start left out."""
+        """Contact and seam forces and moments (3, n) at displacements (3, n), those of the start left out."""
         force = np.empty_like(displacement)
         elastic.contact_forces(displacement, self.scene.rows, force)
+        if self.scene.seam is not None:
+            table = self.scene.seam_table(self.scene.seam.node)
+            across = np.empty((len(table.twin), 3))
+            elastic.seam_forces(displacement, self.scene.rows, table, across)
+            force[:, self.scene.seam.node] += across.T
         return force
 
     def advance(
@@ -83,15 +88,20 @@ class Bonded:
 
     def __init__(self, contacts: ContactList) -> None:
         self.contacts = contacts
+        self._seam_ends: np.ndarray | None = None
 
     def advance(
         self, u: np.ndarray, spare: np.ndarray, v: np.ndarray, number: int, body: Body, supports: Supports, log: Log
     ) -> int:
         """Advance by the steps of supports.drive, or until pairs must be looked for anew; returns the steps done."""
         contacts = self.contacts
+        if self._seam_ends is None:
+            self._seam_ends = contacts.seam_ends().astype(np.uint32)
+        supports = supports._replace(seam=supports.seam._replace(end=self._seam_ends))
         done, why = bonded.advance(
             u, spare, v, number, contacts.arrays, contacts.limits, contacts.origin, contacts.skin, body, supports, log
         )
         if why == elastic.LIST_ENDS:
             contacts.search(u)
+            self._seam_ends = None
         return int(done)

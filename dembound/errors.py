@@ -6,9 +6,10 @@ its code. Anything else is a bug and shows a traceback.
 | code | meaning |
 |---|---|
 | 0 | done |
-| 2 | bad input: the case file or the command's arguments (nothing was written) |
-| 3 | the run failed: motion grew without bound, or a calibration did not converge |
-| 4 | a packing could not be made as asked |
+| 1 | a bug |
+| 2 | bad input, nothing was written: the case file or the command's arguments |
+| 3 | a run, calibration or view failed: motion grew without bound, β did not converge, no window opened |
+| 4 | a packing could not be made |
 | 5 | a file could not be read or written |
 | 130 | stopped with Ctrl-C |
 """
@@ -17,9 +18,13 @@ from collections.abc import Iterable
 
 
 class DemboundError(Exception):
-    """A failure the user can act on. `exit_code` is what the process ends with."""
+    """A failure the user can act on.
+
+    `exit_code` is what the process ends with, `source` the case or file it is about, where that is known.
+    """
 
     exit_code = 3
+    source = ""
 
 
 class CaseError(DemboundError):

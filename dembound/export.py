@@ -15,6 +15,8 @@ Every disk is a vertex at its reference position moved by its displacement (z = 
 | ``coordNumber`` | 1 | (n,) | its intact bonds and pushing contacts, under a law with a memory (YADE's name) |
 | ``nbCracks`` | 1 | (n,) | its bonds that have broken so far (YADE's name) |
 | ``damage`` | 1 | (n,) | that number over the bonds it had at the start, 0 where it had none |
+| ``stress`` | Pa | (n, 6) | XX, YY, ZZ, XY, YZ, XZ, tension positive, those with Z being 0; if the case asks for it |
+| ``peakVelocity`` | m/s | (n,) | largest speed in the whole run, in every file; if the case asks for it |
 
 Where bonds broke in the run, ``cracks.vtu`` has one vertex per broken bond, between its two disks as they stood then:
 
@@ -122,6 +124,10 @@ def _disks(particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.nda
     }
     if "coordination" in snapshot:
         data["coordNumber"] = snapshot["coordination"][:]
+    if "stress" in snapshot:
+        data["stress"] = _tensors(snapshot["stress"][:])
+    if "peak_velocity" in particles:
+        data["peakVelocity"] = particles["peak_velocity"][:]
     return _vertices(_in_space(particles["position"][:]) + moved, data)
 
 
@@ -145,6 +151,13 @@ def _write(path: Path, mesh: meshio.Mesh) -> None:
 def _in_space(vectors: np.ndarray) -> np.ndarray:
     """Vectors (n, 2) as (n, 3) with z = 0."""
     return np.column_stack([vectors, np.zeros(len(vectors))])
+
+
+def _tensors(stress: np.ndarray) -> np.ndarray:
+    """Stresses (n, 3) xx, yy, xy as (n, 6), in the order VTK knows symmetric tensors by: xx, yy, zz, xy, yz, xz."""
+    tensors = np.zeros((len(stress), 6))
+    tensors[:, [0, 1, 3]] = stress
+    return tensors
 
 
 def _write_index(path: Path, times: dict[str, float]) -> Path:

@@ -3,16 +3,18 @@
 Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset of numbers)::
 
     /                       attributes: case, name, version, seed, time_step, step_limit, steps, complete, …
-    particles/              position (n, 2), radius (n,), brick_particle (n,), bonds (n,) of each at the start
+    particles/              position (n, 2), radius (n,), brick_particle (n,), bonds (n,) of each at the start; if the
+                            case asks for it peak_velocity (n,), the largest speed of each in the whole run
     histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3); attributes particle, position, wanted
     boundaries/<side>/      particle, position, diameter, peak_velocity (q, 3, 2)
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
-                            under a law with a memory; attribute time
+                            under a law with a memory; stress (n, 3) if the case asks for it; attribute time
     energy/                 time and the columns of `energy.Entry`, (k,) each
     cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
                             displacements, positions count from the start of the run
     laws/                   name (l,) of each law used and time (l,) it began at
-    static/                 attributes: what the static stage came to, if there was one
+    static/                 attributes: what the static stage came to, if there was one; displacement (n, 3) at its end
+    static/before/          the same before an excavation, of the particles that are left by it
 """
 
 from dataclasses import fields
@@ -23,11 +25,13 @@ import h5py
 import numpy as np
 
 from dembound import __version__
+from dembound.case.monitor import FREE_FIELD
 from dembound.contacts import Cracks
 from dembound.energy import Entry, Ledger
 from dembound.engines import Bonded
 from dembound.simulate import Simulation
 from dembound.static import Settled
+from dembound.stress import stress_now
 
 DISPLACEMENT_UNIT = "m, m, rad"
 VELOCITY_UNIT = "m/s, m/s, rad/s"
@@ -69,6 +73,7 @@ class Recorder:
     ) -> None:
         if kind is None:
             self._write_boundaries()
+            self._write_peaks()
             self._write_energy()
         self._write_laws()
         self.file.attrs["steps"] = self.simulation.steps
@@ -104,6 +109,8 @@ class Recorder:
         contacts = self.simulation.contacts
         if contacts is not None and isinstance(self.simulation.engine, Bonded):
             _write(group, "coordination", contacts.coordination(), "1")
+        if self.simulation.scene.case.output.stress:
+            _write(group, "stress", stress_now(self.simulation), "Pa")
         self._snapshots += 1
 
     def _write_header(self, step_limit: float) -> None:
@@ -141,7 +148,7 @@ class Recorder:
             group = histories.create_group(name)
             group.attrs["particle"] = node
             group.attrs["position"] = scene.assembly.positions[node]
-            group.attrs["wanted"] = wanted[name]
+            group.attrs["wanted"] = wanted[name.removesuffix(FREE_FIELD)]
             group.attrs["unit"] = "m"
             for dataset, width, unit in (
                 ("time", (), "s"),
@@ -168,7 +175,16 @@ class Recorder:
         _extend(self._cracks["shear"], cracks.shear)
 
     def _write_static(self, settled: Settled) -> None:
-        group = self.file.create_group("static")
+        kept = self.simulation.scene.kept
+        if settled.before is not None and kept is not None:
+            before = settled.before
+            displacement = before.start.displacement[:, kept]
+            self._write_stage("static/before", before, displacement, before.cracks.among(kept))
+        self._write_stage("static", settled, settled.start.displacement, settled.cracks)
+
+    def _write_stage(self, name: str, settled: Settled, displacement: np.ndarray, cracks: Cracks) -> None:
+        """What a static stage came to; displacement (3, n) and cracks of the particles that are there in the run."""
+        group = self.file.require_group(name)
         group.attrs.update(
             {
                 "steps": settled.steps,
@@ -179,9 +195,8 @@ class Recorder:
                 "cracks": len(settled.cracks),
             }
         )
-        displacement = settled.start.displacement
         _write(group, "displacement", displacement.T, DISPLACEMENT_UNIT)
-        self._append_cracks(settled.cracks, 0.0)  # before the run began
+        self._append_cracks(cracks, 0.0)  # before the run began
 
     def _write_energy(self) -> None:
         group = self.file.create_group("energy")
@@ -204,6 +219,10 @@ class Recorder:
             _write(group, "position", scene.assembly.positions[edge.nodes], "m")
             _write(group, "diameter", edge.diameters, "m")
             _write(group, "peak_velocity", self.simulation.edge_peaks(side), VELOCITY_UNIT)
+
+    def _write_peaks(self) -> None:
+        if self.simulation.scene.case.output.peaks:
+            _write(self.file["particles"], "peak_velocity", self.simulation.top_speed, "m/s")
 
 
 def _make(group: h5py.Group, name: str, width: tuple[int, ...], kind: str, unit: str) -> None:

@@ -3,13 +3,16 @@
 import json
 import shutil
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 
 from dembound.case import Case
-from dembound.errors import CaseError
+from dembound.errors import CaseError, DemboundError
 from dembound.export import write_vtu
+from dembound.ground import Ground
 from dembound.plot.histories import plot_histories
 from dembound.plot.scene import plot_scene
 from dembound.plot.style import save
@@ -37,34 +40,47 @@ class Progress:
 def plan(case: Case) -> Plan:
     """Build the scene and choose the step.
 
-    Raises PackingError for an impossible brick and CaseError for a step above the stability limit.
+    Raises PackingError for an impossible brick and CaseError for a load that no particle feels, a material without
+    stiffness and a step above the stability limit.
     """
-    try:
+    with _told_of(case):
         scene = build(case)
+        _ = scene.steady_load  # a load beside all particles must be found before anything is written
         _ = scene.ground.material_tensor  # the summary needs it: a singular material must not end a finished run
         time_step, limit = choose_step(scene)
-    except CaseError as error:
-        raise CaseError(error.problems, case.name) from None
     return Plan(scene, time_step, limit, max(1, int(np.ceil(case.run.duration / time_step - 1e-9))))
 
 
-def foresee(case: Case) -> None:
-    """Find what would stop a case later, as far as it can be found cheaply.
+@contextmanager
+def _told_of(case: Case) -> Iterator[None]:
+    """Failures within say which case they are about."""
+    try:
+        yield
+    except DemboundError as error:
+        error.source = case.name
+        raise
 
-    Packs its brick, which is then cached, and compares a given time step with the stability limit. Raises CaseError
+
+def foresee(case: Case) -> Ground:
+    """Find what would stop a case later, as far as it can be found cheaply; returns its brick with its material.
+
+    Packs the brick, which is then cached, and compares a given time step with the stability limit. Raises CaseError
     and PackingError.
     """
-    if case.run.time_step == "auto":
-        _ = ground_of(case).material_tensor
-    else:
-        plan(case)
+    if case.run.time_step != "auto":
+        return plan(case).scene.ground
+    with _told_of(case):
+        ground = ground_of(case)
+        _ = ground.material_tensor
+    return ground
 
 
 def run_case(case: Case, results: Path, progress: Progress | None = None) -> Path:
     """Run a case and leave ``results/<case name>/``; returns that folder.
 
     Everything is written to ``<case name>.partial`` first and takes its name when the run is complete, so a
-    finished folder is always whole. A run that fails leaves the partial folder with the histories so far.
+    finished folder is always whole. A run that fails leaves the partial folder with the histories so far; before it has
+    any, as in the static stage, it leaves nothing.
 
     Raises the errors of `plan`, and RunError when the static stage does not settle or the motion grows without bound.
     """
@@ -76,7 +92,8 @@ def run_case(case: Case, results: Path, progress: Progress | None = None) -> Pat
         shutil.rmtree(partial)
     partial.mkdir(parents=True)
     began = time.perf_counter()
-    simulation, settled = _simulate(planned, partial / "run.h5", progress or Progress())
+    with _told_of(case), _gone_if_empty(partial):
+        simulation, settled = _simulate(planned, partial / "run.h5", progress or Progress())
     wall_time = time.perf_counter() - began
     summary = summarise(planned, simulation, settled, partial / "run.h5", wall_time)
     (partial / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
@@ -93,8 +110,23 @@ def run_case(case: Case, results: Path, progress: Progress | None = None) -> Pat
 
 def _must_be_replaceable(folder: Path) -> None:
     """Raise CaseError where a new run would delete something that no run has written."""
-    if folder.exists() and not (folder / "run.h5").is_file():
+    if folder.exists() and not (folder / "run.h5").is_file() and not _is_empty(folder):
         raise CaseError([f"{folder}: exists and holds no run, give another --output or --name"])
+
+
+def _is_empty(folder: Path) -> bool:
+    """Whether a path is a folder without anything in it."""
+    return folder.is_dir() and not any(folder.iterdir())
+
+
+@contextmanager
+def _gone_if_empty(folder: Path) -> Iterator[None]:
+    """Where something within fails, do not leave the folder behind with nothing in it."""
+    try:
+        yield
+    finally:
+        if _is_empty(folder):
+            folder.rmdir()
 
 
 def _simulate(planned: Plan, path: Path, progress: Progress) -> tuple[Simulation, Settled | None]:
@@ -108,7 +140,7 @@ def _simulate(planned: Plan, path: Path, progress: Progress) -> tuple[Simulation
     simulation = Simulation(planned.scene, planned.time_step, monitors, start=start)
     snapshots = min(max(1, case.output.snapshots), steps)
     shots = {steps * number // snapshots for number in range(1, snapshots + 1)}
-    entries = set(range(0, steps, _steps_between_entries(planned)))
+    entries = {*range(0, steps, _steps_between_entries(planned)), steps - 1}
     with Recorder(path, simulation, planned.step_limit, case.output.history_interval, settled) as recorder:
 
         def keep(simulation: Simulation, record: np.ndarray) -> None:

@@ -7,16 +7,22 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from dembound.boundaries import SIDES, normal_axis
+from dembound.boundaries import SIDES, FreeField, normal_axis
 from dembound.boundaries.exposed import exposed
-from dembound.boundaries.half_mass import mass_factor
+from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
 from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
 from dembound.case import Case
+from dembound.case.monitor import FREE_FIELD
 from dembound.contacts import ContactList
+from dembound.errors import CaseError
 from dembound.ground import Ground, make_ground, nominal_moduli
+from dembound.holes import Hole
+from dembound.kernels import tables
 from dembound.kernels.tables import Rows
 from dembound.laws import LAWS
 from dembound.loads import drive, steady
+from dembound.packings.brick import Brick
+from dembound.packings.column import Seam, with_column
 from dembound.packings.tiling import Assembly, tile
 
 
@@ -33,6 +39,9 @@ class Scene:
     edges : side -> its exposed particles, for every side that is not periodic.
     supports : the table of what pushes from outside, loads that follow a wave included.
     monitors : name -> particle.
+    seam : what joins the free-field column, which stands first in the arrays, to the body; None without one.
+    before : the scene before it was excavated, in which the static stage begins; None where nothing is excavated.
+    kept : (n,) indices into that one's particles of those that are left.
     """
 
     case: Case
@@ -42,6 +51,9 @@ class Scene:
     edges: Mapping[str, Edge]
     supports: Supports
     monitors: Mapping[str, int]
+    seam: Seam | None = None
+    before: "Scene | None" = None
+    kept: np.ndarray | None = None
 
     @property
     def count(self) -> int:
@@ -85,26 +97,66 @@ class Scene:
         periods = tuple(
             float(size) if wraps else None for size, wraps in zip(self.assembly.size, periodic, strict=True)
         )
-        return ContactList(self.ground, self.case.material, self.assembly, periods)  # type: ignore[arg-type]
+        return ContactList(self.ground, self.case.material, self.assembly, periods, self.seam)  # type: ignore[arg-type]
+
+    def seam_table(self, nodes: np.ndarray) -> tables.Seam:
+        """What the free-field column does to some nodes (k,), ascending; it has no follow and no ends yet."""
+        k, seam = len(nodes), self.seam
+        empty = np.zeros(0, dtype=np.uint32)
+        start = np.zeros(k + 1, dtype=np.uint32)
+        if seam is None:
+            return tables.Seam(np.full(k, -1), np.zeros((k, 3)), start, empty, empty, empty)
+        many = np.zeros(k, dtype=np.uint32)
+        many[np.searchsorted(nodes, seam.node)] = seam.many
+        np.cumsum(many, out=start[1:])
+        line = self._line_of[2 * seam.kind + seam.second]
+        twin = np.where(nodes < seam.count, -1, seam.twin[nodes])
+        return tables.Seam(
+            twin, np.zeros((k, 3)), start, seam.near.astype(np.uint32), line.astype(np.uint32), np.zeros_like(empty)
+        )
+
+    @cached_property
+    def _line_of(self) -> np.ndarray:
+        return _palette(self.ground)[1]
 
     @property
     def bytes(self) -> int:
-        """Memory of the particle, contact and state arrays."""
+        """Memory of the particle, contact and state arrays, those before an excavation included."""
         state = 9 * 8 * self.count  # u, its successor and v
         step = 4 * 8 * self.count  # mass, inertia and their mobilities
         arrays = (*self.rows, *vars(self.assembly).values())
-        return state + step + sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
+        before = 0 if self.before is None else self.before.bytes
+        return before + state + step + sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
 
 
 def build(case: Case) -> Scene:
-    """Pack, tile and support a case.
+    """Pack, tile, hollow and support a case.
 
-    Raises PackingError when the brick cannot be made.
+    Raises PackingError when the brick cannot be made or nothing of it is left, CaseError when nothing of a side is.
     """
     ground = ground_of(case)
     periodic = (_is_periodic(case, "left"), _is_periodic(case, "bottom"))
-    assembly = tile(ground.brick, case.packing.copies, periodic)
-    edges = find_edges(assembly, periodic)
+    body = tile(ground.brick, case.packing.copies, periodic)
+    edges = find_edges(body, periodic)
+    first, later = (tuple(hole for hole in case.hole if hole.stage == stage) for stage in ("before", "after"))
+    if first:
+        body, edges, _ = _hollowed(case, ground.brick, body, edges, first)
+    scene = _scene(case, ground, body, edges)
+    if not later:
+        return scene
+    body, edges, kept = _hollowed(case, ground.brick, body, edges, later)
+    column = np.arange(0 if scene.seam is None else scene.seam.count)
+    kept = np.concatenate([column, len(column) + kept])
+    return replace(_scene(case, ground, body, edges), before=scene, kept=kept)
+
+
+def _scene(case: Case, ground: Ground, assembly: Assembly, edges: Mapping[str, Edge]) -> Scene:
+    """The scene of a body and its sides, joined to a free-field column where the case has such sides."""
+    seam = None
+    if sides := _free_field_sides(case):
+        assembly, seam = with_column(ground.brick, assembly, sides)
+        edges = edges_beside_column(assembly, seam, edges)
+    assembly, seam = _with_half_contacts(case, ground.brick, assembly, seam, edges)
     return Scene(
         case=case,
         ground=ground,
@@ -112,7 +164,8 @@ def build(case: Case) -> Scene:
         rows=contact_rows(assembly, ground),
         edges=edges,
         supports=_supports(case, ground, assembly, edges),
-        monitors=_monitors(case, assembly),
+        monitors=_monitors(case, assembly, seam),
+        seam=seam,
     )
 
 
@@ -122,8 +175,44 @@ def ground_of(case: Case) -> Ground:
     return make_ground(brick, case.material, case.motion.held)
 
 
+def _free_field_sides(case: Case) -> tuple[str, ...]:
+    return tuple(side for side, table in case.boundary.items() if isinstance(table, FreeField))
+
+
+def _hollowed(
+    case: Case, brick: Brick, body: Assembly, edges: Mapping[str, Edge], holes: tuple[Hole, ...]
+) -> tuple[Assembly, dict[str, Edge], np.ndarray]:
+    """A body and its sides without what lies in some holes, and the indices (m,) of the particles left.
+
+    What a hole bares is free: no side gets other particles than it had.
+    """
+    removed = np.logical_or.reduce([hole.contains(body.positions) for hole in holes])
+    left, kept = body.without(removed)
+    if sides := _free_field_sides(case):
+        seam = with_column(brick, body, sides)[1]
+        if not np.isin(seam.node - seam.count, kept).all():
+            raise CaseError([f"hole: reaches the free field of {' or '.join(sides)}, which has no hole"])
+    return left, {side: _left_of(edge, kept) for side, edge in edges.items()}, kept
+
+
+def _left_of(edge: Edge, kept: np.ndarray) -> Edge:
+    """A side without the particles that are not kept (m,); the others stand for their share of its length."""
+    still = np.isin(edge.nodes, kept)
+    if not still.any():
+        raise CaseError([f"hole: leaves nothing of the {edge.side} side"])
+    diameters = edge.diameters[still]
+    length = edge.length * float(diameters.sum() / edge.diameters.sum())
+    return Edge(edge.side, np.searchsorted(kept, edge.nodes[still]), edge.positions[still], diameters, length)
+
+
 def with_boundaries(scene: Scene, case: Case) -> Scene:
     """The same body under the boundaries of another case; only what stands in [boundary.*] and [wave.*] counts."""
+    built_in = [
+        ([edge.side for edge in half_edges(scene.edges, each.boundary)], _free_field_sides(each))
+        for each in (scene.case, case)
+    ]
+    if built_in[0] != built_in[1]:
+        return build(case)  # masses, contacts and the column change with them
     return replace(scene, case=case, supports=_supports(case, scene.ground, scene.assembly, scene.edges))
 
 
@@ -149,7 +238,10 @@ def contact_rows(assembly: Assembly, ground: Ground) -> Rows:
 
 
 def _palette(ground: Ground) -> tuple[np.ndarray, np.ndarray]:
-    """Palette lines (2b, 6), and the line of contact k seen from its first (2k) and second disk (2k + 1)."""
+    """Palette lines (4b, 6), and the line of contact k seen from its first (2k) and second disk (2k + 1).
+
+    Contacts from b on are the brick's with half their stiffness, for sides of half cells.
+    """
     brick, law = ground.brick, ground.stiffness
     vectors = brick.vectors
     n = vectors / np.hypot(*vectors.T)[:, None]
@@ -163,7 +255,8 @@ def _palette(ground: Ground) -> tuple[np.ndarray, np.ndarray]:
     order = np.lexsort((brick.pairs[:, ::-1].ravel(), brick.pairs.ravel()))
     line_of = np.empty(len(order), dtype=np.int64)
     line_of[order] = np.arange(len(order))
-    return flat[order], line_of
+    half = flat[order] * [np.sqrt(0.5), np.sqrt(0.5), 1.0, np.sqrt(0.5), np.sqrt(0.5), 0.5]
+    return np.vstack([flat[order], half]), np.concatenate([line_of, line_of + len(order)])
 
 
 def find_edges(assembly: Assembly, periodic: tuple[bool, bool]) -> dict[str, Edge]:
@@ -177,6 +270,41 @@ def find_edges(assembly: Assembly, periodic: tuple[bool, bool]) -> dict[str, Edg
         nodes = exposed(assembly.positions, assembly.radii, side, period=length if periodic[1 - axis] else None)
         edges[side] = Edge(side, nodes, assembly.positions[nodes], 2.0 * assembly.radii[nodes], length)
     return edges
+
+
+def _with_half_contacts(
+    case: Case, brick: Brick, assembly: Assembly, seam: Seam | None, edges: Mapping[str, Edge]
+) -> tuple[Assembly, Seam | None]:
+    """The contacts along sides of half cells, those across a seam included, made of the half kind."""
+    vectors, whole = brick.vectors, len(brick.pairs)
+
+    def halved(kind: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        plain = kind % whole
+        return plain + whole * half_contacts(first, second, vectors[plain], edges, case.boundary).astype(kind.dtype)
+
+    assembly = replace(assembly, kind=halved(assembly.kind, *assembly.pairs.T))
+    if seam is not None:
+        owner = np.repeat(seam.twin[seam.node], seam.many)
+        seam = replace(seam, kind=halved(seam.kind, owner, seam.near))
+    return assembly, seam
+
+
+def edges_beside_column(assembly: Assembly, seam: Seam, edges: Mapping[str, Edge]) -> dict[str, Edge]:
+    """The sides of a body joined to its column: bottom and top run on into it, left and right are the body's.
+
+    Which disks are seen from below is decided in the column, as if there were no sides, so that every disk of the body
+    is supported as its twin is.
+    """
+    column = np.arange(len(assembly.radii)) < seam.count
+    joint = {}
+    for side, edge in edges.items():
+        nodes, length = edge.nodes + seam.count, edge.length
+        if edge.axis == 1:
+            alone = exposed(assembly.positions[column], assembly.radii[column], side, period=seam.width)
+            nodes = np.flatnonzero(np.isin(seam.twin, alone))
+            length += seam.width
+        joint[side] = Edge(side, nodes, assembly.positions[nodes], 2.0 * assembly.radii[nodes], length)
+    return joint
 
 
 def boundary_medium(case: Case, ground: Ground, axis: int) -> Medium:
@@ -210,9 +338,13 @@ def _supports(case: Case, ground: Ground, assembly: Assembly, edges: Mapping[str
     return builder.table()
 
 
-def _monitors(case: Case, assembly: Assembly) -> dict[str, int]:
-    """The particle nearest to each monitor's position."""
+def _monitors(case: Case, assembly: Assembly, seam: Seam | None) -> dict[str, int]:
+    """The particle of the body nearest to each monitor's position, and its twin in the free-field column."""
     if not case.monitor:
         return {}
-    _, nodes = cKDTree(assembly.positions).query([m.position for m in case.monitor])
-    return {m.name: int(node) for m, node in zip(case.monitor, nodes, strict=True)}
+    first = 0 if seam is None else seam.count
+    _, nodes = cKDTree(assembly.positions[first:]).query([m.position for m in case.monitor])
+    monitors = {m.name: first + int(node) for m, node in zip(case.monitor, nodes, strict=True)}
+    if seam is not None:
+        monitors |= {f"{name}{FREE_FIELD}": int(seam.twin[node]) for name, node in monitors.items()}
+    return monitors

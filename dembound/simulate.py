@@ -43,7 +43,8 @@ class Simulation:
     scene : what moves.
     time_step : Δt in s; the caller has compared it with the stability limit.
     probes : (p,) particles whose motion `advance` returns at every step.
-    start : a body that has settled; whatever pushes its particles is balanced from then on. None: as built.
+    start : a body that has settled; whatever pushes its particles is balanced from then on, unless it is `settling`
+        anew. None: as built.
     damp : local damping coefficient; None: the material's.
     settling : whether the locked-in stress may relax at the cuts.
     load : (3, n) steady forces and moments (N, N·m); None: the scene's own.
@@ -58,6 +59,7 @@ class Simulation:
     work : (2, 4) J, see kernels.tables.Log.
     tracked : (q,) the particles of all edges, in the order of `scene.edges`.
     peaks : (q, 3, 2) smallest and largest velocity of each so far.
+    top_speed : (n,) m/s, largest speed of every particle so far; (0,) unless the case asks for it.
     """
 
     def __init__(
@@ -82,6 +84,7 @@ class Simulation:
         edges = [edge.nodes for edge in scene.edges.values()]
         self.tracked = np.concatenate(edges) if edges else np.zeros(0, dtype=np.int64)
         self.peaks = np.zeros((len(self.tracked), 3, 2))
+        self.top_speed = np.zeros(scene.count if scene.case.output.peaks else 0)
         self.work = np.zeros((2, 4))
         self._damp = scene.case.material.damp if damp is None else damp
         self._fastest = _runaway_speed(scene)
@@ -92,19 +95,20 @@ class Simulation:
         if scene.remembers:
             self.contacts = scene.contact_list() if start is None else start.contacts
         steady = scene.steady_load if load is None else load
-        self._begin(steady, settled=start is not None, remembers=bool(start and start.remembers), settling=settling)
+        balanced = start is not None and not settling
+        self._begin(steady, balanced=balanced, remembers=bool(start and start.remembers), settling=settling)
 
-    def _begin(self, load: np.ndarray, *, settled: bool, remembers: bool, settling: bool) -> None:
+    def _begin(self, load: np.ndarray, *, balanced: bool, remembers: bool, settling: bool) -> None:
         """Choose the law to begin with, and the steady load that goes with it."""
         elastic = Elastic(self.scene, self.contacts)
         self.engine: Elastic | Bonded = elastic
         self.laws = [(elastic.name, 0)]
-        if settled:
+        if balanced:
             springs = self._supports.springs_at(self.datum)
-            self.load = springs - self._resting_force(elastic, remembers)
+            self.load = springs - self._resting_force(elastic, self.datum, remembers)
             self._elastic_load = springs - elastic.force(self.datum)
         else:
-            at_first = self._resting_force(elastic, remembers)
+            at_first = 0.0 if remembers else self._resting_force(elastic, np.zeros_like(load))
             self.load = load - (0.0 if settling else at_first)
             self._elastic_load = self.load + at_first  # that law does not feel what is locked in
         if not self._elastic_load.any():
@@ -113,13 +117,13 @@ class Simulation:
             self.laws = []
             self._hand_over(fresh=not remembers)
 
-    def _resting_force(self, elastic: Elastic, remembers: bool) -> np.ndarray:
-        """Contact forces (3, n) of the body at rest at the datum."""
+    def _resting_force(self, elastic: Elastic, displacement: np.ndarray, remembers: bool = False) -> np.ndarray:
+        """Contact forces (3, n) of the body at rest at displacements (3, n)."""
         if self.contacts is None:
-            return elastic.force(self.datum)
+            return elastic.force(displacement)
         if not remembers:
-            self.contacts.adopt(self.datum)
-        return self.contacts.forces(self.datum)
+            self.contacts.adopt(displacement)
+        return self.contacts.forces(displacement)
 
     def _hand_over(self, fresh: bool = True) -> None:
         """From here on the law with a memory; fresh: it remembers nothing yet."""
@@ -163,7 +167,7 @@ class Simulation:
             self._damp,
             self.time_step,
         )
-        log = tables.Log(self.probes, record[:steps], self.tracked, self.peaks, self.work)
+        log = tables.Log(self.probes, record[:steps], self.tracked, self.peaks, self.top_speed, self.work)
         supports = self._supports.table(times)
         done = self.engine.advance(self.displacement, self._spare, self.velocity, self.steps, body, supports, log)
         self.steps += done
@@ -225,12 +229,14 @@ class NodeSupports:
     def __init__(self, scene: Scene, time_step: float) -> None:
         self._rows: Supports = scene.supports
         self._half_step = 0.5 * time_step
-        self.nodes, line = np.unique(self._rows.node, return_inverse=True)
-        self._at = (line, self._rows.component)
+        across = scene.seam.node if scene.seam is not None else np.zeros(0, dtype=np.int64)
+        self.nodes = np.union1d(self._rows.node, across)
+        self._at = (np.searchsorted(self.nodes, self._rows.node), self._rows.component)
         self.inertia = np.stack([scene.mass, scene.mass, scene.inertia], axis=1)[self.nodes] / time_step
         damping = self._spread(self._rows.damping)
         self.stiffness, self.prescribed = self._spread(self._rows.stiffness), self._spread(self._rows.prescribed)
         moves = scene.free * (1.0 - self.prescribed)
+        self._seam = scene.seam_table(self.nodes)._replace(follow=self._spread(self._rows.follow))
         self.mobility = moves / (self.inertia + 0.5 * damping)
         self.keep = moves * (self.inertia - 0.5 * damping) / (self.inertia + 0.5 * damping)
 
@@ -239,7 +245,7 @@ class NodeSupports:
         drive = np.zeros((len(times), len(self.nodes), 3))
         drive[:, self._at[0], self._at[1]] = self._rows.sample(times, self._half_step)
         return tables.Supports(
-            self.nodes, self.inertia, self.keep, self.mobility, self.stiffness, self.prescribed, drive
+            self.nodes, self.inertia, self.keep, self.mobility, self.stiffness, self.prescribed, drive, self._seam
         )
 
     def springs_at(self, displacement: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dembound.boundaries import FreeField
 from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.case.static import Static
 from dembound.contacts import ContactList, Cracks
@@ -17,6 +18,7 @@ from dembound.errors import RunError
 from dembound.scene import Scene, boundary_medium
 from dembound.simulate import Simulation, Start
 from dembound.stability import step_limit
+from dembound.stress import stress_now
 
 LOOK = 100
 """Steps between two looks at the force ratio."""
@@ -44,6 +46,7 @@ class Settled:
     left : N, mean unbalanced force on all other particles, which F_0 balances too.
     stress : (3,) mean xx, yy, xy in Pa over the body, tension positive.
     cracks : the bonds that broke on the way.
+    before : what the body had come to before it was excavated, if it was; particles are numbered as they were then.
     """
 
     start: Start
@@ -53,23 +56,45 @@ class Settled:
     left: float
     stress: np.ndarray
     cracks: Cracks
+    before: "Settled | None" = None
 
 
 def settle(scene: Scene, on_look: Callable[[int, float], None] | None = None) -> Settled:
     """Run a scene's static stage; on_look gets the steps done and the force ratio from time to time.
 
+    A scene that is excavated settles before, and then anew from there, under the same loads on the same supports.
+
     Raises RunError when it stalls, takes more steps than allowed, or the motion grows without bound, saying how far it
     got.
     """
+    if scene.before is None:
+        return _settle(scene, None, on_look)
+    before = settle(scene.before, on_look)
+    return replace(_settle(scene, _excavate(scene, before.start), on_look), before=before)
+
+
+def _excavate(scene: Scene, before: Start) -> Start:
+    """Where an excavated scene begins to settle: as it stood before, contacts with all they remember."""
+    assert scene.kept is not None
+    contacts = None
+    if before.contacts is not None:
+        contacts = scene.contact_list()
+        contacts.inherit(before.contacts, scene.kept)
+    return Start(before.displacement[:, scene.kept], contacts, before.remembers)
+
+
+def _settle(scene: Scene, start: Start | None, on_look: Callable[[int, float], None] | None) -> Settled:
+    """One stage: from a start, or from the scene as built, to rest."""
     static = scene.case.static
     assert static is not None
     body = _StaticScene(scene, static)
     step = SAFETY * step_limit(body.scene, damp=static.damp)
-    simulation = Simulation(body.scene, step, np.zeros(0), damp=static.damp, settling=True, load=body.load)
+    simulation = Simulation(body.scene, step, np.zeros(0), start=start, damp=static.damp, settling=True, load=body.load)
     contacts = simulation.contacts or scene.contact_list()
     best, best_at = np.inf, 0
     while True:
         simulation.advance(LOOK)
+        body.keep_from_turning(simulation)
         forces = _contact_forces(simulation, contacts)
         ratio = body.force_ratio(forces, contacts)
         if on_look is not None:
@@ -78,34 +103,42 @@ def settle(scene: Scene, on_look: Callable[[int, float], None] | None = None) ->
             break
         if ratio < 0.9 * best:
             best, best_at = ratio, simulation.steps
-        _give_up(simulation.steps, simulation.steps - best_at, ratio, static)
+        if simulation.steps - best_at >= PATIENCE or simulation.steps >= static.max_steps:
+            raise RunError(_where_it_ended(body, static, simulation, contacts, forces))
     unbalanced = np.hypot(*(forces + scene.steady_load)[:2])
     held = body.held
-    start = Start(simulation.displacement, simulation.contacts, isinstance(simulation.engine, Bonded))
     return Settled(
-        start=start,
+        start=Start(simulation.displacement, simulation.contacts, isinstance(simulation.engine, Bonded)),
         steps=simulation.steps,
         ratio=float(ratio),
         carried=float(unbalanced[held].mean()) if held.any() else 0.0,
         left=float(unbalanced[~held].mean()) if not held.all() else 0.0,
-        stress=mean_stress(scene, contacts, simulation.displacement),
+        stress=mean_stress(scene, stress_now(simulation)),
         cracks=contacts.take_cracks(),
     )
 
 
-def _give_up(steps: int, idle: int, ratio: float, static: Static) -> None:
-    """Raise RunError if the stage has taken too long."""
-    asked = f"static.ratio asks for {static.ratio:g}"
-    if idle >= PATIENCE:
-        raise RunError(
-            f"the static stage stalls at a force ratio of {ratio:.3g} after {steps:,} steps, {asked}; "
-            "is the body held, and can its contacts carry the load?"
-        )
+def _where_it_ended(
+    body: "_StaticScene", static: Static, simulation: Simulation, contacts: ContactList, forces: np.ndarray
+) -> str:
+    """How far a stage came that takes too long, in words, and what to look at; forces (3, n) are those of contacts."""
+    steps, ratio = simulation.steps, body.force_ratio(forces, contacts)
+    lacking = body.unbalanced(forces)
+    worst = int(np.argmax(lacking))
+    x, y = body.scene.assembly.positions[worst] + simulation.displacement[:2, worst]
+    facts = (
+        f"static.ratio asks for {static.ratio:g}; broken bonds: {len(contacts.take_cracks()):,}; "
+        f"particle {worst} at ({x:.2f}, {y:.2f}) m lacks most, {lacking[worst]:.3g} N"
+    )
     if steps >= static.max_steps:
-        raise RunError(
-            f"the static stage came to a force ratio of {ratio:.3g} in {steps:,} steps, {asked}; "
+        return (
+            f"the static stage came to a force ratio of {ratio:.3g} in {steps:,} steps, {facts}; "
             "allow more with static.max_steps"
         )
+    return (
+        f"the static stage stalls at a force ratio of {ratio:.3g} after {steps:,} steps, {facts}; "
+        "is the body held, and can its contacts carry the load?"
+    )
 
 
 class _StaticScene:
@@ -114,7 +147,8 @@ class _StaticScene:
     def __init__(self, scene: Scene, static: Static) -> None:
         case = scene.case
         builder = SupportBuilder(held=scene.ground.held)
-        for side, table in static.boundary.items():
+        free_field = {side: table for side, table in case.boundary.items() if isinstance(table, FreeField)}
+        for side, table in (free_field | dict(static.boundary)).items():
             if side in scene.edges:
                 edge = scene.edges[side]
                 table.support(edge, boundary_medium(case, scene.ground, edge.axis), case.wave, builder)
@@ -124,14 +158,33 @@ class _StaticScene:
         for edge in scene.edges.values():
             self.held[edge.nodes] = static.stress is not None
         self.held[self.scene.supports.node] = True
+        self._floats = len(self.scene.supports) == 0
         self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.count, axis=1)
         supports: Supports = self.scene.supports
-        across = supports.component < 2
+        across = (supports.component < 2) & supports.prescribed
         self._moves[supports.component[across], supports.node[across]] = False
 
+    def keep_from_turning(self, simulation: Simulation) -> None:
+        """Stop the motion as a whole of a body that nothing holds: under forces that keep their direction it tips."""
+        if not self._floats:
+            return
+        mass, velocity = self.scene.mass, simulation.velocity
+        arm = self.scene.assembly.positions + simulation.displacement[:2].T
+        arm = (arm - np.average(arm, axis=0, weights=mass)).T
+        velocity[:2] -= np.average(velocity[:2], axis=1, weights=mass)[:, None] * self.scene.free[:2, None]
+        if not self.scene.free.all():
+            return
+        spin = np.sum(mass * (arm[0] * velocity[1] - arm[1] * velocity[0])) + np.sum(self.scene.inertia * velocity[2])
+        rate = spin / (np.sum(mass * (arm**2).sum(axis=0)) + self.scene.inertia.sum())
+        velocity -= rate * np.stack([-arm[1], arm[0], np.ones(self.scene.count)])
+
+    def unbalanced(self, forces: np.ndarray) -> np.ndarray:
+        """Unbalanced force (n,) N along the directions particles can move in, for contact forces (3, n)."""
+        return np.hypot(*np.where(self._moves, (forces + self.load)[:2], 0.0))
+
     def force_ratio(self, forces: np.ndarray, contacts: ContactList) -> float:
-        """Mean unbalanced force, along the directions particles can move in, over the mean contact force."""
-        unbalanced = np.hypot(*np.where(self._moves, (forces + self.load)[:2], 0.0)).mean()
+        """Mean unbalanced force over the mean contact force."""
+        unbalanced = self.unbalanced(forces).mean()
         pair = np.hypot(*contacts.arrays.force[:, :2].T)
         acting = pair > 0.0
         return float(unbalanced / pair[acting].mean()) if acting.any() else (np.inf if unbalanced > 0.0 else 0.0)
@@ -167,24 +220,10 @@ def _without_torque(force: np.ndarray, positions: np.ndarray, loaded: np.ndarray
     return force
 
 
-def mean_stress(scene: Scene, contacts: ContactList, displacement: np.ndarray) -> np.ndarray:
-    """Mean stress (3,) xx, yy, xy in Pa inside a body, from its pairs' last forces; tension positive.
-
-    A particle's stress is Σ f_a l n_b over its area with its share of the pores, f the force that pulls at it across a
-    contact and l n the way from its centre to there. The mean is over particles away from the sides.
-    """
-    pairs, radii = contacts.arrays, scene.assembly.radii
-    first, second = pairs.first.astype(np.int64), pairs.second.astype(np.int64)
-    vectors = (displacement[:2, second] - displacement[:2, first]).T + pairs.palette[pairs.kind, :2]
-    dyads = (pairs.force[:, :2, None] * vectors[:, None, :]).reshape(-1, 4)
-    part = (0.5 + pairs.palette[pairs.kind, 4] / np.hypot(*vectors.T))[:, None]  # of the way, on the first one's side
-    moments = np.zeros((scene.count, 4))
-    np.add.at(moments, first, part * dyads)
-    np.add.at(moments, second, (1.0 - part) * dyads)
+def mean_stress(scene: Scene, stress: np.ndarray) -> np.ndarray:
+    """Mean stress (3,) inside a body, over the area of its particles away from the sides; stress (n, 3) of each."""
     inside = _inside(scene)
-    area = np.pi * np.sum(radii[inside] ** 2) / scene.ground.brick.solid_fraction
-    xx, xy, yx, yy = moments[inside].sum(axis=0) / area
-    return np.array([xx, yy, 0.5 * (xy + yx)])
+    return np.average(stress[inside], axis=0, weights=scene.assembly.radii[inside] ** 2)
 
 
 def _inside(scene: Scene) -> np.ndarray:

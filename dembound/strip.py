@@ -14,6 +14,7 @@ from dembound.boundaries import (
     BoundaryTable,
     Fixed,
     Free,
+    FreeField,
     Periodic,
     Velocity,
     Viscoelastic,
@@ -70,20 +71,25 @@ def calibration_pulse(case: Case, side: str, motion: Motion) -> Cosine:
 def linear_medium(case: Case) -> tuple[Case, list[str]]:
     """The case as what β is about, dashpots on a linear medium, and sentences that say what was left out.
 
-    Springs reflect whatever β is; loads, a static stage and a law with a memory add what is no wave's.
+    Springs reflect whatever β is; seam forces of a column come and go with the wave; holes scatter; loads, a static
+    stage and a law with a memory add what is no wave's.
     """
+    springs = any(isinstance(table, Viscoelastic | ViscoelasticInput) for table in case.boundary.values())
+    columns = any(isinstance(table, FreeField) for table in case.boundary.values())
     boundary = {
-        side: table.without_springs() if isinstance(table, Viscoelastic | ViscoelasticInput) else table
+        side: table.dashpots_alone() if isinstance(table, Viscoelastic | ViscoelasticInput | FreeField) else table
         for side, table in case.boundary.items()
     }
     material = case.material.model_copy(update={"law": "elastic"})
     left_out = {
-        "viscoelastic sides without their springs": boundary != case.boundary,
+        "viscoelastic sides without their springs": springs,
+        "free-field sides without their column": columns,
+        "no holes": bool(case.hole),
         "no static stage": case.static is not None,
         "no loads": bool(case.load),
         "the elastic law": case.material.law != material.law,
     }
-    plain = replace(case, boundary=boundary, material=material, static=None, load=())
+    plain = replace(case, boundary=boundary, material=material, static=None, hole=(), load=())
     return plain, [sentence for sentence, applies in left_out.items() if applies]
 
 

@@ -9,8 +9,10 @@ import h5py
 import numpy as np
 
 from dembound import __version__
+from dembound.boundaries.support import Edge
+from dembound.boundaries.viscoelastic import Springs
 from dembound.results import energy_of, open_record
-from dembound.scene import Scene
+from dembound.scene import Scene, boundary_medium
 from dembound.simulate import Simulation
 from dembound.static import Settled
 from dembound.threads import worthwhile_threads
@@ -47,7 +49,7 @@ def summarise(
         "particle_steps_per_second": scene.count * simulation.steps / wall_time,
         "memory_bytes": scene.bytes,
         "laws": [{"law": name, "from": step * simulation.time_step} for name, step in simulation.laws],
-        "static": None if settled is None else _describe_static(settled),
+        "static": None if settled is None else _describe_static(settled, _asked(scene)),
         "cracks": _count_cracks(record),
         "energy": _describe_energy(record),
         "packing": describe_packing(scene),
@@ -57,15 +59,26 @@ def summarise(
     }
 
 
-def _describe_static(settled: Settled) -> dict[str, Any]:
-    """The static stage: steps, force ratio, forces (N) carried by supports and tractions and left, stress (Pa)."""
+def _asked(scene: Scene) -> list[float] | None:
+    """The stress (Pa) that the static stage was asked for, if any."""
+    static = scene.case.static
+    return None if static is None or static.stress is None else list(static.stress)
+
+
+def _describe_static(settled: Settled, asked: list[float] | None) -> dict[str, Any]:
+    """The static stage: steps, force ratio, forces (N) carried by supports and tractions and left, stress (Pa).
+
+    And the same before an excavation, if there was one.
+    """
     return {
         "steps": settled.steps,
         "ratio": settled.ratio,
         "carried": settled.carried,
         "left": settled.left,
         "stress": settled.stress.tolist(),
+        "asked": asked,
         "cracks": len(settled.cracks),
+        "before": None if settled.before is None else _describe_static(settled.before, asked),
     }
 
 
@@ -108,7 +121,10 @@ def describe_packing(scene: Scene) -> dict[str, Any]:
 
 
 def describe_side(scene: Scene, side: str) -> dict[str, Any]:
-    """One side in numbers: type, particles, diameters (m), ΣD/H, the factors β and whether masses are halved."""
+    """One side in numbers: type, particles, diameters (m), ΣD/H, the factors β and whether masses are halved.
+
+    Of springs their factors α, modulus G (Pa) and distances L (m).
+    """
     edge = scene.edges[side]
     table = scene.case.boundary.get(side)
     described: dict[str, Any] = {
@@ -123,7 +139,19 @@ def describe_side(scene: Scene, side: str) -> dict[str, Any]:
     for key in ("beta_p", "beta_s", "half_mass"):
         if hasattr(table, key):
             described[key] = getattr(table, key)
-    return described
+    return described | (_describe_springs(scene, edge, table) if isinstance(table, Springs) else {})
+
+
+def _describe_springs(scene: Scene, edge: Edge, springs: Springs) -> dict[str, float]:
+    """Springs of a side in numbers."""
+    distances = springs.distances(edge)
+    return {
+        "alpha_n": springs.alpha_n,
+        "alpha_s": springs.alpha_s,
+        "shear_modulus": springs.shear_modulus(boundary_medium(scene.case, scene.ground, edge.axis)),
+        "distance_min": distances.min(),
+        "distance_max": distances.max(),
+    }
 
 
 def _describe_edge(scene: Scene, simulation: Simulation, side: str) -> dict[str, Any]:

@@ -1,8 +1,9 @@
-"""The base of every table of a case file: frozen, and without unknown keys."""
+"""The base of every table of a case file: frozen, and without unknown keys; and the kinds of values they share."""
 
-from typing import Any
+import re
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 
 class Table(BaseModel):
@@ -22,3 +23,13 @@ def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:
     limits : pydantic constraints (``gt``, ``ge``, ``lt``, ``le``, ``min_length`` …).
     """
     return Field(default, description=help, json_schema_extra={"unit": unit}, **limits)
+
+
+def _serves_as_file_name(name: str) -> str:
+    if not re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9_.-]*", name):
+        raise ValueError(f'is "{name}", must be made of the letters A-Z and a-z, digits, "_", "-" and "." (not first)')
+    return name
+
+
+FileName = Annotated[str, AfterValidator(_serves_as_file_name)]
+"""A name that may become a file's on every system."""

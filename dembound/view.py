@@ -33,20 +33,27 @@ print(plotter.render_window.GetClassName())
 WINDOWLESS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")  # what VTK draws in where it finds no display
 
 
-def view(run: Path, snapshot: int | None = None, field: Field = "velocity", picture: Path | None = None) -> None:
-    """Show a run's disks from above, at their undeformed places, coloured by the length of a field, and its cracks.
+def view(
+    run: Path,
+    snapshot: int | None = None,
+    field: Field = "velocity",
+    picture: Path | None = None,
+    exaggerate: float = 0.0,
+) -> None:
+    """Show a run's disks from above, coloured by the length of a field, and its cracks.
 
     run is a ``run.h5``; snapshot the number to begin with, negative ones counting from the last, by default the one
     with the largest motion; field velocity in m/s or displacement in m; picture a PNG file to draw into instead of
-    opening a window. The window has a slider over several snapshots; dragging moves the scene, the wheel zooms.
-    Returns once it is closed.
+    opening a window; exaggerate how many times their displacement disks are moved, cracks with them: 0 shows them where
+    they began, 1 where they are. The axes are those of the scene at the start. The window has a slider over several
+    snapshots; dragging moves the scene, the wheel zooms. Returns once it is closed.
 
     Raises CaseError when the file cannot be read or has no such snapshot, DemboundError without OpenGL or a display.
     """
     with open_record(run) as file:
         first = liveliest_snapshot(file, field) if snapshot is None else snapshot_of(file, snapshot)
         require_rendering(in_window=picture is None)
-        plotter = make_plotter(file, first, field, off_screen=picture is not None)
+        plotter = make_plotter(file, first, field, exaggerate, off_screen=picture is not None)
         if picture is None:
             plotter.show(title=f"dembound: {file.attrs['name']}")
         else:
@@ -73,7 +80,9 @@ def disk_mesh(positions: np.ndarray, radii: np.ndarray) -> "pyvista.PolyData":
     return places.glyph(geom=circle, scale="diameter", factor=1.0, orient=False)
 
 
-def make_plotter(file: h5py.File, first: h5py.Group, field: Field, off_screen: bool) -> "pyvista.Plotter":
+def make_plotter(
+    file: h5py.File, first: h5py.Group, field: Field, exaggerate: float, off_screen: bool
+) -> "pyvista.Plotter":
     """The scene of an open record, ready to show, at its snapshot `first`; one colour scale for the whole run."""
     import pyvista  # here, for it takes seconds and other commands can do without
     from vtkmodules.vtkCommonCore import vtkLogger
@@ -82,6 +91,7 @@ def make_plotter(file: h5py.File, first: h5py.Group, field: Field, off_screen: b
     snapshots = list(file["snapshots"].values())
     label = LABELS[field]
     disks = disk_mesh(file["particles/position"][:], file["particles/radius"][:])
+    still = disks.points.copy()
     limit = max(lengths(each, field).max() for each in snapshots) or 1.0  # of a run at rest
     plotter = pyvista.Plotter(off_screen=off_screen, window_size=(1600, 900))
     disks.cell_data[label] = lengths(first, field)
@@ -90,9 +100,13 @@ def make_plotter(file: h5py.File, first: h5py.Group, field: Field, off_screen: b
 
     def show(number: float) -> None:
         shown = snapshots[round(number)]
+        moved = exaggerate * shown["displacement"][:, :2]
         disks.cell_data[label] = lengths(shown, field)
-        show_cracks(plotter, cracks_until(file, shown.attrs["time"])["position"])
-        plotter.add_text(f"{file.attrs['name']}: t = {shown.attrs['time']:.3g} s", name="time", font_size=12)
+        disks.points[:, :2] = still[:, :2] + np.repeat(moved, CORNERS, axis=0)
+        cracks = cracks_until(file, shown.attrs["time"])
+        show_cracks(plotter, cracks["position"] + moved[cracks["particles"]].mean(axis=1))
+        scale = f", displacements × {exaggerate:g}" if exaggerate else ""
+        plotter.add_text(f"{file.attrs['name']}: t = {shown.attrs['time']:.3g} s{scale}", name="time", font_size=12)
 
     show(snapshots.index(first))
     if len(snapshots) > 1 and not off_screen:
@@ -113,7 +127,7 @@ def show_cracks(plotter: "pyvista.Plotter", positions: np.ndarray) -> None:
 
 
 def look_from_above(plotter: "pyvista.Plotter", size: np.ndarray) -> None:
-    """Put labelled axes around a scene of this size, (2,) m, and a camera above it that only moves and zooms."""
+    """Put labelled axes around a scene of this size, (2,) m, and a camera above all that only moves and zooms."""
     width, height = size
     share = size / size.max()
     x_labels, y_labels = 2 * np.ceil(3.0 * share).astype(int)  # even: an axis has its title at its middle
@@ -125,7 +139,8 @@ def look_from_above(plotter: "pyvista.Plotter", size: np.ndarray) -> None:
     plotter.enable_parallel_projection()
     plotter.enable_custom_trackball_style(left="pan")
     across, up = plotter.window_size
-    plotter.camera.parallel_scale = 0.7 * max(height, width * up / across)  # half the window's height; 0.5 fills it
+    left, right, bottom, top, *_ = plotter.bounds
+    plotter.camera.parallel_scale = 0.7 * max(top - bottom, (right - left) * up / across)  # 0.5 fills the window
 
 
 def lengths(snapshot: h5py.Group, field: Field) -> np.ndarray:

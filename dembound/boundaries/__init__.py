@@ -9,6 +9,7 @@ from pydantic import Field
 
 from dembound.boundaries.fixed import Fixed
 from dembound.boundaries.free import Free
+from dembound.boundaries.free_field import FreeField
 from dembound.boundaries.periodic import Periodic
 from dembound.boundaries.roller import Roller
 from dembound.boundaries.sides import OPPOSITE, SIDES, normal_axis
@@ -18,7 +19,17 @@ from dembound.boundaries.viscoelastic import Viscoelastic, ViscoelasticInput
 from dembound.boundaries.viscous import Viscous, ViscousInput
 
 BoundaryTable = Annotated[
-    Free | Fixed | Roller | Symmetry | Velocity | Periodic | Viscous | ViscousInput | Viscoelastic | ViscoelasticInput,
+    Free
+    | Fixed
+    | Roller
+    | Symmetry
+    | Velocity
+    | Periodic
+    | Viscous
+    | ViscousInput
+    | Viscoelastic
+    | ViscoelasticInput
+    | FreeField,
     Field(discriminator="type"),
 ]
 """Any boundary table of a case file, told apart by its ``type``."""
@@ -29,6 +40,7 @@ __all__ = [
     "BoundaryTable",
     "Fixed",
     "Free",
+    "FreeField",
     "Periodic",
     "Roller",
     "Symmetry",

@@ -1,10 +1,11 @@
-"""Sides whose particles keep half their mass.
+"""Sides whose particles are half cells: half their mass, and half the contacts along the side.
 
 The end disk of a chain stands half a diameter beyond what its dashpot should bound, with its whole mass: it returns
-|R| = tan(qa/4) of a wave. With half the mass it returns tan²(qa/4).
+|R| = tan(qa/4) of a wave. With half the mass it returns tan²(qa/4). A row of such disks is half a row of the lattice:
+the contacts between them, which S waves turn the disks against, are half contacts, too.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -20,8 +21,28 @@ def mass_factor(count: int, edges: Mapping[str, Edge], boundary: Mapping[str, Ta
     edges and boundary: side -> its particles, side -> its table.
     """
     factor = np.ones(count)
+    for edge in half_edges(edges, boundary):
+        factor[edge.nodes] *= 0.5
+    return factor
+
+
+def half_edges(edges: Mapping[str, Edge], boundary: Mapping[str, Table]) -> Iterator[Edge]:
+    """The sides whose particles are half cells."""
     for side, edge in edges.items():
         table = boundary.get(side)
         if isinstance(table, Dashpots) and table.half_mass:
-            factor[edge.nodes] *= 0.5
-    return factor
+            yield edge
+
+
+def half_contacts(
+    first: np.ndarray, second: np.ndarray, vectors: np.ndarray, edges: Mapping[str, Edge], boundary: Mapping[str, Table]
+) -> np.ndarray:
+    """Which contacts (b,) bool run along a side of half cells, between particles first and second (b,).
+
+    vectors (b, 2) m between their centres, of either sign.
+    """
+    halved = np.zeros(len(first), dtype=np.bool_)
+    for edge in half_edges(edges, boundary):
+        along = np.abs(vectors[:, 1 - edge.axis]) > np.abs(vectors[:, edge.axis])
+        halved |= along & np.isin(first, edge.nodes) & np.isin(second, edge.nodes)
+    return halved

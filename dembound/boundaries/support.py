@@ -2,9 +2,10 @@
 
 Every boundary type is a recipe that fills rows of this one table, and one kernel applies it::
 
-    F = Σ drive · signal(t) − damping · v − stiffness · u          (Z eqs 4-6, 13-18)
+    F = Σ drive · signal(t) − damping · v + follow · v_ff − stiffness · u          (Z eqs 4-6, 13-18, 21)
 
-or, for a prescribed row, v = Σ drive · signal(t) whatever the forces. A side may meet another at a corner:
+with v_ff the velocity of the particle's twin in the free-field column, or, for a prescribed row,
+v = Σ drive · signal(t) whatever the forces. A side may meet another at a corner:
 rows on the same degree of freedom then add up, and a prescribed one outranks the rest.
 """
 
@@ -83,14 +84,15 @@ class Edge:
 class Supports:
     """The table: r rows, one per supported degree of freedom, and the d drives that act on them.
 
-    Of rows: node; component (0 x, 1 y, 2 rotation); damping N·s/m; stiffness N/m (N·m/rad of a rotation); prescribed
-    bool. Of drives, any number to a row: drive_row; drive N (m/s where prescribed) per unit of signal; drive_signal,
-    the signal's index.
+    Of rows: node; component (0 x, 1 y, 2 rotation); damping, follow N·s/m; stiffness N/m (N·m/rad of a rotation);
+    prescribed bool. Of drives, any number to a row: drive_row; drive N (m/s where prescribed) per unit of signal;
+    drive_signal, the signal's index.
     """
 
     node: np.ndarray
     component: np.ndarray
     damping: np.ndarray
+    follow: np.ndarray
     stiffness: np.ndarray
     prescribed: np.ndarray
     drive_row: np.ndarray
@@ -130,6 +132,7 @@ class SupportBuilder:
         component: int,
         *,
         damping: float | np.ndarray = 0.0,
+        follow: float | np.ndarray = 0.0,
         stiffness: float | np.ndarray = 0.0,
         drive: float | np.ndarray = 0.0,
         signal: Signal | None = None,
@@ -149,6 +152,7 @@ class SupportBuilder:
             "node": nodes,
             "component": component,
             "damping": damping,
+            "follow": follow,
             "stiffness": stiffness,
             "prescribed": prescribed,
             "drive": drive,
@@ -163,7 +167,9 @@ class SupportBuilder:
         one wins, and of two moving ones the first.
         """
         node, component, signal = (self._column(name, np.int64) for name in ("node", "component", "signal"))
-        damping, stiffness, drive = (self._column(name, np.float64) for name in ("damping", "stiffness", "drive"))
+        damping, follow, stiffness, drive = (
+            self._column(name, np.float64) for name in ("damping", "follow", "stiffness", "drive")
+        )
         prescribed = self._column("prescribed", np.bool_)
         unique, row_of = np.unique(3 * node + component, return_inverse=True)
         kept = ~_outranked(row_of, len(unique), prescribed, signal >= 0)
@@ -172,6 +178,7 @@ class SupportBuilder:
             node=unique // 3,
             component=unique % 3,
             damping=np.bincount(row_of, weights=kept * damping, minlength=len(unique)),
+            follow=np.bincount(row_of, weights=kept * follow, minlength=len(unique)),
             stiffness=np.bincount(row_of, weights=kept * stiffness, minlength=len(unique)),
             prescribed=np.bincount(row_of, weights=prescribed, minlength=len(unique)) > 0,
             drive_row=row_of[driven],

@@ -48,15 +48,16 @@ class Springs(Table):
         """
         along_normal, across = self.alpha_n, self.alpha_s
         factors = [along_normal, across] if edge.axis == 0 else [across, along_normal]
-        return np.outer(factors, self._shear_modulus(medium) * edge.diameters / self._distances(edge))
+        return np.outer(factors, self.shear_modulus(medium) * edge.diameters / self.distances(edge))
 
-    def _shear_modulus(self, medium: Medium) -> float:
+    def shear_modulus(self, medium: Medium) -> float:
+        """G in Pa."""
         if self.young_modulus is None:
             return medium.shear_modulus
         return self.young_modulus / (2.0 * (1.0 + (self.poisson_ratio or 0.0)))
 
-    def _distances(self, edge: Edge) -> np.ndarray:
-        """Distances L (k,) in m of the edge's particles from the source."""
+    def distances(self, edge: Edge) -> np.ndarray:
+        """Distances L (k,) in m of the edge's particles from the source; errors as of `stiffnesses`."""
         if self.source is None:
             return np.full(len(edge.nodes), self.distance)
         distances = np.hypot(*(edge.positions - self.source).T)
@@ -76,7 +77,7 @@ class Viscoelastic(Dashpots, Springs):
         for component in range(2):
             supports.add(edge.nodes, component, damping=dampings[component], stiffness=stiffnesses[component])
 
-    def without_springs(self) -> Viscous:
+    def dashpots_alone(self) -> Viscous:
         """The same side with its dashpots alone."""
         return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields)))
 
@@ -99,7 +100,7 @@ class ViscoelasticInput(Dashpots, Springs, Driven):
                 supports.add(edge.nodes, component, drive=2.0 * damping, signal=waves[name].velocity)
                 supports.add(edge.nodes, component, drive=stiffness, signal=waves[name].displacement)
 
-    def without_springs(self) -> ViscousInput:
+    def dashpots_alone(self) -> ViscousInput:
         """The same side with its dashpots alone."""
         shared = {*Dashpots.model_fields, *Driven.model_fields}
         return ViscousInput(type="viscous_input", **self.model_dump(include=shared))

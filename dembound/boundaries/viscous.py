@@ -19,7 +19,7 @@ class Dashpots(Table):
 
     beta_p: float = quantity(1.0, unit="1", help="factor of the P dashpots, along the side's normal", ge=0.0)
     beta_s: float = quantity(1.0, unit="1", help="factor of the S dashpots, across the side's normal", ge=0.0)
-    half_mass: bool = quantity(False, unit="1", help="whether the side's particles have half their mass and inertia")
+    half_mass: bool = quantity(False, unit="1", help="whether the side's particles are half cells")
 
     def dampings(self, edge: Edge, medium: Medium) -> np.ndarray:
         """Dashpot constants βρcD (2, k) in N·s/m of the edge's particles along x and y (Z eq. 4)."""

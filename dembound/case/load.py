@@ -2,8 +2,7 @@
 
 from pydantic import model_validator
 
-from dembound.case.names import FileName
-from dembound.table import Table, quantity
+from dembound.table import FileName, Table, quantity
 
 Vector = tuple[float, float]
 

@@ -32,13 +32,13 @@ class Material(Table):
         0.5,
         unit="1",
         help="the contacts' share α_c of the stiffness (Z eq. 9); bonds have the rest",
-        gt=0.0,
+        ge=0.0,
         le=1.0,
     )
     s_wave_speed: float | None = quantity(
         None, unit="m/s", help="S-wave speed for the boundaries; absent: the packing's own", gt=0.0
     )
-    emod: float | None = quantity(None, unit="Pa", help="modulus E_c of the contacts", gt=0.0)
+    emod: float | None = quantity(None, unit="Pa", help="modulus E_c of the contacts", ge=0.0)
     pb_emod: float | None = quantity(None, unit="Pa", help="modulus Ē_c of the parallel bonds", ge=0.0)
     kratio: float = quantity(1.0, unit="1", help="normal over shear stiffness of the contacts", gt=0.0)
     pb_kratio: float = quantity(1.0, unit="1", help="normal over shear stiffness of the bonds", gt=0.0)

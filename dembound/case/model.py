@@ -12,6 +12,7 @@ from dembound.case.motion import Motion
 from dembound.case.output import Output
 from dembound.case.run import Run
 from dembound.case.static import Static
+from dembound.holes import HoleTable
 from dembound.packings import PackingTable
 from dembound.waves import WaveTable
 
@@ -27,7 +28,7 @@ class Case:
     boundary : side -> table, in the order left, right, bottom, top; an absent side is free.
     static : the table of this name; None: no static stage.
     wave : name -> table.
-    load, monitor : in the order of the file.
+    hole, load, monitor : in the order of the file.
     name : the file's name without folder and ending.
     text : the TOML text the case was read from.
     folder : where relative paths in the case start.
@@ -42,6 +43,7 @@ class Case:
     boundary: Mapping[str, BoundaryTable]
     static: Static | None
     wave: Mapping[str, WaveTable]
+    hole: tuple[HoleTable, ...]
     load: tuple[Load, ...]
     monitor: tuple[Monitor, ...]
     run: Run

@@ -1,11 +1,13 @@
 """Mistakes that show only when tables are looked at together."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from dembound.boundaries import OPPOSITE, BoundaryTable, Free, Periodic
 from dembound.boundaries.driven import Driven
 from dembound.boundaries.viscous import Dashpots
+from dembound.case.free_field_problems import free_field_problems
+from dembound.case.hole_problems import hole_problems
 from dembound.case.load import Load
 from dembound.case.material import Material
 from dembound.case.monitor import Monitor
@@ -14,20 +16,23 @@ from dembound.case.output import Output
 from dembound.case.run import Run
 from dembound.case.sentences import choices, numbered, show
 from dembound.case.static_problems import static_problems
+from dembound.holes import Hole
 from dembound.packings import PackingTable
 
 DIRECTIONS = {"left": "xy", "right": "xy", "bottom": "yx", "top": "yx"}
 """Side -> the directions along its normal and across it."""
 
 
-def problems_between(tables: Mapping[str, Any]) -> Iterator[str]:
+def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Iterator[str]:
     """Check the tables of a case against each other.
 
     `tables` has the fields of `Case` as keys. A table that is invalid on its own is None, and so is an
-    invalid entry of `boundary`, `wave`, `load` or `monitor`: checks that would need it are left out.
+    invalid entry of `boundary`, `wave`, `hole`, `load` or `monitor`: checks that would need it are left out.
+    `given` are the keys that the file has, valid or not.
     """
     yield from _unknown_waves(tables["boundary"], tables["load"], tables["wave"])
     yield from _lonely_periodic_sides(tables["boundary"])
+    yield from free_field_problems(tables["boundary"])
     if tables["motion"]:
         yield from _driven_but_held(tables["boundary"], tables["motion"])
         yield from _loaded_but_held(tables["load"], tables["motion"])
@@ -35,10 +40,14 @@ def problems_between(tables: Mapping[str, Any]) -> Iterator[str]:
             yield from _nothing_to_match(tables["material"], tables["motion"])
     if tables["packing"]:
         yield from _half_masses_on_rough_sides(tables["boundary"], tables["packing"])
-    for key in ("load", "monitor"):
+        if tables["material"]:
+            yield from _nothing_to_pack_with(tables["material"], tables["packing"])
+    for key in ("hole", "load", "monitor"):
         yield from _repeated_names(key, tables[key])
+    for key in ("load", "monitor"):
         if tables["packing"]:
             yield from _places_outside(key, tables[key], tables["packing"].size)
+    yield from hole_problems(tables, "static" in given)
     if tables["static"]:
         yield from static_problems(*(tables[key] for key in ("static", "boundary", "load", "material", "motion")))
     if tables["run"]:
@@ -96,14 +105,21 @@ def _half_masses_on_rough_sides(boundaries: Mapping[str, BoundaryTable | None], 
             yield f"boundary.{side}.half_mass: is for regular edges, patterns A and C; the packing is B"
 
 
+def _nothing_to_pack_with(material: Material, packing: PackingTable) -> Iterator[str]:
+    """Contacts without stiffness, asked to hold a packing under stress."""
+    key = "contact_share" if material.emod is None else "emod"
+    if packing.pattern != "A" and getattr(material, key) == 0.0:
+        yield f"material.{key}: is 0, but contacts hold pattern {packing.pattern} under stress; must be greater than 0"
+
+
 def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
     """A wave speed asked of a packing in which no P wave can run."""
     if material.match == "assembly" and {"x", "y"} <= set(motion.held):
         yield 'material.match: is "assembly", but motion.held holds x and y, so the packing has no P-wave speed'
 
 
-def _repeated_names(key: str, tables: Sequence[Load | Monitor | None]) -> Iterator[str]:
-    """Loads or monitors whose results would overwrite one another."""
+def _repeated_names(key: str, tables: Sequence[Hole | Load | Monitor | None]) -> Iterator[str]:
+    """Holes, loads or monitors whose results would overwrite one another."""
     first: dict[str, int] = {}
     for number, table in enumerate(tables, start=1):
         if table and first.setdefault(table.name, number) != number:

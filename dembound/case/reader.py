@@ -22,6 +22,7 @@ from dembound.case.run import Run
 from dembound.case.sentences import describe, show, unknown
 from dembound.case.static import Static, StaticSide
 from dembound.errors import CaseError
+from dembound.holes import HoleTable
 from dembound.packings import PackingTable
 from dembound.waves import WaveTable
 
@@ -37,6 +38,7 @@ BOUNDARY: TypeAdapter[Any] = TypeAdapter(BoundaryTable)
 STATIC: TypeAdapter[Any] = TypeAdapter(Static)
 STATIC_SIDE: TypeAdapter[Any] = TypeAdapter(StaticSide)
 WAVE: TypeAdapter[Any] = TypeAdapter(WaveTable)
+HOLE: TypeAdapter[Any] = TypeAdapter(HoleTable)
 LOAD: TypeAdapter[Any] = TypeAdapter(Load)
 MONITOR: TypeAdapter[Any] = TypeAdapter(Monitor)
 
@@ -107,9 +109,10 @@ class _Reader:
         tables["boundary"] = self._sides("boundary", data.get("boundary", {}), BOUNDARY)
         tables["static"] = self._static(data["static"]) if "static" in data else None
         tables["wave"] = self._named("wave", data.get("wave", {}), WAVE)
+        tables["hole"] = self._numbered("hole", data.get("hole", []), HOLE)
         tables["load"] = self._numbered("load", data.get("load", []), LOAD)
         tables["monitor"] = self._numbered("monitor", data.get("monitor", []), MONITOR)
-        self.problems += problems_between(tables)
+        self.problems += problems_between(tables, data)
         return tables, self.problems
 
     def _valid(self, path: str, raw: object, kind: TypeAdapter[Any]) -> Any | None:

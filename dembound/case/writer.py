@@ -3,6 +3,7 @@
 import os
 import tomllib
 from collections.abc import Mapping
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -58,5 +59,5 @@ def _changed(text: str, changes: Mapping[str, Any]) -> str:
             table = table.setdefault(name, {})
             if not isinstance(table, dict):
                 raise CaseError([f"{dotted}: {name} is not a table"])
-        table[key] = value
+        table[key] = deepcopy(value)  # a later change may reach into it
     return tomli_w.dumps(data)

@@ -17,8 +17,8 @@ from dembound.case import Case, load, with_changes
 from dembound.errors import CaseError, DemboundError
 
 EXIT_CODES = """
-Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run or calibration failed; 4 a packing could
-not be made; 5 a file could not be read or written; 130 stopped with Ctrl-C.
+Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration or view failed; 4 a packing
+could not be made; 5 a file could not be read or written; 130 stopped with Ctrl-C.
 """
 CANNOT_WRITE = 5
 
@@ -91,7 +91,7 @@ def main() -> None:
     try:
         app()
     except DemboundError as error:
-        source = f"{error.source}: " if isinstance(error, CaseError) and error.source else ""
+        source = f"{error.source}: " if error.source else ""
         for line in str(error).splitlines():
             err.print(f"{source}{line}", style="red", markup=False)
         sys.exit(error.exit_code)

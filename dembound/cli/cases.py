@@ -1,7 +1,7 @@
 """Commands that begin with a case: new, check, run, packing."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,7 +12,7 @@ from rich.table import Table
 
 from dembound.boundaries.support import Edge
 from dembound.case import STARTER
-from dembound.check import check
+from dembound.check import check, precautions
 from dembound.cli.app import Cases, Name, Output, Settings, Side, Threads, app, err, load_case, out, use_threads
 from dembound.errors import CaseError
 from dembound.half_space import write_exact
@@ -49,7 +49,7 @@ def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None)
             table.add_row(name, value)
         out.print(table)
         for warning in warnings:
-            err.print(f"warning: {warning}")
+            err.print(f"warning: {warning}", markup=False)
 
 
 @app.command("run", rich_help_panel="Cases")
@@ -72,13 +72,16 @@ def run(
     if len(set(names)) < len(names):
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
     for case in loaded:
-        foresee(case)
+        for warning in precautions(case, foresee(case)):
+            err.print(f"{case.name}: warning: {warning}", markup=False)
     for case in loaded:
         try:
             with _progress(case.name) as step:
                 folder = run_case(case, output, step)
         except KeyboardInterrupt:
-            err.print(f"{case.name}: stopped; histories so far are in {output / case.name}.partial")
+            partial = output / f"{case.name}.partial"
+            kept = f"histories so far are in {partial}" if (partial / "run.h5").is_file() else "the run had not begun"
+            err.print(f"{case.name}: stopped; {kept}")
             raise
         facts = outcome(json.loads((folder / "summary.json").read_text()), remembers=case.material.law != "elastic")
         if facts:
@@ -90,16 +93,32 @@ def outcome(summary: dict[str, Any], *, remembers: bool) -> list[str]:
     """What happened in a run, in words, from its summary: its static stage, and what a law that remembers came to."""
     facts = []
     if (static := summary["static"]) is not None:
-        broken = f", breaking {static['cracks']:,} bonds" if static["cracks"] else ""
-        facts.append(f"settled in {static['steps']:,} steps to a force ratio of {static['ratio']:.1e}{broken}")
+        if (before := static["before"]) is not None:
+            facts.append(f"settled in {_stage(before)}")
+        facts.append(f"{'settled' if before is None else 'after the excavation'} in {_stage(static)}")
     if remembers:
         facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
         tension, shear = summary["cracks"]["tension"], summary["cracks"]["shear"]
         if tension + shear > 0:
             facts.append(f"{tension + shear:,} bonds broke ({tension:,} tension, {shear:,} shear)")
         if error := summary["energy"]["relative_error"]:  # zero where nothing came in
-            facts.append(f"energy closes to {error:.1g}")
+            facts.append(f"energy closes to {100.0 * error:.2g} %")
     return facts
+
+
+def _stage(static: dict[str, Any]) -> str:
+    """How a static stage went, in words, from its summary."""
+    reached = ""
+    if (asked := static["asked"]) is not None:  # supports may have kept the body from it
+        reached = f" and a stress of {_in_mpa(static['stress'])} where {_in_mpa(asked)} MPa was asked for"
+    broken = f", breaking {static['cracks']:,} bonds" if static["cracks"] else ""
+    return f"{static['steps']:,} steps to a force ratio of {static['ratio']:.1e}{reached}{broken}"
+
+
+def _in_mpa(stress: Sequence[float]) -> str:
+    """A stress xx, yy, xy in Pa as a bracket of MPa; what is nothing beside the largest is told as nothing."""
+    least = 1e-3 * max(map(abs, stress))
+    return f"({', '.join(f'{value / 1e6 if abs(value) > least else 0.0:.3g}' for value in stress)})"
 
 
 @app.command("packing", rich_help_panel="Cases")
@@ -147,7 +166,6 @@ def exact(
     """
     case = load_case(path, changes, name or f"{path.stem}_exact")
     folder = output / case.name
-    folder.mkdir(parents=True, exist_ok=True)
     write_exact(case, folder / "run.h5")
     out.print(f"{case.name}: exact histories in {folder}")
 

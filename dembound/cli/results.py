@@ -15,6 +15,7 @@ from dembound.plot.boundary import plot_boundary
 from dembound.plot.convergence import plot_convergence
 from dembound.plot.energy import plot_energy
 from dembound.plot.histories import plot_histories
+from dembound.plot.scene import plot_scene
 from dembound.plot.style import save
 from dembound.view import view
 
@@ -24,6 +25,17 @@ class Field(StrEnum):
 
     velocity = "velocity"
     displacement = "displacement"
+
+
+class SceneField(StrEnum):
+    """What colours the disks of a whole scene."""
+
+    velocity = "velocity"
+    displacement = "displacement"
+    stress_xx = "stress_xx"
+    stress_yy = "stress_yy"
+    stress_xy = "stress_xy"
+    peak = "peak"
 
 
 @app.command("plot", rich_help_panel="Results")
@@ -38,15 +50,26 @@ def plot(
         Side | None, typer.Option(help="Show this side's diameters and peak velocities instead.")
     ] = None,
     energy: Annotated[bool, typer.Option("--energy", help="Show the energy ledger of one run instead.")] = False,
+    field: Annotated[
+        SceneField | None, typer.Option(help="Show the scene of one run instead, its disks coloured by this.")
+    ] = None,
+    snapshot: Annotated[
+        int | None, typer.Option(help="With --field: number of the snapshot, −1 the last; by default the liveliest.")
+    ] = None,
 ) -> None:
     """Overlay the histories of several runs, or the passes of several calibrations, in one picture."""
     files = [results_file(path) for path in results]
     calibrations = [file for file in files if file.name == "calibration.h5"]
     if calibrations and len(calibrations) < len(files):
         raise CaseError(["RESULTS: holds runs and calibrations, which make no common picture; name one kind"])
-    if energy and len(files) > 1:
-        raise CaseError(["--energy: shows one run, here are several"])
-    if energy:
+    for option, asked in (("--energy", energy), ("--field", field is not None)):
+        if asked and (calibrations or len(files) > 1):
+            raise CaseError([f"{option}: shows one run, name one"])
+    if snapshot is not None and field is None:
+        raise CaseError(["--snapshot: goes with --field"])
+    if field is not None:
+        figure = plot_scene(files[0], snapshot, field.value)
+    elif energy:
         figure = plot_energy(files[0])
     elif calibrations:
         figure = plot_convergence(files)
@@ -66,9 +89,12 @@ def view_disks(
     ] = None,
     field: Annotated[Field, typer.Option(help="What colours the disks.")] = Field.velocity,
     picture: Annotated[Path | None, typer.Option(help="Picture to write (PNG) instead of opening a window.")] = None,
+    exaggerate: Annotated[
+        float, typer.Option(help="Show disks moved by this many times their displacement; 0: where they began.")
+    ] = 0.0,
 ) -> None:
     """Show the disks of a run in a window to zoom into, with a slider over its snapshots."""
-    view(results_file(results), snapshot, field.value, picture)
+    view(results_file(results), snapshot, field.value, picture, exaggerate)
     if picture is not None:
         out.print(f"wrote {picture}")
 
@@ -89,15 +115,23 @@ def compare_histories(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     quantity: Annotated[Field, typer.Option(help="What of the motion to compare.")] = Field.velocity,
 ) -> None:
-    """Say how far the histories of runs are from those of a reference, monitor by monitor."""
+    """Say how far the histories of runs are from those of a reference, monitor by monitor.
+
+    RMS is that of the difference over that of the reference, largest the largest difference over the reference's peak.
+    """
     found = compare(results_file(reference), [results_file(path) for path in results], quantity.value)
-    heads = ("run", "monitor", "along", "RMS", "largest", "at the end", "there")
+    unit = found[0].unit
+    heads = ("run", "monitor", "along", "RMS / reference", "largest / peak", f"at the end ({unit})", "reference")
     columns = (Column(head, overflow="fold") for head in heads)
     table = Table(*columns, title=f"{quantity.value} beside {reference}")
     for line in found:
         numbers = (f"{line.rms:.3%}", f"{line.peak:.3%}", f"{line.last:.4g}", f"{line.reference_last:.4g}")
         table.add_row(line.run, line.monitor, line.component, *numbers)
     out.print(table)
+    for line in found:
+        if line.place != line.reference_place:
+            here, there = ("({:.2f}, {:.2f}) m".format(*place) for place in (line.place, line.reference_place))
+            out.print(f"{line.monitor} stands at {here} in {line.run}, at {there} in the reference", markup=False)
 
 
 def results_file(path: Path) -> Path:

@@ -4,18 +4,20 @@ import numpy as np
 from numba import njit, prange
 
 from dembound.kernels.common import CHUNKS, FASTMATH, U
-from dembound.kernels.contacts import ends_force, moved, push
+from dembound.kernels.contacts import ends_force, moved, push, seam_ends_forces
 from dembound.kernels.elastic import DONE, LIST_ENDS
-from dembound.kernels.step import damping_work, kick, note_after, note_before, support_velocities
+from dembound.kernels.step import damping_work, kick, move_supported, note_after, note_before
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def _node_forces(contacts, nodes, load, force):
-    """Fill force (k, 3) with contact forces and steady loads at some nodes."""
-    for s in range(nodes.size):
-        i = U(nodes[s])
+def _node_forces(contacts, supports, load, force, across):
+    """Fill force (k, 3) with contact, seam and steady forces on the nodes, across (k, 3) with those of the seam."""
+    seam_ends_forces(contacts, supports.seam, across)
+    for s in range(supports.nodes.size):
+        i = U(supports.nodes[s])
         force[s, 0], force[s, 1], force[s, 2] = ends_force(i, contacts.force, contacts.start, contacts.end)
         for c in range(3):
+            force[s, c] += across[s, c]
             force[s, c] += load[c, i]
 
 
@@ -67,8 +69,9 @@ def advance(u, spare, v, number, contacts, limits, origin, skin, body, supports,
     """
     steps = supports.drive.shape[0]
     nodes = supports.nodes
-    supported = np.empty((nodes.size, 3))
     at_nodes = np.empty((nodes.size, 3))
+    across = np.empty((nodes.size, 3))
+    followed = np.empty((nodes.size, 3))
     fastest = np.zeros(CHUNKS)
     damped = np.zeros((CHUNKS, 2))
     lost = np.zeros((CHUNKS, 2))
@@ -86,11 +89,11 @@ def advance(u, spare, v, number, contacts, limits, origin, skin, body, supports,
                 why = LIST_ENDS
                 break
         push(here, v, body.step, number + step, contacts, limits, lost)
-        _node_forces(contacts, nodes, body.load, at_nodes)
-        support_velocities(here, v, at_nodes, supports, supports.drive[step], body, supported, log.work)
-        note_before(step, here, v, log)
+        _node_forces(contacts, supports, body.load, at_nodes, across)
+        note_before(step, here, v, supports.seam, followed, log)
         _move(here, v, contacts, body, there, fastest, damped)
-        note_after(step, here, v, there, supports, supported, body, log)
+        move_supported(step, here, v, there, at_nodes, across, followed, supports, body, log.work)
+        note_after(step, v, log)
         log.work[1, 1] += damped[:, 1].sum()
         log.work[0, 1] += damped[:, 0].sum()
         for way in range(2):
@@ -98,7 +101,7 @@ def advance(u, spare, v, number, contacts, limits, origin, skin, body, supports,
             log.work[1, 2 + way] = log.work[0, 2 + way]
         most = fastest.max()
         for s in range(nodes.size):
-            most = max(most, np.hypot(supported[s, 0], supported[s, 1]))
+            most = max(most, np.hypot(v[0, nodes[s]], v[1, nodes[s]]))
         travelled += body.step * most
         here, there = there, here
     if done % 2 == 1:

@@ -25,6 +25,9 @@ UPDATED, BONDED, REFERENCE = 0, 1, 2
 """Geometries: normals and arms follow the motion; those of intact bonds stay as at the start; all stay, and contacts
 that are closed at the start neither open nor slide."""
 
+TURN = 0.01
+"""Angle by which a pair may turn before the law of small displacements, which errs by half its square, has to go."""
+
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
 def _pair(c, u, first, second, kind, palette):
@@ -144,6 +147,13 @@ def ends_force(i, force, start, end):
     return fx, fy, moment
 
 
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def seam_ends_forces(contacts, seam, across):
+    """Fill across (k, 3) with what the nodes' twins feel across the seam, from the pairs' last forces."""
+    for s in range(seam.twin.size):
+        across[s, 0], across[s, 1], across[s, 2] = ends_force(U(s), contacts.force, seam.start, seam.end)
+
+
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
 def sum_forces(contacts, total):
     """Fill total (3, n) with the forces and moments that the pairs' last forces come to."""
@@ -183,11 +193,12 @@ def moved(u, origin):
 def slack(u, contacts, limits):
     """How far (m) two surfaces may move against each other before a pair leaves the elastic law; negative: it has.
 
-    A pair leaves it where a contact opens, closes or slides, or a bond reaches its strength. Stretch, shear and R̄ times
-    the relative rotation all change by no more than the surfaces move, which bounds each condition from below.
+    A pair leaves it where a contact opens, closes or slides, a bond reaches its strength, or, if geometry follows the
+    motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation all change by no more than the
+    surfaces move, which bounds each condition from below.
     """
     first, second, kind, palette, state, _, _, _, _, _, _ = contacts
-    friction, tension, cohesion, tan_fa, _ = limits
+    friction, tension, cohesion, tan_fa, geometry = limits
     b = first.size
     least = np.full(CHUNKS, np.inf)
     for chunk in prange(CHUNKS):
@@ -195,7 +206,9 @@ def slack(u, contacts, limits):
         for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
             c = U(p)
             i, j, k, dx, dy = _pair(c, u, first, second, kind, palette)
-            _, _, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, palette)
+            nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, palette)
+            if geometry == UPDATED:
+                room = min(room, TURN * distance - abs(nx * dy - ny * dx))
             kn = palette[k, U(5)]
             ks = palette[k, U(6)]
             overlap = palette[k, U(3)] - distance - stretch

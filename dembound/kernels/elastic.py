@@ -18,22 +18,22 @@ from numba import njit, prange
 
 from dembound.kernels.common import CHUNKS, FASTMATH, U
 from dembound.kernels.contacts import moved, slack
-from dembound.kernels.step import damping_work, kick, note_after, note_before, support_velocities
+from dembound.kernels.step import damping_work, kick, move_supported, note_after, note_before
 
 DONE, LAW_ENDS, LIST_ENDS = 0, 1, 2
 """Why a kernel returned: all steps are done; a contact is about to leave the elastic law; the list of pairs is old."""
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
-def _row_force(i, u, start, neighbour, kind, palette):
-    """Force (x, y) and moment on particle i from its contacts (Z eqs 7-9; PFC2D linear parallel bond)."""
+def _row_force(row, i, u, start, neighbour, kind, palette):
+    """Force (x, y) and moment on particle i from a row of contacts (Z eqs 7-9; PFC2D linear parallel bond)."""
     x = u[U(0), i]
     y = u[U(1), i]
     turn = u[U(2), i]
     fx = 0.0
     fy = 0.0
     moment = 0.0
-    for e in range(start[i], start[i + U(1)]):
+    for e in range(start[row], start[row + U(1)]):
         j = U(neighbour[e])
         k = U(kind[e])
         px = palette[k, U(0)]
@@ -60,17 +60,31 @@ def contact_forces(u, rows, force):
     for chunk in prange(CHUNKS):
         for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
             i = U(p)
-            force[U(0), i], force[U(1), i], force[U(2), i] = _row_force(i, u, start, neighbour, kind, palette)
+            force[U(0), i], force[U(1), i], force[U(2), i] = _row_force(i, i, u, start, neighbour, kind, palette)
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def _node_forces(u, rows, nodes, load, force):
-    """Fill force (k, 3) with contact forces and steady loads at some nodes."""
-    for s in range(nodes.size):
-        i = U(nodes[s])
-        force[s, 0], force[s, 1], force[s, 2] = _row_force(i, u, rows.start, rows.neighbour, rows.kind, rows.palette)
-        if load.shape[1] > 0:
-            for c in range(3):
+def seam_forces(u, rows, seam, across):
+    """Fill across (k, 3) with what the nodes' twins feel across the seam."""
+    for s in range(seam.twin.size):
+        across[s, :] = 0.0
+        if seam.start[s + 1] > seam.start[s]:
+            row, i = U(s), U(seam.twin[s])
+            across[s, 0], across[s, 1], across[s, 2] = _row_force(
+                row, i, u, seam.start, seam.neighbour, seam.kind, rows.palette
+            )
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def _node_forces(u, rows, supports, load, force, across):
+    """Fill force (k, 3) with contact, seam and steady forces on the nodes, across (k, 3) with those of the seam."""
+    seam_forces(u, rows, supports.seam, across)
+    for s in range(supports.nodes.size):
+        i = U(supports.nodes[s])
+        force[s, 0], force[s, 1], force[s, 2] = _row_force(i, i, u, rows.start, rows.neighbour, rows.kind, rows.palette)
+        for c in range(3):
+            force[s, c] += across[s, c]
+            if load.shape[1] > 0:
                 force[s, c] += load[c, i]
 
 
@@ -88,7 +102,7 @@ def _move(u, v, rows, body, spare, fastest, arms, damped):
         half = 0.0
         for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
             i = U(p)
-            fx, fy, moment = _row_force(i, u, start, neighbour, kind, palette)
+            fx, fy, moment = _row_force(i, i, u, start, neighbour, kind, palette)
             if loaded:
                 fx += load[U(0), i]
                 fy += load[U(1), i]
@@ -128,8 +142,9 @@ def advance(u, spare, v, rows, body, supports, log, watch):
     """
     steps = supports.drive.shape[0]
     nodes = supports.nodes
-    supported = np.empty((nodes.size, 3))
     at_nodes = np.empty((nodes.size, 3))
+    across = np.empty((nodes.size, 3))
+    followed = np.empty((nodes.size, 3))
     fastest = np.zeros(CHUNKS)
     damped = np.zeros((CHUNKS, 2))
     watched = watch.arms.size > 0
@@ -147,20 +162,18 @@ def advance(u, spare, v, rows, body, supports, log, watch):
                 done = step
                 why = LIST_ENDS if listed < 0.0 else LAW_ENDS
                 break
-        _node_forces(here, rows, nodes, body.load, at_nodes)
-        support_velocities(here, v, at_nodes, supports, supports.drive[step], body, supported, log.work)
-        note_before(step, here, v, log)
+        _node_forces(here, rows, supports, body.load, at_nodes, across)
+        note_before(step, here, v, supports.seam, followed, log)
         _move(here, v, rows, body, there, fastest, watch.arms, damped)
-        note_after(step, here, v, there, supports, supported, body, log)
+        move_supported(step, here, v, there, at_nodes, across, followed, supports, body, log.work)
+        note_after(step, v, log)
         if body.damp > 0.0:
             log.work[1, 1] += damped[:, 1].sum()
             log.work[0, 1] += damped[:, 0].sum()
         if watched:
             most = fastest.max()
             for s in range(nodes.size):
-                most = max(
-                    most, np.hypot(supported[s, 0], supported[s, 1]) + watch.arms[nodes[s]] * abs(supported[s, 2])
-                )
+                most = max(most, np.hypot(v[0, nodes[s]], v[1, nodes[s]]) + watch.arms[nodes[s]] * abs(v[2, nodes[s]]))
             travelled += body.step * most
         here, there = there, here
     if done % 2 == 1:

@@ -1,9 +1,9 @@
 """The step of central differences, velocities at half steps: what every law's kernel shares."""
 
 import numpy as np
-from numba import njit
+from numba import njit, prange
 
-from dembound.kernels.common import FASTMATH, REST, U
+from dembound.kernels.common import CHUNKS, FASTMATH, REST, U
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
@@ -25,12 +25,26 @@ def damping_work(v, w, f, b, damp, step):
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def support_velocities(u, v, force, supports, drive, body, out, work):
-    """Fill out (k, 3) with the velocities of the supported nodes half a step on; see tables.Supports.
+def note_before(step, u, v, seam, followed, log):
+    """Write down the probes' displacement and half of their velocity before a step, and half that of twins followed."""
+    for p in range(log.probes.size):
+        for c in range(3):
+            log.record[step, p, c] = u[c, log.probes[p]]
+            log.record[step, p, 3 + c] = 0.5 * v[c, log.probes[p]]
+    for s in range(seam.twin.size):
+        for c in range(3):
+            followed[s, c] = 0.5 * v[c, seam.twin[s]] if seam.twin[s] >= 0 else 0.0
 
-    force (k, 3) are contact forces and steady loads there, drive (k, 3) that of this step. work (2, 4) is advanced.
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def move_supported(step, u, v, spare, force, across, followed, supports, body, work):
+    """Move the supported nodes by a step, once all other particles have; spare holds the new displacements.
+
+    force (k, 3) is what acts on them but supports, across (k, 3) the part of it that comes through seams, which is the
+    outside's work; followed (k, 3) half the velocity of their twins before the step. work (2, 4) is advanced.
     """
-    nodes, inertia, keep, mobility, stiffness, prescribed, _ = supports
+    nodes, inertia, keep, mobility, stiffness, prescribed, drives, seam = supports
+    drive = drives[step]
     done = 0.0
     half = 0.0
     damped = 0.0
@@ -40,13 +54,16 @@ def support_velocities(u, v, force, supports, drive, body, out, work):
         for c in range(3):
             before = v[U(c), i]
             total = force[s, c] - stiffness[s, c] * u[U(c), i] + drive[s, c]
+            if seam.twin[s] >= 0:
+                total += seam.follow[s, c] * (followed[s, c] + 0.5 * v[U(c), U(seam.twin[s])])
             drag = 0.0
             if body.damp > 0.0 and mobility[s, c] > 0.0:
                 drag = -body.damp * abs(total) * np.sign(before)
             w = keep[s, c] * before + mobility[s, c] * (total + drag) + prescribed[s, c] * drive[s, c]
             w = 0.0 if abs(w) <= REST else w
-            out[s, c] = w
-            push = inertia[s, c] * (w - before) - force[s, c] - drag
+            v[U(c), i] = w
+            spare[U(c), i] = u[U(c), i] + body.step * w
+            push = inertia[s, c] * (w - before) - (force[s, c] - across[s, c]) - drag
             done += 0.5 * push * (before + w)
             half += 0.5 * push * before
             damped -= 0.5 * drag * (before + w)
@@ -57,23 +74,21 @@ def support_velocities(u, v, force, supports, drive, body, out, work):
     work[0, 1] += body.step * damped
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def note_before(step, u, v, log):
-    """Write down the probes' displacement and half of their velocity before a step."""
-    for p in range(log.probes.size):
-        for c in range(3):
-            log.record[step, p, c] = u[c, log.probes[p]]
-            log.record[step, p, 3 + c] = 0.5 * v[c, log.probes[p]]
+@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+def _note_top_speeds(v, top_speed):
+    """Raise top_speed (n,) to the speeds of velocities v (3, n)."""
+    n = top_speed.size
+    for chunk in prange(CHUNKS):
+        for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
+            i = U(p)
+            vx = v[U(0), i]
+            vy = v[U(1), i]
+            top_speed[i] = max(top_speed[i], np.sqrt(vx * vx + vy * vy))
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def note_after(step, u, v, spare, supports, supported, body, log):
-    """Move the supported nodes, and write down what is only known after a step; spare holds the new displacements."""
-    for s in range(supports.nodes.size):
-        i = supports.nodes[s]
-        for c in range(3):
-            v[c, i] = supported[s, c]
-            spare[c, i] = u[c, i] + body.step * supported[s, c]
+def note_after(step, v, log):
+    """Write down what is only known after a step."""
     for p in range(log.probes.size):
         for c in range(3):
             log.record[step, p, 3 + c] += 0.5 * v[c, log.probes[p]]
@@ -82,3 +97,5 @@ def note_after(step, u, v, spare, supports, supported, body, log):
             speed = v[c, log.tracked[q]]
             log.peaks[q, c, 0] = min(log.peaks[q, c, 0], speed)
             log.peaks[q, c, 1] = max(log.peaks[q, c, 1], speed)
+    if log.top_speed.size > 0:
+        _note_top_speeds(v, log.top_speed)

@@ -67,12 +67,28 @@ class Body(NamedTuple):
     step: float
 
 
+class Seam(NamedTuple):
+    """What free-field columns do to k nodes.
+
+    twin : (k,) the particle each follows, −1 for none; follow : (k, 3) N·s/m, dashpots' share of its velocity.
+    start : (k + 1,) rows of what its twin feels across the seam: twins' neighbours (e,) and lines of the elastic
+    law's palette, kind (e,); end : (e,) the same as contact ends, see Contacts, filled for the law with a memory.
+    """
+
+    twin: np.ndarray
+    follow: np.ndarray
+    start: np.ndarray
+    neighbour: np.ndarray
+    kind: np.ndarray
+    end: np.ndarray
+
+
 class Supports(NamedTuple):
     """The support table on k nodes, all components: v⁺ = keep·v + mobility·(F − K u + drive) + prescribed·drive.
 
-    nodes (k,); inertia (k, 3) m/Δt; keep, mobility, stiffness, prescribed (k, 3); drive (steps, k, 3) in N, or m/s
-    where prescribed. A centred dashpot C has keep = (m/Δt − C/2)/(m/Δt + C/2) and mobility 1/(m/Δt + C/2); a
-    prescribed component has keep = mobility = 0 and prescribed = 1.
+    nodes (k,), twins of others first; inertia (k, 3) m/Δt; keep, mobility, stiffness, prescribed (k, 3);
+    drive (steps, k, 3) in N, or m/s where prescribed. A centred dashpot C has keep = (m/Δt − C/2)/(m/Δt + C/2) and
+    mobility 1/(m/Δt + C/2); a prescribed component has keep = mobility = 0 and prescribed = 1.
     """
 
     nodes: np.ndarray
@@ -82,6 +98,7 @@ class Supports(NamedTuple):
     stiffness: np.ndarray
     prescribed: np.ndarray
     drive: np.ndarray
+    seam: Seam
 
 
 class Log(NamedTuple):
@@ -89,14 +106,16 @@ class Log(NamedTuple):
 
     probes : (p,) particles; record : (steps, p, 6) their displacement and velocity at the start of each step, the
     velocity as the mean of its two half-step values. tracked : (q,) particles; peaks : (q, 3, 2) smallest and largest
-    velocity so far. work : (2, 4) J done on the body by supports, taken by damping, friction and cracks, column by
-    column; row 0 up to the half step reached, row 1 up to the last whole step.
+    velocity so far. top_speed : (n,) largest speed so far, m/s, or (0,) where nobody asks. work : (2, 4) J done on the
+    body by supports, taken by damping, friction and cracks, column by column; row 0 up to the half step reached, row 1
+    up to the last whole step.
     """
 
     probes: np.ndarray
     record: np.ndarray
     tracked: np.ndarray
     peaks: np.ndarray
+    top_speed: np.ndarray
     work: np.ndarray
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from dembound.errors import PackingError
 from dembound.packings.brick import Brick
 
 
@@ -23,7 +24,7 @@ class Assembly:
     copies : number of bricks along x and y.
     size : (2,) m, the scene: copies · brick size.
     extent : (2,) m, the body: as `size`, plus the row that closes the frame where there is one.
-    loose : number of disks left out because the cut at an open edge took all their ties to the body.
+    loose : number of disks left out because the cut at an open edge, or a hole, took all their ties to the body.
     """
 
     positions: np.ndarray
@@ -35,6 +36,29 @@ class Assembly:
     size: np.ndarray
     extent: np.ndarray
     loose: int = 0
+
+    def without(self, removed: np.ndarray) -> tuple["Assembly", np.ndarray]:
+        """What is left without some disks, removed (n,) bool, and without those that this severs from the body.
+
+        Returns it and the indices (m,) of its disks, in order. Raises PackingError when none is left.
+        """
+        kept = _body(self, ~removed)
+        if not kept.any():
+            raise PackingError("no disk is left of the body")
+        if kept.all():
+            return self, np.arange(len(kept))
+        number = np.cumsum(kept, dtype=np.int32) - 1
+        contacts = kept[self.pairs].all(axis=1)
+        left = replace(
+            self,
+            positions=self.positions[kept],
+            radii=self.radii[kept],
+            brick_particle=self.brick_particle[kept],
+            pairs=number[self.pairs[contacts]],
+            kind=self.kind[contacts],
+            loose=self.loose + int(np.count_nonzero(~removed & ~kept)),
+        )
+        return left, np.flatnonzero(kept)
 
 
 def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> Assembly:
@@ -69,28 +93,16 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
         size=size,
         extent=size + _closing_width(brick, periodic),
     )
-    return _without_loose(whole)
+    return whole.without(np.zeros(len(twin), dtype=bool))[0]
 
 
-def _without_loose(assembly: Assembly) -> Assembly:
-    """The largest connected body of an assembly; islands of disks beside it carry no wave."""
-    count = len(assembly.radii)
-    graph = coo_matrix((np.ones(len(assembly.pairs), np.int8), tuple(assembly.pairs.T)), shape=(count, count))
-    bodies, body = connected_components(graph, directed=False)
-    if bodies == 1:
-        return assembly
-    kept = body == np.argmax(np.bincount(body))
-    number = np.cumsum(kept, dtype=np.int32) - 1
-    contacts = kept[assembly.pairs[:, 0]]
-    return replace(
-        assembly,
-        positions=assembly.positions[kept],
-        radii=assembly.radii[kept],
-        brick_particle=assembly.brick_particle[kept],
-        pairs=number[assembly.pairs[contacts]].astype(np.int32),
-        kind=assembly.kind[contacts],
-        loose=int(count - kept.sum()),
-    )
+def _body(assembly: Assembly, present: np.ndarray) -> np.ndarray:
+    """The largest connected body (n,) bool that the disks present (n,) bool make; islands beside it carry no wave."""
+    count = len(present)
+    pairs = assembly.pairs[present[assembly.pairs].all(axis=1)]
+    graph = coo_matrix((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(count, count))
+    _, body = connected_components(graph, directed=False)
+    return present & (body == np.argmax(np.bincount(body, weights=present)))
 
 
 def _closing_width(brick: Brick, periodic: tuple[bool, bool]) -> np.ndarray:

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import EllipseCollection
 
-from dembound.plot.style import SIGNED_MAP
+from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP
 
 # A disk narrower than this cannot be told from its neighbours; drawing it alone would cost time for nothing.
 SMALLEST_PIXELS = 3.0
@@ -68,7 +68,7 @@ def draw_field(
     positions: np.ndarray,
     radii: np.ndarray,
     values: np.ndarray,
-    limit: float,
+    limits: tuple[float, float],
     scale: float,
 ) -> ScalarMappable:
     """Fill the axes with a window of a field; returns what a colour bar needs.
@@ -80,7 +80,9 @@ def draw_field(
     positions (n, 2), radii (n,)
         m.
     values
-        (n,) the field, coloured from −limit to limit.
+        (n,) the field.
+    limits
+        the ends of the colour scale; one from a negative end is white at its middle.
     scale
         pixels per metre. Disks below `SMALLEST_PIXELS` give way to the mean of the field on a grid.
     """
@@ -88,7 +90,7 @@ def draw_field(
     axes.grid(False)
     inside = window.touches(positions, radii)
     positions, radii, values = positions[inside], radii[inside], values[inside]
-    colours: dict[str, Any] = {"cmap": SIGNED_MAP, "clim": (-limit, limit)}
+    colours: dict[str, Any] = {"cmap": SIGNED_MAP if limits[0] < 0.0 else UNSIGNED_MAP, "clim": limits}
     diameter = 2.0 * float(radii.mean())
     if diameter * scale >= SMALLEST_PIXELS:
         return draw_disks(axes, positions, radii, array=values, linewidths=0.0, **colours)

@@ -4,13 +4,14 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
 
-from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legend, styled
+from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled
 from dembound.results import energy_of, open_record
 
 COLUMNS = {
     "outside": "in: boundaries and driven loads",
-    "load": "in: steady loads",
+    "load": "in: steady loads, and what balances locked-in stress",
     "kinetic": "kinetic",
     "contact": "stored in contacts",
     "bond": "stored in bonds",
@@ -20,12 +21,18 @@ COLUMNS = {
 }
 """Columns of the ledger and what the legend calls them."""
 
+HUES = (*COLOURS, "#8C510A")
+"""A colour for each of them."""
+
+NEGLIGIBLE = 1e-6
+"""A column that stays below this share of the largest is left out."""
+
 
 @styled
 def plot_energy(run: Path) -> Figure:
     """The energy ledger of a run against time; below, its error in parts of the most that came in.
 
-    What stays zero all through the run is left out.
+    What stays negligible all through the run is left out.
 
     Parameters
     ----------
@@ -38,11 +45,15 @@ def plot_energy(run: Path) -> Figure:
         name, columns = str(file.attrs["name"]), energy_of(file)
     figure = new_figure(9.0, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[4, 1])
+    largest = {column: float(np.abs(columns[column]).max()) for column in COLUMNS}
+    least = NEGLIGIBLE * max(largest.values())
     for index, (column, label) in enumerate(COLUMNS.items()):
-        if np.any(columns[column]):
-            upper.plot(columns["time"], columns[column], label=label, **line_style(index))
+        if largest[column] > least:
+            looks = line_style(index) | {"color": HUES[index]}
+            upper.plot(columns["time"], columns[column], label=label, **looks)
     lower.plot(columns["time"], columns["relative_error"], color=REFERENCE)
-    upper.set_ylabel("energy (J per metre of thickness)")
+    upper.set_ylabel("energy per metre of thickness")
+    upper.yaxis.set_major_formatter(EngFormatter(unit="J"))
     lower.set_ylabel("error (–)")
     lower.set_xlabel("time (s)")
     lower.set_title("error of the balance, in parts of the most that came in", loc="left", fontsize=9, pad=3)

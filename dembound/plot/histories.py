@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
@@ -57,9 +58,9 @@ def plot_histories(
         for panel, monitor in zip(panels, shown, strict=True):
             if monitor in run:
                 history = run[monitor]
-                x, y = history.position
                 panel.plot(history.time, history.motion[:, column], label=label, **line_style(index))
-                panel.set_title(f"{monitor} at ({x:.4g}, {y:.4g}) m", loc="left", fontsize=9, pad=3)
+    for panel, monitor in zip(panels, shown, strict=True):
+        _tell_places(panel, monitor, [run[monitor].position for run in histories if monitor in run])
     direction = _direction(column)
     panels[-1].set_xlabel("time (s)")
     figure.supylabel(f"{quantity} {direction} ({UNITS[quantity][column]})", fontsize=10)
@@ -78,6 +79,15 @@ def read_histories(path: Path, quantity: Quantity) -> dict[str, History]:
             name: History(group["time"][:], group[quantity][:], group.attrs["wanted"])
             for name, group in file.get("histories", {}).items()
         }
+
+
+def _tell_places(panel: Axes, monitor: str, positions: Sequence[np.ndarray]) -> None:
+    """The monitor's name, and its place in the title if it is the same (2,) m for every line, else beside each line."""
+    places = ["({:.2f}, {:.2f}) m".format(*position) for position in positions]
+    alike = len(set(places)) == 1
+    panel.set_title(f"{monitor} at {places[0]}" if alike else monitor, loc="left", fontsize=9, pad=3)
+    if not alike:
+        panel.legend(panel.lines, places, fontsize=8)
 
 
 def _choose(runs: Sequence[Path], histories: Sequence[dict[str, History]], wanted: Sequence[str] | None) -> list[str]:

@@ -1,30 +1,20 @@
-"""The whole scene at one moment, or a long one at several, its disks coloured by their motion."""
+"""The whole scene at one moment, or a long one at several, its disks coloured by a field."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
-import h5py
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from matplotlib.ticker import MaxNLocator, NullLocator
+from matplotlib.ticker import MaxNLocator, NullLocator, ScalarFormatter
 
 from dembound.plot.disks import Window, draw_field
-from dembound.plot.style import UNITS, new_figure, outside_legend, styled
-from dembound.results import (
-    COMPONENTS,
-    cracks_until,
-    laws_in_words,
-    laws_of,
-    liveliest_snapshot,
-    open_record,
-    snapshot_of,
-)
+from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
+from dembound.plot.style import new_figure, outside_legend, styled
+from dembound.results import open_record
 
 LONG = 6.0
 """A scene this many times as long as wide gets a second panel, which shows a part of it closely."""
@@ -48,39 +38,11 @@ CRACKS = {"bond broken in tension": ("o", 3.0), "bond broken in shear": ("x", 14
 """What the legend calls the two kinds of cracks, and the shape and size of their marks."""
 
 
-@dataclass(frozen=True)
-class Motion:
-    """One field of the disks at k moments of a run.
-
-    positions (n, 2) and radii (n,) in m, before the motion; times (k,) in s; values (k, n) the field; limit, the end
-    of its colour scale: the largest |value| in any snapshot of the run, 1 for a run at rest; cracks: at each moment
-    those so far, as by `cracks_until`; monitors: name -> place (2,) m; field in words and its unit; name of the case;
-    laws in words, empty if one law served all through.
-    """
-
-    positions: np.ndarray
-    radii: np.ndarray
-    times: np.ndarray
-    values: np.ndarray
-    limit: float
-    cracks: list[dict[str, np.ndarray]]
-    monitors: dict[str, np.ndarray]
-    field: str
-    unit: str
-    name: str
-    laws: str
-
-    @cached_property
-    def window(self) -> Window:
-        """The whole scene."""
-        return Window.around(self.positions, self.radii)
-
-
 @styled
 def plot_scene(
     run: Path,
     snapshot: int | None = None,
-    field: Literal["velocity", "displacement"] = "velocity",
+    field: FieldName = "velocity",
     component: Literal["x", "y", "rotation"] | None = None,
 ) -> Figure:
     """The scene at a snapshot, at its undeformed places, with the monitors; colours mean the same all through a run.
@@ -93,51 +55,31 @@ def plot_scene(
     run
         the ``run.h5`` of a run.
     snapshot
-        number of the snapshot; negative ones count from the last. By default the last; of a scene that lies long,
-        as many as fit on the page, evenly picked, one below the other.
+        number of the snapshot; negative ones count from the last. By default the one in which the field is largest; of
+        a scene that lies long, as many as fit on the page, evenly picked, one below the other.
     field
-        velocity in m/s or displacement in m.
+        velocity in m/s or displacement in m; a stress in Pa, tension positive; peak, the largest speed of each disk in
+        the whole run in m/s. The record must hold it.
     component
-        by default whichever of x and y is largest in any snapshot of the run.
+        of a velocity or displacement, by default whichever of x and y is largest in any snapshot of the run.
 
-    Raises CaseError when the file cannot be read or has no such snapshot.
+    Raises CaseError when the file cannot be read, has no such snapshot or does not hold the field.
     """
-    shown = read_motion(run, snapshot, field, component)
-    width, height = shown.window.size
+    with open_record(run) as file:
+        disks = read_disks(file)
+        shown = read_field(file, field, component, snapshot, strips_on_page(disks.window))
+    width, height = disks.window.size
     if max(width, height) > LONG * min(width, height):
-        figure, panels, colours = _draw_long(shown)
+        figure, panels, colours = _draw_long(disks, shown)
     else:
-        figure, panels, colours = _draw_whole(shown)
-    figure.colorbar(colours, ax=panels, label=f"{shown.field} ({shown.unit})", shrink=0.9, pad=0.02)
-    title = f"{shown.name}: {shown.field} of {len(shown.radii)} disks"
-    figure.suptitle("\n".join(filter(None, [title, shown.laws])), fontsize=11)
+        figure, panels, colours = _draw_whole(disks, shown)
+    numbers = ScalarFormatter(useMathText=True)
+    numbers.set_powerlimits((-3, 4))
+    figure.colorbar(colours, ax=panels, label=f"{shown.name} ({shown.unit})", shrink=0.9, pad=0.02, format=numbers)
+    title = f"{disks.case}: {shown.name} of {len(disks.radii)} disks"
+    figure.suptitle("\n".join(filter(None, [title, disks.laws])), fontsize=11)
     outside_legend(figure, panels, columns=3)
     return figure
-
-
-def read_motion(run: Path, snapshot: int | None, field: str, component: str | None) -> Motion:
-    """One field of a run at the moments to show; arguments and errors as in `plot_scene`."""
-    with open_record(run) as file:
-        positions, radii = file["particles/position"][:], file["particles/radius"][:]
-        chosen = _choose(file, snapshot, strips_on_page(Window.around(positions, radii)), field)
-        largest = np.max([np.abs(group[field][:]).max(axis=0) for group in file["snapshots"].values()], axis=0)
-        column = int(np.argmax(largest[:2])) if component is None else COMPONENTS.index(component)
-        way = "of rotation" if column == 2 else f"along {COMPONENTS[column]}"
-        times = np.array([group.attrs["time"] for group in chosen])
-        laws = laws_of(file)
-        return Motion(
-            positions=positions,
-            radii=radii,
-            times=times,
-            values=np.array([group[field][:, column] for group in chosen]),
-            limit=float(largest[column]) or 1.0,
-            cracks=[cracks_until(file, time) for time in times],
-            monitors={name: group.attrs["position"] for name, group in file.get("histories", {}).items()},
-            field=f"{field} {way}",
-            unit=UNITS[field][column],
-            name=str(file.attrs["name"]),
-            laws=laws_in_words(laws) if len(laws) > 1 else "",
-        )
 
 
 def strips_on_page(scene: Window) -> int:
@@ -148,38 +90,27 @@ def strips_on_page(scene: Window) -> int:
     return min(MOST_STRIPS, int(DRAWING[1] / (DRAWING[0] * width / length + STRIP_GAP)))
 
 
-def _choose(file: h5py.File, snapshot: int | None, most: int, field: str) -> list[h5py.Group]:
-    """The snapshot asked for; by default `most` of them, evenly picked, the last among them, or the liveliest one."""
-    if snapshot is not None:
-        return [snapshot_of(file, snapshot)]
-    if most == 1:
-        return [liveliest_snapshot(file, field)]
-    groups = list(snapshot_of(file, -1).parent.values())
-    backwards = np.linspace(len(groups) - 1, 0, min(most, len(groups)))
-    return [groups[round(number)] for number in reversed(backwards)]
-
-
-def _draw_whole(shown: Motion) -> tuple[Figure, list[Axes], ScalarMappable]:
+def _draw_whole(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMappable]:
     """One panel."""
-    width, height = shown.window.size
+    width, height = disks.window.size
     scale = min(DRAWING[0] / width, DRAWING[1] / height)
     figure = new_figure(max(scale * width, 3.0) + 1.8, scale * height + 1.6)
     panel = figure.subplots()
-    colours = _draw_panel(panel, shown, 0, shown.window, scale * figure.dpi)
-    panel.set_title(f"t = {shown.times[0]:.3g} s", pad=18)  # above the names of monitors at the top
-    _mark_monitors(panel, shown)
+    colours = _draw_panel(panel, disks, shown, 0, disks.window, scale * figure.dpi)
+    panel.set_title(shown.captions[0], pad=18)  # above the names of monitors at the top
+    _mark_monitors(panel, disks.monitors)
     return figure, [panel], colours
 
 
-def _draw_long(shown: Motion) -> tuple[Figure, list[Axes], ScalarMappable]:
+def _draw_long(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMappable]:
     """The whole scene as strips, one per moment, and below or beside them a part of one of them closely."""
-    upright = bool(shown.window.size[1] > shown.window.size[0])
-    count = len(shown.times)
+    upright = bool(disks.window.size[1] > disks.window.size[0])
+    count = len(shown.captions)
     framed = int(np.argmax(np.abs(shown.values).max(axis=1)))
-    part = close_up(shown, framed)
+    part = close_up(disks, shown.values[framed])
     room = DRAWING[1] if upright else DRAWING[0]
-    scales = [room / max(window.size) for window in (shown.window, part)]
-    strip, close = (scale * min(w.size) for scale, w in zip(scales, (shown.window, part), strict=True))
+    scales = [room / max(window.size) for window in (disks.window, part)]
+    strip, close = (scale * min(w.size) for scale, w in zip(scales, (disks.window, part), strict=True))
     sizes = [strip] * count + [close]
     if upright:
         figure = new_figure(sum(sizes) + 4.2, room + 1.4)
@@ -187,19 +118,19 @@ def _draw_long(shown: Motion) -> tuple[Figure, list[Axes], ScalarMappable]:
     else:
         figure = new_figure(room + 2.6, max(sum(sizes) + STRIP_GAP * count, 1.3) + 2.2)
         panels = figure.subplots(count + 1, 1, height_ratios=sizes)
-    _draw_strips(panels[:-1], shown, scales[0] * figure.dpi)
-    colours = _draw_panel(panels[-1], shown, framed, part, scales[1] * figure.dpi)
+    _draw_strips(panels[:-1], disks, shown, scales[0] * figure.dpi)
+    colours = _draw_panel(panels[-1], disks, shown, framed, part, scales[1] * figure.dpi)
     _frame(panels[framed], part)
-    _mark_monitors(panels[0], shown)
+    _mark_monitors(panels[0], disks.monitors)
     return figure, list(panels), colours
 
 
-def _draw_strips(panels: Sequence[Axes], shown: Motion, scale: float) -> None:
+def _draw_strips(panels: Sequence[Axes], disks: Disks, shown: Field, scale: float) -> None:
     """The whole scene at each of its moments, on one axis at the last; `scale` in pixels per metre."""
-    for index, (panel, time) in enumerate(zip(panels, shown.times, strict=True)):
-        _draw_panel(panel, shown, index, shown.window, scale)
+    for index, (panel, caption) in enumerate(zip(panels, shown.captions, strict=True)):
+        _draw_panel(panel, disks, shown, index, disks.window, scale)
         beside: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 9}
-        panel.annotate(f"t = {time:.3g} s", (1.0, 0.5), (8, 0), xycoords="axes fraction", **beside)
+        panel.annotate(caption, (1.0, 0.5), (8, 0), xycoords="axes fraction", **beside)
     for panel in panels[:-1]:
         panel.set_xlabel("")
         panel.tick_params(labelbottom=False)
@@ -212,23 +143,20 @@ def _frame(panel: Axes, part: Window) -> None:
     panel.add_patch(Rectangle((left, bottom), right - left, top - bottom, **looks))
 
 
-def close_up(shown: Motion, index: int) -> Window:
-    """The part of a long scene around half its largest motion, on a wave's flank, where colours change most.
-
-    index is that of the moment.
-    """
-    scene, motion = shown.window, np.abs(shown.values[index])
+def close_up(disks: Disks, values: np.ndarray) -> Window:
+    """The part of a long scene around half the largest of values (n,), on a wave's flank, where colours change most."""
+    scene, sizes = disks.window, np.abs(values)
     along = int(np.argmax(scene.size))
-    width = CLOSE_UP_DIAMETERS * 2.0 * float(shown.radii.mean())
+    width = CLOSE_UP_DIAMETERS * 2.0 * float(disks.radii.mean())
     size = np.minimum(scene.size, width)
     size[along] = min(scene.size[along], max(CLOSE_UP_ASPECT * size.min(), width))
-    centre = shown.positions[np.argmin(np.abs(motion - 0.5 * motion.max()))]
+    centre = disks.positions[np.argmin(np.abs(sizes - 0.5 * sizes.max()))]
     return Window(np.clip(centre - 0.5 * size, scene.corner, scene.corner + scene.size - size), size)
 
 
-def _draw_panel(panel: Axes, shown: Motion, index: int, window: Window, scale: float) -> ScalarMappable:
+def _draw_panel(panel: Axes, disks: Disks, shown: Field, index: int, window: Window, scale: float) -> ScalarMappable:
     """A window of the scene at one of its moments, at `scale` pixels per metre."""
-    colours = draw_field(panel, window, shown.positions, shown.radii, shown.values[index], shown.limit, scale)
+    colours = draw_field(panel, window, disks.positions, disks.radii, shown.values[index], shown.limits, scale)
     _mark_cracks(panel, shown.cracks[index])
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         if pixels > 45:
@@ -248,11 +176,11 @@ def _mark_cracks(panel: Axes, cracks: dict[str, np.ndarray]) -> None:
             panel.scatter(x, y, s=size, marker=mark, color="black", linewidths=0.8, label=label)
 
 
-def _mark_monitors(panel: Axes, shown: Motion) -> None:
+def _mark_monitors(panel: Axes, monitors: dict[str, np.ndarray]) -> None:
     """A triangle and a name at each monitor."""
-    if not shown.monitors:
+    if not monitors:
         return
-    x, y = np.transpose(list(shown.monitors.values()))
+    x, y = np.transpose(list(monitors.values()))
     mark: dict[str, Any] = {"marker": "^", "color": "black", "edgecolors": "white", "clip_on": False, "zorder": 3}
     panel.scatter(x, y, s=40, label="monitor", **mark)
     plate: dict[str, Any] = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
@@ -263,5 +191,5 @@ def _mark_monitors(panel: Axes, shown: Motion) -> None:
         "fontsize": 8,
         "bbox": plate,
     }
-    for name, place in shown.monitors.items():
+    for name, place in monitors.items():
         panel.annotate(name, tuple(place), (0, 7), **beside)

@@ -23,6 +23,9 @@ REFERENCE = "#7F7F7F"
 SIGNED_MAP = "RdBu_r"
 """Colour map of fields that may have either sign; white is zero."""
 
+UNSIGNED_MAP = "viridis"
+"""Colour map of fields that are never negative."""
+
 # DejaVu comes with matplotlib; the others supply Chinese characters in titles wherever one is installed
 FONTS = ("DejaVu Sans", "Noto Sans CJK SC", "Microsoft YaHei", "PingFang SC", "SimHei", "WenQuanYi Zen Hei")
 

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 
@@ -68,6 +69,20 @@ def small_run(tmp_path_factory) -> Path:
 def other_run(tmp_path_factory) -> Path:
     """The record of a shorter run called ``other``, without snapshots."""
     return record(tmp_path_factory.mktemp("other") / "run.h5", "other", 0)
+
+
+@pytest.fixture(scope="session")
+def rich_run(small_run, tmp_path_factory) -> Path:
+    """The record of that run with stresses in its snapshots, and with peaks."""
+    path = tmp_path_factory.mktemp("rich") / "run.h5"
+    path.write_bytes(small_run.read_bytes())
+    rng = np.random.default_rng(8)
+    with h5py.File(path, "r+") as file:
+        count = len(file["particles/radius"])
+        file["particles/peak_velocity"] = rng.uniform(0.1, 0.5, count)
+        for snapshot in file["snapshots"].values():
+            snapshot["stress"] = rng.normal(0.0, 1e6, (count, 3))
+    return path
 
 
 BRITTLE = {

@@ -139,7 +139,18 @@ def test_viscoelastic_sides_are_calibrated_without_their_springs(long_bar, side:
     assert found.shortened == [*expected.shortened, "viscoelastic sides without their springs"]
 
 
-def test_loads_static_stage_and_law_are_left_out_of_a_calibration(long_bar) -> None:
+@pytest.mark.parametrize("full", [False, True])
+def test_free_field_sides_are_calibrated_without_their_column(long_bar, full: bool) -> None:
+    found, expected = (
+        calibrate(long_bar({"boundary.right": {"type": kind, "beta_p": 0.7}}), "right", full=full)
+        for kind in ("free_field", "viscous")
+    )
+
+    assert (found.beta, found.outgoing, found.kind) == (expected.beta, expected.outgoing, "absorbing")
+    assert found.shortened == [*expected.shortened, "free-field sides without their column"]
+
+
+def test_holes_loads_static_stage_and_law_are_left_out_of_a_calibration(long_bar) -> None:
     busy = {
         "material": {"density": 2500.0, "p_wave_speed": 1000.0, "law": "linearpbond", "pb_ten": 1.0, "fric": 0.3},
         "static": {"boundary": {"right": {"type": "fixed"}}},
@@ -148,12 +159,13 @@ def test_loads_static_stage_and_law_are_left_out_of_a_calibration(long_bar) -> N
             {"name": "tap", "force": [1e6, 0.0], "position": [5.0, 0.5], "wave": "tapping"},
         ],
         "wave.tapping": {"type": "constant", "amplitude": 1.0},
+        "hole": [{"name": "niche", "type": "circle", "centre": [3.0, 1.0], "radius": 0.7}],
     }
     plain = {"material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.3}}
     for full in (False, True):
         found, expected = (calibrate(long_bar(changes), "right", start=0.5, full=full) for changes in (busy, plain))
         assert (found.beta, found.outgoing) == (expected.beta, expected.outgoing)
-        assert found.shortened == [*expected.shortened, "no static stage", "no loads", "the elastic law"]
+        assert found.shortened == [*expected.shortened, "no holes", "no static stage", "no loads", "the elastic law"]
 
 
 def test_half_masses_stay_in_a_calibration(long_bar) -> None:

@@ -145,6 +145,80 @@ def test_loads_and_the_static_stage_are_told(bar) -> None:
     assert facts["estimated time"].endswith(", without the static stage")
 
 
+def test_holes_are_told_with_what_they_leave(bar) -> None:
+    niche = {"name": "niche", "type": "rectangle", "corners": [6.0, 0.5, 8.0, 1.1]}
+    gap = {"name": "gap", "type": "rectangle", "corners": [8.9, 0.5, 9.4, 1.1], "stage": "after"}
+    tables = {"static": {"stress": [0.0, 0.0, 0.0]}, "monitor": []}
+    facts, _ = check(bar({**tables, "hole": [niche]}))
+
+    assert facts["particles"] == "36"
+    assert facts["hole niche"] == "rectangle, there from the start"
+    facts, _ = check(bar({**tables, "hole": [niche, gap]}))
+    assert facts["particles"] == "35, 36 before the excavation"
+    assert facts["hole gap"] == "rectangle, excavated once the body has settled"
+
+
+def test_severed_particles_are_told(bar) -> None:
+    outer, inner = [[3, 1], [6, 1], [6, 4], [3, 4], [3, 1]], [[4, 2], [4, 3], [5, 3], [5, 2], [4, 2]]
+    moat = {"name": "moat", "type": "polygon", "points": [*outer, *inner]}
+    facts, _ = check(bar({"packing.size": [10.0, 5.0], "hole": [moat]}))
+
+    # 36 disks of the outer square go, four of which are an island
+    assert facts["particles"] == "164; 4 severed disks left out"
+
+
+SPRINGS = {"alpha_n": 2.0, "young_modulus": 2e9}
+
+
+def test_springs_of_a_side_are_told(bar) -> None:
+    far = {"type": "viscoelastic", "distance": 40.0, **SPRINGS}
+    near = {"type": "viscoelastic", "source": [5.0, 10.0], **SPRINGS}
+    facts, _ = check(bar({"boundary.right": far, "boundary.bottom": near}))
+
+    assert "; springs α_n = 2, α_s = 0.5, G = 1 GPa, L = 40 m; 2 particles" in facts["right side"]
+    # the bottom row lies 9.75 m below the source, its disks at 0.25 m to 4.75 m beside it
+    assert f"L = {np.hypot(0.25, 9.75):.4g}…{np.hypot(4.75, 9.75):.4g} m; 20 particles" in facts["bottom side"]
+
+
+DENSE = {
+    "packing": {"pattern": "B", "size": [6.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
+    "monitor": [],
+    "wave.pulse.period": 1.0,
+    "material.law": "linearpbond",
+}
+"""A packing with its default of 10 MPa locked in."""
+PERIODIC = {f"boundary.{side}": {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
+
+
+@pytest.mark.parametrize(
+    ("changes", "warned"),
+    [
+        ({"material.pb_ten": 1e6}, True),
+        ({"material.pb_ten": 2e7}, False),
+        ({}, False),
+        ({"material.pb_ten": 1e6, "material.locked_in": False}, False),
+        ({"material.pb_ten": 1e6, "static": {}}, False),  # the cut sides relax there
+        ({"material.pb_ten": 1e6, "wave": {}, **PERIODIC}, False),  # nothing is cut
+    ],
+)
+def test_locked_in_stress_above_the_strength_is_warned_of(bar, changes: dict, warned: bool) -> None:
+    _, warnings = check(bar({**DENSE, **changes}))
+
+    told = "material.locked_in: 10 MPa are locked in and balanced by constant forces on the cut sides, above pb_ten = 1"
+    assert [warning[: len(told)] for warning in warnings] == [told] * warned
+
+
+@pytest.mark.parametrize(
+    ("static", "warned"), [({}, True), ({"static": {"boundary": {"left": {"type": "fixed"}}}}, False)]
+)
+def test_a_steady_load_without_a_static_stage_is_warned_of(bar, static: dict, warned: bool) -> None:
+    weight = {"name": "weight", "acceleration": [10.0, 0.0]}
+    tap = {"name": "tap", "acceleration": [1.0, 0.0], "wave": "pulse"}
+    _, warnings = check(bar({"load": [weight, tap], "wave.pulse.period": 1.0, **static}))
+
+    assert [warning.split(",")[0] for warning in warnings] == ["load.weight: is steady"] * warned
+
+
 def test_a_lattice_without_stress_is_not_warned_of(bar) -> None:
     _, warnings = check(bar({"wave.pulse.period": 1.0, "wave.pulse.amplitude": 1e3}))
 

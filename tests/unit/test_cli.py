@@ -154,13 +154,13 @@ def test_a_run_ends_by_telling_what_happened(dembound, written, tmp_path) -> Non
     count = found["cracks"]["tension"]
     assert count > 0
     assert cracks == f"{count} bonds broke ({count} tension, 0 shear)"
-    assert energy == f"energy closes to {found['energy']['relative_error']:.1g}"
+    assert energy == f"energy closes to {100.0 * found['energy']['relative_error']:.2g} %"
 
 
 def test_only_what_applies_is_told() -> None:
     elastic = {"static": None, "laws": [{"law": "elastic", "from": 0.0}]}
     quiet = {"cracks": {"tension": 0, "shear": 0}, "energy": {"relative_error": 0.0}}
-    settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0}
+    settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0, "before": None, "asked": None}
     stage = "settled in 3,100 steps to a force ratio of 9.8e-06"
 
     assert outcome(elastic, remembers=False) == []
@@ -172,6 +172,15 @@ def test_only_what_applies_is_told() -> None:
         "elastic law all through",
         "1,230 bonds broke (1,200 tension, 30 shear)",
     ]
+    pressed = {"static": settled | {"asked": [-1e6, -2e6, 0.0], "stress": [-0.5e6, -2e6, 1e-3]}}
+    assert outcome(elastic | pressed, remembers=False) == [
+        f"{stage} and a stress of (-0.5, -2, 0) where (-1, -2, 0) MPa was asked for"
+    ]
+    excavated = {"static": settled | {"steps": 900, "before": settled}}
+    assert outcome(elastic | excavated, remembers=False) == [
+        stage,
+        "after the excavation in 900 steps to a force ratio of 9.8e-06",
+    ]
 
 
 def test_a_mistake_in_the_last_case_keeps_the_first_from_running(dembound, written, tmp_path) -> None:
@@ -179,6 +188,32 @@ def test_a_mistake_in_the_last_case_keeps_the_first_from_running(dembound, writt
     bad.write_text(bad.read_text().replace("density", "densitty"))
 
     assert dembound("run", good, bad).code == 2
+    assert not (tmp_path / "results").exists()
+
+
+def test_what_was_probably_not_meant_is_warned_of(dembound, written) -> None:
+    weight = {"load": [{"name": "weight", "acceleration": [9.81, 0.0]}]}
+    answer = dembound("run", written(changes=weight))
+
+    assert answer.code == 0
+    assert answer.err.startswith("bar: warning: load.weight: is steady, and without [static] falls on the body")
+
+
+def test_differences_are_told_with_what_they_are_parts_of(dembound, written, monkeypatch) -> None:
+    monkeypatch.setattr(cli.results.out, "width", 120)
+    moved = {"monitor": [{"name": "middle", "position": [6.0, 0.5]}]}
+    dembound("run", written("one"), written("two"), written("other", moved))
+    answer = dembound("compare", "results/one", "results/two", "results/other")
+
+    assert answer.code == 0
+    for head in ("RMS / reference", "largest / peak", "at the end (m/s)"):
+        assert head in answer.out
+    assert answer.out.splitlines()[-1] == "middle stands at (6.00, 0.50) m in other, at (5.00, 0.50) m in the reference"
+    assert "in two, at" not in answer.out
+
+
+def test_an_exact_motion_that_there_is_none_of_leaves_nothing(dembound, written, tmp_path) -> None:
+    assert dembound("exact", written()).code == 2
     assert not (tmp_path / "results").exists()
 
 
@@ -275,8 +310,9 @@ def test_histories_sides_and_calibrations_are_drawn(dembound, written, tmp_path)
     assert dembound("plot", "results/one", "-o", "displacement.png", "--quantity", "displacement").code == 0
     assert dembound("plot", "results/one", "-o", "side.png", "--boundary", "right").code == 0
     assert dembound("plot", "results/one", "-o", "energy.png", "--energy").code == 0
+    assert dembound("plot", "results/one", "-o", "scene.png", "--field", "velocity", "--snapshot", "-1").code == 0
     assert dembound("plot", passes.parent, "-o", "passes.png").code == 0
-    for name in ("histories", "displacement", "side", "energy", "passes"):
+    for name in ("histories", "displacement", "side", "energy", "scene", "passes"):
         assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")
 
 
@@ -293,6 +329,10 @@ def test_what_cannot_be_drawn_is_bad_input(dembound, written, tmp_path) -> None:
         (["results/bar", "passes"], "make no common picture"),
         (["results/periodic", "--boundary", "top"], "has no particles of side top"),
         (["results/bar", "results/periodic", "--energy"], "--energy: shows one run"),
+        (["results/bar", "results/periodic", "--field", "peak"], "--field: shows one run"),
+        (["passes", "--field", "peak"], "--field: shows one run"),
+        (["results/bar", "--field", "stress_xx"], "holds no stress"),
+        (["results/bar", "--snapshot", "0"], "--snapshot: goes with --field"),
     ):
         answer = dembound("plot", *arguments)
         assert answer.code == 2

@@ -10,15 +10,15 @@ from dembound.errors import CaseError
 TIME = np.linspace(0.0, 1.0, 101)
 
 
-def record(path, name, histories):
-    """A record with histories of motion along x and y, name -> (time, x, y)."""
+def record(path, name, histories, place=(0.0, 0.0)):
+    """A record with histories of motion along x and y, name -> (time, x, y), of monitors in one place."""
     with h5py.File(path, "w") as file:
         file.attrs["name"] = name
         for monitor, (time, x, y) in histories.items():
             group = file.create_group(f"histories/{monitor}")
             group["time"] = time
             group["velocity"] = np.column_stack([x, y, np.zeros_like(time)])
-            group.attrs["wanted"] = (0.0, 0.0)
+            group.attrs["wanted"] = place
     return path
 
 
@@ -27,7 +27,8 @@ def test_differences_are_those_of_the_liveliest_component(tmp_path):
     reference = record(tmp_path / "a.h5", "a", {"P": (TIME, nothing + 0.1, TIME), "Q": (TIME, TIME, nothing)})
     # twice as finely sampled and half as long; x is wrong too, but y moves most
     time = np.linspace(0.0, 0.5, 101)
-    run = record(tmp_path / "b.h5", "b", {"P": (time, np.zeros_like(time), 1.1 * time), "R": (time, time, time)})
+    histories = {"P": (time, np.zeros_like(time), 1.1 * time), "R": (time, time, time)}
+    run = record(tmp_path / "b.h5", "b", histories, (1.0, 2.0))
 
     (found,) = compare(reference, [run], "velocity")
 
@@ -35,6 +36,7 @@ def test_differences_are_those_of_the_liveliest_component(tmp_path):
     assert found.rms == pytest.approx(0.1)
     assert found.peak == pytest.approx(0.1)
     assert (found.last, found.reference_last) == (pytest.approx(0.55), pytest.approx(0.5))
+    assert (found.unit, found.place, found.reference_place) == ("m/s", (1.0, 2.0), (0.0, 0.0))
 
 
 def test_runs_without_a_common_monitor_are_refused(tmp_path):

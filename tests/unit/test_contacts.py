@@ -5,7 +5,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from dembound.contacts import ContactList, limits_of, plain_contacts
+from dembound.contacts import ContactList, Cracks, limits_of, plain_contacts
 from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED
 from dembound.scene import Scene, build
 
@@ -156,7 +156,7 @@ def test_a_search_changes_no_force(contacts: ContactList) -> None:
 
 
 def test_the_palette_does_not_grow_from_search_to_search(contacts: ContactList) -> None:
-    own = len(contacts.ground.brick.pairs)
+    own = 2 * len(contacts.ground.brick.pairs)  # whole and half
     for seed in range(30):
         contacts.search(shaken(contacts, 0.2, seed))
         others = contacts.arrays.kind >= own
@@ -292,3 +292,43 @@ def test_the_elastic_law_has_its_contacts_and_looks_for_no_others(scene) -> None
     order = np.lexsort((plain.second, plain.first))
     assert np.array_equal(contacts.arrays.second, plain.second[order])
     assert np.array_equal(contacts.arrays.palette, plain.palette)
+
+
+@pytest.mark.parametrize("sides", SIDES)
+def test_what_is_left_of_a_body_remembers_all_it_went_through(scene, sides: str) -> None:
+    contacts = scene(sides).contact_list()
+    moved = shaken(contacts, 0.02)
+    contacts.search(moved)
+    old, random = contacts.arrays, np.random.default_rng(2)
+    old.shear[:], old.slip[:] = random.uniform(-1e-3, 1e-3, (2, len(old.shear)))
+    old.state[random.random(len(old.state)) < 0.2] = SHEAR
+    old.cracked[3] = 7
+    tunnel = {"name": "tunnel", "type": "circle", "centre": [4.0, 2.0], "radius": 1.0}
+    hollow = scene(sides, hole=[tunnel])
+    kept = np.flatnonzero((contacts.assembly.positions[:, None] == hollow.assembly.positions).all(axis=2).any(axis=1))
+    left = hollow.contact_list()
+    left.inherit(contacts, kept)
+
+    among = np.isin(np.column_stack([old.first, old.second]), kept).all(axis=1)
+    new = left.arrays
+    assert 0 < np.count_nonzero(among) < len(among)
+    for before, after in ((old.first[among], kept[new.first]), (old.second[among], kept[new.second])):
+        assert np.array_equal(before, after)
+    for name in ("state", "shear", "slip", "cracked"):
+        assert np.array_equal(getattr(old, name)[among], getattr(new, name))
+    assert np.array_equal(left.origin, moved[:2, kept])
+    # the same pairs, so the same forces, across periodic sides as well
+    contacts.forces(moved)
+    left.forces(moved[:, kept])
+    assert np.array_equal(contacts.arrays.force[among], left.arrays.force)
+
+
+def test_cracks_among_some_particles_are_numbered_as_these() -> None:
+    pairs = np.array([(4, 7), (2, 4), (7, 9), (2, 9)])
+    cracks = Cracks(np.arange(4), pairs, np.arange(8.0).reshape(4, 2), np.array([True, False, False, True]))
+    left = cracks.among(np.array([2, 7, 9]))
+
+    assert left.pair.tolist() == [[1, 2], [0, 2]]
+    assert left.step.tolist() == [2, 3]
+    assert left.position.tolist() == [[4.0, 5.0], [6.0, 7.0]]
+    assert left.shear.tolist() == [False, True]

@@ -9,6 +9,7 @@ from dembound.kernels.tables import Body, Log, Supports
 from dembound.scene import Scene, build
 
 STEP = 1e-4
+FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
 DENSE = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 REMEMBERS = {"material.law": "linearpbond", "material.fric": 0.5}
 
@@ -31,8 +32,8 @@ def advance(
     load = np.zeros((3, body.count)) if load is None else load
     arrays = Body(STEP / body.mass, STEP / body.inertia, np.ones(3), load, 0.0, STEP)
     nobody, nothing = np.zeros(0, dtype=np.int64), np.zeros((0, 3))
-    supports = Supports(nobody, *[nothing] * 5, drive=np.zeros((steps, 0, 3)))
-    log = Log(nobody, np.empty((steps, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros((2, 4)))
+    supports = Supports(nobody, *[nothing] * 5, drive=np.zeros((steps, 0, 3)), seam=body.seam_table(nobody))
+    log = Log(nobody, np.empty((steps, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 4)))
     return engine.advance(u, np.empty_like(u), v, 0, arrays, supports, log)
 
 
@@ -51,8 +52,9 @@ def test_a_scene_without_memory_is_not_watched(scene) -> None:
     assert np.abs(u).max() > 0.1
 
 
-def test_elastic_forces_are_those_of_the_pairs_without_what_was_locked_in(scene) -> None:
-    body = scene(**REMEMBERS)
+@pytest.mark.parametrize("boundary", [{}, FREE_FIELD], ids=["free", "free field"])
+def test_elastic_forces_are_those_of_the_pairs_without_what_was_locked_in(scene, boundary: dict) -> None:
+    body = scene(**REMEMBERS, boundary=boundary)
     contacts, u = body.contact_list(), shaken(body, 1e-6)
     locked_in = contacts.forces(np.zeros_like(u), reference=True)
     contacts.adopt(u)
@@ -64,6 +66,7 @@ def test_elastic_forces_are_those_of_the_pairs_without_what_was_locked_in(scene)
     found = Elastic(body, contacts).force(u)
     np.testing.assert_allclose(found, difference, rtol=0.0, atol=20.0 * np.finfo(float).eps * scale)
     assert np.abs(found).max() > 1e6 * 20.0 * np.finfo(float).eps * scale
+    assert (body.seam is not None) == bool(boundary)
 
 
 def test_the_elastic_law_ends_before_the_step_that_leaves_it(scene) -> None:

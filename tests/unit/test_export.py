@@ -64,6 +64,18 @@ def test_vtk_reads_one_vertex_per_disk(small_run, exported):
         np.testing.assert_array_equal(mesh.point_data[name], values, err_msg=name)
 
 
+def test_stress_is_a_symmetric_tensor_and_peaks_are_in_every_file(rich_run, tmp_path):
+    write_vtu(rich_run, tmp_path)
+    with h5py.File(rich_run) as file:
+        for number, snapshot in file["snapshots"].items():
+            mesh = pyvista.read(tmp_path / f"particles_{number}.vtu")
+            xx, yy, xy = snapshot["stress"][:].T
+            zero = np.zeros_like(xx)
+            # VTK's order: xx, yy, zz, xy, yz, xz
+            np.testing.assert_array_equal(mesh.point_data["stress"].T, [xx, yy, zero, xy, zero, zero])
+            np.testing.assert_array_equal(mesh.point_data["peakVelocity"], file["particles/peak_velocity"][:])
+
+
 def test_circle_glyphs_of_factor_two_have_the_radii(exported):
     # as the module tells users to set ParaView's glyph filter, whose 2D circle has the diameter 1
     mesh = pyvista.read(exported.parent / "particles_0000.vtu")

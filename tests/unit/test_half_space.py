@@ -65,6 +65,15 @@ def test_a_mirror_plane_doubles_the_load_and_stands_at_the_side(tmp_path):
     np.testing.assert_allclose(near, np.column_stack([out, -down, 0.0 * time]), atol=1e-12 * down.max())
 
 
+def test_a_side_that_is_far_or_goes_on_periodically_makes_no_quarter_space(tmp_path):
+    # monitors 2 m to both sides of the load; the left side stands at a quarter of the way to them
+    near = {"monitor": [{"name": "behind", "position": [2.75, 4.75]}], "load": [{**HAMMER, "position": [0.75, 4.75]}]}
+    sides = {f"boundary.{side}": {"type": "periodic"} for side in ("left", "right")}
+    for name, changes in (("far", near), ("periodic", {**sides, "load": [{**HAMMER, "position": [0.25, 4.75]}]})):
+        write_exact(with_changes(loads(CASE), changes), tmp_path / name / "run.h5")
+        assert (tmp_path / name / "run.h5").exists()
+
+
 HAMMER = {"name": "hammer", "force": [0.0, -1000.0], "position": [4.75, 4.75], "wave": "pulse"}
 
 
@@ -76,9 +85,14 @@ HAMMER = {"name": "hammer", "force": [0.0, -1000.0], "position": [4.75, 4.75], "
         ({"load": [{**HAMMER, "position": [4.75, 2.0]}]}, "load.hammer.position: must be on the top"),
         ({"monitor": [{"name": "deep", "position": [2.0, 1.0]}]}, "monitor.deep.position: must be on the top"),
         ({"material.fric": 0.0}, "anisotropic"),
+        ({"material.law": "linearpbond"}, 'material.law: is "linearpbond", must be "elastic"'),
+        ({"boundary.top": {"type": "viscous"}}, 'boundary.top.type: is "viscous", must be "free"'),
+        ({"load": [{**HAMMER, "position": [0.75, 4.75]}]}, "load: is 0.75 m from the left side and 6 m from a monitor"),
+        ({"monitor": [{"name": "under", "position": [4.75, 4.75]}]}, "monitor.under.position: lies under the load"),
+        ({"wave.pulse": {"type": "constant", "amplitude": 1.0, "start": 0.05}}, "wave.pulse: jumps on its way"),
     ],
 )
-def test_other_problems_are_refused(tmp_path, changes, message):
+def test_other_problems_are_refused_and_leave_nothing(tmp_path, changes, message):
     with pytest.raises(CaseError, match=message):
-        write_exact(with_changes(loads(CASE), changes), tmp_path / "run.h5")
-    assert not (tmp_path / "run.h5").exists()
+        write_exact(with_changes(loads(CASE), changes), tmp_path / "new" / "run.h5")
+    assert not list(tmp_path.iterdir())

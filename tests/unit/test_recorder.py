@@ -13,6 +13,7 @@ from dembound.record import Recorder
 from dembound.scene import build
 from dembound.simulate import Simulation, Start
 from dembound.stability import choose_step
+from dembound.stress import stress_now
 
 STEP = 3e-4
 MONITORS = {"monitor": [{"name": "front", "position": [0.0, 0.0]}, {"name": "back", "position": [9.9, 0.9]}]}
@@ -100,6 +101,31 @@ def test_a_snapshot_is_the_whole_scene_at_its_time(tmp_path, simulation) -> None
         assert file["snapshots/0000"].attrs["time"] == 10 * STEP
         assert np.array_equal(file["snapshots/0000/displacement"], displacement.T)
         assert np.array_equal(file["snapshots/0001/velocity"], simulation.velocity.T)
+
+
+def test_stress_and_peaks_are_kept_if_the_case_asks_for_them(tmp_path, bar, simulation) -> None:
+    asking = Simulation(build(bar({"output.stress": True, "output.peaks": True, "monitor": []})), STEP, np.zeros(0))
+    fastest = np.zeros(asking.scene.count)
+    with recorder(tmp_path / "asked.h5", asking) as kept:
+        for _ in range(40):
+            kept.append(asking.advance(1))
+            fastest = np.maximum(fastest, np.hypot(*asking.velocity[:2]))
+        kept.snapshot()
+    with recorder(tmp_path / "not.h5", simulation) as kept:
+        kept.append(simulation.advance(1))
+        kept.snapshot()
+
+    with h5py.File(tmp_path / "asked.h5") as file:
+        stress, peaks = file["snapshots/0000/stress"], file["particles/peak_velocity"]
+        assert np.array_equal(stress, stress_now(asking))
+        assert stress[:, 0].min() < -1e5
+        # y is held, so no square is rounded; both ends are supported
+        assert np.array_equal(peaks, fastest)
+        assert peaks[:].min() > 0.1
+        assert (stress.attrs["unit"], peaks.attrs["unit"]) == ("Pa", "m/s")
+    with h5py.File(tmp_path / "not.h5") as file:
+        assert "stress" not in file["snapshots/0000"]
+        assert "peak_velocity" not in file["particles"]
 
 
 def test_scene_and_sides_are_kept(tmp_path, simulation) -> None:

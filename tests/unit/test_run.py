@@ -178,12 +178,12 @@ def test_progress_is_told_after_every_block(bar, tmp_path) -> None:
 def test_energies_are_entered_a_hundred_times_or_as_often_as_asked(bar, tmp_path) -> None:
     usual = {"run.time_step": 1e-4, "run.duration": 0.025}
     for name, changes, wanted in (
-        ("usual", {}, np.arange(0.0, 250.0, 2.0)),
-        ("asked", {"output.energy_interval": 1e-3}, np.arange(0.0, 250.0, 10.0)),
+        ("usual", {}, [*np.arange(0.0, 250.0, 2.0), 249.0]),  # and at the last step
+        ("asked", {"output.energy_interval": 1e-3}, [*np.arange(0.0, 250.0, 10.0), 249.0]),
     ):
         with h5py.File(run_case(bar({**usual, **changes}, name), tmp_path) / "run.h5") as file:
             # ten times a step of 1e-4 s, each product rounded
-            np.testing.assert_allclose(file["energy/time"], 1e-4 * wanted, rtol=1e-15)
+            np.testing.assert_allclose(file["energy/time"], 1e-4 * np.array(wanted), rtol=1e-15)
 
 
 def test_a_static_stage_is_run_first_and_recorded(bar, tmp_path) -> None:
@@ -204,6 +204,48 @@ def test_a_static_stage_is_run_first_and_recorded(bar, tmp_path) -> None:
         assert np.abs(file["snapshots/0000/displacement"][:, 0]).max() < 1e-6 * file["static/displacement"][:, 0].max()
 
 
+NICHE = {"name": "niche", "type": "rectangle", "corners": [6.0, 0.5, 8.0, 1.1], "stage": "after"}
+"""Four disks of the upper row."""
+
+
+def test_an_excavation_is_recorded_with_what_was_before(bar, tmp_path) -> None:
+    heard = Heard()
+    folder = run_case(bar({**HANGING, "hole": [NICHE]}), tmp_path, heard)
+
+    static = summary(folder)["static"]
+    before = static["before"]
+    assert before["before"] is None
+    assert {(stage["steps"], stage["ratio"]) for stage in (before, static)} <= set(heard.static)
+    for stage, disks in ((before, 40), (static, 36)):
+        assert stage["carried"] == pytest.approx(disks * 625.0 * 9.81 / 2, rel=1e-4)
+    with h5py.File(folder / "run.h5") as file:
+        assert file["static/before"].attrs["steps"] == before["steps"]
+        x, y = file["particles/position"][:].T
+        assert not ((x > 6.0) & (x < 8.0) & (y > 0.5)).any()
+        first, last = (file[f"{stage}/displacement"][:, 0] for stage in ("static/before", "static"))
+        assert first.shape == last.shape == (36,)
+        # with four weights less to carry, the bar springs back where only that has changed
+        assert np.all(last[(x > 0.5) & (x < 5.5)] < first[(x > 0.5) & (x < 5.5)])
+
+
+def test_cracks_before_an_excavation_are_recorded_where_they_were(bar, tmp_path) -> None:
+    weak = {"material.law": "linearpbond", "material.pb_ten": 0.3 * 19 * 625.0 * 9.81 / 0.5}
+    held = {"boundary.right": {"type": "fixed"}, "static.boundary.right": {"type": "fixed"}}
+    near = {**NICHE, "corners": [1.0, 0.5, 2.0, 1.1]}
+    folder = run_case(bar({**HANGING, **held, **weak, "hole": [near]}), tmp_path)
+
+    found = summary(folder)
+    assert found["static"]["before"]["cracks"] > 0
+    with h5py.File(folder / "run.h5") as file:
+        cracks, places = file["cracks"], file["particles/position"][:]
+        assert len(cracks["time"]) == found["cracks"]["tension"] > 0
+        # bonds of 0.5 m along x, whose disks have moved by strains of 1e-4 of the bar
+        middle = places[cracks["particles"][:]].mean(axis=1)
+        np.testing.assert_allclose(cracks["position"][:], middle, rtol=0.0, atol=1e-3)
+        apart = np.diff(places[cracks["particles"][:]], axis=1)[:, 0]
+        np.testing.assert_allclose(np.hypot(*apart.T), 0.5, rtol=1e-12)
+
+
 def test_a_run_that_fails_leaves_a_partial_folder_with_what_there_was(bar, tmp_path) -> None:
     with pytest.raises(RunError, match="grew without bound"):
         run_case(bar(BLOW_UP), tmp_path)
@@ -211,6 +253,25 @@ def test_a_run_that_fails_leaves_a_partial_folder_with_what_there_was(bar, tmp_p
     assert [path.name for path in tmp_path.iterdir()] == ["bar.partial"]
     with h5py.File(tmp_path / "bar.partial" / "run.h5") as file:
         assert not file.attrs["complete"]
+
+
+def test_a_static_stage_that_fails_does_not_stand_in_the_way_of_the_next_run(bar, tmp_path) -> None:
+    with pytest.raises(RunError, match="static stage") as caught:
+        run_case(bar({**HANGING, "static.ratio": 1e-12, "static.max_steps": 1}), tmp_path)
+    assert caught.value.source == "bar"
+    assert not list(tmp_path.iterdir())
+
+    (tmp_path / "bar.partial").mkdir()
+    run_case(bar(HANGING), tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["bar"]
+
+
+@pytest.mark.parametrize("wave", [{}, {"wave": "pulse"}])
+def test_a_load_beside_all_particles_is_found_before_anything_is_written(bar, tmp_path, wave: dict) -> None:
+    between = {"name": "push", "force": [1.0, 0.0], "region": [3.01, 0.3, 3.02, 0.31], **wave}
+    with pytest.raises(CaseError, match="no particle is centred"):
+        run_case(bar({"load": [between]}), tmp_path)
+    assert not list(tmp_path.iterdir())
 
 
 def finished_then_failed(bar, tmp_path) -> Case:

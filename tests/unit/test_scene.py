@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.distance import cdist
 
 from dembound.case import Case
+from dembound.errors import CaseError, PackingError
 from dembound.kernels.elastic import contact_forces
 from dembound.scene import Scene, boundary_medium, build, with_boundaries
 
@@ -20,9 +21,13 @@ def random_scene(bar) -> Scene:
     return build(bar(RANDOM))
 
 
-@pytest.fixture(params=["lattice", "random"])
+LATTICE = {"motion.held": []}
+KINDS = {"lattice": LATTICE, "half cells": {**LATTICE, "boundary.right.half_mass": True}, "random": RANDOM}
+
+
+@pytest.fixture(params=KINDS)
 def case(bar, request) -> Case:
-    return bar(RANDOM if request.param == "random" else {"motion.held": []})
+    return bar(KINDS[request.param])
 
 
 def test_every_contact_stands_in_two_rows(case: Case) -> None:
@@ -34,7 +39,8 @@ def test_every_contact_stands_in_two_rows(case: Case) -> None:
 
     assert len(rows.start) == scene.count + 1
     assert list(zip(owner, rows.neighbour, strict=True)) == expected
-    assert rows.palette.shape == (2 * len(scene.ground.brick.pairs), 6)
+    # seen from either end, whole and half
+    assert rows.palette.shape == (4 * len(scene.ground.brick.pairs), 6)
     assert all(array.dtype == np.uint32 for array in (rows.start, rows.neighbour, rows.kind))
 
 
@@ -47,20 +53,22 @@ def forces(scene: Scene, u: np.ndarray) -> np.ndarray:
 def test_rows_and_palette_make_the_forces_of_the_assemblys_contacts(case: Case) -> None:
     scene = build(case)
     body, law = scene.assembly, scene.ground.stiffness
+    halves = scene.edges["right"].nodes if case.boundary["right"].half_mass else []
     u = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
     expected = np.zeros_like(u)
-    for (i, j), k in zip(body.pairs, body.kind, strict=True):
+    for (i, j), k in zip(body.pairs, body.kind % len(law.normal), strict=True):
+        share = 0.5 if i in halves and j in halves else 1.0
         along = body.positions[j] - body.positions[i]
         n = along / np.hypot(*along)
         t = np.array([-n[1], n[0]])
         apart = u[:2, j] - u[:2, i]
         slip = t @ apart - law.arm_i[k] * u[2, i] - law.arm_j[k] * u[2, j]
-        force = law.normal[k] * (n @ apart) * n + law.shear[k] * slip * t
-        bending = law.bending[k] * (u[2, j] - u[2, i])
+        force = share * (law.normal[k] * (n @ apart) * n + law.shear[k] * slip * t)
+        bending = share * law.bending[k] * (u[2, j] - u[2, i])
         expected[:2, i] += force
         expected[:2, j] -= force
-        expected[2, i] += law.arm_i[k] * law.shear[k] * slip + bending
-        expected[2, j] += law.arm_j[k] * law.shear[k] * slip - bending
+        expected[2, i] += law.arm_i[k] * (force @ t) + bending
+        expected[2, j] += law.arm_j[k] * (force @ t) - bending
 
     # places in far bricks carry rounding of 1e-15 of 12 m into directions: 1e-14 of forces of size k
     np.testing.assert_allclose(forces(scene, u), expected, atol=1e-13 * law.normal.max())
@@ -195,3 +203,62 @@ def test_a_gap_without_a_bond_carries_nothing(bar) -> None:
 
     assert (scene.ground.brick.gaps > 0.0).any()
     assert np.isfinite(scene.rows.palette).all()
+
+
+TUNNEL = {"name": "tunnel", "type": "circle", "centre": [6.0, 5.0], "radius": 2.0}
+STANDING = {
+    "static": {"boundary": {"bottom": {"type": "fixed"}}},
+    "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+}
+FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
+
+
+def test_a_hole_takes_out_what_is_centred_in_it_and_leaves_the_sides_alone(bar) -> None:
+    whole, hollow = build(bar(RANDOM)), build(bar({**RANDOM, "hole": [TUNNEL]}))
+    away = np.hypot(*(hollow.assembly.positions - [6.0, 5.0]).T)
+
+    assert away.min() >= 2.0
+    near = np.hypot(*(whole.assembly.positions - [6.0, 5.0]).T) < 2.0
+    assert hollow.count == whole.count - np.count_nonzero(near) - hollow.assembly.loose + whole.assembly.loose
+    assert hollow.rows.start[-1] == 2 * len(hollow.assembly.pairs)
+    assert (hollow.before, hollow.kept) == (None, None)
+    for side, edge in whole.edges.items():
+        left = hollow.edges[side]
+        assert np.array_equal(left.positions, edge.positions)
+        assert np.array_equal(hollow.assembly.positions[left.nodes], left.positions)
+        assert left.length == edge.length
+
+
+@pytest.mark.parametrize("boundary", [{}, FREE_FIELD], ids=["free", "free field"])
+def test_an_excavated_scene_knows_what_was_before(bar, boundary: dict) -> None:
+    tables = {**RANDOM, **STANDING, "boundary": boundary, "wave": {}}
+    shaft = {"name": "shaft", "type": "rectangle", "corners": [8.5, 4.0, 10.5, 6.0]}
+    scene = build(bar({**tables, "hole": [shaft, {**TUNNEL, "stage": "after"}]}))
+    before, after = build(bar({**tables, "hole": [shaft]})), build(bar({**tables, "hole": [shaft, TUNNEL]}))
+
+    for found, expected in ((scene, after), (scene.before, before)):
+        assert np.array_equal(found.assembly.positions, expected.assembly.positions)
+        assert np.array_equal(found.assembly.pairs, expected.assembly.pairs)
+        assert found.monitors == expected.monitors
+    assert np.array_equal(scene.before.assembly.positions[scene.kept], scene.assembly.positions)
+    assert scene.before.before is None
+
+
+def test_a_side_that_a_hole_cuts_stands_for_what_is_left_of_it(bar) -> None:
+    tables = {"packing.size": [4.0, 4.0], "monitor": [], "motion.held": []}
+    pit = {"name": "pit", "type": "rectangle", "corners": [1.0, 3.0, 3.0, 4.5]}
+    edge = build(bar({**tables, "hole": [pit]})).edges["top"]
+
+    # four of its eight disks, and nothing of the pit's floor
+    assert edge.positions.tolist() == [[x, 3.75] for x in (0.25, 0.75, 3.25, 3.75)]
+    assert (edge.length, edge.cover) == (2.0, 1.0)
+
+
+def test_holes_that_leave_nothing_are_refused(bar) -> None:
+    tables = {"packing.size": [4.0, 4.0], "monitor": []}
+    for corners, error, line in (
+        ([-1.0, -1.0, 5.0, 5.0], PackingError, "no disk is left of the body"),
+        ([-1.0, 3.0, 5.0, 5.0], CaseError, "hole: leaves nothing of the top side"),
+    ):
+        with pytest.raises(error, match=line):
+            build(bar({**tables, "hole": [{"name": "pit", "type": "rectangle", "corners": corners}]}))

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from dembound.boundaries.support import SupportBuilder, Supports
+from dembound.case import with_changes
 from dembound.errors import RunError
 from dembound.scene import Scene, build
-from dembound.simulate import BLOCK, Simulation
+from dembound.simulate import BLOCK, Simulation, Start
 from dembound.stability import choose_step, step_limit
 
 NOBODY = np.zeros(0, dtype=np.int64)
@@ -212,6 +213,31 @@ def test_what_is_locked_in_is_balanced_unless_the_body_shall_settle(bar) -> None
     assert np.sum(outwards.T * settling.displacement[:2]) > 0.0
 
 
+@pytest.mark.parametrize("remembers", [False, True])
+def test_a_body_that_settles_anew_is_pushed_by_all_its_contacts(bar, remembers: bool) -> None:
+    scene = build(bar({**PACKED, "material.fric": 0.5}))
+    # far less than the overlaps of 10 MPa, so that the elastic law holds
+    displacement = 1e-9 * np.random.default_rng(1).uniform(-1.0, 1.0, (3, scene.count))
+    contacts, twin = scene.contact_list(), scene.contact_list()
+    for pairs in (contacts, twin):
+        pairs.adopt(displacement)
+        pairs.arrays.slip[:] = 1e-9 * remembers  # friction has its part of the force
+    pushed = twin.forces(displacement, reference=not remembers)
+    load = np.random.default_rng(2).uniform(-1e3, 1e3, (3, scene.count))
+    step, _ = choose_step(scene)
+    start = Start(displacement, contacts, remembers)
+    simulation = Simulation(scene, step, NOBODY, start=start, damp=0.0, settling=True, load=load)
+    simulation.advance(1)
+
+    assert simulation.laws == [("linearpbond" if remembers else "elastic", 0)]
+    inertia = np.stack([scene.mass, scene.mass, scene.inertia])
+    # some ten forces of up to 10 MPa times a diameter per disk, of which 1e-9/1e-3 are the displacements'; normals that
+    # turn by 1e-9/0.5 make a share of 1e-8 of difference
+    size = np.abs(pushed).max()
+    tolerance = 1e-8 if remembers else 1e-12
+    np.testing.assert_allclose(inertia * simulation.velocity / step, pushed + load, rtol=0.0, atol=tolerance * size)
+
+
 @pytest.mark.parametrize("elastic_start", [True, False])
 def test_the_law_with_a_memory_takes_over_where_it_must(bar, elastic_start: bool) -> None:
     scene = build(bar({**PACKED, "material.elastic_start": elastic_start}))
@@ -226,3 +252,22 @@ def test_the_law_with_a_memory_takes_over_where_it_must(bar, elastic_start: bool
     assert names == (("elastic", "linearpbond") if elastic_start else ("linearpbond",))
     assert steps[0] == 0
     assert not elastic_start or 5 < steps[1] < 55
+
+
+def test_across_a_seam_both_laws_move_a_body_alike(bar) -> None:
+    free_field = {side: {"type": "free_field"} for side in ("left", "right")}
+    case = bar({**PACKED, "material.geometry": "reference", "boundary": free_field})
+    moves = []
+    for elastic in (True, False):
+        scene = build(with_changes(case, {"material.elastic_start": elastic}))
+        simulation = Simulation(scene, choose_step(scene)[0], NOBODY)
+        simulation.velocity[:] = 1e-4 * np.random.default_rng(3).uniform(-1.0, 1.0, (3, scene.count))
+        if not elastic:
+            simulation.contacts.adopt(-simulation.time_step * simulation.velocity)  # its first push adds this step
+        simulation.advance(50)
+        assert [name for name, _ in simulation.laws] == ["elastic" if elastic else "linearpbond"]
+        moves.append(simulation.displacement)
+
+    # locked-in forces of 5 MN are rounded in every step; beside them those of the motion are 1e9 N/m · 1e-4 m/s · Δt
+    rounding = 50 * 10.0 * np.finfo(float).eps * 5e6 / (1e9 * 1e-4 * simulation.time_step)
+    assert np.abs(moves[0] - moves[1]).max() < rounding * np.abs(moves[0]).max()

@@ -37,7 +37,18 @@ def test_a_side_is_described_by_its_particles_and_its_keys(bar) -> None:
         "beta_s": 1.0,
         "half_mass": True,
     }
-    assert set(describe_side(scene, "top")) & {"beta_p", "half_mass"} == set()
+    assert set(describe_side(scene, "top")) & {"beta_p", "half_mass", "alpha_n"} == set()
+
+
+def test_springs_of_a_side_are_described(bar) -> None:
+    springs = {"type": "viscoelastic", "source": [0.0, 0.25], "alpha_n": 2.0}
+    found = describe_side(build(bar({"boundary.right": springs, "material.s_wave_speed": 500.0})), "right")
+
+    assert (found["alpha_n"], found["alpha_s"]) == (2.0, 0.5)
+    assert found["shear_modulus"] == pytest.approx(2500.0 * 500.0**2)
+    # disks at 9.75 m, of heights 0.25 m and 0.75 m
+    assert found["distance_min"] == pytest.approx(9.75)
+    assert found["distance_max"] == pytest.approx(np.hypot(9.75, 0.5))
 
 
 def summary_of(case: Case, path: Path, steps: int, entries: int) -> dict:
@@ -95,7 +106,8 @@ def test_the_static_stage_is_told(bar, tmp_path) -> None:
     case = bar({"load": [weight], "static": {"ratio": 1e-6, "boundary": {"left": {"type": "fixed"}}}})
     found = summary_of(case, tmp_path / "run.h5", 10, 1)["static"]
 
-    assert set(found) == {"steps", "ratio", "carried", "left", "stress", "cracks"}
+    assert set(found) == {"steps", "ratio", "carried", "left", "stress", "asked", "cracks", "before"}
+    assert found["before"] is None
     assert found["ratio"] <= 1e-6
     assert found["left"] < 1e-4 * found["carried"]
     # 20 disks in a row: contacts bear 1 to 19 weights, half of each on either disk, 190 in all; strains are below 1e-3

@@ -93,6 +93,32 @@ def test_cracks_are_shown_up_to_their_snapshot(cracked_run, tmp_path):
 
 
 @pytest.mark.usefixtures("drawing")
+def test_exaggerated_displacements_move_disks_and_cracks_with_them(cracked_run, tmp_path):
+    # disks at rest, all moved by 20 mm along x, and the first crack, put between them
+    run = tmp_path / "run.h5"
+    run.write_bytes(cracked_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        for snapshot in file["snapshots"].values():
+            snapshot["velocity"][:] = 0.0
+            snapshot["displacement"][:] = 0.02, 0.0, 0.0
+        for dataset in file["cracks"].values():
+            dataset.resize(1, axis=0)
+        file["cracks/time"][0] = snapshot.attrs["time"]
+        file["cracks/position"][0] = 7.75, 1.25
+    picture = drawn(run, tmp_path / "picture.png", "--snapshot", "-1", "--exaggerate", "50")
+    # they end 1 m to the right: from the axes' 0 to there, 11 m are 1600 / 1.4 pixels wide and lie in the middle
+    column = 800.0 + (np.array([0.05, 0.95, 1.05, 10.95, 8.75]) - 5.5) * 1600.0 / 15.4
+    inked = np.ptp(picture[320:580], axis=2) > 0.1  # coloured, not white or black
+    left, before, after, end, crack = column.round().astype(int)
+    assert not inked[:, left:before].any()
+    # disks in a square lattice fill π/4, their polygons 1.1 % less; half a pixel on their rims, whose radius is 26, is
+    # 3.8 % of them; and the ends that are left out, where there is less of them, are 1 % of the length
+    assert inked[:, after:end].mean() == pytest.approx(np.pi / 4, rel=0.06)
+    red = np.argwhere(picture[..., 0] - picture[..., 1] > 0.5)
+    np.testing.assert_allclose(red.mean(axis=0), [450.0, crack], atol=1.5)
+
+
+@pytest.mark.usefixtures("drawing")
 def test_a_picture_shows_the_snapshot_asked_for(small_run, tmp_path):
     # a run at rest but for the left half in the last snapshot
     run = tmp_path / "run.h5"

@@ -1,10 +1,10 @@
-"""Which particles keep half their mass."""
+"""Which particles keep half their mass, and which contacts half their stiffness."""
 
 import numpy as np
 import pytest
 
 from dembound.boundaries import Fixed, Viscoelastic, ViscoelasticInput, Viscous, ViscousInput
-from dembound.boundaries.half_mass import mass_factor
+from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
 from dembound.boundaries.support import Edge
 
 
@@ -37,3 +37,41 @@ def test_a_corner_of_two_such_sides_keeps_a_quarter() -> None:
 
 def test_a_side_that_is_no_edge_halves_nothing() -> None:
     assert mass_factor(5, EDGES, {"bottom": Viscous(type="viscous", half_mass=True)}).tolist() == [1.0] * 5
+
+
+HALF = Viscous(type="viscous", half_mass=True)
+
+
+def test_the_sides_of_half_cells_are_those_that_ask_for_it() -> None:
+    boundary = {"left": HALF, "right": Viscous(type="viscous"), "bottom": HALF, "top": HALF}
+
+    assert [found.side for found in half_edges(EDGES, boundary)] == ["left", "top"]
+
+
+CONTACTS = {
+    "along left": (0, 2, [0.1, -1.0]),
+    "across left": (0, 2, [1.0, -0.1]),
+    "from left inwards": (0, 4, [0.1, 1.0]),
+    "along top": (2, 3, [-1.0, 0.1]),
+    "across top": (2, 3, [-0.1, 1.0]),
+    "along right": (1, 3, [0.0, 1.0]),
+    "with its own image, along top": (3, 3, [1.0, 0.0]),
+    "with its own image, across top": (3, 3, [0.0, 1.0]),
+}
+
+
+@pytest.mark.parametrize(
+    ("sides", "halved"),
+    [
+        ((), set()),
+        (("left",), {"along left"}),
+        (("top",), {"along top", "with its own image, along top"}),
+        (("left", "top"), {"along left", "along top", "with its own image, along top"}),
+    ],
+)
+def test_contacts_between_half_cells_along_their_side_are_half_contacts(sides: tuple[str, ...], halved: set) -> None:
+    boundary = {side: HALF if side in sides else Viscous(type="viscous") for side in EDGES}
+    for way in (1.0, -1.0):
+        first, second, vectors = (np.array(column) for column in zip(*CONTACTS.values(), strict=True))
+        found = half_contacts(first, second, way * vectors, EDGES, boundary)
+        assert {name for name, half in zip(CONTACTS, found, strict=True) if half} == halved

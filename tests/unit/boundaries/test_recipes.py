@@ -210,12 +210,10 @@ def test_a_viscoelastic_input_side_only_absorbs_and_holds_in_the_direction_witho
 def test_a_viscoelastic_side_without_its_springs_is_viscous() -> None:
     dashpots = {"beta_p": 0.8, "beta_s": 0.4, "half_mass": True}
 
-    assert Viscoelastic(type="viscoelastic", **dashpots, **NEAR).without_springs() == Viscous(
-        type="viscous", **dashpots
-    )
+    assert Viscoelastic(type="viscoelastic", **dashpots, **NEAR).dashpots_alone() == Viscous(type="viscous", **dashpots)
     assert ViscoelasticInput(
         type="viscoelastic_input", wave_s="shake", **dashpots, **NEAR
-    ).without_springs() == ViscousInput(type="viscous_input", wave_s="shake", **dashpots)
+    ).dashpots_alone() == ViscousInput(type="viscous_input", wave_s="shake", **dashpots)
 
 
 @pytest.mark.parametrize(

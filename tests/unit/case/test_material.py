@@ -11,6 +11,8 @@ from dembound.case.material import Material
         {"p_wave_speed": 1000.0},
         {"p_wave_speed": 1000.0, "s_wave_speed": 700.0, "match": "assembly", "contact_share": 1.0},
         {"emod": 1e9, "pb_emod": 0.0},
+        {"emod": 0.0, "pb_emod": 1e9},
+        {"p_wave_speed": 1000.0, "contact_share": 0.0},
         {"emod": 1e9, "pb_emod": 1e9, "s_wave_speed": 700.0},
     ],
 )

@@ -32,6 +32,17 @@ def side(name: str, kind: str, more: str = "") -> str:
     return f'[boundary.{name}]\ntype = "{kind}"\n{more}\n'
 
 
+@pytest.mark.parametrize("pattern", ["A", "B"])
+@pytest.mark.parametrize("key", ["contact_share", "emod"])
+def test_only_a_lattice_may_have_contacts_without_stiffness(pattern: str, key: str) -> None:
+    packing = {"A": 'pattern = "A"', "B": 'pattern = "B"\nbrick = [10.0, 5.0]\nradius_ratio = 1.5'}
+    moduli = {"contact_share": "p_wave_speed = 1000.0\ncontact_share = 0.0", "emod": "emod = 0.0\npb_emod = 1e9"}
+    base = BASE.replace('pattern = "A"', packing[pattern]).replace("p_wave_speed = 1000.0", moduli[key])
+
+    line = f"material.{key}: is 0, but contacts hold pattern B under stress; must be greater than 0"
+    assert problems("", base) == ([line] if pattern == "B" else [])
+
+
 def test_waves_must_be_defined_but_need_not_be_used() -> None:
     assert problems(WAVES) == []
     assert problems(WAVES + side("left", "velocity", 'wave_p = "push"\nwave_s = "shake"')) == []
@@ -98,6 +109,29 @@ def test_half_masses_are_for_regular_edges(kind: str, more: str) -> None:
         assert problems(table, text) == []
 
 
+def test_a_free_field_is_for_left_and_right() -> None:
+    for name in ("left", "right"):
+        assert problems(side(name, "free_field", "beta_p = 0.9")) == []
+    for name in ("bottom", "top"):
+        assert problems(side(name, "free_field")) == [
+            f'boundary.{name}.type: "free_field" is for left and right; '
+            "its column stands upright and ends where the body does"
+        ]
+
+
+def test_a_column_has_two_ends() -> None:
+    around = side("bottom", "periodic") + side("top", "periodic")
+
+    assert problems(side("right", "free_field") + side("left", "viscous") + side("bottom", "fixed")) == []
+    assert problems(side("right", "free_field") + around) == [
+        f'boundary.{name}.type: is "periodic", but beside boundary.right stands a column with two ends'
+        for name in ("bottom", "top")
+    ]
+    assert problems(side("right", "free_field") + side("left", "periodic")) == [
+        'boundary.left.type: is "periodic", so boundary.right must be periodic too'
+    ]
+
+
 def test_a_packing_that_sends_no_p_wave_can_match_no_speed() -> None:
     match = BASE.replace("p_wave_speed = 1000.0", 'p_wave_speed = 1000.0\nmatch = "assembly"')
     assert match != BASE
@@ -120,6 +154,14 @@ def test_monitors_lie_in_the_scene() -> None:
 def test_monitor_names_are_unique() -> None:
     assert problems(monitor("a", "[0, 0]") + monitor("b", "[1, 1]") + monitor("a", "[2, 2]")) == [
         'monitor[3].name: "a" is taken by monitor[1]'
+    ]
+
+
+def test_a_monitor_is_not_called_as_a_twin_is() -> None:
+    assert problems(monitor("free_field", "[0, 0]") + monitor("a.free", "[0, 0]")) == []
+    assert problems(monitor("a.free_field", "[0, 0]")) == [
+        'monitor[1, a.free_field].name: is "a.free_field", must not end in ".free_field", '
+        "which a monitor's twin is called"
     ]
 
 

@@ -19,6 +19,7 @@ STRESS = "[static]\nstress = [-1e6, -1e6, 0]\n"
 GRAVITY = '[[load]]\nname = "gravity"\nacceleration = [0.0, -9.81]\n'
 TAP = GRAVITY + 'wave = "tap"\n[wave.tap]\ntype = "ricker"\namplitude = 1.0\nfrequency = 20.0\n'
 PERIODIC = '[boundary.left]\ntype = "periodic"\n[boundary.right]\ntype = "periodic"\n'
+FREE_FIELD = PERIODIC.replace("periodic", "free_field")
 UPRIGHT_PERIODIC = PERIODIC.replace("left", "bottom").replace("right", "top")
 
 
@@ -124,12 +125,47 @@ def test_loads_that_come_and_go_need_no_hold() -> None:
     assert problems(STRESS, TAP) == []
 
 
+@pytest.mark.parametrize(
+    ("tables", "line"),
+    [
+        (side("left", "fixed") + side("right", "roller"), "x, but left and right are held there"),
+        (side("bottom", "fixed") + side("top", "fixed"), "y, but bottom and top are held there"),
+    ],
+)
+def test_a_stress_that_cannot_be_reached_is_refused(tables: str, line: str) -> None:
+    assert problems(STRESS, tables) == [f"static.stress: has a component along {line}; free one of them"]
+
+
+@pytest.mark.parametrize("across", ["fixed", "roller"])
+def test_a_stress_is_reached_against_one_side_or_between_walls_along_it(across: str) -> None:
+    assert problems(STRESS, side("bottom", "roller")) == []
+    assert problems(STRESS.replace("-1e6, -1e6", "0, -1e6"), side("left", across), side("right", across)) == []
+
+
 def test_periodic_sides_take_no_support_and_no_stress() -> None:
     assert problems(PERIODIC, STRESS, side("left", "roller")) == [
         "static.boundary.left: is not allowed, as boundary.left is periodic",
         "static.stress: cannot be applied to periodic sides",
     ]
     assert problems(PERIODIC, "[static]\n", side("bottom", "fixed"), GRAVITY) == []
+
+
+def test_free_field_sides_take_supports_but_no_stress() -> None:
+    assert problems(FREE_FIELD, STRESS) == ["static.stress: cannot be applied to free-field sides"]
+    assert problems(FREE_FIELD, "[static]\n", side("left", "roller"), side("bottom", "fixed"), GRAVITY) == []
+
+
+def test_the_column_beside_a_free_field_side_is_held_from_below_or_above() -> None:
+    line = (
+        "static.boundary: nothing holds the free-field column along y against load[1, gravity]; "
+        'give bottom or top "fixed" or "roller"'
+    )
+    tap = GRAVITY.replace("acceleration", "force") + "position = [5.0, 2.5]\n"
+    for name in ("bottom", "top"):
+        assert problems(FREE_FIELD, "[static]\n", side(name, "roller"), GRAVITY) == []
+    assert problems(FREE_FIELD, "[static]\n", side("left", "fixed"), GRAVITY) == [line]
+    # what acts on the body alone may be carried by its sides
+    assert problems(FREE_FIELD, "[static]\n", side("left", "fixed"), tap) == []
 
 
 def test_a_held_axis_is_reported_once() -> None:

@@ -65,6 +65,14 @@ def test_changes_reach_tables_inside_tables() -> None:
         with_changes(changed, {"static.boundary.bottom.type": "viscous"})
 
 
+def test_a_change_within_a_table_given_as_a_whole_leaves_that_one_alone() -> None:
+    push = {"type": "cosine", "amplitude": 1.0, "period": 0.1}
+    changed = with_changes(loads(STARTER), {"wave.pulse": push, "wave.pulse.period": 0.2})
+
+    assert changed.wave["pulse"].period == 0.2
+    assert push["period"] == 0.1
+
+
 def test_wrong_changes_are_refused_like_wrong_files() -> None:
     case = loads(STARTER)
     with pytest.raises(CaseError, match=r"boundary\.left\.beta_p: is -1"):

@@ -13,6 +13,13 @@ Forces = Callable[[np.ndarray, np.ndarray], np.ndarray]
 State = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
+def no_seam(count: int) -> tables.Seam:
+    """Nodes that no free-field column stands beside."""
+    nothing = np.zeros(0, dtype=np.uint32)
+    start = np.zeros(count + 1, dtype=np.uint32)
+    return tables.Seam(np.full(count, -1), np.zeros((count, 3)), start, nothing, nothing, nothing)
+
+
 @dataclass
 class Stepped:
     """Particles under loads and supports, which a law's forces move by central differences.
@@ -95,10 +102,13 @@ class Stepped:
         keep = mobility * (inertia - 0.5 * self.damping)
         prescribed = self.prescribed.astype(float)
         drive = self.push * self.free
-        supports = tables.Supports(self.nodes, inertia, keep, mobility, self.stiffness, prescribed, drive)
+        supports = tables.Supports(
+            self.nodes, inertia, keep, mobility, self.stiffness, prescribed, drive, no_seam(len(self.nodes))
+        )
         everyone = np.arange(self.count)
         record, peaks = np.empty((len(self.push), self.count, 6)), np.zeros((self.count, 3, 2))
-        return body, supports, tables.Log(everyone, record, everyone, peaks, np.zeros((2, 4)))
+        top_speed, work = np.zeros(self.count), np.zeros((2, 4))
+        return body, supports, tables.Log(everyone, record, everyone, peaks, top_speed, work)
 
 
 @pytest.fixture

@@ -119,3 +119,4 @@ def test_the_record_holds_the_state_at_the_start_of_each_step(stepped, random_pa
     for row, (then, before, after) in zip(log.record, states, strict=True):
         close(row[:, :3].T, then)
         close(row[:, 3:].T, 0.5 * (before + after))
+    close(log.top_speed, np.max([np.hypot(*after[:2]) for _, _, after in states], axis=0))

@@ -288,7 +288,34 @@ def test_slack_is_negative_just_where_a_pair_is_outside(random_pairs, plain) -> 
     ],
 )
 def test_the_slack_of_one_contact_by_hand(one_pair, motion: np.ndarray, room: float) -> None:
-    assert slack(motion, one_pair(overlap=0.1), UNBREAKABLE) == pytest.approx(room, rel=1e-12)
+    limits = UNBREAKABLE._replace(geometry=BONDED)
+    assert slack(motion, one_pair(overlap=0.1), limits) == pytest.approx(room, rel=1e-12)
+
+
+def test_a_pair_that_turns_leaves_small_displacements(one_pair) -> None:
+    pair = one_pair(overlap=10.0)
+    limits = UNBREAKABLE._replace(friction=100.0)
+    distance = pair.palette[0, 2]
+    assert slack(two(0.0, 0.004 * distance), pair, limits) == pytest.approx(0.006 * distance, rel=1e-9)
+    assert slack(two(0.0, -0.011 * distance), pair, limits) < 0.0
+    assert slack(two(0.0, -0.011 * distance), pair, limits._replace(geometry=BONDED)) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("motion", "changes", "room"),
+    [
+        # σ = 3 x/2 + 0.75 |θ|, whose two parts change by 1.5 per metre of relative motion at most
+        (two(0.04, turn=-0.08), {"tension": 0.3}, (0.3 - 0.06 - 0.06) / 3.0),
+        (two(0.2, turn=0.2), {"tension": 0.3}, (0.3 - 0.3 - 0.15) / 3.0),
+        # τ = y/2 against 0.4 − 0.6 · 3 x/2: 0.5 and 0.6 · 1.5 per metre
+        (two(-0.1, -0.3), {"cohesion": 0.4, "tan_fa": 0.6}, (0.4 + 0.09 - 0.15) / 1.4),
+        (two(0.3, 0.3), {"cohesion": 0.4, "tan_fa": 0.6}, (0.4 - 0.27 - 0.15) / 1.4),
+    ],
+)
+def test_the_slack_of_one_bond_by_hand(one_pair, motion: np.ndarray, changes: dict, room: float) -> None:
+    # the contact is pressed together so much that it is far from opening and sliding
+    limits = UNBREAKABLE._replace(friction=100.0, geometry=BONDED, **changes)
+    assert slack(motion, one_pair(INTACT, overlap=1.0), limits) == pytest.approx(room, rel=1e-12)
 
 
 def test_without_pairs_there_is_all_the_slack_there_is(one_pair) -> None:

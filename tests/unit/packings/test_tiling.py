@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from dembound.errors import PackingError
 from dembound.packings import Square
 from dembound.packings.tiling import tile
 
@@ -103,3 +104,41 @@ def test_rows_are_repeated_only_at_open_edges(edged_brick):
     assert len(tile(edged_brick, (2, 3), (True, True)).radii) == 6 * count
     assert len(tile(edged_brick, (2, 3), (False, True)).radii) == 6 * count + 3 * on_x
     assert len(tile(edged_brick, (2, 3), (False, False)).radii) == 6 * count + 3 * on_x + 2 * on_y + 1
+
+
+@pytest.mark.parametrize("periodic", [(False, False), (True, False)])
+def test_what_is_left_is_what_was_there(dense_brick, periodic):
+    body = tile(dense_brick, (3, 2), periodic)
+    removed = np.hypot(*(body.positions - body.size / 2.0).T) < 4.0
+    left, kept = body.without(removed)
+    assert np.all(np.diff(kept) > 0)
+    assert not removed[kept].any()
+    assert len(kept) + np.count_nonzero(removed) + left.loose - body.loose == len(body.radii)
+    for name in ("positions", "radii", "brick_particle"):
+        assert np.array_equal(getattr(left, name), getattr(body, name)[kept])
+    among = np.isin(body.pairs, kept).all(axis=1)
+    assert np.array_equal(kept[left.pairs], body.pairs[among])
+    assert np.array_equal(left.kind, body.kind[among])
+    assert left.pairs.dtype == body.pairs.dtype
+
+
+def test_nothing_removed_leaves_the_body_itself(square):
+    body = tile(square, (3, 2), (False, False))
+    left, kept = body.without(np.zeros(6, dtype=bool))
+    assert left is body
+    assert kept.tolist() == [0, 1, 2, 3, 4, 5]
+
+
+def test_of_a_body_cut_in_two_the_larger_part_is_left(square):
+    body = tile(square, (7, 2), (False, False))
+    column = np.floor(body.positions[:, 0])
+    left, kept = body.without(column == 2)
+    assert set(column[kept]) == {3, 4, 5, 6}
+    assert left.loose == 4
+    # a second cut counts on top of the first
+    assert left.without(column[kept] == 5)[0].loose == 6
+
+
+def test_an_empty_body_is_refused(square):
+    with pytest.raises(PackingError, match="no disk is left"):
+        tile(square, (3, 2), (False, False)).without(np.ones(6, dtype=bool))

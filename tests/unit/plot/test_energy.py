@@ -28,8 +28,21 @@ def test_every_column_that_is_not_zero_is_a_line(cracked_run):
 def test_units_and_the_name_are_told(cracked_run):
     figure = plot_energy(cracked_run)
     upper, lower = figure.axes
-    assert (upper.get_ylabel(), lower.get_xlabel()) == ("energy (J per metre of thickness)", "time (s)")
+    assert (upper.get_ylabel(), lower.get_xlabel()) == ("energy per metre of thickness", "time (s)")
     assert figure.get_suptitle().startswith("cracked: ")
+    assert [upper.yaxis.get_major_formatter()(value) for value in (0.0, 20.0, 5e4)] == ["0 J", "20 J", "50 kJ"]
+
+
+def test_what_is_negligible_is_left_out_and_no_two_colours_are_alike(cracked_run, tmp_path):
+    run = tmp_path / "run.h5"
+    run.write_bytes(cracked_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        for name in COLUMNS:
+            file["energy"][name][:] = 1.0
+        file["energy/friction"][:] = 1e-7
+    lines = plot_energy(run).axes[0].lines
+    assert [line.get_label() for line in lines] == [label for name, label in COLUMNS.items() if name != "friction"]
+    assert len({line.get_color() for line in lines}) == len(lines)
 
 
 def test_a_run_without_entries_is_refused(small_run):

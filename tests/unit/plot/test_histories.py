@@ -25,7 +25,7 @@ def test_each_monitor_has_a_panel_with_its_history(small_run, component, quantit
     assert figure.axes[-1].get_xlabel() == "time (s)"
     with h5py.File(small_run) as file:
         for panel, (name, group) in zip(figure.axes, file["histories"].items(), strict=True):
-            assert panel.get_title("left") == name + " at ({:g}, {:g}) m".format(*group.attrs["wanted"])
+            assert panel.get_title("left") == name + " at ({:.2f}, {:.2f}) m".format(*group.attrs["wanted"])
             (line,) = panel.lines
             np.testing.assert_array_equal(line.get_xdata(), group["time"][:])
             np.testing.assert_array_equal(line.get_ydata(), group[quantity][:, column])
@@ -40,6 +40,19 @@ def test_runs_lie_over_each_other_in_different_styles(small_run, other_run):
         assert small.get_linestyle() != other.get_linestyle()
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["small", "other"]
+
+
+def test_places_that_differ_stand_beside_their_lines(small_run, tmp_path):
+    run = tmp_path / "run.h5"
+    run.write_bytes(small_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        file.attrs["name"] = "elsewhere"
+        file["histories/front"].attrs["wanted"] = (2.5, 1.2)
+    front, back = plot_histories([small_run, run]).axes
+    assert front.get_title("left") == "front"
+    assert [text.get_text() for text in front.get_legend().get_texts()] == ["(2.40, 1.20) m", "(2.50, 1.20) m"]
+    assert back.get_title("left") == "back at (9.60, 1.20) m"
+    assert back.get_legend() is None
 
 
 def test_monitors_stand_in_the_order_of_the_case(small_run):

@@ -65,6 +65,43 @@ def test_disks_have_true_sizes_places_and_values(small_run, arguments, number, c
     assert (panel.get_xlabel(), panel.get_ylabel(), panel.get_aspect()) == ("x (m)", "y (m)", 1.0)
 
 
+@pytest.mark.parametrize(("field", "column"), [("stress_xx", 0), ("stress_yy", 1), ("stress_xy", 2)])
+def test_stresses_are_shown_where_they_are_largest(rich_run, field, column):
+    panel, bar = plot_scene(rich_run, field=field).axes
+    with h5py.File(rich_run) as file:
+        stresses = [(each["stress"][:, column], each.attrs["time"]) for each in file["snapshots"].values()]
+    stress, time = max(stresses, key=lambda pair: np.abs(pair[0]).max())
+    disks = disks_of(panel)
+    np.testing.assert_array_equal(disks.get_array(), stress)
+    assert disks.get_clim() == (-np.abs(stress).max(), np.abs(stress).max())
+    assert bar.get_ylabel() == f"stress {field[-2:]} (Pa)"
+    assert panel.get_title() == f"t = {time:.3g} s"
+
+
+def test_peaks_are_those_of_the_whole_run(rich_run):
+    panel, bar = plot_scene(rich_run, field="peak").axes
+    with h5py.File(rich_run) as file:
+        peaks, duration = file["particles/peak_velocity"][:], file.attrs["steps"] * file.attrs["time_step"]
+    disks = disks_of(panel)
+    np.testing.assert_array_equal(disks.get_array(), peaks)
+    assert disks.get_clim() == (0.0, peaks.max())
+    assert bar.get_ylabel() == "largest speed (m/s)"
+    assert panel.get_title() == f"t = 0 to {duration:.3g} s"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"field": "stress_xy"}, "holds no stress; runs with output.stress = true do"),
+        ({"field": "peak"}, "holds no peaks; complete runs with output.peaks = true do"),
+        ({"field": "peak", "snapshot": 0}, "peak: is of the whole run"),
+    ],
+)
+def test_a_field_that_was_not_kept_is_refused(small_run, arguments, said):
+    with pytest.raises(CaseError, match=said):
+        plot_scene(small_run, **arguments)
+
+
 @pytest.mark.parametrize("snapshot", [0, 1])
 def test_bonds_broken_by_then_are_marked_by_how_they_broke(cracked_run, snapshot):
     figure = plot_scene(cracked_run, snapshot)

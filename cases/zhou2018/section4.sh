@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Zhou et al. (2018), section 4: free-field sides, without a tunnel beside other sides, and with one (figures 17 and 18)
+# in patterns A, B and C, beside a continuum solution and beside wider and deeper models. A quarter of an hour and 3 GB
+# on two cores; the continuum solution needs scikit-fem.
+#
+#   cases/zhou2018/section4.sh [RESULTS]      (default: results/zhou2018)
+set -euo pipefail
+cases=$(cd "$(dirname "$0")" && pwd)
+results=${1:-results/zhou2018}
+figures=$results/figures
+mkdir -p "$figures"
+
+echo "== No tunnel: free-field, rolling, viscous, free and fixed sides; the free-field run moves as its column does"
+places='monitor=[{name="middle",position=[150.0,150.0]},{name="quarter",position=[75.0,150.0]},{name="edge",position=[2.0,150.0]},{name="surface",position=[150.0,299.5]},{name="corner",position=[2.0,299.5]}]'
+runs=()
+for side in free_field roller viscous free fixed; do
+    dembound run "$cases/tunnel.toml" --set 'hole=[]' --set "$places" --set "boundary.left={type=\"$side\"}" \
+        --set "boundary.right={type=\"$side\"}" --name "sides_$side" --output "$results"
+    runs+=("$results/sides_$side")
+done
+dembound compare "${runs[@]}"
+dembound plot "${runs[@]}" --monitor middle --monitor edge --monitor surface --output "$figures/sides.png"
+
+echo "== Figures 17, 18: the tunnel in patterns C, B and A, and the continuum"
+dembound run "$cases"/tunnel{,_b,_a}.toml --output "$results"
+python3 "$cases/tunnel_continuum.py" --output "$results"
+dembound plot "$results"/tunnel{_continuum,_a,_b,} --monitor P1 --monitor P2 --output "$figures/fig18_tunnel.png"
+dembound compare "$results"/tunnel{_continuum,_a,_b,}
+
+echo "== Scattered motion beside models five times as wide and three times as deep"
+wide=(--set 'packing.size=[1500.0,900.0]' --set run.duration=3.3 --set output.snapshots=0 --set output.pictures=false
+    --set 'hole=[{name="tunnel",type="circle",centre=[750.0,750.0],radius=20.0}]'
+    --set 'monitor=[{name="P1",position=[729.5,750.0]},{name="P2",position=[750.0,770.5]}]')
+for case in tunnel tunnel_b tunnel_a; do
+    dembound run "$cases/$case.toml" "${wide[@]}" --name "${case}_extended" --output "$results"
+    python3 "$cases/tunnel_errors.py" "$results/$case" "$results/${case}_extended"
+done
+echo "figures are in $figures"

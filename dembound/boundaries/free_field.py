@@ -1,0 +1,35 @@
+"""A free-field side: beyond it the ground moves as it would without the body.
+
+Z eq. 21. The force that the ground beyond puts on a particle is what its twin in the free-field column feels across the
+same seam, moment included: static part and motion at once, nothing to calibrate (see packings/column.py). Dashpots
+on the velocity relative to the twin absorb what the body sends out.
+"""
+
+from collections.abc import Mapping
+from typing import Literal
+
+from pydantic import model_validator
+
+from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
+from dembound.boundaries.viscous import Dashpots, Viscous
+
+
+class FreeField(Dashpots):
+    """The column's seam forces, and F = −βρcD·(v − v_ff), v_ff the velocity of the particle's twin in the column."""
+
+    type: Literal["free_field"]
+
+    @model_validator(mode="after")
+    def _whole_masses(self) -> "FreeField":
+        if self.half_mass:
+            raise ValueError("half_mass: is not for a free-field side, whose other half stands in the column")
+        return self
+
+    def dashpots_alone(self) -> Viscous:
+        """The viscous side with the same dashpots."""
+        return Viscous(type="viscous", beta_p=self.beta_p, beta_s=self.beta_s)
+
+    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+        """One dashpot per edge particle and direction, on its velocity relative to its twin."""
+        for component, damping in enumerate(self.dampings(edge, medium)):
+            supports.add(edge.nodes, component, damping=damping, follow=damping)

@@ -1,0 +1,38 @@
+"""An elliptic hole."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from dembound.holes.hole import Box, Hole
+from dembound.table import quantity
+
+Length = Annotated[float, Field(gt=0.0)]
+
+
+class Ellipse(Hole):
+    """A cavern, or a crack where one axis is short."""
+
+    type: Literal["ellipse"]
+    centre: tuple[float, float] = quantity(..., unit="m", help="where its centre is")
+    semi_axes: tuple[Length, Length] = quantity(..., unit="m", help="half its length, half its width")
+    angle: float = quantity(0.0, unit="degrees", help="from the x axis to the first semi-axis, counter-clockwise")
+
+    @property
+    def _direction(self) -> tuple[float, float]:
+        """Cosine and sine of the angle."""
+        return float(np.cos(np.radians(self.angle))), float(np.sin(np.radians(self.angle)))
+
+    def contains(self, positions: np.ndarray) -> np.ndarray:
+        """Which positions (k, 2) m lie in it, (k,) bool; those on its rim do not."""
+        c, s = self._direction
+        along_axes = (positions - self.centre) @ np.array([[c, -s], [s, c]])
+        return np.hypot(*(along_axes / self.semi_axes).T) < 1.0
+
+    @property
+    def box(self) -> Box:
+        """The upright rectangle around it: x0, y0, x1, y1 in m."""
+        (x, y), (a, b), (c, s) = self.centre, self.semi_axes, self._direction
+        wide, high = float(np.hypot(a * c, b * s)), float(np.hypot(a * s, b * c))
+        return x - wide, y - high, x + wide, y + high

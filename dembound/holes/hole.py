@@ -1,0 +1,30 @@
+"""What all holes have in common: a name, a stage, and particles to take out."""
+
+from abc import ABC, abstractmethod
+from typing import Literal
+
+import numpy as np
+
+from dembound.table import FileName, Table, quantity
+
+Box = tuple[float, float, float, float]
+
+
+class Hole(Table, ABC):
+    """A place without particles: those centred in it are taken out, and so are those this severs from the body."""
+
+    name: FileName = quantity(..., unit="1", help="name of the hole in messages")
+    stage: Literal["before", "after"] = quantity(
+        "before",
+        unit="1",
+        help="whether the body is built with the hole or it is excavated after the static stage, which then goes on",
+    )
+
+    @abstractmethod
+    def contains(self, positions: np.ndarray) -> np.ndarray:
+        """Which positions (k, 2) m lie in it, (k,) bool."""
+
+    @property
+    @abstractmethod
+    def box(self) -> Box:
+        """The smallest rectangle around it: x0, y0, x1, y1 in m."""

@@ -1,0 +1,40 @@
+"""A hole of any shape with straight edges."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic import field_validator
+
+from dembound.holes.hole import Box, Hole
+from dembound.table import quantity
+
+Points = tuple[tuple[float, float], ...]
+
+
+class Polygon(Hole):
+    """A section drawn point by point, such as a horseshoe tunnel or the valley above a slope."""
+
+    type: Literal["polygon"]
+    points: Points = quantity(..., unit="m", help="its corners in order, the last joined to the first")
+
+    @field_validator("points")
+    @classmethod
+    def _three_or_more(cls, points: Points) -> Points:
+        if len(points) < 3:
+            raise ValueError(f"has {len(points)}, must have at least three")
+        return points
+
+    def contains(self, positions: np.ndarray) -> np.ndarray:
+        """Which positions (k, 2) m lie in it, (k,) bool: a ray from there along +x meets an odd number of edges."""
+        x, y = positions.T
+        inside = np.zeros(len(positions), dtype=bool)
+        for (x0, y0), (x1, y1) in zip(self.points, self.points[1:] + self.points[:1], strict=True):
+            if y0 != y1:
+                inside ^= ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) / (y1 - y0) * (x1 - x0))
+        return inside
+
+    @property
+    def box(self) -> Box:
+        """The upright rectangle around it: x0, y0, x1, y1 in m."""
+        x, y = zip(*self.points, strict=True)
+        return min(x), min(y), max(x), max(y)

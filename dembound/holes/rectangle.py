@@ -1,0 +1,34 @@
+"""A rectangular hole."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic import field_validator
+
+from dembound.holes.hole import Box, Hole
+from dembound.table import quantity
+
+
+class Rectangle(Hole):
+    """A drift, a shaft or a trench, upright."""
+
+    type: Literal["rectangle"]
+    corners: Box = quantity(..., unit="m", help="two opposite corners, x0, y0, x1, y1")
+
+    @field_validator("corners")
+    @classmethod
+    def _in_order(cls, corners: Box) -> Box:
+        x0, y0, x1, y1 = corners
+        if not (x0 < x1 and y0 < y1):
+            raise ValueError("must have x0 < x1 and y0 < y1, in the order x0, y0, x1, y1")
+        return corners
+
+    def contains(self, positions: np.ndarray) -> np.ndarray:
+        """Which positions (k, 2) m lie in it, (k,) bool; those on its rim do not."""
+        (x, y), (x0, y0, x1, y1) = positions.T, self.corners
+        return (x0 < x) & (x < x1) & (y0 < y) & (y < y1)
+
+    @property
+    def box(self) -> Box:
+        """Itself: x0, y0, x1, y1 in m."""
+        return self.corners

@@ -1,0 +1,127 @@
+"""What a picture of a scene shows: one field of its disks, at some moments or of the whole run."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import h5py
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.plot.disks import Window
+from dembound.plot.style import UNITS
+from dembound.results import COMPONENTS, cracks_until, laws_in_words, laws_of, snapshot_of
+
+FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak"]
+
+STRESSES = ("stress_xx", "stress_yy", "stress_xy")
+"""In the order of the columns of a stress in a record."""
+
+
+@dataclass(frozen=True)
+class Disks:
+    """The disks of a run before the motion.
+
+    positions (n, 2) and radii (n,) in m; monitors: name -> place (2,) m; case: its name; laws in words, empty if one
+    law served all through.
+    """
+
+    positions: np.ndarray
+    radii: np.ndarray
+    monitors: dict[str, np.ndarray]
+    case: str
+    laws: str
+
+    @cached_property
+    def window(self) -> Window:
+        """The whole scene."""
+        return Window.around(self.positions, self.radii)
+
+
+@dataclass(frozen=True)
+class Field:
+    """One field of the disks of a run, k times.
+
+    captions, k words that say when; values (k, n); cracks so far, each time, as by `cracks_until`; limits of the colour
+    scale, equally far from zero for a field of either sign; the field's name in words and its unit.
+    """
+
+    captions: list[str]
+    values: np.ndarray
+    cracks: list[dict[str, np.ndarray]]
+    limits: tuple[float, float]
+    name: str
+    unit: str
+
+
+def read_disks(file: h5py.File) -> Disks:
+    """The disks of an open record."""
+    laws = laws_of(file)
+    return Disks(
+        positions=file["particles/position"][:],
+        radii=file["particles/radius"][:],
+        monitors={name: group.attrs["position"] for name, group in file.get("histories", {}).items()},
+        case=str(file.attrs["name"]),
+        laws=laws_in_words(laws) if len(laws) > 1 else "",
+    )
+
+
+def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot: int | None, most: int) -> Field:
+    """A field of an open record; name and component as in `plot_scene`.
+
+    Without the number of a snapshot there are up to `most`, evenly picked, the last among them, or if that is 1 the one
+    in which the field is largest. The limits are those of the whole run, 1 where all is zero.
+
+    Raises CaseError when the record has no such snapshot or does not hold the field.
+    """
+    if name == "peak":
+        return _peak(file, snapshot)
+    groups = list(snapshot_of(file, -1).parent.values())
+    dataset = "stress" if name in STRESSES else name
+    if dataset not in groups[0]:
+        raise CaseError([f"{file.filename}: holds no stress; runs with output.stress = true do"])
+    largest = np.array([np.abs(group[dataset][:]).max(axis=0) for group in groups])
+    column, words, unit = _column(name, component, largest.max(axis=0))
+    if snapshot is not None:
+        chosen = [snapshot_of(file, snapshot)]
+    elif most == 1:
+        chosen = [groups[np.argmax(largest[:, column])]]
+    else:
+        backwards = np.linspace(len(groups) - 1, 0, min(most, len(groups)))
+        chosen = [groups[round(number)] for number in reversed(backwards)]
+    times = [float(group.attrs["time"]) for group in chosen]
+    limit = float(largest[:, column].max()) or 1.0
+    return Field(
+        captions=[f"t = {time:.3g} s" for time in times],
+        values=np.array([group[dataset][:, column] for group in chosen]),
+        cracks=[cracks_until(file, time) for time in times],
+        limits=(-limit, limit),
+        name=words,
+        unit=unit,
+    )
+
+
+def _column(name: str, component: str | None, largest: np.ndarray) -> tuple[int, str, str]:
+    """The column of a field, the field in words, and its unit; largest (3,) of each column in the run."""
+    if name in STRESSES:
+        return STRESSES.index(name), f"stress {name[-2:]}", "Pa"
+    column = int(np.argmax(largest[:2])) if component is None else COMPONENTS.index(component)
+    way = "of rotation" if column == 2 else f"along {COMPONENTS[column]}"
+    return column, f"{name} {way}", UNITS[name][column]
+
+
+def _peak(file: h5py.File, snapshot: int | None) -> Field:
+    """The largest speed of every disk in the whole run."""
+    if snapshot is not None:
+        raise CaseError(["peak: is of the whole run, not of a snapshot"])
+    if "peak_velocity" not in file["particles"]:
+        raise CaseError([f"{file.filename}: holds no peaks; complete runs with output.peaks = true do"])
+    values = file["particles/peak_velocity"][:]
+    return Field(
+        captions=[f"t = 0 to {file.attrs['steps'] * file.attrs['time_step']:.3g} s"],
+        values=values[None],
+        cracks=[cracks_until(file, np.inf)],
+        limits=(0.0, float(values.max()) or 1.0),
+        name="largest speed",
+        unit="m/s",
+    )

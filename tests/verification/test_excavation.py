@@ -1,0 +1,103 @@
+"""A circular hole excavated in a stressed plate moves its wall as Kirsch's solution says.
+
+And a linear body comes to the same whether it is built with a hole or the hole is excavated later.
+
+Kirsch (1898), in plane strain and for ν = 0 (Jaeger, Cook and Zimmerman, Fundamentals of Rock Mechanics, section 8.6):
+what the excavation of radius a adds to the displacements of an infinite body under the mean stress p̄ and the deviator
+s, σ_xx = p̄ + s and σ_yy = p̄ − s, is
+
+    u_r = a²/(2Gr) [p̄ + s (4 − a²/r²) cos 2θ],   u_θ = −a²/(2Gr) s (2 + a²/r²) sin 2θ.
+
+The square lattice with k_s = k_n = K is isotropic with ν = 0 and G = K/2.
+"""
+
+import numpy as np
+import pytest
+
+from dembound.case import with_changes
+from dembound.scene import Scene, build
+from dembound.static import Settled, settle
+
+DISKS = 12  # in the hole's radius
+WIDTH = 12  # of the plate, in radii
+MEAN, DEVIATOR = -1.5e6, 0.5e6  # Pa
+RATIO = 1e-5
+
+
+def radius(lab) -> float:
+    return DISKS * lab.diameter
+
+
+@pytest.fixture(scope="module")
+def plate(lab) -> tuple[Scene, Settled]:
+    """A plate under biaxial stress, all sides free, with a hole excavated in its middle."""
+    a = radius(lab)
+    case = lab.case(
+        "A",
+        (WIDTH * a, WIDTH * a),
+        held=(),
+        material={"fric": 1.0},
+        static={"stress": (MEAN + DEVIATOR, MEAN - DEVIATOR, 0.0), "ratio": RATIO},
+    )
+    middle = [0.5 * WIDTH * a] * 2
+    hole = {"name": "tunnel", "type": "circle", "centre": middle, "radius": a, "stage": "after"}
+    scene = build(with_changes(case, {"hole": [hole]}))
+    return scene, settle(scene)
+
+
+def test_the_wall_moves_as_kirsch_says(plate, lab):
+    scene, settled = plate
+    a, shear_modulus = radius(lab), 0.5 * lab.density * lab.speed**2
+    x, y = (scene.assembly.positions - 0.5 * WIDTH * a).T
+    r, angle = np.hypot(x, y), np.arctan2(y, x)
+    wall = r < a + lab.diameter
+    moved = (settled.start.displacement - settled.before.start.displacement[:, scene.kept])[:2, wall]
+    r, c, s = r[wall], np.cos(angle[wall]), np.sin(angle[wall])
+    found = np.concatenate([c * moved[0] + s * moved[1], c * moved[1] - s * moved[0]])
+
+    scale = a**2 / (2.0 * shear_modulus * r)
+    cos, sin = np.cos(2.0 * angle[wall]), np.sin(2.0 * angle[wall])
+    by_mean = np.concatenate([scale, np.zeros_like(r)])
+    by_deviator = np.concatenate([scale * (4.0 - a**2 / r**2) * cos, -scale * (2.0 + a**2 / r**2) * sin])
+    kirsch = np.stack([by_mean, by_deviator], axis=1)
+    stress, *_ = np.linalg.lstsq(kirsch, found, rcond=None)
+
+    # The wall is a staircase of disks centred between a and a + D, from where on there are contacts: its radius is
+    # uncertain by D/2 either way, and displacements go with its square
+    rough = 1.0 / DISKS
+    # The plate is finite and gives way more than an infinite body, but less than a disk of radius b, half its width:
+    # with ε = (a/b)², that one's exact excess (Lamé) is 2ε/(1 − ε) for the mean stress. For the deviator, Kirsch's
+    # solution lacks 4ε s of traction at b. This uniform field again, 4ε/(1 − 4ε) with what it lacks in turn, moves the
+    # wall by 4as/2G, the excavation by 3as/2G
+    share = (2.0 / WIDTH) ** 2
+    soft = 2.0 * share / (1.0 - share), 4.0 / 3.0 * 4.0 * share / (1.0 - 4.0 * share)
+    for fitted, given, excess in zip(stress, (MEAN, DEVIATOR), soft, strict=True):
+        assert -rough < fitted / given - 1.0 < rough + excess
+    assert np.abs(found - kirsch @ stress).max() < rough * np.abs(found).max()
+
+
+def test_the_way_there_does_not_matter_to_a_linear_body(lab):
+    """Random ground under its weight: built with a cavern, or excavated once it stands."""
+    ratio, size = 1e-7, 15.0
+    supports = {"left": "roller", "right": "roller", "bottom": "fixed"}
+    case = lab.case(
+        "B",
+        (size, size),
+        held=(),
+        brick=(7.5, 7.5),
+        material={"fric": 0.5},
+        load=[{"acceleration": (0.0, -9.81)}],
+        static={"ratio": ratio, "boundary": {side: {"type": kind} for side, kind in supports.items()}},
+    )
+    cavern = {"name": "cavern", "type": "ellipse", "centre": [7.0, 8.0], "semi_axes": [4.0, 2.0], "angle": 30.0}
+    built, excavated = (
+        settle(build(with_changes(case, {"hole": [{**cavern, "stage": stage}]}))) for stage in ("before", "after")
+    )
+    assert excavated.before.start.displacement.shape[1] > built.start.displacement.shape[1]
+    # Each rest leaves the share `ratio` of the mean contact force on every disk. At worst that acts one way and adds up
+    # over the disks in a row to so many shares of what moved them
+    across = size / lab.diameter
+    moved = built.start.displacement[:2]
+    np.testing.assert_allclose(
+        excavated.start.displacement[:2], moved, rtol=0.0, atol=2.0 * ratio * across * np.abs(moved).max()
+    )
