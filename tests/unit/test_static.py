@@ -269,3 +269,10 @@ def test_static_supports_hold_free_field_sides(bar, sides: str, still: list[int]
     moved = settle(ground).start.displacement[:, ground.edges["right"].nodes]
 
     assert [axis for axis in (0, 1) if not moved[axis].any()] == still
+
+
+def test_the_dashpots_of_a_free_field_act_unless_the_stage_has_its_own_side(bar) -> None:
+    with_dashpots, without = (settle(packed_ground(bar, sides)) for sides in (None, "free"))
+
+    # ρcD of a side outdo local damping: the body creeps into place
+    assert with_dashpots.steps > 2 * without.steps
