@@ -9,21 +9,12 @@ from dembound.kernels.elastic import DONE, LIST_ENDS
 from dembound.kernels.step import damping_work, kick, move_supported, note_after, note_before
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def _node_forces(contacts, supports, load, force, across):
-    """Fill force (k, 3) with contact, seam and steady forces on the nodes, across (k, 3) with those of the seam."""
-    seam_ends_forces(contacts, supports.seam, across)
-    for s in range(supports.nodes.size):
-        i = U(supports.nodes[s])
-        force[s, 0], force[s, 1], force[s, 2] = ends_force(i, contacts.force, contacts.start, contacts.end)
-        for c in range(3):
-            force[s, c] += across[s, c]
-            force[s, c] += load[c, i]
-
-
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
 def _move(u, v, contacts, body, spare, fastest, damped):
-    """One step of all particles; fastest (chunks,) gets their speeds, damped (chunks, 2) the work of local damping."""
+    """One step of all particles but the supported ones, whose forces wait in spare for `move_supported`.
+
+    fastest (chunks,) gets their speeds, damped (chunks, 2) the work of local damping.
+    """
     mobility, inverse_inertia, free, load, damp, step = body
     force, start, end = contacts.force, contacts.start, contacts.end
     n = u.shape[1]
@@ -37,6 +28,11 @@ def _move(u, v, contacts, body, spare, fastest, damped):
             fx += load[U(0), i]
             fy += load[U(1), i]
             moment += load[U(2), i]
+            if mobility[i] == 0.0:
+                spare[U(0), i] = fx
+                spare[U(1), i] = fy
+                spare[U(2), i] = moment
+                continue
             vx = kick(v[U(0), i], fx, free[0] * mobility[i], damp)
             vy = kick(v[U(1), i], fy, free[1] * mobility[i], damp)
             spin = kick(v[U(2), i], moment, free[2] * inverse_inertia[i], damp)
@@ -69,7 +65,6 @@ def advance(u, spare, v, number, contacts, limits, origin, skin, body, supports,
     """
     steps = supports.drive.shape[0]
     nodes = supports.nodes
-    at_nodes = np.empty((nodes.size, 3))
     across = np.empty((nodes.size, 3))
     followed = np.empty((nodes.size, 3))
     fastest = np.zeros(CHUNKS)
@@ -89,10 +84,10 @@ def advance(u, spare, v, number, contacts, limits, origin, skin, body, supports,
                 why = LIST_ENDS
                 break
         push(here, v, body.step, number + step, contacts, limits, lost)
-        _node_forces(contacts, supports, body.load, at_nodes, across)
+        seam_ends_forces(contacts, supports.seam, across)
         note_before(step, here, v, supports.seam, followed, log)
         _move(here, v, contacts, body, there, fastest, damped)
-        move_supported(step, here, v, there, at_nodes, across, followed, supports, body, log.work)
+        move_supported(step, here, v, there, across, followed, supports, body, log.work)
         note_after(step, v, log)
         log.work[1, 1] += damped[:, 1].sum()
         log.work[0, 1] += damped[:, 0].sum()

@@ -75,22 +75,12 @@ def seam_forces(u, rows, seam, across):
             )
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def _node_forces(u, rows, supports, load, force, across):
-    """Fill force (k, 3) with contact, seam and steady forces on the nodes, across (k, 3) with those of the seam."""
-    seam_forces(u, rows, supports.seam, across)
-    for s in range(supports.nodes.size):
-        i = U(supports.nodes[s])
-        force[s, 0], force[s, 1], force[s, 2] = _row_force(i, i, u, rows.start, rows.neighbour, rows.kind, rows.palette)
-        for c in range(3):
-            force[s, c] += across[s, c]
-            if load.shape[1] > 0:
-                force[s, c] += load[c, i]
-
-
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
 def _move(u, v, rows, body, spare, fastest, arms, damped):
-    """One step of all particles; fastest (chunks,) gets surface speeds if there are arms, damped (chunks, 2) work."""
+    """One step of all particles but the supported ones, whose forces wait in spare for `move_supported`.
+
+    fastest (chunks,) gets surface speeds if there are arms, damped (chunks, 2) the work of local damping.
+    """
     start, neighbour, kind, palette = rows
     mobility, inverse_inertia, free, load, damp, step = body
     n = u.shape[1]
@@ -107,6 +97,11 @@ def _move(u, v, rows, body, spare, fastest, arms, damped):
                 fx += load[U(0), i]
                 fy += load[U(1), i]
                 moment += load[U(2), i]
+            if mobility[i] == 0.0:
+                spare[U(0), i] = fx
+                spare[U(1), i] = fy
+                spare[U(2), i] = moment
+                continue
             vx = kick(v[U(0), i], fx, free[0] * mobility[i], damp)
             vy = kick(v[U(1), i], fy, free[1] * mobility[i], damp)
             spin = kick(v[U(2), i], moment, free[2] * inverse_inertia[i], damp)
@@ -142,7 +137,6 @@ def advance(u, spare, v, rows, body, supports, log, watch):
     """
     steps = supports.drive.shape[0]
     nodes = supports.nodes
-    at_nodes = np.empty((nodes.size, 3))
     across = np.empty((nodes.size, 3))
     followed = np.empty((nodes.size, 3))
     fastest = np.zeros(CHUNKS)
@@ -162,10 +156,10 @@ def advance(u, spare, v, rows, body, supports, log, watch):
                 done = step
                 why = LIST_ENDS if listed < 0.0 else LAW_ENDS
                 break
-        _node_forces(here, rows, supports, body.load, at_nodes, across)
+        seam_forces(here, rows, supports.seam, across)
         note_before(step, here, v, supports.seam, followed, log)
         _move(here, v, rows, body, there, fastest, watch.arms, damped)
-        move_supported(step, here, v, there, at_nodes, across, followed, supports, body, log.work)
+        move_supported(step, here, v, there, across, followed, supports, body, log.work)
         note_after(step, v, log)
         if body.damp > 0.0:
             log.work[1, 1] += damped[:, 1].sum()

@@ -37,11 +37,12 @@ def note_before(step, u, v, seam, followed, log):
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def move_supported(step, u, v, spare, force, across, followed, supports, body, work):
+def move_supported(step, u, v, spare, across, followed, supports, body, work):
     """Move the supported nodes by a step, once all other particles have; spare holds the new displacements.
 
-    force (k, 3) is what acts on them but supports, across (k, 3) the part of it that comes through seams, which is the
-    outside's work; followed (k, 3) half the velocity of their twins before the step. work (2, 4) is advanced.
+    For these nodes it holds their contact forces and steady loads before. across (k, 3) are the forces through seams,
+    which are the outside's work; followed (k, 3) half the velocity of the nodes' twins before the step. work (2, 4) is
+    advanced.
     """
     nodes, inertia, keep, mobility, stiffness, prescribed, drives, seam = supports
     drive = drives[step]
@@ -53,7 +54,8 @@ def move_supported(step, u, v, spare, force, across, followed, supports, body, w
         i = U(nodes[s])
         for c in range(3):
             before = v[U(c), i]
-            total = force[s, c] - stiffness[s, c] * u[U(c), i] + drive[s, c]
+            force = spare[U(c), i]
+            total = force + across[s, c] - stiffness[s, c] * u[U(c), i] + drive[s, c]
             if seam.twin[s] >= 0:
                 total += seam.follow[s, c] * (followed[s, c] + 0.5 * v[U(c), U(seam.twin[s])])
             drag = 0.0
@@ -63,7 +65,7 @@ def move_supported(step, u, v, spare, force, across, followed, supports, body, w
             w = 0.0 if abs(w) <= REST else w
             v[U(c), i] = w
             spare[U(c), i] = u[U(c), i] + body.step * w
-            push = inertia[s, c] * (w - before) - (force[s, c] - across[s, c]) - drag
+            push = inertia[s, c] * (w - before) - force - drag
             done += 0.5 * push * (before + w)
             half += 0.5 * push * before
             damped -= 0.5 * drag * (before + w)
