@@ -16,7 +16,7 @@ from dembound.laws import pair_lines
 from dembound.packings.column import Seam
 from dembound.packings.tiling import Assembly
 
-SKIN = 0.1
+SKIN = 0.05
 """Pairs are listed while their gap is below this share of the mean diameter: they are looked for anew once a particle
 has moved by half of it."""
 
@@ -173,12 +173,12 @@ class ContactList:
         keys = _keys(old.first[kept], old.second[kept], self._image[kept], count)
         fresh = ~np.isin(_keys(near[:, 0], near[:, 1], image, count), keys)
         first, second = near[fresh].T
-        new = len(first)
         vectors = self.assembly.positions[second] - self.assembly.positions[first] + image[fresh] * self._periods[first]
         radii = self.assembly.radii
         lines = pair_lines(
             self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
         )
+        lines, line_of_new = _shared(lines, self.skin)
         # lines of earlier searches that are still in use move up behind the brick's own
         own = len(self._bonds)
         used, line = np.unique(old.kind[kept], return_inverse=True)
@@ -190,14 +190,14 @@ class ContactList:
             np.concatenate([old.first[kept], first]),
             np.concatenate([old.second[kept], second]),
             np.concatenate([self._image[kept], image[fresh]]),
-            np.concatenate([place[line], own + np.count_nonzero(extra) + np.arange(new)]),
+            np.concatenate([place[line], own + np.count_nonzero(extra) + line_of_new]),
         )
         self._list(
             pairs,
-            np.concatenate([old.state[kept], np.full(new, NONE, dtype=np.uint8)]),
-            np.concatenate([old.shear[kept], np.zeros(new)]),
-            np.concatenate([old.slip[kept], np.zeros(new)]),
-            np.concatenate([old.cracked[kept], np.full(new, -1)]),
+            np.concatenate([old.state[kept], np.full(len(first), NONE, dtype=np.uint8)]),
+            np.concatenate([old.shear[kept], np.zeros(len(first))]),
+            np.concatenate([old.slip[kept], np.zeros(len(first))]),
+            np.concatenate([old.cracked[kept], np.full(len(first), -1)]),
         )
         self.origin = displacement[:2].copy()
 
@@ -335,6 +335,16 @@ def _brick_lines(ground: Ground, *, gaps_close: bool, locked_in: bool) -> np.nda
     half[:, 5:10] *= 0.5  # stiffnesses
     half[:, 10:] *= 2.0  # and areas and sections with them, so that stresses stay
     return np.vstack([lines, half])
+
+
+def _shared(lines: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Palette lines (p, 12) of pairs without those that are equal but for rounding, and each pair's line (b,).
+
+    Pairs at the same place of different bricks then share a line; length (m) is what rounding is small against.
+    """
+    places = np.round(lines[:, :5] / (1e-6 * length))
+    _, first, line_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
+    return lines[first], line_of.reshape(-1)
 
 
 def _keys(first: np.ndarray, second: np.ndarray, image: np.ndarray, count: int) -> np.ndarray:
