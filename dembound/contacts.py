@@ -1,10 +1,8 @@
 """The pairs of a scene: who touches or may soon touch whom, kept up to date as particles move."""
 
 from dataclasses import dataclass, fields
-from itertools import product
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from dembound.case.material import Material
 from dembound.ground import Ground
@@ -13,6 +11,7 @@ from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SHEAR, UPDATED
 from dembound.kernels.tables import Contacts, Limits
 from dembound.laws import pair_lines
+from dembound.neighbours import near_pairs, pair_keys
 from dembound.packings.column import Seam
 from dembound.packings.tiling import Assembly
 
@@ -170,8 +169,8 @@ class ContactList:
         gap = np.hypot(*vectors.T) - self.assembly.radii[old.first] - self.assembly.radii[old.second]
         kept = (old.state == INTACT) | (gap <= self.skin)
         kept[self.seam_ends() >> 1] = True
-        keys = _keys(old.first[kept], old.second[kept], self._image[kept], count)
-        fresh = ~np.isin(_keys(near[:, 0], near[:, 1], image, count), keys)
+        keys = pair_keys(old.first[kept], old.second[kept], self._image[kept], count)
+        fresh = ~np.isin(pair_keys(near[:, 0], near[:, 1], image, count), keys)
         first, second = near[fresh].T
         vectors = self.assembly.positions[second] - self.assembly.positions[first] + image[fresh] * self._periods[first]
         radii = self.assembly.radii
@@ -241,9 +240,9 @@ class ContactList:
         owner = np.repeat(seam.twin[seam.node], seam.many)
         vectors = self._bonds[seam.kind, :2] * np.where(seam.second, -1.0, 1.0)[:, None]
         image = self._images(owner, seam.near, vectors)
-        listed = _keys(self.arrays.first, self.arrays.second, self._image, count)
+        listed = pair_keys(self.arrays.first, self.arrays.second, self._image, count)
         order = np.argsort(listed)
-        pair = order[np.searchsorted(listed, _keys(owner, seam.near, image, count), sorter=order)]
+        pair = order[np.searchsorted(listed, pair_keys(owner, seam.near, image, count), sorter=order)]
         turned = (self.arrays.first[pair] != owner) | (self._image[pair] != image).any(axis=1)
         return 2 * pair + turned
 
@@ -289,7 +288,7 @@ class ContactList:
         """Pairs (b, 2) within the skin at positions (n, 2) and the periods between them, body by body."""
         found = []
         for body, periods in self._bodies:
-            near, image = _near_pairs(positions[body], self.assembly.radii[body], self.skin, periods)
+            near, image = near_pairs(positions[body], self.assembly.radii[body], self.skin, periods)
             found.append((near + body.start, image))
         pairs, images = zip(*found, strict=True)
         return np.concatenate(pairs), np.concatenate(images)
@@ -345,41 +344,3 @@ def _shared(lines: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
     places = np.round(lines[:, :5] / (1e-6 * length))
     _, first, line_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
     return lines[first], line_of.reshape(-1)
-
-
-def _keys(first: np.ndarray, second: np.ndarray, image: np.ndarray, count: int) -> np.ndarray:
-    """One number per pair, whichever way round it is listed."""
-    turned = (first > second) | ((first == second) & ((image[:, 0] < 0) | ((image[:, 0] == 0) & (image[:, 1] < 0))))
-    low = np.where(turned, second, first).astype(np.int64)
-    high = np.where(turned, first, second).astype(np.int64)
-    image = np.where(turned[:, None], -image, image)
-    return ((low * count + high) * 3 + image[:, 0] + 1) * 3 + image[:, 1] + 1
-
-
-def _near_pairs(
-    positions: np.ndarray, radii: np.ndarray, skin: float, periods: tuple[float | None, float | None]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs (b, 2) of disks with gaps up to skin (m), and the periods (b, 2) between them, each pair once.
-
-    positions (n, 2), radii (n,) in m. Particles may have drifted out of the period; what counts are differences.
-    """
-    reach = 2.0 * radii.max() + skin
-    period = np.array([length or 0.0 for length in periods])
-    tree = cKDTree(positions)
-    inside = tree.query_pairs(reach, output_type="ndarray").astype(np.int64)
-    found = [(inside, np.zeros_like(inside))]
-    for way in _half_of_the_images(periods):
-        across = tree.sparse_distance_matrix(cKDTree(positions + way * period), reach, output_type="ndarray")
-        met = np.column_stack([across["i"], across["j"]]).astype(np.int64)
-        found.append((met, np.broadcast_to(way, met.shape)))
-    pairs = np.concatenate([listed for listed, _ in found])
-    image = np.concatenate([images for _, images in found])
-    gap = np.hypot(*(positions[pairs[:, 1]] + image * period - positions[pairs[:, 0]]).T) - radii[pairs].sum(axis=1)
-    near = gap <= skin
-    return pairs[near], image[near]
-
-
-def _half_of_the_images(periods: tuple[float | None, float | None]) -> list[np.ndarray]:
-    """Neighbouring images of a periodic scene, one of each opposite two: the other lists the same pairs."""
-    steps = [(-1, 0, 1) if period else (0,) for period in periods]
-    return [np.array(image) for image in product(*steps) if image > (0, 0)]
