@@ -54,7 +54,7 @@ def write_exact(case: Case, path: Path) -> None:
     if problems := [*_yielding(case), *_ends_of_the_surface(scene, load)]:
         raise CaseError(problems)
     times = np.linspace(0.0, case.run.duration, SAMPLES)
-    motions = {name: _motion(scene, load, speeds, name, times) for name in scene.monitors}
+    motions = {monitor.name: _motion(scene, load, speeds, monitor.name, times) for monitor in case.monitor}
     path.parent.mkdir(parents=True, exist_ok=True)
     with replacing(path) as part, h5py.File(part, "w") as file:
         file.attrs.update({"name": case.name, "case": case.text, "version": __version__, "complete": True})
@@ -123,7 +123,7 @@ def _yielding(case: Case) -> Iterator[str]:
 
 def _ends_of_the_surface(scene: Scene, load: LineLoad) -> Iterator[str]:
     """Sides so near that the load stands on the corner of a quarter space; one that mirrors it is at distance zero."""
-    monitors = scene.assembly.positions[list(scene.monitors.values()), 0]
+    monitors = scene.assembly.positions[[scene.monitors[monitor.name] for monitor in scene.case.monitor], 0]
     reach = np.abs(monitors - load.x).max(initial=0.0)
     for side, plane in (("left", 0.0), ("right", float(scene.assembly.size[0]))):
         away = abs(plane - load.x)

@@ -148,7 +148,8 @@ class Recorder:
             group = histories.create_group(name)
             group.attrs["particle"] = node
             group.attrs["position"] = scene.assembly.positions[node]
-            group.attrs["wanted"] = wanted[name.removesuffix(FREE_FIELD)]
+            twin = name.endswith(FREE_FIELD)  # its place is nobody's wish
+            group.attrs["wanted"] = scene.assembly.positions[node] if twin else wanted[name]
             group.attrs["unit"] = "m"
             for dataset, width, unit in (
                 ("time", (), "s"),

@@ -31,8 +31,13 @@ def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
     """
     snapshots = list(file.get("snapshots", {}).values())
     if not -len(snapshots) <= number < len(snapshots):
-        raise CaseError([f"{file.filename}: has no snapshot {number}, it has {len(snapshots)}"])
+        raise CaseError([f"{file.filename}: has no snapshot {number}, they are {_numbers(len(snapshots))}"])
     return snapshots[number]
+
+
+def _numbers(count: int) -> str:
+    """How snapshots are numbered, in words."""
+    return f"0 to {count - 1}" if count else "none"
 
 
 def liveliest_snapshot(file: h5py.File, field: str) -> h5py.Group:

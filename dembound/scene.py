@@ -63,15 +63,16 @@ class Scene:
     @cached_property
     def mass(self) -> np.ndarray:
         """(n,) kg, of which particles on sides with half mass keep their half."""
-        return self.ground.mass[self.assembly.brick_particle] * self._mass_factor
+        return self.ground.mass[self.assembly.brick_particle] * self.share
 
     @cached_property
     def inertia(self) -> np.ndarray:
         """(n,) kg·m², halved with the mass."""
-        return self.ground.inertia[self.assembly.brick_particle] * self._mass_factor
+        return self.ground.inertia[self.assembly.brick_particle] * self.share
 
     @cached_property
-    def _mass_factor(self) -> np.ndarray:
+    def share(self) -> np.ndarray:
+        """(n,) part of its cell that is a particle's own: 1, on a side of half cells ½, where two such meet ¼."""
         return mass_factor(self.count, self.edges, self.case.boundary)
 
     @cached_property

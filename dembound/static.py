@@ -157,10 +157,10 @@ class _StaticScene:
         self.held = np.zeros(scene.count, dtype=bool)
         for edge in scene.edges.values():
             self.held[edge.nodes] = static.stress is not None
-        self.held[self.scene.supports.node] = True
-        self._floats = len(self.scene.supports) == 0
-        self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.count, axis=1)
         supports: Supports = self.scene.supports
+        self.held[supports.node[supports.prescribed]] = True  # dashpots carry nothing at rest
+        self._floats = len(supports) == 0
+        self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.count, axis=1)
         across = (supports.component < 2) & supports.prescribed
         self._moves[supports.component[across], supports.node[across]] = False
 
@@ -223,7 +223,7 @@ def _without_torque(force: np.ndarray, positions: np.ndarray, loaded: np.ndarray
 def mean_stress(scene: Scene, stress: np.ndarray) -> np.ndarray:
     """Mean stress (3,) inside a body, over the area of its particles away from the sides; stress (n, 3) of each."""
     inside = _inside(scene)
-    return np.average(stress[inside], axis=0, weights=scene.assembly.radii[inside] ** 2)
+    return np.average(stress[inside], axis=0, weights=(scene.assembly.radii**2 * scene.share)[inside])
 
 
 def _inside(scene: Scene) -> np.ndarray:

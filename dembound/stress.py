@@ -32,9 +32,9 @@ def stress_now(simulation: Simulation) -> np.ndarray:
 def particle_stress(scene: Scene, contacts: Contacts, displacement: np.ndarray, *, elastic: bool) -> np.ndarray:
     """Stress (n, 3) xx, yy, xy in Pa of all particles, tension positive; xy is the mean of both shear stresses.
 
-    A particle's stress is Σ f_a l n_b over its area πR² with its share of the pores, f the force that pulls at it
-    across a contact and l n the way from its centre to there (Love's and Weber's mean). What pushes at a side from
-    outside is no contact and does not count.
+    A particle's stress is Σ f_a l n_b over its area πR² with its share of the pores, half of that for half cells, f the
+    force that pulls at it across a contact and l n the way from its centre to there (Love's and Weber's mean). What
+    pushes at a side from outside is no contact and does not count.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def particle_stress(scene: Scene, contacts: Contacts, displacement: np.ndarray, 
         for total, dyad in zip(moments, (pull_x * x, pull_y * y, 0.5 * (pull_x * y + pull_y * x)), strict=True):
             np.add.at(total, first, part * dyad)
             np.add.at(total, second, (1.0 - part) * dyad)
-    area = np.pi * scene.assembly.radii**2 / scene.ground.brick.solid_fraction
+    area = np.pi * scene.assembly.radii**2 * scene.share / scene.ground.brick.solid_fraction
     return (moments / area).T
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
-from dembound.boundaries import BoundaryTable, FreeField, Periodic, normal_axis
+from dembound.boundaries import BoundaryTable, FreeField, Periodic, ViscoelasticInput, normal_axis
 
 Sides = Mapping[str, BoundaryTable | None]
 
@@ -17,5 +17,12 @@ def free_field_problems(boundaries: Sides) -> Iterator[str]:
                 "its column stands upright and ends where the body does"
             )
     for side, table in boundaries.items():
-        if beside and isinstance(table, Periodic) and normal_axis(side) == 1:
+        if not beside or normal_axis(side) == 0:
+            continue
+        if isinstance(table, Periodic):
             yield f'boundary.{side}.type: is "periodic", but beside boundary.{beside[0]} stands a column with two ends'
+        if isinstance(table, ViscoelasticInput) and table.source is not None:
+            yield (
+                f"boundary.{side}.source: makes springs differ along the side, and the column beside "
+                f"boundary.{beside[0]} with them; give distance"
+            )

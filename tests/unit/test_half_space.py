@@ -74,6 +74,15 @@ def test_a_side_that_is_far_or_goes_on_periodically_makes_no_quarter_space(tmp_p
         assert (tmp_path / name / "run.h5").exists()
 
 
+def test_twins_in_a_free_field_column_are_no_monitors(tmp_path):
+    # the column stands 9 m from the load, whose monitors are 1.5 m away, and the right side 1.25 m
+    places = {"load": [{**HAMMER, "position": [8.75, 4.75]}], "monitor": [{"name": "near", "position": [7.25, 4.75]}]}
+    case = with_changes(loads(CASE), {"boundary.left.type": "free_field", **places})
+    write_exact(case, tmp_path / "run.h5")
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert list(file["histories"]) == ["near"]
+
+
 HAMMER = {"name": "hammer", "force": [0.0, -1000.0], "position": [4.75, 4.75], "wave": "pulse"}
 
 

@@ -33,7 +33,10 @@ def test_snapshots_go_by_number_from_either_end(small_run, number, name):
 
 @pytest.mark.parametrize("number", [2, -3])
 def test_a_missing_snapshot_is_refused_with_the_file_and_their_number(small_run, number):
-    with open_record(small_run) as file, pytest.raises(CaseError, match=rf"run.h5: has no snapshot {number}, it has 2"):
+    with (
+        open_record(small_run) as file,
+        pytest.raises(CaseError, match=rf"run.h5: has no snapshot {number}, they are 0 to 1"),
+    ):
         snapshot_of(file, number)
 
 

@@ -276,3 +276,12 @@ def test_the_dashpots_of_a_free_field_act_unless_the_stage_has_its_own_side(bar)
 
     # ρcD of a side outdo local damping: the body creeps into place
     assert with_dashpots.steps > 2 * without.steps
+
+
+def test_what_is_carried_is_the_base_s_and_not_the_dashpots(bar) -> None:
+    boundary = {side: {"type": "free_field"} for side in ("left", "right")}
+    settled = settle(scene(bar, **{**STANDING, "boundary": boundary}))
+
+    # two disks of the body and one of the column stand on the base, each under three more
+    assert settled.carried == pytest.approx(4.0 * MASS * G, rel=1e-6)
+    assert settled.left < 1e-7 * settled.carried

@@ -38,6 +38,23 @@ def test_a_strained_lattice_answers_with_its_stiffness(bar) -> None:
     np.testing.assert_allclose(stress, np.tile(expected, (len(stress), 1)), rtol=0.0, atol=1e-14 * K * shear)
 
 
+def test_half_cells_answer_as_whole_ones_do(bar) -> None:
+    sides = {side: {"type": "viscous", "half_mass": True} for side in ("left", "bottom")}
+    scene = build(bar({**BODY, "packing.size": [4.0, 4.0], "boundary": sides}))
+    xx, yy = 1e-6, -2e-6
+    x, y = scene.assembly.positions.T
+    displacement = np.stack([xx * x, yy * y, 0.0 * x])
+    stress = elastic_stress(scene, displacement)
+
+    assert set(scene.share) == {0.25, 0.5, 1.0}
+    kept = (x < 3.5) & (y < 3.5)  # right and top are whole cells with one contact less
+    # rounding as above
+    np.testing.assert_allclose(stress[kept, :2], np.tile([K * xx, K * yy], (kept.sum(), 1)), atol=1e-14 * K * abs(yy))
+    # a scene this small is averaged whole, disks of one size by what they have of their cells
+    mean = mean_stress(scene, np.repeat(scene.share[:, None], 3, axis=1))
+    np.testing.assert_allclose(mean, (scene.share**2).sum() / scene.share.sum(), rtol=1e-12)
+
+
 @pytest.mark.parametrize("piece", [100, module.PIECE])
 def test_elastic_stress_is_that_of_the_pairs_forces_at_the_start(bar, monkeypatch, piece: int) -> None:
     monkeypatch.setattr(module, "PIECE", piece)

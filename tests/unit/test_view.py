@@ -50,7 +50,7 @@ def test_without_a_display_only_pictures_are_drawn(monkeypatch, drawn_in):
 
 def test_a_missing_snapshot_is_refused_before_anything_is_drawn(small_run, monkeypatch):
     monkeypatch.setattr(module, "TRIAL", "raise SystemExit(1)")
-    with pytest.raises(CaseError, match="no snapshot 5, it has 2"):
+    with pytest.raises(CaseError, match="no snapshot 5, they are 0 to 1"):
         view(small_run, snapshot=5)
 
 

@@ -132,6 +132,19 @@ def test_a_column_has_two_ends() -> None:
     ]
 
 
+def test_the_springs_that_let_a_wave_into_a_column_are_alike() -> None:
+    column = side("right", "free_field") + WAVES
+    wave, source = 'wave_s = "shake"\n', "source = [5.0, 50.0]"
+
+    assert problems(column + side("bottom", "viscoelastic_input", wave + "distance = 9.0")) == []
+    assert problems(column + side("bottom", "viscoelastic", source)) == []
+    assert problems(column + side("left", "viscoelastic_input", wave + source)) == []
+    assert problems(column + side("bottom", "viscoelastic_input", wave + source)) == [
+        "boundary.bottom.source: makes springs differ along the side, and the column beside boundary.right with them; "
+        "give distance"
+    ]
+
+
 def test_a_packing_that_sends_no_p_wave_can_match_no_speed() -> None:
     match = BASE.replace("p_wave_speed = 1000.0", 'p_wave_speed = 1000.0\nmatch = "assembly"')
     assert match != BASE

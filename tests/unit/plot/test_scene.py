@@ -215,11 +215,11 @@ def test_a_scene_at_rest_is_drawn(tmp_path):
 
 
 def test_a_run_without_snapshots_is_refused(other_run):
-    with pytest.raises(CaseError, match="no snapshot -1, it has 0"):
+    with pytest.raises(CaseError, match="no snapshot -1, they are none"):
         plot_scene(other_run)
 
 
 @pytest.mark.parametrize("snapshot", [2, -3])
 def test_a_missing_snapshot_is_refused(small_run, snapshot):
-    with pytest.raises(CaseError, match=f"no snapshot {snapshot}, it has 2"):
+    with pytest.raises(CaseError, match=f"no snapshot {snapshot}, they are 0 to 1"):
         plot_scene(small_run, snapshot)
