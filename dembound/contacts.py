@@ -115,7 +115,6 @@ class ContactList:
         zero = np.zeros(len(first))
         self._palette = self._bonds
         self._list(pairs, bonded, zero, zero, np.full(len(first), -1))
-        self.bonds = np.bincount(assembly.pairs.ravel(), minlength=len(assembly.radii)) * int(bonded.any())
         widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
         self.arms = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
         self._cracks: list[Cracks] = []

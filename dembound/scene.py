@@ -7,13 +7,13 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from dembound.boundaries import SIDES, FreeField, normal_axis
-from dembound.boundaries.exposed import exposed
+from dembound.boundaries import FreeField
 from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
 from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
 from dembound.case import Case
 from dembound.case.monitor import FREE_FIELD
 from dembound.contacts import ContactList
+from dembound.edges import edges_beside_column, find_edges, left_of
 from dembound.errors import CaseError
 from dembound.ground import Ground, make_ground, nominal_moduli
 from dembound.holes import Hole
@@ -24,6 +24,7 @@ from dembound.loads import drive, steady
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
 from dembound.packings.tiling import Assembly, tile
+from dembound.rows import contact_rows, palette_of
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,7 @@ class Scene:
 
     @cached_property
     def _line_of(self) -> np.ndarray:
-        return _palette(self.ground)[1]
+        return palette_of(self.ground)[1]
 
     @property
     def bytes(self) -> int:
@@ -193,17 +194,7 @@ def _hollowed(
         seam = with_column(brick, body, sides)[1]
         if not np.isin(seam.node - seam.count, kept).all():
             raise CaseError([f"hole: reaches the free field of {' or '.join(sides)}, which has no hole"])
-    return left, {side: _left_of(edge, kept) for side, edge in edges.items()}, kept
-
-
-def _left_of(edge: Edge, kept: np.ndarray) -> Edge:
-    """A side without the particles that are not kept (m,); the others stand for their share of its length."""
-    still = np.isin(edge.nodes, kept)
-    if not still.any():
-        raise CaseError([f"hole: leaves nothing of the {edge.side} side"])
-    diameters = edge.diameters[still]
-    length = edge.length * float(diameters.sum() / edge.diameters.sum())
-    return Edge(edge.side, np.searchsorted(kept, edge.nodes[still]), edge.positions[still], diameters, length)
+    return left, {side: left_of(edge, kept) for side, edge in edges.items()}, kept
 
 
 def with_boundaries(scene: Scene, case: Case) -> Scene:
@@ -221,58 +212,6 @@ def _is_periodic(case: Case, side: str) -> bool:
     return side in case.boundary and case.boundary[side].type == "periodic"
 
 
-def contact_rows(assembly: Assembly, ground: Ground) -> Rows:
-    """Sort the contacts into one row per particle, over a palette of the brick's contact constants.
-
-    The palette's lines are put in the order the rows use them, so that walking along the particles also walks
-    along the palette, which one core's cache then serves.
-    """
-    palette, line_of = _palette(ground)
-    i, j = assembly.pairs.T
-    owner = np.concatenate([i, j])
-    neighbour = np.concatenate([j, i])
-    kind = line_of[np.concatenate([2 * assembly.kind, 2 * assembly.kind + 1])]
-    order = np.lexsort((neighbour, owner))
-    start = np.zeros(len(assembly.radii) + 1, dtype=np.uint32)
-    np.cumsum(np.bincount(owner, minlength=len(assembly.radii)), out=start[1:])
-    return Rows(start, neighbour[order].astype(np.uint32), kind[order].astype(np.uint32), palette)
-
-
-def _palette(ground: Ground) -> tuple[np.ndarray, np.ndarray]:
-    """Palette lines (4b, 6), and the line of contact k seen from its first (2k) and second disk (2k + 1).
-
-    Contacts from b on are the brick's with half their stiffness, for sides of half cells.
-    """
-    brick, law = ground.brick, ground.stiffness
-    vectors = brick.vectors
-    n = vectors / np.hypot(*vectors.T)[:, None]
-    root_n, root_s = np.sqrt(law.normal), np.sqrt(law.shear)
-    ratio = np.divide(root_s, root_n, out=np.zeros_like(root_n), where=root_n > 0.0)  # a gap without bond has neither
-    common = [root_n * n[:, 0], root_n * n[:, 1], ratio]
-    lines = np.empty((len(vectors), 2, 6))
-    lines[:, 0] = np.stack([*common, root_s * law.arm_i, root_s * law.arm_j, law.bending], axis=1)
-    lines[:, 1] = np.stack([*common, -root_s * law.arm_j, -root_s * law.arm_i, law.bending], axis=1)
-    flat = lines.reshape(-1, 6)
-    order = np.lexsort((brick.pairs[:, ::-1].ravel(), brick.pairs.ravel()))
-    line_of = np.empty(len(order), dtype=np.int64)
-    line_of[order] = np.arange(len(order))
-    half = flat[order] * [np.sqrt(0.5), np.sqrt(0.5), 1.0, np.sqrt(0.5), np.sqrt(0.5), 0.5]
-    return np.vstack([flat[order], half]), np.concatenate([line_of, line_of + len(order)])
-
-
-def find_edges(assembly: Assembly, periodic: tuple[bool, bool]) -> dict[str, Edge]:
-    """The exposed particles of every side that is not periodic."""
-    edges = {}
-    for side in SIDES:
-        axis = normal_axis(side)
-        if periodic[axis]:
-            continue
-        length = float(assembly.extent[1 - axis])
-        nodes = exposed(assembly.positions, assembly.radii, side, period=length if periodic[1 - axis] else None)
-        edges[side] = Edge(side, nodes, assembly.positions[nodes], 2.0 * assembly.radii[nodes], length)
-    return edges
-
-
 def _with_half_contacts(
     case: Case, brick: Brick, assembly: Assembly, seam: Seam | None, edges: Mapping[str, Edge]
 ) -> tuple[Assembly, Seam | None]:
@@ -288,24 +227,6 @@ def _with_half_contacts(
         owner = np.repeat(seam.twin[seam.node], seam.many)
         seam = replace(seam, kind=halved(seam.kind, owner, seam.near))
     return assembly, seam
-
-
-def edges_beside_column(assembly: Assembly, seam: Seam, edges: Mapping[str, Edge]) -> dict[str, Edge]:
-    """The sides of a body joined to its column: bottom and top run on into it, left and right are the body's.
-
-    Which disks are seen from below is decided in the column, as if there were no sides, so that every disk of the body
-    is supported as its twin is.
-    """
-    column = np.arange(len(assembly.radii)) < seam.count
-    joint = {}
-    for side, edge in edges.items():
-        nodes, length = edge.nodes + seam.count, edge.length
-        if edge.axis == 1:
-            alone = exposed(assembly.positions[column], assembly.radii[column], side, period=seam.width)
-            nodes = np.flatnonzero(np.isin(seam.twin, alone))
-            length += seam.width
-        joint[side] = Edge(side, nodes, assembly.positions[nodes], 2.0 * assembly.radii[nodes], length)
-    return joint
 
 
 def boundary_medium(case: Case, ground: Ground, axis: int) -> Medium:

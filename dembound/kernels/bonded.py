@@ -6,16 +6,15 @@ from numba import njit, prange
 from dembound.kernels.common import CHUNKS, FASTMATH, U
 from dembound.kernels.contacts import ends_force, moved, push, seam_ends_forces
 from dembound.kernels.elastic import DONE, LIST_ENDS
-from dembound.kernels.step import damping_work, kick, move_supported, note_after, note_before
+from dembound.kernels.step import move_particle, move_supported, note_after, note_before
 
 
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
 def _move(u, v, contacts, body, spare, fastest, damped):
-    """One step of all particles but the supported ones, whose forces wait in spare for `move_supported`.
+    """One step of all particles, see `move_particle`.
 
     fastest (chunks,) gets their speeds, damped (chunks, 2) the work of local damping.
     """
-    mobility, inverse_inertia, free, load, damp, step = body
     force, start, end = contacts.force, contacts.start, contacts.end
     n = u.shape[1]
     for chunk in prange(CHUNKS):
@@ -25,33 +24,10 @@ def _move(u, v, contacts, body, spare, fastest, damped):
         for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
             i = U(p)
             fx, fy, moment = ends_force(i, force, start, end)
-            fx += load[U(0), i]
-            fy += load[U(1), i]
-            moment += load[U(2), i]
-            if mobility[i] == 0.0:
-                spare[U(0), i] = fx
-                spare[U(1), i] = fy
-                spare[U(2), i] = moment
-                continue
-            vx = kick(v[U(0), i], fx, free[0] * mobility[i], damp)
-            vy = kick(v[U(1), i], fy, free[1] * mobility[i], damp)
-            spin = kick(v[U(2), i], moment, free[2] * inverse_inertia[i], damp)
-            if damp > 0.0:
-                for w, c, f, b in (
-                    (vx, 0, fx, free[0] * mobility[i]),
-                    (vy, 1, fy, free[1] * mobility[i]),
-                    (spin, 2, moment, free[2] * inverse_inertia[i]),
-                ):
-                    taken, up_to = damping_work(v[U(c), i], w, f, b, damp, step)
-                    whole += taken
-                    half += up_to
-            most = max(most, vx * vx + vy * vy)
-            v[U(0), i] = vx
-            v[U(1), i] = vy
-            v[U(2), i] = spin
-            spare[U(0), i] = u[U(0), i] + step * vx
-            spare[U(1), i] = u[U(1), i] + step * vy
-            spare[U(2), i] = u[U(2), i] + step * spin
+            taken, up_to = move_particle(i, fx, fy, moment, u, v, body, spare)
+            whole += taken
+            half += up_to
+            most = max(most, v[U(0), i] ** 2 + v[U(1), i] ** 2)
         fastest[chunk] = np.sqrt(most)
         damped[chunk, 0] = whole
         damped[chunk, 1] = half

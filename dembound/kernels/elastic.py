@@ -18,7 +18,7 @@ from numba import njit, prange
 
 from dembound.kernels.common import CHUNKS, FASTMATH, U
 from dembound.kernels.contacts import moved, slack
-from dembound.kernels.step import damping_work, kick, move_supported, note_after, note_before
+from dembound.kernels.step import move_particle, move_supported, note_after, note_before
 
 DONE, LAW_ENDS, LIST_ENDS = 0, 1, 2
 """Why a kernel returned: all steps are done; a contact is about to leave the elastic law; the list of pairs is old."""
@@ -77,14 +77,12 @@ def seam_forces(u, rows, seam, across):
 
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
 def _move(u, v, rows, body, spare, fastest, arms, damped):
-    """One step of all particles but the supported ones, whose forces wait in spare for `move_supported`.
+    """One step of all particles, see `move_particle`.
 
     fastest (chunks,) gets surface speeds if there are arms, damped (chunks, 2) the work of local damping.
     """
     start, neighbour, kind, palette = rows
-    mobility, inverse_inertia, free, load, damp, step = body
     n = u.shape[1]
-    loaded = load.shape[1] > 0
     watched = arms.size > 0
     for chunk in prange(CHUNKS):
         most = 0.0
@@ -93,35 +91,11 @@ def _move(u, v, rows, body, spare, fastest, arms, damped):
         for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
             i = U(p)
             fx, fy, moment = _row_force(i, i, u, start, neighbour, kind, palette)
-            if loaded:
-                fx += load[U(0), i]
-                fy += load[U(1), i]
-                moment += load[U(2), i]
-            if mobility[i] == 0.0:
-                spare[U(0), i] = fx
-                spare[U(1), i] = fy
-                spare[U(2), i] = moment
-                continue
-            vx = kick(v[U(0), i], fx, free[0] * mobility[i], damp)
-            vy = kick(v[U(1), i], fy, free[1] * mobility[i], damp)
-            spin = kick(v[U(2), i], moment, free[2] * inverse_inertia[i], damp)
-            if damp > 0.0:
-                for w, c, f, b in (
-                    (vx, 0, fx, free[0] * mobility[i]),
-                    (vy, 1, fy, free[1] * mobility[i]),
-                    (spin, 2, moment, free[2] * inverse_inertia[i]),
-                ):
-                    taken, up_to = damping_work(v[U(c), i], w, f, b, damp, step)
-                    whole += taken
-                    half += up_to
+            taken, up_to = move_particle(i, fx, fy, moment, u, v, body, spare)
+            whole += taken
+            half += up_to
             if watched:
-                most = max(most, np.sqrt(vx * vx + vy * vy) + arms[i] * abs(spin))
-            v[U(0), i] = vx
-            v[U(1), i] = vy
-            v[U(2), i] = spin
-            spare[U(0), i] = u[U(0), i] + step * vx
-            spare[U(1), i] = u[U(1), i] + step * vy
-            spare[U(2), i] = u[U(2), i] + step * spin
+                most = max(most, np.sqrt(v[U(0), i] ** 2 + v[U(1), i] ** 2) + arms[i] * abs(v[U(2), i]))
         fastest[chunk] = most
         damped[chunk, 0] = whole
         damped[chunk, 1] = half

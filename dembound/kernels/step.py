@@ -19,9 +19,47 @@ def kick(v, f, b, damp):
 def damping_work(v, w, f, b, damp, step):
     """Work (J) that local damping takes in a step from v to w under a force f: whole, and up to the whole step."""
     taken = damp * abs(f) * np.sign(v) * step
-    if b == 0.0:  # supported or held: nothing of it acts here
+    if b == 0.0:  # held: nothing of it acts here
         taken = 0.0
     return 0.5 * taken * (v + w), 0.5 * taken * v
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+def move_particle(i, fx, fy, moment, u, v, body, spare):
+    """Move particle i by a step under its contact forces, to which steady loads come; spare takes its displacement.
+
+    Forces on a supported one wait in spare for `move_supported`. Returns the work (J) that local damping took, all of
+    it and up to the whole step.
+    """
+    if body.load.shape[1] > 0:
+        fx += body.load[U(0), i]
+        fy += body.load[U(1), i]
+        moment += body.load[U(2), i]
+    whole = 0.0
+    half = 0.0
+    if body.mobility[i] == 0.0:
+        spare[U(0), i] = fx
+        spare[U(1), i] = fy
+        spare[U(2), i] = moment
+    else:
+        across = body.free[0] * body.mobility[i]
+        up = body.free[1] * body.mobility[i]
+        about = body.free[2] * body.inverse_inertia[i]
+        vx = kick(v[U(0), i], fx, across, body.damp)
+        vy = kick(v[U(1), i], fy, up, body.damp)
+        spin = kick(v[U(2), i], moment, about, body.damp)
+        if body.damp > 0.0:
+            for w, c, f, b in ((vx, 0, fx, across), (vy, 1, fy, up), (spin, 2, moment, about)):
+                taken, up_to = damping_work(v[U(c), i], w, f, b, body.damp, body.step)
+                whole += taken
+                half += up_to
+        v[U(0), i] = vx
+        v[U(1), i] = vy
+        v[U(2), i] = spin
+        spare[U(0), i] = u[U(0), i] + body.step * vx
+        spare[U(1), i] = u[U(1), i] + body.step * vy
+        spare[U(2), i] = u[U(2), i] + body.step * spin
+    return whole, half
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")

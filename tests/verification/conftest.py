@@ -10,11 +10,13 @@ import tomli_w
 
 from dembound.boundaries.support import SupportBuilder
 from dembound.case import Case, loads
+from dembound.edges import find_edges
 from dembound.ground import make_ground
 from dembound.kernels.elastic import contact_forces
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly
-from dembound.scene import Scene, build, contact_rows, find_edges, with_boundaries
+from dembound.rows import contact_rows
+from dembound.scene import Scene, build, with_boundaries
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
 

@@ -63,8 +63,8 @@ def test_contacts_with_a_memory_are_met_across_the_seam_too(lab):
 def test_the_surface_doubles_and_the_base_lets_go(lab, half):
     """2.000 times the incident peak on the lattice; afterwards only what an end of whole masses leaves, if it has them.
 
-    An end of whole cells returns (D/4c)·π/T of the peak, and more as its disks turn less than those inside (test_bar
-    has 1.27 for the shear bar); the surface doubles it. Half cells leave its square.
+    An end of whole cells returns (D/4c)·π/T of the peak, and more as its disks turn less than those inside (1.27 is
+    derived in test_shear_bar); the surface doubles it. Half cells leave its square.
     """
     period, height = 0.1, 60.0
     scene = build(ground(lab, "A", period, height=height, material={"fric": 0.5}, half=half))

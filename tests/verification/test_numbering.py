@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from dembound.edges import find_edges
 from dembound.kernels.tables import Rows
-from dembound.scene import contact_rows, find_edges, with_boundaries
+from dembound.rows import contact_rows
+from dembound.scene import with_boundaries
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
 

@@ -1,0 +1,53 @@
+"""The sides of a scene: which particles make them up, beside a free-field column and beside holes."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from dembound.boundaries import SIDES, normal_axis
+from dembound.boundaries.exposed import exposed
+from dembound.boundaries.support import Edge
+from dembound.errors import CaseError
+from dembound.packings.column import Seam
+from dembound.packings.tiling import Assembly
+
+
+def find_edges(assembly: Assembly, periodic: tuple[bool, bool]) -> dict[str, Edge]:
+    """The exposed particles of every side that is not periodic."""
+    edges = {}
+    for side in SIDES:
+        axis = normal_axis(side)
+        if periodic[axis]:
+            continue
+        length = float(assembly.extent[1 - axis])
+        nodes = exposed(assembly.positions, assembly.radii, side, period=length if periodic[1 - axis] else None)
+        edges[side] = Edge(side, nodes, assembly.positions[nodes], 2.0 * assembly.radii[nodes], length)
+    return edges
+
+
+def left_of(edge: Edge, kept: np.ndarray) -> Edge:
+    """A side without the particles that are not kept (m,); the others stand for their share of its length."""
+    still = np.isin(edge.nodes, kept)
+    if not still.any():
+        raise CaseError([f"hole: leaves nothing of the {edge.side} side"])
+    diameters = edge.diameters[still]
+    length = edge.length * float(diameters.sum() / edge.diameters.sum())
+    return Edge(edge.side, np.searchsorted(kept, edge.nodes[still]), edge.positions[still], diameters, length)
+
+
+def edges_beside_column(assembly: Assembly, seam: Seam, edges: Mapping[str, Edge]) -> dict[str, Edge]:
+    """The sides of a body joined to its column: bottom and top run on into it, left and right are the body's.
+
+    Which disks are seen from below is decided in the column, as if there were no sides, so that every disk of the body
+    is supported as its twin is.
+    """
+    column = np.arange(len(assembly.radii)) < seam.count
+    joint = {}
+    for side, edge in edges.items():
+        nodes, length = edge.nodes + seam.count, edge.length
+        if edge.axis == 1:
+            alone = exposed(assembly.positions[column], assembly.radii[column], side, period=seam.width)
+            nodes = np.flatnonzero(np.isin(seam.twin, alone))
+            length += seam.width
+        joint[side] = Edge(side, nodes, assembly.positions[nodes], 2.0 * assembly.radii[nodes], length)
+    return joint
