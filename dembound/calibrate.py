@@ -18,7 +18,7 @@ import numpy as np
 
 from dembound import __version__
 from dembound.boundaries import OPPOSITE, Viscous, ViscousInput, normal_axis
-from dembound.case import Case
+from dembound.case import DiskCase
 from dembound.errors import CaseError, RunError
 from dembound.scene import Scene, boundary_medium, build, with_boundaries
 from dembound.simulate import Simulation
@@ -49,7 +49,7 @@ class Calibration:
     particles, steps : size of the scene calibrated on, and steps of all passes.
     """
 
-    case: Case
+    case: DiskCase
     side: str
     motion: Motion
     method: Method
@@ -108,7 +108,7 @@ Report = Callable[[Calibration], None]
 
 
 def calibrate(
-    case: Case,
+    case: DiskCase,
     side: str,
     *,
     motion: Motion | None = None,
@@ -211,7 +211,7 @@ def _travel(scene: Scene, side: str, motion: Motion) -> float:
     return float(scene.assembly.size[axis]) / scene.ground.wave_speeds(axis)[0 if motion == "p" else 1]
 
 
-def _dashpots(case: Case, side: str) -> Viscous | ViscousInput:
+def _dashpots(case: DiskCase, side: str) -> Viscous | ViscousInput:
     table = case.boundary.get(side)
     if not isinstance(table, Viscous | ViscousInput):
         has = "free" if table is None else table.type
@@ -222,7 +222,7 @@ def _dashpots(case: Case, side: str) -> Viscous | ViscousInput:
     return table
 
 
-def _default_motion(case: Case, side: str) -> Motion:
+def _default_motion(case: DiskCase, side: str) -> Motion:
     """S where the normal motion is held, or where only S waves run between this side and the opposite one."""
     ends = [case.boundary.get(end) for end in (side, OPPOSITE[side])]
     driven = {motion for motion in ("p", "s") for end in ends if getattr(end, f"wave_{motion}", None)}
@@ -230,12 +230,12 @@ def _default_motion(case: Case, side: str) -> Motion:
     return "s" if held or driven == {"s"} else "p"
 
 
-def _must_move(case: Case, side: str, motion: Motion) -> None:
+def _must_move(case: DiskCase, side: str, motion: Motion) -> None:
     name = "xy"[axis_of_motion(side, motion)]
     if name in case.motion.held:
         raise CaseError([f"motion.held: holds {name}, the motion of {motion.upper()} waves at the side {side}"])
 
 
-def _with_beta(case: Case, side: str, factor: str, beta: float) -> Case:
+def _with_beta(case: DiskCase, side: str, factor: str, beta: float) -> DiskCase:
     table = case.boundary[side].model_copy(update={factor: beta})
     return replace(case, boundary={**case.boundary, side: table})

@@ -5,12 +5,14 @@ from typing import Any
 
 import numpy as np
 
+from dembound.bar import BarScene
+from dembound.bar_check import bar_facts, bar_warnings
 from dembound.boundaries import SIDES, Periodic
 from dembound.boundaries.driven import Driven
-from dembound.case import Case
+from dembound.case import Case, DiskCase
 from dembound.ground import Ground
 from dembound.loads import forces_of
-from dembound.run import plan
+from dembound.run import foresee, plan
 from dembound.scene import Scene, boundary_medium
 from dembound.simulate import Simulation
 from dembound.summary import Plan, describe_packing, describe_side
@@ -25,17 +27,43 @@ TRIAL_STEPS, TRIALS = 20, 3
 def check(case: Case) -> tuple[dict[str, str], list[str]]:
     """Facts about the run a case describes, ready to print, and warnings. Runs a few steps to estimate the time."""
     planned = plan(case)
+    facts = _run_facts(planned)
+    scene = planned.scene
+    if isinstance(scene, BarScene):
+        return bar_facts(scene, planned.time_step) | facts, bar_warnings(scene.case, planned.time_step)
+    more, warnings = _disk_facts(scene)
+    return facts | more, _precautions(scene.case, scene.ground) + warnings
+
+
+def precautions(case: Case) -> list[str]:
+    """Warnings of what a run will do that was probably not meant.
+
+    Finds what would stop the case, too, as far as that can be found cheaply: raises the errors of `run.plan`.
+    """
+    if isinstance(case, DiskCase):
+        return _precautions(case, foresee(case))
+    planned = plan(case)
+    assert isinstance(planned.scene, BarScene)
+    return bar_warnings(planned.scene.case, planned.time_step)
+
+
+def _run_facts(planned: Plan) -> dict[str, str]:
+    """Steps, memory and time."""
     scene = planned.scene
     threads = worthwhile_threads(scene.count)
-    facts = {
-        "particles": _particles(scene),
-        "contacts": f"{len(scene.assembly.pairs):,}",
+    return {
         "time step": f"{planned.time_step:.4g} s, {planned.time_step / planned.step_limit:.3f} of the limit "
         f"{planned.step_limit:.6g} s",
-        "steps": f"{planned.steps:,} for {case.run.duration:g} s",
+        "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s",
         "memory": f"{scene.bytes / 1e6:.3g} MB",
-        "estimated time": f"about {_estimate(planned):.2g} s with {threads} thread(s){_not_estimated(case)}",
+        "estimated time": f"about {_estimate(planned):.2g} s with {threads} thread(s){_not_estimated(scene.case)}",
     }
+
+
+def _disk_facts(scene: Scene) -> tuple[dict[str, str], list[str]]:
+    """Facts about a packing, its law and what acts on it, and warnings."""
+    case = scene.case
+    facts = {"particles": _particles(scene), "contacts": f"{len(scene.assembly.pairs):,}"}
     facts |= _packing_facts(scene) | _law_facts(scene) | _hole_facts(case) | _static_facts(case)
     for side in scene.edges:
         facts[f"{side} side"] = _side_fact(scene, side)
@@ -44,7 +72,7 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
         x, y = scene.assembly.positions[node]
         facts[f"monitor {name}"] = f"particle {node} at ({x:.3f}, {y:.3f}) m"
     facts |= _tension_facts(scene)
-    warnings = precautions(case, scene.ground) + _tension_warnings(scene)
+    warnings = _tension_warnings(scene)
     for name, count in particles_per_wavelength(scene).items():
         facts[f"wave {name}"] = f"{count:.0f} particles per shortest wavelength"
         if count < FEWEST_PER_WAVELENGTH:
@@ -55,8 +83,8 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
     return facts, warnings
 
 
-def precautions(case: Case, ground: Ground) -> list[str]:
-    """Warnings of what a run will do that was probably not meant; the ground is the case's own."""
+def _precautions(case: DiskCase, ground: Ground) -> list[str]:
+    """The same of disks; the ground is the case's own."""
     if case.static is not None:
         return []
     warnings = [
@@ -153,6 +181,8 @@ def _estimate(planned: Plan) -> float:
 
 def _not_estimated(case: Case) -> str:
     """What the trials did not come to."""
+    if not isinstance(case, DiskCase):
+        return ""
     later = ["the static stage"] * (case.static is not None)
     if case.material.law != "elastic" and case.material.elastic_start:
         later.append(f"what {case.material.law} takes longer once it begins")
@@ -167,7 +197,7 @@ def _particles(scene: Scene) -> str:
     return f"{scene.count:,}{before}{severed}"
 
 
-def _hole_facts(case: Case) -> dict[str, str]:
+def _hole_facts(case: DiskCase) -> dict[str, str]:
     """Shape of every hole, and when it is made."""
     stages = {"before": "there from the start", "after": "excavated once the body has settled"}
     return {f"hole {hole.name}": f"{hole.type}, {stages[hole.stage]}" for hole in case.hole}
@@ -211,7 +241,7 @@ def _law_facts(scene: Scene) -> dict[str, str]:
     }
 
 
-def _static_facts(case: Case) -> dict[str, str]:
+def _static_facts(case: DiskCase) -> dict[str, str]:
     """What acts during the static stage, and what holds."""
     static = case.static
     if static is None:

@@ -16,7 +16,7 @@ class Difference:
     """One monitor of a run beside the reference, in the component that moves most there.
 
     rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; last, reference_last : the values at the end;
-    unit : theirs; place, reference_place : where the monitor was asked for in both, m.
+    unit : theirs; place, reference_place : where the monitor was asked for in both, in words.
     """
 
     run: str
@@ -27,8 +27,8 @@ class Difference:
     last: float
     reference_last: float
     unit: str
-    place: tuple[float, float]
-    reference_place: tuple[float, float]
+    place: str
+    reference_place: str
 
 
 def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Difference]:
@@ -39,7 +39,7 @@ def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Diffe
     names = record_names([reference, *runs])[1:]
     wanted = read_histories(reference, quantity)
     found = [
-        _difference(name, monitor, history, wanted[monitor], UNITS[quantity])
+        _difference(name, monitor, history, wanted[monitor], quantity)
         for name, path in zip(names, runs, strict=True)
         for monitor, history in read_histories(path, quantity).items()
         if monitor in wanted
@@ -49,27 +49,25 @@ def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Diffe
     return found
 
 
-def _difference(
-    run: str, monitor: str, history: History, reference: History, units: tuple[str, str, str]
-) -> Difference:
+def _difference(run: str, monitor: str, history: History, reference: History, quantity: Quantity) -> Difference:
     """One monitor's difference."""
-    column = int(np.argmax(np.abs(reference.motion[:, :2]).max(axis=0)))
+    column = int(np.argmax(np.abs(reference.values[:, :2]).max(axis=0)))
     end = min(history.time[-1], reference.time[-1])
     time = reference.time[reference.time <= end]
-    expected = reference.motion[: len(time), column]
+    expected = reference.values[: len(time), column]
     if not expected.any():
-        raise CaseError([f"monitor {monitor}: does not move in the reference"])
-    motion = np.interp(time, history.time, history.motion[:, column])
-    error = motion - expected
+        raise CaseError([f"monitor {monitor}: its {quantity} stays zero in the reference"])
+    values = np.interp(time, history.time, history.values[:, column])
+    error = values - expected
     return Difference(
         run=run,
         monitor=monitor,
         component=COMPONENTS[column],
         rms=float(np.sqrt(np.sum(error**2) / np.sum(expected**2))),
         peak=float(np.abs(error).max() / np.abs(expected).max()),
-        last=float(motion[-1]),
+        last=float(values[-1]),
         reference_last=float(expected[-1]),
-        unit=units[column],
-        place=tuple(history.position.tolist()),
-        reference_place=tuple(reference.position.tolist()),
+        unit=UNITS[quantity][column],
+        place=history.place,
+        reference_place=reference.place,
     )

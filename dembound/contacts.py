@@ -43,6 +43,10 @@ class Cracks:
         return Cracks(self.step[inside], pair, self.position[inside], self.shear[inside])
 
 
+NO_CRACKS = Cracks(np.zeros(0, np.int64), np.zeros((0, 2), np.int64), np.zeros((0, 2)), np.zeros(0, np.bool_))
+"""Nothing broke."""
+
+
 def limits_of(material: Material) -> Limits:
     """Where contacts and bonds of a material give way; the elastic law never does."""
     unbreakable = material.law == "elastic"
@@ -226,8 +230,7 @@ class ContactList:
 
     def take_cracks(self) -> Cracks:
         """The bonds that broke since this was last called."""
-        nothing = Cracks(np.zeros(0, np.int64), np.zeros((0, 2), np.int64), np.zeros((0, 2)), np.zeros(0, np.bool_))
-        noted, self._cracks = [nothing, *self._cracks], []
+        noted, self._cracks = [NO_CRACKS, *self._cracks], []
         columns = (np.concatenate([getattr(part, field.name) for part in noted]) for field in fields(Cracks))
         return Cracks(*columns)
 

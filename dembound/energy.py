@@ -5,13 +5,10 @@ after), strain energy that of the step itself, and the work of every force F the
 open comes from contacts that open or close within a step, from normals that turn, and from rounding.
 """
 
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, fields
 
 import numpy as np
 
-from dembound.contacts import plain_contacts
-from dembound.engines import Elastic
-from dembound.kernels.contacts import REFERENCE, strain_energy
 from dembound.simulate import Simulation
 
 
@@ -19,8 +16,9 @@ from dembound.simulate import Simulation
 class Entry:
     """One line of the ledger: time in s, energies in J per metre of thickness.
 
-    kinetic; contact and bond, stored since the start; load, work of steady forces; outside, work of boundaries and
-    driven loads; damping, friction, crack, taken by them; error, what is stored and taken beyond what came in.
+    kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
+    of steady forces; outside, work of boundaries and driven loads; damping, friction, crack, taken by them; handover,
+    what a change of method has added; error, what is stored and taken beyond what came in. Of a bar in J.
     """
 
     time: float
@@ -32,6 +30,7 @@ class Entry:
     damping: float
     friction: float
     crack: float
+    handover: float
     error: float
 
 
@@ -41,9 +40,6 @@ class Ledger:
     def __init__(self, simulation: Simulation) -> None:
         self.simulation = simulation
         self.entries: list[Entry] = []
-        self._plain = (
-            plain_contacts(simulation.scene.ground, simulation.scene.assembly) if simulation.contacts is None else None
-        )
         self._inertia = np.stack([simulation.scene.mass, simulation.scene.mass, simulation.scene.inertia])
         self._first = self._stored(simulation.displacement)
 
@@ -55,20 +51,17 @@ class Ledger:
         kinetic = 0.5 * float(np.sum(self._inertia * before * simulation.velocity))
         contact, bond = (now - first for now, first in zip(self._stored(place), self._first, strict=True))
         load = float(np.sum(simulation.load * (place - simulation.datum)))
-        outside, damping, friction, crack = (float(work) for work in simulation.work[1])
-        error = kinetic + contact + bond + damping + friction + crack - load - outside
-        self.entries.append(Entry(time, kinetic, contact, bond, load, outside, damping, friction, crack, error))
+        outside, damping, friction, crack, handover = (float(work) for work in simulation.work[1])
+        error = kinetic + contact + bond + damping + friction + crack - load - outside - handover
+        taken = (damping, friction, crack, handover)
+        self.entries.append(Entry(time, kinetic, contact, bond, load, outside, *taken, error))
         return record
 
     @property
     def columns(self) -> np.ndarray:
-        """All entries, (k, 10), in the order of `Entry`."""
-        return np.array([astuple(entry) for entry in self.entries]).reshape(-1, 10)
+        """All entries, (k, 11), in the order of `Entry`."""
+        return np.array([astuple(entry) for entry in self.entries]).reshape(-1, len(fields(Entry)))
 
     def _stored(self, displacement: np.ndarray) -> tuple[float, float]:
         """Energy (J) in contacts and bonds."""
-        contacts = self.simulation.contacts
-        if contacts is None:
-            return strain_energy(displacement, self._plain, REFERENCE)
-        elastic = isinstance(self.simulation.engine, Elastic)
-        return strain_energy(displacement, contacts.arrays, REFERENCE if elastic else contacts.limits.geometry)
+        return self.simulation.engine.stored(displacement)

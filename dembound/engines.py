@@ -3,10 +3,13 @@
 Both move the same displacements with the same supports and records; they differ in how contacts push.
 """
 
+from functools import cached_property
+
 import numpy as np
 
-from dembound.contacts import ContactList
+from dembound.contacts import ContactList, plain_contacts
 from dembound.kernels import bonded, elastic
+from dembound.kernels.contacts import REFERENCE, strain_energy
 from dembound.kernels.tables import Body, Contacts, Limits, Log, Supports, Watch
 from dembound.scene import Scene
 
@@ -73,6 +76,15 @@ class Elastic:
         self.ended = why == elastic.LAW_ENDS
         return int(done)
 
+    def stored(self, displacement: np.ndarray) -> tuple[float, float]:
+        """Energy (J) in contacts and in bonds."""
+        pairs = self._plain_contacts if self.contacts is None else self.contacts.arrays
+        return strain_energy(displacement, pairs, REFERENCE)
+
+    @cached_property
+    def _plain_contacts(self) -> Contacts:
+        return plain_contacts(self.scene.ground, self.scene.assembly)
+
     def _watch(self) -> Watch:
         contacts = self.contacts
         if contacts is None:
@@ -105,3 +117,7 @@ class Bonded:
             contacts.search(u)
             self._seam_ends = None
         return int(done)
+
+    def stored(self, displacement: np.ndarray) -> tuple[float, float]:
+        """Energy (J) in contacts and in bonds."""
+        return strain_energy(displacement, self.contacts.arrays, self.contacts.limits.geometry)

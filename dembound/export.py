@@ -1,6 +1,7 @@
-"""Snapshots for ParaView: one VTU file each, a PVD file listing their times, and a script that shows disks.
+"""Snapshots for ParaView: one VTU file each, a PVD file listing their times, and a script that shows them.
 
-Every disk is a vertex at its reference position moved by its displacement (z = 0), with these point data:
+Every disk is a vertex at its reference position moved by its displacement (z = 0), with these point data; what a bar
+has instead is told in `export_bar`:
 
 | name | unit | shape | what |
 |---|---|---|---|
@@ -40,7 +41,8 @@ import h5py
 import meshio
 import numpy as np
 
-from dembound.results import cracks_until, open_record, replacing
+from dembound import export_bar
+from dembound.results import cracks_until, is_bar, open_record, replacing
 
 VIEW_SCRIPT = '''\
 """Shows the disks of particles.pvd in ParaView: paraview --script=view.py, or Run Script once it is open."""
@@ -80,7 +82,7 @@ def write_vtu(run: Path, folder: Path) -> Path | None:
         the ``run.h5`` of a run.
     folder
         made when it is not there; gets ``particles_0000.vtu`` …, ``particles.pvd``, ``view.py`` and, where bonds
-        broke, ``cracks.vtu``.
+        broke, ``cracks.vtu``; of a bar ``bar_0000.vtu`` … and ``bar.pvd``.
 
     The PVD file is written last, so it never names a file that is not there.
 
@@ -91,16 +93,18 @@ def write_vtu(run: Path, folder: Path) -> Path | None:
         if not snapshots:
             return None
         folder.mkdir(parents=True, exist_ok=True)
+        bar = ("bar", export_bar.bar_mesh, export_bar.VIEW_SCRIPT)
+        stem, mesh, script = bar if is_bar(file) else ("particles", _disks, VIEW_SCRIPT)
         times = {}
         for number, snapshot in snapshots.items():
-            name = f"particles_{number}.vtu"
+            name = f"{stem}_{number}.vtu"
             times[name] = float(snapshot.attrs["time"])
-            _write(folder / name, _disks(file["particles"], snapshot, cracks_until(file, times[name])))
+            _write(folder / name, mesh(file["particles"], snapshot, cracks_until(file, times[name])))
         cracks = cracks_until(file, np.inf)
         if len(cracks["time"]) > 0:
             _write(folder / "cracks.vtu", _cracks(cracks))
-    (folder / "view.py").write_text(VIEW_SCRIPT, encoding="utf-8")
-    return _write_index(folder / "particles.pvd", times)
+    (folder / "view.py").write_text(script, encoding="utf-8")
+    return _write_index(folder / f"{stem}.pvd", times)
 
 
 def _disks(particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:

@@ -12,7 +12,7 @@ import numpy as np
 
 from dembound import __version__
 from dembound.boundaries import Free, Symmetry
-from dembound.case import Case
+from dembound.case import DiskCase
 from dembound.case.load import Load
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
@@ -38,7 +38,7 @@ class LineLoad:
     wave: str
 
 
-def write_exact(case: Case, path: Path) -> None:
+def write_exact(case: DiskCase, path: Path) -> None:
     """Write the exact histories of a case as a record; its monitors must lie on the surface.
 
     The load is a line on the surface. With a symmetry side it lies in that plane, and twice the case's force acts. A
@@ -112,7 +112,7 @@ def _line_load(scene: Scene) -> LineLoad:
     return LineLoad(x, -factor * load.force[1], load.wave)
 
 
-def _yielding(case: Case) -> Iterator[str]:
+def _yielding(case: DiskCase) -> Iterator[str]:
     """What makes the body other than a linear half-space below a free surface."""
     if case.material.law != "elastic":
         yield f'material.law: is "{case.material.law}", must be "elastic"; the solution is that of a linear solid'

@@ -3,7 +3,7 @@
 import numpy as np
 
 from dembound.boundaries.support import SupportBuilder
-from dembound.case import Case
+from dembound.case import DiskCase
 from dembound.case.load import Load
 from dembound.errors import CaseError
 from dembound.packings.tiling import Assembly
@@ -38,7 +38,7 @@ def _loaded(load: Load, assembly: Assembly) -> np.ndarray:
     return nodes
 
 
-def drive(case: Case, assembly: Assembly, mass: np.ndarray, supports: SupportBuilder) -> None:
+def drive(case: DiskCase, assembly: Assembly, mass: np.ndarray, supports: SupportBuilder) -> None:
     """Add the loads that follow a wave to the support table."""
     for load in case.load:
         if load.wave is not None:
@@ -47,7 +47,7 @@ def drive(case: Case, assembly: Assembly, mass: np.ndarray, supports: SupportBui
                 supports.add(nodes, axis, drive=forces[:, axis], signal=case.wave[load.wave].velocity)
 
 
-def steady(case: Case, assembly: Assembly, mass: np.ndarray) -> np.ndarray:
+def steady(case: DiskCase, assembly: Assembly, mass: np.ndarray) -> np.ndarray:
     """Forces and moments (3, n) N, N·m of the loads that are always there."""
     force = np.zeros((3, len(mass)))
     for load in case.load:

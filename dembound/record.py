@@ -20,11 +20,15 @@ Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset of numb
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import h5py
 import numpy as np
 
 from dembound import __version__
+from dembound.bar import BarScene
+from dembound.bar_engine import BarEngine
+from dembound.case import DiskCase
 from dembound.case.monitor import FREE_FIELD
 from dembound.contacts import Cracks
 from dembound.energy import Entry, Ledger
@@ -89,10 +93,11 @@ class Recorder:
         for index, group in enumerate(self._histories):
             _extend(group["time"], times)
             _extend(group["displacement"], record[rows, index, :3])
-            _extend(group["velocity"], record[rows, index, 3:])
+            _extend(group["velocity"], record[rows, index, 3:6])
+            if "stress" in group:
+                _extend(group["stress"], record[rows, index, 6])
         self._done += count
-        if self.simulation.contacts is not None:
-            self._append_cracks(self.simulation.contacts.take_cracks(), self.simulation.time_step)
+        self._append_cracks(self.simulation.take_cracks(), self.simulation.time_step)
         self.file.flush()
 
     def enter_energy(self) -> np.ndarray:
@@ -109,7 +114,10 @@ class Recorder:
         contacts = self.simulation.contacts
         if contacts is not None and isinstance(self.simulation.engine, Bonded):
             _write(group, "coordination", contacts.coordination(), "1")
-        if self.simulation.scene.case.output.stress:
+        if isinstance(self.simulation.engine, BarEngine):
+            _write(group, "stress", self.simulation.engine.stress(self.simulation.displacement), "Pa")
+            _write(group, "damage", self.simulation.engine.bonds.damage(), "1")
+        elif self.simulation.scene.case.output.stress:
             _write(group, "stress", stress_now(self.simulation), "Pa")
         self._snapshots += 1
 
@@ -121,16 +129,21 @@ class Recorder:
                 "title": case.title,
                 "case": case.text,
                 "version": __version__,
-                "seed": getattr(case.packing, "seed", 0),
+                "seed": getattr(case.packing, "seed", 0) if isinstance(case, DiskCase) else 0,
                 "time_step": self.simulation.time_step,
                 "step_limit": step_limit,
-                "size": scene.assembly.size,
+                "size": scene.size,
+                "kind": "bar" if isinstance(scene, BarScene) else "disks",
                 "complete": False,
             }
         )
 
     def _write_particles(self) -> None:
-        scene, assembly = self.simulation.scene, self.simulation.scene.assembly
+        scene = self.simulation.scene
+        if isinstance(scene, BarScene):
+            self._write_nodes(scene)
+            return
+        assembly = scene.assembly
         bonded = scene.ground.moduli.pb_emod > 0.0
         bonds = np.bincount(assembly.pairs.ravel(), minlength=scene.count) * int(bonded)
         group = self.file.create_group("particles")
@@ -139,17 +152,27 @@ class Recorder:
         _write(group, "brick_particle", assembly.brick_particle, "1")
         _write(group, "bonds", bonds, "1")
 
+    def _write_nodes(self, scene: BarScene) -> None:
+        self.file.attrs["density"] = scene.case.bar.density
+        self.file.attrs["section"] = scene.rod.section
+        group = self.file.create_group("particles")
+        _write(group, "position", scene.positions, "m")
+        _write(group, "volume", scene.rod.volumes, "m³")
+
     def _make_histories(self) -> list[h5py.Group]:
         scene = self.simulation.scene
-        wanted = {monitor.name: monitor.position for monitor in scene.case.monitor}
+        on_axis = isinstance(scene, BarScene)
+        wanted: dict[str, Any] = {
+            each.name: (each.position, 0.0) if on_axis else each.position for each in scene.case.monitor
+        }
         histories = self.file.create_group("histories", track_order=True)  # the case's order, not the alphabet's
         groups = []
         for name, node in scene.monitors.items():
             group = histories.create_group(name)
             group.attrs["particle"] = node
-            group.attrs["position"] = scene.assembly.positions[node]
+            group.attrs["position"] = scene.positions[node]
             twin = name.endswith(FREE_FIELD)  # its place is nobody's wish
-            group.attrs["wanted"] = scene.assembly.positions[node] if twin else wanted[name]
+            group.attrs["wanted"] = scene.positions[node] if twin else wanted[name]
             group.attrs["unit"] = "m"
             for dataset, width, unit in (
                 ("time", (), "s"),
@@ -157,6 +180,8 @@ class Recorder:
                 ("velocity", (3,), VELOCITY_UNIT),
             ):
                 _make(group, dataset, width, "f8", unit)
+            if isinstance(scene, BarScene):
+                _make(group, "stress", (), "f8", "Pa")
             groups.append(group)
         return groups
 
@@ -176,7 +201,7 @@ class Recorder:
         _extend(self._cracks["shear"], cracks.shear)
 
     def _write_static(self, settled: Settled) -> None:
-        kept = self.simulation.scene.kept
+        kept = getattr(self.simulation.scene, "kept", None)
         if settled.before is not None and kept is not None:
             before = settled.before
             displacement = before.start.displacement[:, kept]
@@ -200,9 +225,10 @@ class Recorder:
         self._append_cracks(cracks, 0.0)  # before the run began
 
     def _write_energy(self) -> None:
+        unit = "J" if isinstance(self.simulation.scene, BarScene) else "J/m"
         group = self.file.create_group("energy")
         for field, column in zip(fields(Entry), self.ledger.columns.T, strict=True):
-            _write(group, field.name, column, "s" if field.name == "time" else "J/m")
+            _write(group, field.name, column, "s" if field.name == "time" else unit)
 
     def _write_laws(self) -> None:
         group = self.file.create_group("laws")
@@ -217,7 +243,7 @@ class Recorder:
             group.attrs["length"] = edge.length
             group.attrs["cover"] = edge.cover
             _write(group, "particle", edge.nodes, "1")
-            _write(group, "position", scene.assembly.positions[edge.nodes], "m")
+            _write(group, "position", scene.positions[edge.nodes], "m")
             _write(group, "diameter", edge.diameters, "m")
             _write(group, "peak_velocity", self.simulation.edge_peaks(side), VELOCITY_UNIT)
 

@@ -24,6 +24,16 @@ def open_record(path: Path) -> h5py.File:
         raise CaseError([f"{path}: cannot be read as a record of results: {error}"]) from None
 
 
+def is_bar(file: h5py.File) -> bool:
+    """Whether an open record is that of a bar; else it is one of disks."""
+    return bool(file.attrs.get("kind") == "bar")
+
+
+def place_in_words(place: Sequence[float], *, along_bar: bool) -> str:
+    """A place (2,) m in words; of a bar its first number tells all, and millimetres count."""
+    return f"{place[0]:.4g} m" if along_bar else "({:.2f}, {:.2f}) m".format(*place)
+
+
 def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
     """A snapshot of an open record by its number; negative ones count from the last.
 
@@ -73,7 +83,7 @@ def laws_of(file: h5py.File) -> list[tuple[str, float]]:
 
 
 def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
-    """The energy ledger of an open record: its columns (k,) by name, time in s and energies in J per metre.
+    """The energy ledger of an open record: its columns (k,) by name, time in s and energies in J per metre (a bar: J).
 
     One more column, relative_error, is the error in parts of the most that boundaries or loads have brought in.
 

@@ -9,15 +9,18 @@ from pathlib import Path
 
 import numpy as np
 
-from dembound.case import Case
+from dembound.bar import BarScene
+from dembound.body import build_body
+from dembound.case import Case, DiskCase
 from dembound.errors import CaseError, DemboundError
 from dembound.export import write_vtu
 from dembound.ground import Ground
+from dembound.plot.bar import plot_bar
 from dembound.plot.histories import plot_histories
 from dembound.plot.scene import plot_scene
 from dembound.plot.style import save
 from dembound.record import Recorder
-from dembound.scene import build, ground_of
+from dembound.scene import Scene, ground_of
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
 from dembound.static import Settled, settle
@@ -44,9 +47,10 @@ def plan(case: Case) -> Plan:
     stiffness and a step above the stability limit.
     """
     with _told_of(case):
-        scene = build(case)
+        scene = build_body(case)
         _ = scene.steady_load  # a load beside all particles must be found before anything is written
-        _ = scene.ground.material_tensor  # the summary needs it: a singular material must not end a finished run
+        if isinstance(scene, Scene):
+            _ = scene.ground.material_tensor  # the summary needs it: a singular material must not end a finished run
         time_step, limit = choose_step(scene)
     return Plan(scene, time_step, limit, max(1, int(np.ceil(case.run.duration / time_step - 1e-9))))
 
@@ -61,14 +65,16 @@ def _told_of(case: Case) -> Iterator[None]:
         raise
 
 
-def foresee(case: Case) -> Ground:
+def foresee(case: DiskCase) -> Ground:
     """Find what would stop a case later, as far as it can be found cheaply; returns its brick with its material.
 
     Packs the brick, which is then cached, and compares a given time step with the stability limit. Raises CaseError
     and PackingError.
     """
     if case.run.time_step != "auto":
-        return plan(case).scene.ground
+        scene = plan(case).scene
+        assert isinstance(scene, Scene)
+        return scene.ground
     with _told_of(case):
         ground = ground_of(case)
         _ = ground.material_tensor
@@ -99,7 +105,8 @@ def run_case(case: Case, results: Path, progress: Progress | None = None) -> Pat
     (partial / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
     write_vtu(partial / "run.h5", partial / "paraview")
     if case.output.pictures:
-        save(plot_scene(partial / "run.h5"), partial / "scene.png")
+        picture = plot_bar if isinstance(planned.scene, BarScene) else plot_scene
+        save(picture(partial / "run.h5"), partial / "scene.png")
         if case.monitor:
             save(plot_histories([partial / "run.h5"]), partial / "histories.png")
     if folder.exists():
@@ -133,7 +140,7 @@ def _simulate(planned: Plan, path: Path, progress: Progress) -> tuple[Simulation
     """Settle if the case says so, then advance to the end, recording histories, snapshots, energies and the rest."""
     case, steps = planned.scene.case, planned.steps
     settled = None
-    if case.static is not None:
+    if isinstance(planned.scene, Scene) and planned.scene.case.static is not None:
         settled = settle(planned.scene, progress.settling)
     monitors = np.array(list(planned.scene.monitors.values()), dtype=np.int64)
     start = settled.start if settled is not None else None

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from dembound.boundaries import FreeField
 from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
 from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
-from dembound.case import Case
+from dembound.case import DiskCase
 from dembound.case.monitor import FREE_FIELD
 from dembound.contacts import ContactList
 from dembound.edges import edges_beside_column, find_edges, left_of
@@ -45,7 +45,7 @@ class Scene:
     kept : (n,) indices into that one's particles of those that are left.
     """
 
-    case: Case
+    case: DiskCase
     ground: Ground
     assembly: Assembly
     rows: Rows
@@ -60,6 +60,21 @@ class Scene:
     def count(self) -> int:
         """Number of particles n."""
         return len(self.assembly.radii)
+
+    @property
+    def positions(self) -> np.ndarray:
+        """(n, 2) m."""
+        return self.assembly.positions
+
+    @property
+    def size(self) -> np.ndarray:
+        """(2,) width and height, m."""
+        return self.assembly.size
+
+    @property
+    def damp(self) -> float:
+        """Local damping coefficient."""
+        return self.case.material.damp
 
     @cached_property
     def mass(self) -> np.ndarray:
@@ -131,7 +146,7 @@ class Scene:
         return before + state + step + sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
 
 
-def build(case: Case) -> Scene:
+def build(case: DiskCase) -> Scene:
     """Pack, tile, hollow and support a case.
 
     Raises PackingError when the brick cannot be made or nothing of it is left, CaseError when nothing of a side is.
@@ -152,7 +167,7 @@ def build(case: Case) -> Scene:
     return replace(_scene(case, ground, body, edges), before=scene, kept=kept)
 
 
-def _scene(case: Case, ground: Ground, assembly: Assembly, edges: Mapping[str, Edge]) -> Scene:
+def _scene(case: DiskCase, ground: Ground, assembly: Assembly, edges: Mapping[str, Edge]) -> Scene:
     """The scene of a body and its sides, joined to a free-field column where the case has such sides."""
     seam = None
     if sides := _free_field_sides(case):
@@ -171,18 +186,18 @@ def _scene(case: Case, ground: Ground, assembly: Assembly, edges: Mapping[str, E
     )
 
 
-def ground_of(case: Case) -> Ground:
+def ground_of(case: DiskCase) -> Ground:
     """The case's brick, packed or from the cache, with its material."""
     brick = case.packing.pack(nominal_moduli(case.material).emod)
     return make_ground(brick, case.material, case.motion.held)
 
 
-def _free_field_sides(case: Case) -> tuple[str, ...]:
+def _free_field_sides(case: DiskCase) -> tuple[str, ...]:
     return tuple(side for side, table in case.boundary.items() if isinstance(table, FreeField))
 
 
 def _hollowed(
-    case: Case, brick: Brick, body: Assembly, edges: Mapping[str, Edge], holes: tuple[Hole, ...]
+    case: DiskCase, brick: Brick, body: Assembly, edges: Mapping[str, Edge], holes: tuple[Hole, ...]
 ) -> tuple[Assembly, dict[str, Edge], np.ndarray]:
     """A body and its sides without what lies in some holes, and the indices (m,) of the particles left.
 
@@ -197,7 +212,7 @@ def _hollowed(
     return left, {side: left_of(edge, kept) for side, edge in edges.items()}, kept
 
 
-def with_boundaries(scene: Scene, case: Case) -> Scene:
+def with_boundaries(scene: Scene, case: DiskCase) -> Scene:
     """The same body under the boundaries of another case; only what stands in [boundary.*] and [wave.*] counts."""
     built_in = [
         ([edge.side for edge in half_edges(scene.edges, each.boundary)], _free_field_sides(each))
@@ -208,12 +223,12 @@ def with_boundaries(scene: Scene, case: Case) -> Scene:
     return replace(scene, case=case, supports=_supports(case, scene.ground, scene.assembly, scene.edges))
 
 
-def _is_periodic(case: Case, side: str) -> bool:
+def _is_periodic(case: DiskCase, side: str) -> bool:
     return side in case.boundary and case.boundary[side].type == "periodic"
 
 
 def _with_half_contacts(
-    case: Case, brick: Brick, assembly: Assembly, seam: Seam | None, edges: Mapping[str, Edge]
+    case: DiskCase, brick: Brick, assembly: Assembly, seam: Seam | None, edges: Mapping[str, Edge]
 ) -> tuple[Assembly, Seam | None]:
     """The contacts along sides of half cells, those across a seam included, made of the half kind."""
     vectors, whole = brick.vectors, len(brick.pairs)
@@ -229,7 +244,7 @@ def _with_half_contacts(
     return assembly, seam
 
 
-def boundary_medium(case: Case, ground: Ground, axis: int) -> Medium:
+def boundary_medium(case: DiskCase, ground: Ground, axis: int) -> Medium:
     """What a side stands for: the wave speeds the case names, else the packing's own along the side's normal.
 
     axis is that of the normal, 0 (x) or 1 (y): a packing may be stiffer along one than along the other.
@@ -248,7 +263,7 @@ def boundary_medium(case: Case, ground: Ground, axis: int) -> Medium:
     return Medium(ground.density, p_speed, s_speed, mirror_stiffness)
 
 
-def _supports(case: Case, ground: Ground, assembly: Assembly, edges: Mapping[str, Edge]) -> Supports:
+def _supports(case: DiskCase, ground: Ground, assembly: Assembly, edges: Mapping[str, Edge]) -> Supports:
     """All sides' recipes and all driven loads in one table."""
     builder = SupportBuilder(held=ground.held)
     for side, table in case.boundary.items():
@@ -260,7 +275,7 @@ def _supports(case: Case, ground: Ground, assembly: Assembly, edges: Mapping[str
     return builder.table()
 
 
-def _monitors(case: Case, assembly: Assembly, seam: Seam | None) -> dict[str, int]:
+def _monitors(case: DiskCase, assembly: Assembly, seam: Seam | None) -> dict[str, int]:
     """The particle of the body nearest to each monitor's position, and its twin in the free-field column."""
     if not case.monitor:
         return {}

@@ -5,16 +5,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dembound.bar import BarScene
+from dembound.bar_engine import BarEngine
+from dembound.body import Body
 from dembound.boundaries.support import Supports
-from dembound.contacts import ContactList
+from dembound.contacts import NO_CRACKS, ContactList, Cracks
 from dembound.engines import Bonded, Elastic
 from dembound.errors import RunError
 from dembound.kernels import tables
-from dembound.scene import Scene
 from dembound.threads import threads_for
 
-BLOCK = 256
-"""Steps between two looks at a run: compiled code does not return to Python in between."""
+BLOCK, BAR_BLOCK = 256, 2048
+"""Steps between two looks at a run, and at a bar's, which are short: compiled code does not return in between."""
 
 DRIVEN_BYTES = 64e6
 """Most memory for the drives of a block; many driven particles make blocks shorter."""
@@ -40,7 +42,7 @@ class Simulation:
 
     Parameters
     ----------
-    scene : what moves.
+    scene : what moves, disks or a bar; start, damp, settling and load are for disks.
     time_step : Δt in s; the caller has compared it with the stability limit.
     probes : (p,) particles whose motion `advance` returns at every step.
     start : a body that has settled; whatever pushes its particles is balanced from then on, unless it is `settling`
@@ -56,7 +58,7 @@ class Simulation:
     load : (3, n) steady forces and moments on all particles (N, N·m) beside those of contacts.
     steps : steps done.
     laws : name of each law used and the step it began with.
-    work : (2, 4) J, see kernels.tables.Log.
+    work : (2, 5) J, see kernels.tables.Log.
     tracked : (q,) the particles of all edges, in the order of `scene.edges`.
     peaks : (q, 3, 2) smallest and largest velocity of each so far.
     top_speed : (n,) m/s, largest speed of every particle so far; (0,) unless the case asks for it.
@@ -64,7 +66,7 @@ class Simulation:
 
     def __init__(
         self,
-        scene: Scene,
+        scene: Body,
         time_step: float,
         probes: np.ndarray,
         *,
@@ -85,23 +87,29 @@ class Simulation:
         self.tracked = np.concatenate(edges) if edges else np.zeros(0, dtype=np.int64)
         self.peaks = np.zeros((len(self.tracked), 3, 2))
         self.top_speed = np.zeros(scene.count if scene.case.output.peaks else 0)
-        self.work = np.zeros((2, 4))
-        self._damp = scene.case.material.damp if damp is None else damp
+        self.work = np.zeros((2, 5))
+        self._damp = scene.damp if damp is None else damp
         self._fastest = _runaway_speed(scene)
         self._supports = NodeSupports(scene, time_step)
         self._mobility = self._where_unsupported(time_step / scene.mass)
         self._inverse_inertia = self._where_unsupported(time_step / scene.inertia)
         self.contacts: ContactList | None = None
+        self.engine: Elastic | Bonded | BarEngine
+        self.load = scene.steady_load if load is None else load
+        if isinstance(scene, BarScene):
+            self.engine = BarEngine(scene, time_step)
+            self._elastic_load = np.zeros((3, 0))
+            self.laws = [(self.engine.name, 0)]
+            return
         if scene.remembers:
             self.contacts = scene.contact_list() if start is None else start.contacts
-        steady = scene.steady_load if load is None else load
         balanced = start is not None and not settling
-        self._begin(steady, balanced=balanced, remembers=bool(start and start.remembers), settling=settling)
+        elastic = Elastic(scene, self.contacts)
+        self._begin(elastic, self.load, balanced=balanced, remembers=bool(start and start.remembers), settling=settling)
 
-    def _begin(self, load: np.ndarray, *, balanced: bool, remembers: bool, settling: bool) -> None:
-        """Choose the law to begin with, and the steady load that goes with it."""
-        elastic = Elastic(self.scene, self.contacts)
-        self.engine: Elastic | Bonded = elastic
+    def _begin(self, elastic: Elastic, load: np.ndarray, *, balanced: bool, remembers: bool, settling: bool) -> None:
+        """Choose the law disks begin with, and the steady load that goes with it."""
+        self.engine = elastic
         self.laws = [(elastic.name, 0)]
         if balanced:
             springs = self._supports.springs_at(self.datum)
@@ -113,7 +121,7 @@ class Simulation:
             self._elastic_load = self.load + at_first  # that law does not feel what is locked in
         if not self._elastic_load.any():
             self._elastic_load = np.zeros((3, 0))
-        if remembers or (self.contacts is not None and not self.scene.case.material.elastic_start):
+        if remembers or (self.contacts is not None and not elastic.scene.case.material.elastic_start):
             self.laws = []
             self._hand_over(fresh=not remembers)
 
@@ -141,9 +149,10 @@ class Simulation:
     def advance(self, steps: int) -> np.ndarray:
         """Go on by `steps` steps; returns (steps, p, 6): displacement and velocity of the probes before each.
 
-        Displacements count from the start. Raises RunError when the motion grows without bound, saying when and where.
+        Displacements count from the start. In a bar stress (Pa) is a seventh. Raises RunError when the motion grows
+        without bound, saying when and where.
         """
-        record = np.empty((steps, len(self.probes), 6))
+        record = np.empty((steps, len(self.probes), 7 if isinstance(self.engine, BarEngine) else 6))
         at_once = max(1, int(DRIVEN_BYTES / (24 * max(1, len(self._supports.nodes)))))
         done = 0
         with threads_for(self.scene.count):
@@ -158,7 +167,7 @@ class Simulation:
     def _advance(self, steps: int, record: np.ndarray) -> int:
         """Up to `steps` steps under one law; returns those done."""
         times = (self.steps + np.arange(steps)) * self.time_step
-        elastic = isinstance(self.engine, Elastic)
+        elastic = not isinstance(self.engine, Bonded)
         body = tables.Body(
             self._mobility,
             self._inverse_inertia,
@@ -173,15 +182,24 @@ class Simulation:
         self.steps += done
         if self.engine.ended:
             self._hand_over()
+        if self.engine.name != self.laws[-1][0]:
+            self.laws.append((self.engine.name, self.steps))
         return done
+
+    def take_cracks(self) -> Cracks:
+        """The bonds that broke since this was last called."""
+        if isinstance(self.engine, BarEngine):
+            return self.engine.take_cracks(self.steps)
+        return NO_CRACKS if self.contacts is None else self.contacts.take_cracks()
 
     def run(self, steps: int, on_block: Callable[["Simulation", np.ndarray], None] | None = None) -> None:
         """Advance to `steps` steps in all, block by block.
 
         on_block gets the simulation and the block's record (k, p, 6).
         """
+        block = BAR_BLOCK if isinstance(self.scene, BarScene) else BLOCK
         while self.steps < steps:
-            record = self.advance(min(BLOCK, steps - self.steps))
+            record = self.advance(min(block, steps - self.steps))
             if on_block is not None:
                 on_block(self, record)
 
@@ -204,16 +222,18 @@ class Simulation:
         """Raise RunError when a particle is faster than any wave could make it."""
         speed = np.abs(self.velocity[:2]).max(axis=0)
         sound = speed <= self._fastest  # false for what is not a number, too
-        if sound.all():
-            return
-        place = self.scene.assembly.positions[int(np.argmin(sound))]
-        raise RunError(
-            f"the motion grew without bound: at t = {self.time:g} s near ({place[0]:g}, {place[1]:g}) m; "
-            "take a smaller run.time_step or safety"
-        )
+        where = None if sound.all() else int(np.argmin(sound))
+        if where is None and isinstance(self.engine, BarEngine):
+            where = self.engine.blown_up(self.velocity)
+        if where is not None:
+            place = self.scene.positions[where]
+            raise RunError(
+                f"the motion grew without bound: at t = {self.time:g} s near ({place[0]:g}, {place[1]:g}) m; "
+                "take a smaller run.time_step or safety"
+            )
 
 
-def _runaway_speed(scene: Scene) -> float:
+def _runaway_speed(scene: Body) -> float:
     """Speed (m/s) that no particle can have; without a limit where more than waves moves them."""
     waves = sum(wave.peak() for wave in scene.case.wave.values())
     free = scene.case.load or scene.remembers
@@ -226,7 +246,7 @@ class NodeSupports:
     Attributes: nodes (k,); inertia, keep, mobility, stiffness, prescribed (k, 3), see kernels.tables.Supports.
     """
 
-    def __init__(self, scene: Scene, time_step: float) -> None:
+    def __init__(self, scene: Body, time_step: float) -> None:
         self._rows: Supports = scene.supports
         self._half_step = 0.5 * time_step
         across = scene.seam.node if scene.seam is not None else np.zeros(0, dtype=np.int64)

@@ -3,6 +3,8 @@
 import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
+from dembound.bar import BarScene
+from dembound.body import Body
 from dembound.errors import CaseError, RunError
 from dembound.kernels.elastic import contact_forces
 from dembound.scene import Scene
@@ -11,6 +13,9 @@ from dembound.threads import threads_for
 TOLERANCE = 1e-3
 """Relative residual at which the eigenvalue counts as found. It is added on top, so the step comes out too small by
 at most 0.05 %, never too large. Lattices need it, their largest eigenvalues lie close."""
+
+ROUNDING = 1e-9
+"""Share by which a bar's step may pass its limit, which rounding can put on either side of a round number."""
 
 LANCZOS_VECTORS = 8
 """Krylov vectors kept: few, as they are the largest arrays of all."""
@@ -92,11 +97,13 @@ def _rounded_down(step: float) -> float:
     return float(np.floor(step / unit) * unit)
 
 
-def choose_step(scene: Scene) -> tuple[float, float]:
-    """Time step to run with and the stability limit (s).
+def choose_step(scene: Body) -> tuple[float, float]:
+    """Time step to run with and the stability limit (s), that of a bar at every stage of its method.
 
     Raises CaseError when the case gives a step above the limit.
     """
+    if isinstance(scene, BarScene):
+        return _choose_bar_step(scene)
     limit = step_limit(scene)
     wanted = scene.case.run.time_step
     if wanted == "auto":
@@ -108,3 +115,20 @@ def choose_step(scene: Scene) -> tuple[float, float]:
     if wanted > limit:
         raise CaseError([f"run.time_step: is {wanted:g} s, must not be above the stability limit {limit:.6g} s"])
     return float(wanted), limit
+
+
+def _choose_bar_step(scene: BarScene) -> tuple[float, float]:
+    """The same for a bar, whose step may be given by its Courant number, and whose limit is exact but for rounding."""
+    limit, run = scene.step_limit(), scene.case.run
+    unit = scene.rod.spacing / scene.case.bar.speed
+    if run.courant is not None:
+        step = run.courant * unit
+        wrong = f"run.courant: is {run.courant:g}, must not be above {limit / unit:.6g}, the stability limit"
+    elif isinstance(run.time_step, float | int):
+        step = float(run.time_step)
+        wrong = f"run.time_step: is {step:g} s, must not be above the stability limit {limit:.6g} s"
+    else:
+        return run.safety * limit, limit
+    if step > limit * (1.0 + ROUNDING):
+        raise CaseError([wrong])
+    return step, limit

@@ -25,6 +25,7 @@ def stress_now(simulation: Simulation) -> np.ndarray:
     Under the law with a memory its forces are those at the beginning of the last step.
     """
     scene, contacts = simulation.scene, simulation.contacts
+    assert isinstance(scene, Scene)
     pairs = plain_contacts(scene.ground, scene.assembly) if contacts is None else contacts.arrays
     return particle_stress(scene, pairs, simulation.displacement, elastic=not isinstance(simulation.engine, Bonded))
 

@@ -24,7 +24,7 @@ from dembound.boundaries import (
     normal_axis,
 )
 from dembound.boundaries.viscous import Dashpots
-from dembound.case import Case
+from dembound.case import DiskCase
 from dembound.errors import CaseError
 from dembound.scene import ground_of
 from dembound.waves import Cosine
@@ -45,7 +45,7 @@ def axis_of_motion(side: str, motion: Motion) -> int:
     return normal_axis(side) if motion == "p" else 1 - normal_axis(side)
 
 
-def _waves_of(case: Case, motion: Motion) -> Iterator[str]:
+def _waves_of(case: DiskCase, motion: Motion) -> Iterator[str]:
     """Names of the waves that drive this kind of motion, then of all others."""
     for table in case.boundary.values():
         name = getattr(table, f"wave_{motion}", None)
@@ -54,7 +54,7 @@ def _waves_of(case: Case, motion: Motion) -> Iterator[str]:
     yield from case.wave
 
 
-def calibration_pulse(case: Case, side: str, motion: Motion) -> Cosine:
+def calibration_pulse(case: DiskCase, side: str, motion: Motion) -> Cosine:
     """The calibrating pulse: a cosine with the peak and dominant period of the case's own wave.
 
     Without a usable wave: 1 m/s and a length of 200 mean diameters.
@@ -68,7 +68,7 @@ def calibration_pulse(case: Case, side: str, motion: Motion) -> Cosine:
     return Cosine(type="cosine", amplitude=1.0, period=400.0 * case.packing.radius / speed)
 
 
-def linear_medium(case: Case) -> tuple[Case, list[str]]:
+def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
     """The case as what β is about, dashpots on a linear medium, and sentences that say what was left out.
 
     Springs reflect whatever β is; seam forces of a column come and go with the wave; holes scatter; loads, a static
@@ -93,7 +93,7 @@ def linear_medium(case: Case) -> tuple[Case, list[str]]:
     return plain, [sentence for sentence, applies in left_out.items() if applies]
 
 
-def _driven(case: Case, side: str, motion: Motion, pulse: Cosine) -> Case:
+def _driven(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> DiskCase:
     """The case with the pulse as its only wave: sent from the opposite side, or let in by the side itself."""
     wave = {"wave_p": None, "wave_s": None, f"wave_{motion}": PULSE}
     boundary = {name: _at_rest(table) for name, table in case.boundary.items()}
@@ -112,12 +112,12 @@ def _at_rest(table: BoundaryTable) -> BoundaryTable:
     return Fixed(type="fixed") if isinstance(table, Velocity) else table
 
 
-def _least_length(case: Case, axis: int, motion: Motion, pulse: Cosine) -> float:
+def _least_length(case: DiskCase, axis: int, motion: Motion, pulse: Cosine) -> float:
     """Length (m) along the normal that keeps echoes away from M_out."""
     return STRIP * _speed_of(case, axis, motion) * pulse.period
 
 
-def whole_of(case: Case, side: str, motion: Motion, pulse: Cosine) -> tuple[Case, list[str]]:
+def whole_of(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[DiskCase, list[str]]:
     """The whole scene, if it is long enough to calibrate on."""
     axis = normal_axis(side)
     least, length = _least_length(case, axis, motion, pulse), case.packing.size[axis]
@@ -128,7 +128,7 @@ def whole_of(case: Case, side: str, motion: Motion, pulse: Cosine) -> tuple[Case
     return _driven(case, side, motion, pulse), ["each pass ends once the peak has left the side"]
 
 
-def strip_of(case: Case, side: str, motion: Motion, pulse: Cosine) -> tuple[Case, list[str]]:
+def strip_of(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[DiskCase, list[str]]:
     """The least scene that decides M_out, and sentences that say how it differs from the case's."""
     case = _driven(case, side, motion, pulse)
     axis = normal_axis(side)
@@ -150,7 +150,7 @@ def strip_of(case: Case, side: str, motion: Motion, pulse: Cosine) -> tuple[Case
     return replace(case, packing=case.packing.model_copy(update={"size": size})), shortened
 
 
-def _speed_of(case: Case, axis: int, motion: Motion) -> float:
+def _speed_of(case: DiskCase, axis: int, motion: Motion) -> float:
     """The packing's own wave speed (m/s) along an axis."""
     ground = ground_of(case)
     return ground.wave_speeds(axis)[0 if motion == "p" else 1]

@@ -9,6 +9,9 @@ import h5py
 import numpy as np
 
 from dembound import __version__
+from dembound.bar import BarScene
+from dembound.bar_summary import summarise_bar
+from dembound.body import Body
 from dembound.boundaries.support import Edge
 from dembound.boundaries.viscoelastic import Springs
 from dembound.results import energy_of, open_record
@@ -22,7 +25,7 @@ from dembound.threads import worthwhile_threads
 class Plan:
     """What a case comes to before its first step: the scene, the step and its limit (s), the number of steps."""
 
-    scene: Scene
+    scene: Body
     time_step: float
     step_limit: float
     steps: int
@@ -33,13 +36,10 @@ def summarise(
 ) -> dict[str, Any]:
     """The run in numbers, for scripts: plain JSON values, SI units."""
     scene = planned.scene
-    return {
+    common = {
         "name": scene.case.name,
         "title": scene.case.title,
         "version": __version__,
-        "particles": scene.count,
-        "contacts": len(scene.assembly.pairs),
-        "loose_disks_left_out": scene.assembly.loose,
         "time_step": planned.time_step,
         "step_limit": planned.step_limit if np.isfinite(planned.step_limit) else None,
         "steps": simulation.steps,
@@ -49,13 +49,20 @@ def summarise(
         "particle_steps_per_second": scene.count * simulation.steps / wall_time,
         "memory_bytes": scene.bytes,
         "laws": [{"law": name, "from": step * simulation.time_step} for name, step in simulation.laws],
-        "static": None if settled is None else _describe_static(settled, _asked(scene)),
         "cracks": _count_cracks(record),
         "energy": _describe_energy(record),
-        "packing": describe_packing(scene),
-        "boundaries": {side: _describe_edge(scene, simulation, side) for side in scene.edges},
         "monitors": _describe_monitors(record),
         "reduced": [],
+    }
+    if isinstance(scene, BarScene):
+        return common | summarise_bar(scene, simulation, record)
+    return common | {
+        "particles": scene.count,
+        "contacts": len(scene.assembly.pairs),
+        "loose_disks_left_out": scene.assembly.loose,
+        "static": None if settled is None else _describe_static(settled, _asked(scene)),
+        "packing": describe_packing(scene),
+        "boundaries": {side: _describe_edge(scene, simulation, side) for side in scene.edges},
     }
 
 

@@ -9,8 +9,8 @@ import h5py
 import numpy as np
 from matplotlib.image import imsave
 
-from dembound.errors import DemboundError
-from dembound.results import cracks_until, liveliest_snapshot, open_record, replacing, snapshot_of
+from dembound.errors import CaseError, DemboundError
+from dembound.results import cracks_until, is_bar, liveliest_snapshot, open_record, replacing, snapshot_of
 
 if TYPE_CHECKING:
     import pyvista
@@ -48,9 +48,12 @@ def view(
     they began, 1 where they are. The axes are those of the scene at the start. The window has a slider over several
     snapshots; dragging moves the scene, the wheel zooms. Returns once it is closed.
 
-    Raises CaseError when the file cannot be read or has no such snapshot, DemboundError without OpenGL or a display.
+    Raises CaseError when the file cannot be read, is that of a bar or has no such snapshot, DemboundError without
+    OpenGL or a display.
     """
     with open_record(run) as file:
+        if is_bar(file):
+            raise CaseError([f"{run}: is a bar, view shows disks; `dembound plot RESULTS --field stress` draws bars"])
         first = liveliest_snapshot(file, field) if snapshot is None else snapshot_of(file, snapshot)
         require_rendering(in_window=picture is None)
         plotter = make_plotter(file, first, field, exaggerate, off_screen=picture is not None)

@@ -34,9 +34,13 @@ BoundaryTable = Annotated[
 ]
 """Any boundary table of a case file, told apart by its ``type``."""
 
+BarEndTable = Annotated[Free | Fixed | Velocity | Viscous | ViscousInput, Field(discriminator="type")]
+"""Those that an end of a bar can have."""
+
 __all__ = [
     "OPPOSITE",
     "SIDES",
+    "BarEndTable",
     "BoundaryTable",
     "Fixed",
     "Free",

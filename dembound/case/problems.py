@@ -6,17 +6,15 @@ from typing import Any
 from dembound.boundaries import OPPOSITE, BoundaryTable, Free, Periodic
 from dembound.boundaries.driven import Driven
 from dembound.boundaries.viscous import Dashpots
+from dembound.case.between import repeated_names, steps_too_long, unknown_waves
 from dembound.case.free_field_problems import free_field_problems
 from dembound.case.hole_problems import hole_problems
 from dembound.case.load import Load
 from dembound.case.material import Material
 from dembound.case.monitor import Monitor
 from dembound.case.motion import Motion
-from dembound.case.output import Output
-from dembound.case.run import Run
-from dembound.case.sentences import choices, numbered, show
+from dembound.case.sentences import numbered, show
 from dembound.case.static_problems import static_problems
-from dembound.holes import Hole
 from dembound.packings import PackingTable
 
 DIRECTIONS = {"left": "xy", "right": "xy", "bottom": "yx", "top": "yx"}
@@ -30,7 +28,9 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     invalid entry of `boundary`, `wave`, `hole`, `load` or `monitor`: checks that would need it are left out.
     `given` are the keys that the file has, valid or not.
     """
-    yield from _unknown_waves(tables["boundary"], tables["load"], tables["wave"])
+    named = [(f"boundary.{side}.{key}", name) for side, key, name, _ in _drives(tables["boundary"])]
+    named += [(f"{place}.wave", load.wave) for place, load in numbered("load", tables["load"]) if load.wave is not None]
+    yield from unknown_waves(named, tables["wave"])
     yield from _lonely_periodic_sides(tables["boundary"])
     yield from free_field_problems(tables["boundary"])
     if tables["motion"]:
@@ -43,7 +43,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         if tables["material"]:
             yield from _nothing_to_pack_with(tables["material"], tables["packing"])
     for key in ("hole", "load", "monitor"):
-        yield from _repeated_names(key, tables[key])
+        yield from repeated_names(key, tables[key])
     for key in ("load", "monitor"):
         if tables["packing"]:
             yield from _places_outside(key, tables[key], tables["packing"].size)
@@ -51,7 +51,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     if tables["static"]:
         yield from static_problems(*(tables[key] for key in ("static", "boundary", "load", "material", "motion")))
     if tables["run"]:
-        yield from _steps_too_long(tables["run"], tables["output"])
+        yield from steps_too_long(tables["run"], tables["output"])
 
 
 def _drives(boundaries: Mapping[str, BoundaryTable | None]) -> Iterator[tuple[str, str, str, str]]:
@@ -61,18 +61,6 @@ def _drives(boundaries: Mapping[str, BoundaryTable | None]) -> Iterator[tuple[st
             for key, direction in zip(("wave_p", "wave_s"), DIRECTIONS[side], strict=True):
                 if (name := getattr(boundary, key)) is not None:
                     yield side, key, name, direction
-
-
-def _unknown_waves(
-    boundaries: Mapping[str, BoundaryTable | None], loads: Sequence[Load | None], waves: Mapping[str, object]
-) -> Iterator[str]:
-    """Sides and loads that name a wave the case does not define."""
-    named = [(f"boundary.{side}.{key}", name) for side, key, name, _ in _drives(boundaries)]
-    named += [(f"{place}.wave", load.wave) for place, load in numbered("load", loads) if load.wave is not None]
-    for place, name in named:
-        if name not in waves:
-            defined = f"defined: {choices(name, waves)}" if waves else "none is defined"
-            yield f"{place}: {show(name)} is not a wave of this case; {defined}"
 
 
 def _lonely_periodic_sides(boundaries: Mapping[str, BoundaryTable | None]) -> Iterator[str]:
@@ -118,14 +106,6 @@ def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
         yield 'material.match: is "assembly", but motion.held holds x and y, so the packing has no P-wave speed'
 
 
-def _repeated_names(key: str, tables: Sequence[Hole | Load | Monitor | None]) -> Iterator[str]:
-    """Holes, loads or monitors whose results would overwrite one another."""
-    first: dict[str, int] = {}
-    for number, table in enumerate(tables, start=1):
-        if table and first.setdefault(table.name, number) != number:
-            yield f"{key}[{number}].name: {show(table.name)} is taken by {key}[{first[table.name]}]"
-
-
 def _places_outside(key: str, tables: Sequence[Load | Monitor | None], size: tuple[float, float]) -> Iterator[str]:
     """Loads or monitors that lie where no particle can be."""
     for place, table in numbered(key, tables):
@@ -133,12 +113,3 @@ def _places_outside(key: str, tables: Sequence[Load | Monitor | None], size: tup
             values = getattr(table, where, None) or ()
             if not all(0.0 <= value <= size[i % 2] for i, value in enumerate(values)):
                 yield f"{place}.{where}: is {show(values)}, must be in the scene, [0, 0] to {show(size)} (m)"
-
-
-def _steps_too_long(run: Run, output: Output | None) -> Iterator[str]:
-    """Intervals that the run is over before."""
-    if run.time_step != "auto" and run.time_step > run.duration:
-        yield f"run.time_step: is {run.time_step:g}, must be at most run.duration, {run.duration:g} (s)"
-    for key in ("history_interval", "energy_interval"):
-        if output and (interval := getattr(output, key)) > run.duration:
-            yield f"output.{key}: is {interval:g}, must be at most run.duration, {run.duration:g} (s)"

@@ -10,10 +10,15 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import to_json
 
-from dembound.boundaries import SIDES, BoundaryTable
+from dembound.boundaries import SIDES, BarEndTable, BoundaryTable
+from dembound.case.bar import Bar
+from dembound.case.bar_load import BarLoad
+from dembound.case.bar_monitor import BarMonitor
+from dembound.case.bar_problems import bar_problems
+from dembound.case.bar_run import BarRun
 from dembound.case.load import Load
 from dembound.case.material import Material
-from dembound.case.model import Case
+from dembound.case.model import BarCase, Case, DiskCase
 from dembound.case.monitor import Monitor
 from dembound.case.motion import Motion
 from dembound.case.output import Output
@@ -23,16 +28,26 @@ from dembound.case.sentences import describe, show, unknown
 from dembound.case.static import Static, StaticSide
 from dembound.errors import CaseError
 from dembound.holes import HoleTable
+from dembound.methods import MethodTable
 from dembound.packings import PackingTable
 from dembound.waves import WaveTable
 
-SINGLE_TABLES: Mapping[str, TypeAdapter[Any]] = {
-    "packing": TypeAdapter(PackingTable),
-    "material": TypeAdapter(Material),
-    "motion": TypeAdapter(Motion),
-    "run": TypeAdapter(Run),
-    "output": TypeAdapter(Output),
+TABLES: Mapping[type[Case], Mapping[str, TypeAdapter[Any]]] = {
+    DiskCase: {
+        "packing": TypeAdapter(PackingTable),
+        "material": TypeAdapter(Material),
+        "motion": TypeAdapter(Motion),
+        "run": TypeAdapter(Run),
+        "output": TypeAdapter(Output),
+    },
+    BarCase: {
+        "bar": TypeAdapter(Bar),
+        "method": TypeAdapter(MethodTable),
+        "run": TypeAdapter(BarRun),
+        "output": TypeAdapter(Output),
+    },
 }
+"""The tables of which a case of each kind has one."""
 TITLE: TypeAdapter[Any] = TypeAdapter(str)
 BOUNDARY: TypeAdapter[Any] = TypeAdapter(BoundaryTable)
 STATIC: TypeAdapter[Any] = TypeAdapter(Static)
@@ -41,9 +56,17 @@ WAVE: TypeAdapter[Any] = TypeAdapter(WaveTable)
 HOLE: TypeAdapter[Any] = TypeAdapter(HoleTable)
 LOAD: TypeAdapter[Any] = TypeAdapter(Load)
 MONITOR: TypeAdapter[Any] = TypeAdapter(Monitor)
+BAR_END: TypeAdapter[Any] = TypeAdapter(BarEndTable)
+BAR_LOAD: TypeAdapter[Any] = TypeAdapter(BarLoad)
+BAR_MONITOR: TypeAdapter[Any] = TypeAdapter(BarMonitor)
+ORDER = (
+    *("title", "bar", "method", "packing", "material", "motion", "boundary", "static", "wave"),
+    *("hole", "load", "monitor", "run", "output"),
+)
+"""All that may stand at the top level of a case file, in the order messages name it."""
 
-KEYS = tuple(field.name for field in fields(Case) if field.compare)
-"""All that may stand at the top level of a case file."""
+ENDS = ("left", "right")
+"""The sides of a bar."""
 
 
 def load(path: Path) -> Case:
@@ -76,10 +99,11 @@ def _read(text: str, folder: Path, name: str, source: str) -> Case:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise CaseError([_syntax_problem(str(error), text)], source) from None
-    tables, problems = _Reader(folder).read(data)
+    kind: type[Case] = BarCase if "bar" in data or "method" in data else DiskCase
+    tables, problems = _Reader(folder, kind).read(data)
     if problems:
         raise CaseError(problems, source)
-    return Case(**tables, name=name, text=text, folder=folder)
+    return kind(**tables, name=name, text=text, folder=folder)
 
 
 def _syntax_problem(message: str, text: str) -> str:
@@ -93,26 +117,43 @@ def _syntax_problem(message: str, text: str) -> str:
     return f"line {place[1]}: {what}, in: {text.splitlines()[int(place[1]) - 1].strip()}"
 
 
+def _stray(key: str, data: Mapping[str, Any], keys: list[str]) -> str:
+    """Say that a table has no place in a case of this kind, whose tables are called `keys`."""
+    if key not in ORDER:
+        return f"{key}: {unknown('table', key, keys)}"
+    mark = "bar" if "bar" in data else "method"  # one of them is there, as cases of disks may have all others
+    return f"{key}: is for disks, but [{mark}] makes this the case of a bar; allowed: {', '.join(keys)}"
+
+
 class _Reader:
     """Validates table by table, so that a mistake in one hides none in the others."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, kind: type[Case]) -> None:
         self.folder = folder
+        self.kind = kind
         self.problems: list[str] = []
 
     def read(self, data: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
-        """The fields of a `Case`, None for what is invalid, and all problems."""
-        self.problems = [f"{key}: {unknown('table', key, KEYS)}" for key in data if key not in KEYS]
+        """The fields of a case, None for what is invalid, and all problems."""
+        known = {field.name for field in fields(self.kind) if field.compare}
+        keys = [key for key in ORDER if key in known]
+        self.problems = [_stray(key, data, keys) for key in data if key not in keys]
         tables = {"title": self._valid("title", data.get("title", ""), TITLE)}
-        for key, kind in SINGLE_TABLES.items():
+        for key, kind in TABLES[self.kind].items():
             tables[key] = self._valid(key, data.get(key, {}), kind)
-        tables["boundary"] = self._sides("boundary", data.get("boundary", {}), BOUNDARY)
-        tables["static"] = self._static(data["static"]) if "static" in data else None
         tables["wave"] = self._named("wave", data.get("wave", {}), WAVE)
-        tables["hole"] = self._numbered("hole", data.get("hole", []), HOLE)
-        tables["load"] = self._numbered("load", data.get("load", []), LOAD)
-        tables["monitor"] = self._numbered("monitor", data.get("monitor", []), MONITOR)
-        self.problems += problems_between(tables, data)
+        if self.kind is BarCase:
+            tables["boundary"] = self._sides("boundary", data.get("boundary", {}), BAR_END, ENDS)
+            tables["load"] = self._numbered("load", data.get("load", []), BAR_LOAD)
+            tables["monitor"] = self._numbered("monitor", data.get("monitor", []), BAR_MONITOR)
+            self.problems += bar_problems(tables)
+        else:
+            tables["boundary"] = self._sides("boundary", data.get("boundary", {}), BOUNDARY)
+            tables["static"] = self._static(data["static"]) if "static" in data else None
+            tables["hole"] = self._numbered("hole", data.get("hole", []), HOLE)
+            tables["load"] = self._numbered("load", data.get("load", []), LOAD)
+            tables["monitor"] = self._numbered("monitor", data.get("monitor", []), MONITOR)
+            self.problems += problems_between(tables, data)
         return tables, self.problems
 
     def _valid(self, path: str, raw: object, kind: TypeAdapter[Any]) -> Any | None:
@@ -134,12 +175,12 @@ class _Reader:
             return {}
         return {name: self._valid(f"{path}.{name}", table, kind) for name, table in raw.items()}
 
-    def _sides(self, path: str, raw: object, kind: TypeAdapter[Any]) -> dict[str, Any]:
+    def _sides(self, path: str, raw: object, kind: TypeAdapter[Any], sides: tuple[str, ...] = SIDES) -> dict[str, Any]:
         """The tables of sides, in the order of the sides."""
         if isinstance(raw, Mapping):
-            strange = [name for name in raw if name not in SIDES]
-            self.problems += [f"{path}.{name}: {unknown('side', name, SIDES)}" for name in strange]
-            raw = {side: raw[side] for side in SIDES if side in raw}
+            strange = [name for name in raw if name not in sides]
+            self.problems += [f"{path}.{name}: {unknown('side', name, sides)}" for name in strange]
+            raw = {side: raw[side] for side in sides if side in raw}
         return self._named(path, raw, kind)
 
     def _static(self, raw: object) -> Static | None:

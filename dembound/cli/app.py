@@ -13,7 +13,7 @@ from rich.console import Console
 
 from dembound import __version__
 from dembound.boundaries import SIDES
-from dembound.case import Case, load, with_changes
+from dembound.case import Case, DiskCase, load, with_changes
 from dembound.errors import CaseError, DemboundError
 
 EXIT_CODES = """
@@ -64,6 +64,14 @@ def load_case(path: Path, changes: list[str] | None, name: str | None = None) ->
     if name != Path(name).name or name in ("", ".", ".."):
         raise CaseError([f"--name: is {name}, must be the name of one folder"])
     return replace(case, name=name)
+
+
+def load_disks(path: Path, changes: list[str] | None, name: str | None = None) -> DiskCase:
+    """The same for commands that know disks only."""
+    case = load_case(path, changes, name)
+    if not isinstance(case, DiskCase):
+        raise CaseError([f"{path}: is the case of a bar, this command is for disks"])
+    return case
 
 
 def _setting(text: str) -> tuple[str, Any]:

@@ -10,7 +10,7 @@ import typer
 
 from dembound.calibrate import Calibration, calibrate
 from dembound.case import to_toml, with_changes
-from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_case, out, use_threads
+from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, out, use_threads
 from dembound.plot.convergence import plot_convergence
 from dembound.plot.style import save
 
@@ -59,7 +59,7 @@ def calibrate_side(
     Prints β and M_out/M_in of every pass; leaves the calibrated case, the passes in HDF5 and a picture of them.
     """
     use_threads(threads)
-    loaded = load_case(case, changes, name)
+    loaded = load_disks(case, changes, name)
     found = calibrate(
         loaded,
         boundary.value,

@@ -1,26 +1,39 @@
 """Commands that begin with a case: new, check, run, packing."""
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from dembound.boundaries.support import Edge
-from dembound.case import STARTER
+from dembound.case import BAR_STARTER, STARTER
 from dembound.check import check, precautions
-from dembound.cli.app import Cases, Name, Output, Settings, Side, Threads, app, err, load_case, out, use_threads
+from dembound.cli.app import (
+    Cases,
+    Name,
+    Output,
+    Settings,
+    Side,
+    Threads,
+    app,
+    err,
+    load_case,
+    load_disks,
+    out,
+    use_threads,
+)
+from dembound.cli.outcome import outcome
 from dembound.errors import CaseError
 from dembound.half_space import write_exact
 from dembound.plot.packing import plot_brick, plot_patterns
 from dembound.plot.style import save
-from dembound.results import laws_in_words
 from dembound.run import Progress as RunProgress
-from dembound.run import foresee, run_case
+from dembound.run import run_case
 from dembound.scene import Scene, build
 from dembound.simulate import Simulation
 
@@ -30,11 +43,12 @@ RIGHT = Side("right")
 @app.command("new", rich_help_panel="Cases")
 def new(
     path: Annotated[Path, typer.Argument(help="File to write.")] = Path("case.toml"),
+    bar: Annotated[bool, typer.Option("--bar", help="A bar of nodes that spalls, instead of disks.")] = False,
 ) -> None:
     """Write a commented starter case."""
     if path.exists():
         raise CaseError([f"{path}: exists already, give another name"])
-    path.write_text(STARTER, encoding="utf-8")
+    path.write_text(BAR_STARTER if bar else STARTER, encoding="utf-8")
     out.print(f"wrote {path}; try: dembound check {path}")
 
 
@@ -72,7 +86,7 @@ def run(
     if len(set(names)) < len(names):
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
     for case in loaded:
-        for warning in precautions(case, foresee(case)):
+        for warning in precautions(case):
             err.print(f"{case.name}: warning: {warning}", markup=False)
     for case in loaded:
         try:
@@ -83,42 +97,10 @@ def run(
             kept = f"histories so far are in {partial}" if (partial / "run.h5").is_file() else "the run had not begun"
             err.print(f"{case.name}: stopped; {kept}")
             raise
-        facts = outcome(json.loads((folder / "summary.json").read_text()), remembers=case.material.law != "elastic")
+        facts = outcome(json.loads((folder / "summary.json").read_text()), case)
         if facts:
             out.print(f"{case.name}: {'; '.join(facts)}")
         out.print(f"{case.name}: results in {folder}")
-
-
-def outcome(summary: dict[str, Any], *, remembers: bool) -> list[str]:
-    """What happened in a run, in words, from its summary: its static stage, and what a law that remembers came to."""
-    facts = []
-    if (static := summary["static"]) is not None:
-        if (before := static["before"]) is not None:
-            facts.append(f"settled in {_stage(before)}")
-        facts.append(f"{'settled' if before is None else 'after the excavation'} in {_stage(static)}")
-    if remembers:
-        facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
-        tension, shear = summary["cracks"]["tension"], summary["cracks"]["shear"]
-        if tension + shear > 0:
-            facts.append(f"{tension + shear:,} bonds broke ({tension:,} tension, {shear:,} shear)")
-        if error := summary["energy"]["relative_error"]:  # zero where nothing came in
-            facts.append(f"energy closes to {100.0 * error:.2g} %")
-    return facts
-
-
-def _stage(static: dict[str, Any]) -> str:
-    """How a static stage went, in words, from its summary."""
-    reached = ""
-    if (asked := static["asked"]) is not None:  # supports may have kept the body from it
-        reached = f" and a stress of {_in_mpa(static['stress'])} where {_in_mpa(asked)} MPa was asked for"
-    broken = f", breaking {static['cracks']:,} bonds" if static["cracks"] else ""
-    return f"{static['steps']:,} steps to a force ratio of {static['ratio']:.1e}{reached}{broken}"
-
-
-def _in_mpa(stress: Sequence[float]) -> str:
-    """A stress xx, yy, xy in Pa as a bracket of MPa; what is nothing beside the largest is told as nothing."""
-    least = 1e-3 * max(map(abs, stress))
-    return f"({', '.join(f'{value / 1e6 if abs(value) > least else 0.0:.3g}' for value in stress)})"
 
 
 @app.command("packing", rich_help_panel="Cases")
@@ -130,7 +112,7 @@ def packing(
     changes: Settings = None,
 ) -> None:
     """Draw packings: one side of each case next to each other, or one brick."""
-    loaded = [load_case(path, changes) for path in cases]
+    loaded = [load_disks(path, changes) for path in cases]
     if brick:
         shown = build(loaded[0]).ground.brick
         figure = plot_brick(shown.positions, shown.radii, shown.rows, shown.size, shown.pairs, shown.images)
@@ -164,7 +146,7 @@ def exact(
 
     It is plotted and compared like a run. Its folder is named after the case with "_exact", or by --name.
     """
-    case = load_case(path, changes, name or f"{path.stem}_exact")
+    case = load_disks(path, changes, name or f"{path.stem}_exact")
     folder = output / case.name
     write_exact(case, folder / "run.h5")
     out.print(f"{case.name}: exact histories in {folder}")

@@ -5,18 +5,21 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from matplotlib.figure import Figure
 from rich.table import Column, Table
 
 from dembound.cli.app import Side, app, out
 from dembound.compare import compare
 from dembound.errors import CaseError
 from dembound.packings.cache import cache_folder, clear
+from dembound.plot.bar import plot_bar_field
 from dembound.plot.boundary import plot_boundary
 from dembound.plot.convergence import plot_convergence
 from dembound.plot.energy import plot_energy
 from dembound.plot.histories import plot_histories
 from dembound.plot.scene import plot_scene
 from dembound.plot.style import save
+from dembound.results import is_bar, open_record
 from dembound.view import view
 
 
@@ -27,11 +30,21 @@ class Field(StrEnum):
     displacement = "displacement"
 
 
-class SceneField(StrEnum):
-    """What colours the disks of a whole scene."""
+class Quantity(StrEnum):
+    """What of the monitors is shown."""
 
     velocity = "velocity"
     displacement = "displacement"
+    stress = "stress"
+
+
+class SceneField(StrEnum):
+    """What is shown of a whole scene; each kind of scene says which of these it has."""
+
+    velocity = "velocity"
+    displacement = "displacement"
+    stress = "stress"
+    damage = "damage"
     stress_xx = "stress_xx"
     stress_yy = "stress_yy"
     stress_xy = "stress_xy"
@@ -42,7 +55,9 @@ class SceneField(StrEnum):
 def plot(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write (PNG).")] = Path("plot.png"),
-    quantity: Annotated[Field, typer.Option(help="What of the motion to show.")] = Field.velocity,
+    quantity: Annotated[
+        Quantity, typer.Option(help="What of the monitors to show; the stress of bars alone.")
+    ] = Quantity.velocity,
     monitor: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Show this monitor only. May be repeated.")
     ] = None,
@@ -51,10 +66,15 @@ def plot(
     ] = None,
     energy: Annotated[bool, typer.Option("--energy", help="Show the energy ledger of one run instead.")] = False,
     field: Annotated[
-        SceneField | None, typer.Option(help="Show the scene of one run instead, its disks coloured by this.")
+        SceneField | None,
+        typer.Option(
+            help="Show the scene of one run instead, its disks coloured by this; of a bar it over place and time, "
+            "stress, damage and motion."
+        ),
     ] = None,
     snapshot: Annotated[
-        int | None, typer.Option(help="With --field: number of the snapshot, −1 the last; by default the liveliest.")
+        int | None,
+        typer.Option(help="With --field: number of the snapshot, −1 the last; by default the liveliest, of a bar all."),
     ] = None,
 ) -> None:
     """Overlay the histories of several runs, or the passes of several calibrations, in one picture."""
@@ -68,7 +88,7 @@ def plot(
     if snapshot is not None and field is None:
         raise CaseError(["--snapshot: goes with --field"])
     if field is not None:
-        figure = plot_scene(files[0], snapshot, field.value)
+        figure = _scene(files[0], field, snapshot)
     elif energy:
         figure = plot_energy(files[0])
     elif calibrations:
@@ -79,6 +99,15 @@ def plot(
         figure = plot_histories(files, quantity=quantity.value, monitors=monitor or None)
     save(figure, output)
     out.print(f"wrote {output}")
+
+
+def _scene(run: Path, field: SceneField, snapshot: int | None) -> Figure:
+    """A field of a whole scene, whichever kind it is."""
+    with open_record(run) as file:
+        bar = is_bar(file)
+    if bar:
+        return plot_bar_field(run, field.value, snapshot)
+    return plot_scene(run, snapshot, field.value)  # type: ignore[arg-type]  # says itself what disks have
 
 
 @app.command("view", rich_help_panel="Results")
@@ -113,7 +142,9 @@ def cache(
 def compare_histories(
     reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="Results to measure against.")],
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
-    quantity: Annotated[Field, typer.Option(help="What of the motion to compare.")] = Field.velocity,
+    quantity: Annotated[
+        Quantity, typer.Option(help="What of the monitors to compare; the stress of bars alone.")
+    ] = Quantity.velocity,
 ) -> None:
     """Say how far the histories of runs are from those of a reference, monitor by monitor.
 
@@ -130,8 +161,8 @@ def compare_histories(
     out.print(table)
     for line in found:
         if line.place != line.reference_place:
-            here, there = ("({:.2f}, {:.2f}) m".format(*place) for place in (line.place, line.reference_place))
-            out.print(f"{line.monitor} stands at {here} in {line.run}, at {there} in the reference", markup=False)
+            places = f"at {line.place} in {line.run}, at {line.reference_place} in the reference"
+            out.print(f"{line.monitor} stands {places}", markup=False)
 
 
 def results_file(path: Path) -> Path:

@@ -6,7 +6,7 @@ from numba import njit, prange
 from dembound.kernels.common import CHUNKS, FASTMATH, U
 from dembound.kernels.contacts import ends_force, moved, push, seam_ends_forces
 from dembound.kernels.elastic import DONE, LIST_ENDS
-from dembound.kernels.step import move_particle, move_supported, note_after, note_before
+from dembound.kernels.step import move_particle, move_supported, note_after, note_before, note_top_speeds
 
 
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
@@ -61,10 +61,12 @@ def advance(u, spare, v, number, contacts, limits, origin, skin, body, supports,
                 break
         push(here, v, body.step, number + step, contacts, limits, lost)
         seam_ends_forces(contacts, supports.seam, across)
-        note_before(step, here, v, supports.seam, followed, log)
+        note_before(step, here, v, log.probes, log.record, supports.seam.twin, followed)
         _move(here, v, contacts, body, there, fastest, damped)
         move_supported(step, here, v, there, across, followed, supports, body, log.work)
-        note_after(step, v, log)
+        note_after(step, v, log.probes, log.record, log.tracked, log.peaks)
+        if log.top_speed.size > 0:
+            note_top_speeds(v, log.top_speed)
         log.work[1, 1] += damped[:, 1].sum()
         log.work[0, 1] += damped[:, 0].sum()
         for way in range(2):

@@ -18,7 +18,7 @@ from numba import njit, prange
 
 from dembound.kernels.common import CHUNKS, FASTMATH, U
 from dembound.kernels.contacts import moved, slack
-from dembound.kernels.step import move_particle, move_supported, note_after, note_before
+from dembound.kernels.step import move_particle, move_supported, note_after, note_before, note_top_speeds
 
 DONE, LAW_ENDS, LIST_ENDS = 0, 1, 2
 """Why a kernel returned: all steps are done; a contact is about to leave the elastic law; the list of pairs is old."""
@@ -131,10 +131,12 @@ def advance(u, spare, v, rows, body, supports, log, watch):
                 why = LIST_ENDS if listed < 0.0 else LAW_ENDS
                 break
         seam_forces(here, rows, supports.seam, across)
-        note_before(step, here, v, supports.seam, followed, log)
+        note_before(step, here, v, log.probes, log.record, supports.seam.twin, followed)
         _move(here, v, rows, body, there, fastest, watch.arms, damped)
         move_supported(step, here, v, there, across, followed, supports, body, log.work)
-        note_after(step, v, log)
+        note_after(step, v, log.probes, log.record, log.tracked, log.peaks)
+        if log.top_speed.size > 0:
+            note_top_speeds(v, log.top_speed)
         if body.damp > 0.0:
             log.work[1, 1] += damped[:, 1].sum()
             log.work[0, 1] += damped[:, 0].sum()

@@ -63,15 +63,15 @@ def move_particle(i, fx, fy, moment, u, v, body, spare):
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def note_before(step, u, v, seam, followed, log):
+def note_before(step, u, v, probes, record, twin, followed):
     """Write down the probes' displacement and half of their velocity before a step, and half that of twins followed."""
-    for p in range(log.probes.size):
+    for p in range(probes.size):
         for c in range(3):
-            log.record[step, p, c] = u[c, log.probes[p]]
-            log.record[step, p, 3 + c] = 0.5 * v[c, log.probes[p]]
-    for s in range(seam.twin.size):
+            record[step, p, c] = u[c, probes[p]]
+            record[step, p, 3 + c] = 0.5 * v[c, probes[p]]
+    for s in range(twin.size):
         for c in range(3):
-            followed[s, c] = 0.5 * v[c, seam.twin[s]] if seam.twin[s] >= 0 else 0.0
+            followed[s, c] = 0.5 * v[c, twin[s]] if twin[s] >= 0 else 0.0
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
@@ -115,7 +115,7 @@ def move_supported(step, u, v, spare, across, followed, supports, body, work):
 
 
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
-def _note_top_speeds(v, top_speed):
+def note_top_speeds(v, top_speed):
     """Raise top_speed (n,) to the speeds of velocities v (3, n)."""
     n = top_speed.size
     for chunk in prange(CHUNKS):
@@ -127,15 +127,13 @@ def _note_top_speeds(v, top_speed):
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def note_after(step, v, log):
+def note_after(step, v, probes, record, tracked, peaks):
     """Write down what is only known after a step."""
-    for p in range(log.probes.size):
+    for p in range(probes.size):
         for c in range(3):
-            log.record[step, p, 3 + c] += 0.5 * v[c, log.probes[p]]
-    for q in range(log.tracked.size):
+            record[step, p, 3 + c] += 0.5 * v[c, probes[p]]
+    for q in range(tracked.size):
         for c in range(3):
-            speed = v[c, log.tracked[q]]
-            log.peaks[q, c, 0] = min(log.peaks[q, c, 0], speed)
-            log.peaks[q, c, 1] = max(log.peaks[q, c, 1], speed)
-    if log.top_speed.size > 0:
-        _note_top_speeds(v, log.top_speed)
+            speed = v[c, tracked[q]]
+            peaks[q, c, 0] = min(peaks[q, c, 0], speed)
+            peaks[q, c, 1] = max(peaks[q, c, 1], speed)

@@ -105,10 +105,10 @@ class Log(NamedTuple):
     """What is written down at every step.
 
     probes : (p,) particles; record : (steps, p, 6) their displacement and velocity at the start of each step, the
-    velocity as the mean of its two half-step values. tracked : (q,) particles; peaks : (q, 3, 2) smallest and largest
-    velocity so far. top_speed : (n,) largest speed so far, m/s, or (0,) where nobody asks. work : (2, 4) J done on the
-    body by supports, taken by damping, friction and cracks, column by column; row 0 up to the half step reached, row 1
-    up to the last whole step.
+    velocity as the mean of its two half-step values, and of a bar (steps, p, 7), stress last, Pa. tracked : (q,)
+    particles; peaks : (q, 3, 2) smallest and largest velocity so far. top_speed : (n,) largest speed so far, m/s, or
+    (0,) where nobody asks. work : (2, 5) J done on the body by supports, taken by damping, friction and cracks, added
+    by a change of method, column by column; row 0 up to the half step reached, row 1 up to the last whole step.
     """
 
     probes: np.ndarray
@@ -131,3 +131,31 @@ class Watch(NamedTuple):
     origin: np.ndarray
     skin: float
     arms: np.ndarray
+
+
+class BarBonds(NamedTuple):
+    """What holds a bar of n nodes together; horizon m, 0 where there is no peridynamic bond.
+
+    spring : (n − 1,) N/m of the local springs between neighbours, 0 where there is none; spring_limit : (n − 1,) m, the
+    elongation at which each breaks, or where it asks (n − 1,) leaves that to the method; bond : (m, n) N/m, row p − 1
+    those between nodes i and i + p; bond_limit : (m,) m, the elongation at which they break. spring_broken (n − 1,),
+    bond_broken (m, n) : step in which each broke, −1 for not. plain : (r, 2) ranges of nodes between springs that are
+    all alike, of plain_stiffness N/m and plain_limit m, which all ask, the nodes having plain_mobility Δt/m; mixed :
+    (q, 4) the ranges of all others, with the number of bond lengths there, 0 or m, and whether springs hold them.
+    section : m²; room : (n + m + 1,) for loops to work in.
+    """
+
+    spring: np.ndarray
+    spring_limit: np.ndarray
+    asks: np.ndarray
+    bond: np.ndarray
+    bond_limit: np.ndarray
+    spring_broken: np.ndarray
+    bond_broken: np.ndarray
+    plain: np.ndarray
+    plain_stiffness: float
+    plain_limit: float
+    plain_mobility: float
+    mixed: np.ndarray
+    section: float
+    room: np.ndarray

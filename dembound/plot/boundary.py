@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
 from dembound.plot.style import UNITS, new_figure, outside_legend, point_style, styled
-from dembound.results import COMPONENTS, open_record, record_names
+from dembound.results import COMPONENTS, is_bar, open_record, record_names
 
 # A uniform side must look uniform: axes are not magnified beyond ± this part of the middle value.
 LEAST_SPAN = 0.1
@@ -39,7 +39,7 @@ def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
     side
         left, right, bottom or top.
 
-    Raises CaseError when a file cannot be read or a run has no such side.
+    Raises CaseError when a file cannot be read, is that of a bar, or a run has no such side.
     """
     sides = [read_side(path, side) for path in runs]
     column = int(np.argmax(np.max([s.peaks[:, :2].max(axis=0) for s in sides], axis=0)))
@@ -65,9 +65,11 @@ def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
 def read_side(path: Path, side: str) -> Side:
     """The particles of a side of a run.
 
-    Raises CaseError when the file cannot be read or has no such side.
+    Raises CaseError when the file cannot be read, is that of a bar, or has no such side.
     """
     with open_record(path) as file:
+        if is_bar(file):
+            raise CaseError([f"{path}: is a bar, each end of which is one node; monitors there show its motion"])
         sides = file.get("boundaries", {})
         if side not in sides:
             there = ", ".join(sides) or "none (the run is not complete, or the scene is periodic)"

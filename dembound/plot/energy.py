@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
 from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled
-from dembound.results import energy_of, open_record
+from dembound.results import energy_of, is_bar, open_record
 
 COLUMNS = {
     "outside": "in: boundaries and driven loads",
@@ -18,10 +18,19 @@ COLUMNS = {
     "damping": "taken by local damping",
     "friction": "taken by friction",
     "crack": "taken by cracks",
+    "handover": "in: added by a change of method",
 }
 """Columns of the ledger and what the legend calls them."""
 
-HUES = (*COLOURS, "#8C510A")
+BAR_COLUMNS = COLUMNS | {
+    "outside": "in: ends and loads",
+    "contact": "stored in local springs",
+    "bond": "stored in peridynamic bonds",
+    "damping": "taken by attenuation",
+}
+"""The same of a bar."""
+
+HUES = (*COLOURS, "#8C510A", "#999999")
 """A colour for each of them."""
 
 NEGLIGIBLE = 1e-6
@@ -42,17 +51,17 @@ def plot_energy(run: Path) -> Figure:
     Raises CaseError when the file cannot be read or has no ledger.
     """
     with open_record(run) as file:
-        name, columns = str(file.attrs["name"]), energy_of(file)
+        name, columns, bar = str(file.attrs["name"]), energy_of(file), is_bar(file)
     figure = new_figure(9.0, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[4, 1])
     largest = {column: float(np.abs(columns[column]).max()) for column in COLUMNS}
     least = NEGLIGIBLE * max(largest.values())
-    for index, (column, label) in enumerate(COLUMNS.items()):
+    for index, (column, label) in enumerate((BAR_COLUMNS if bar else COLUMNS).items()):
         if largest[column] > least:
             looks = line_style(index) | {"color": HUES[index]}
             upper.plot(columns["time"], columns[column], label=label, **looks)
     lower.plot(columns["time"], columns["relative_error"], color=REFERENCE)
-    upper.set_ylabel("energy per metre of thickness")
+    upper.set_ylabel("energy" if bar else "energy per metre of thickness")
     upper.yaxis.set_major_formatter(EngFormatter(unit="J"))
     lower.set_ylabel("error (–)")
     lower.set_xlabel("time (s)")

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, get_args
 
 import h5py
 import numpy as np
@@ -72,8 +72,10 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
     Without the number of a snapshot there are up to `most`, evenly picked, the last among them, or if that is 1 the one
     in which the field is largest. The limits are those of the whole run, 1 where all is zero.
 
-    Raises CaseError when the record has no such snapshot or does not hold the field.
+    Raises CaseError when the record has no such snapshot or does not hold the field, or disks have no such field.
     """
+    if name not in get_args(FieldName):
+        raise CaseError([f"field: is {name}, must be one of {', '.join(get_args(FieldName))} for disks"])
     if name == "peak":
         return _peak(file, snapshot)
     groups = list(snapshot_of(file, -1).parent.values())

@@ -1,29 +1,39 @@
-"""Motion of the monitors against time (Z figs 3, 7, 8, 14, 16)."""
+"""Motion and stress of the monitors against time (Z figs 3, 7, 8, 14, 16; L figs 6, 7)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+import h5py
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
 from dembound.plot.style import UNITS, line_style, new_figure, outside_legend, styled
-from dembound.results import COMPONENTS, open_record, record_names
+from dembound.results import COMPONENTS, is_bar, open_record, place_in_words, record_names
 
-Quantity = Literal["velocity", "displacement"]
+Quantity = Literal["velocity", "displacement", "stress"]
 Component = Literal["x", "y", "rotation"]
+
+SCALES = {"velocity": 1.0, "displacement": 1.0, "stress": 1e6}
+"""SI units in the units shown."""
+
+SENSES = {"velocity": "", "displacement": "", "stress": ", tension positive"}
+"""What a positive value means, where the axis does not tell."""
 
 
 @dataclass(frozen=True)
 class History:
-    """One monitor's motion in one run: time (k,) s, motion (k, 3) in `UNITS`, and the place asked for (2,) m."""
+    """What one monitor felt in one run.
+
+    time (k,) s; values in `UNITS`, of a motion (k, 3), of a stress along x (k, 1); place asked for, in words.
+    """
 
     time: np.ndarray
-    motion: np.ndarray
-    position: np.ndarray
+    values: np.ndarray
+    place: str
 
 
 @styled
@@ -40,13 +50,14 @@ def plot_histories(
     runs
         ``run.h5`` files; a monitor need not occur in all of them.
     component
-        what to show; by default whichever of x and y moved most in any run.
+        of a motion, by default whichever of x and y moved most in any run.
     quantity
-        what to show of it, in m/s or m (rad/s or rad for the rotation).
+        velocity in m/s, displacement in m (rad/s or rad for the rotation), or of bars stress in MPa.
     monitors
         names of those to show, in this order; by default all.
 
-    Raises CaseError when a file cannot be read, no run has a monitor, or none has one of those asked for.
+    Raises CaseError when a file cannot be read or holds no stress that is asked for, no run has a monitor, or none has
+    one of those asked for.
     """
     histories = [read_histories(path, quantity) for path in runs]
     shown = _choose(runs, histories, monitors)
@@ -58,12 +69,12 @@ def plot_histories(
         for panel, monitor in zip(panels, shown, strict=True):
             if monitor in run:
                 history = run[monitor]
-                panel.plot(history.time, history.motion[:, column], label=label, **line_style(index))
+                panel.plot(history.time, history.values[:, column], label=label, **line_style(index))
     for panel, monitor in zip(panels, shown, strict=True):
-        _tell_places(panel, monitor, [run[monitor].position for run in histories if monitor in run])
+        _tell_places(panel, monitor, [run[monitor].place for run in histories if monitor in run])
     direction = _direction(column)
     panels[-1].set_xlabel("time (s)")
-    figure.supylabel(f"{quantity} {direction} ({UNITS[quantity][column]})", fontsize=10)
+    figure.supylabel(f"{quantity} {direction}{SENSES[quantity]} ({UNITS[quantity][column]})", fontsize=10)
     figure.suptitle(f"{quantity.capitalize()} {direction} at the monitors", fontsize=11)
     outside_legend(figure, panels, columns=3)
     return figure
@@ -72,18 +83,24 @@ def plot_histories(
 def read_histories(path: Path, quantity: Quantity) -> dict[str, History]:
     """The histories of a run by monitor name; empty for a run without monitors.
 
-    Raises CaseError when the file cannot be read.
+    Raises CaseError when the file cannot be read or holds no stress that is asked for.
     """
     with open_record(path) as file:
-        return {
-            name: History(group["time"][:], group[quantity][:], group.attrs["wanted"])
-            for name, group in file.get("histories", {}).items()
-        }
+        groups = dict(file.get("histories", {}).items())
+        if any(quantity not in group for group in groups.values()):
+            raise CaseError([f"{path}: holds no {quantity} of its monitors; runs of bars do"])
+        return {name: _read(group, quantity, along_bar=is_bar(file)) for name, group in groups.items()}
 
 
-def _tell_places(panel: Axes, monitor: str, positions: Sequence[np.ndarray]) -> None:
-    """The monitor's name, and its place in the title if it is the same (2,) m for every line, else beside each line."""
-    places = ["({:.2f}, {:.2f}) m".format(*position) for position in positions]
+def _read(group: h5py.Group, quantity: Quantity, *, along_bar: bool) -> History:
+    """A monitor's history."""
+    time, values = group["time"][:], group[quantity][:]
+    columns = values.reshape(len(time), -1) / SCALES[quantity]
+    return History(time, columns, place_in_words(group.attrs["wanted"], along_bar=along_bar))
+
+
+def _tell_places(panel: Axes, monitor: str, places: Sequence[str]) -> None:
+    """The monitor's name, and its place in the title if it is the same for every line, else beside each line."""
     alike = len(set(places)) == 1
     panel.set_title(f"{monitor} at {places[0]}" if alike else monitor, loc="left", fontsize=9, pad=3)
     if not alike:
@@ -103,8 +120,8 @@ def _choose(runs: Sequence[Path], histories: Sequence[dict[str, History]], wante
 
 
 def _largest(histories: Sequence[dict[str, History]]) -> int:
-    """0 or 1, the translation with the largest motion in any history."""
-    largest = [np.abs(h.motion[:, :2]).max(axis=0, initial=0.0) for run in histories for h in run.values()]
+    """0 or 1, the column of x or y with the largest value in any history."""
+    largest = [np.abs(h.values[:, :2]).max(axis=0, initial=0.0) for run in histories for h in run.values()]
     return int(np.argmax(np.max(largest, axis=0)))
 
 

@@ -29,8 +29,8 @@ UNSIGNED_MAP = "viridis"
 # DejaVu comes with matplotlib; the others supply Chinese characters in titles wherever one is installed
 FONTS = ("DejaVu Sans", "Noto Sans CJK SC", "Microsoft YaHei", "PingFang SC", "SimHei", "WenQuanYi Zen Hei")
 
-UNITS = {"velocity": ("m/s", "m/s", "rad/s"), "displacement": ("m", "m", "rad")}
-"""Units of x, y and rotation."""
+UNITS = {"velocity": ("m/s", "m/s", "rad/s"), "displacement": ("m", "m", "rad"), "stress": ("MPa",)}
+"""Units of x, y and rotation; the stress is along x."""
 
 Parameters = ParamSpec("Parameters")
 

@@ -13,9 +13,12 @@ from dembound.waves.record import Record
 from dembound.waves.ricker import Ricker
 from dembound.waves.sine_burst import SineBurst
 from dembound.waves.spline import CubicSpline
+from dembound.waves.triangle import Triangle
 from dembound.waves.wave import Wave
 
-WaveTable = Annotated[Cosine | CubicSpline | Ricker | SineBurst | Constant | Record, Field(discriminator="type")]
+WaveTable = Annotated[
+    Cosine | CubicSpline | Triangle | Ricker | SineBurst | Constant | Record, Field(discriminator="type")
+]
 """Any wave table of a case file, told apart by its ``type``."""
 
-__all__ = ["Constant", "Cosine", "CubicSpline", "Record", "Ricker", "SineBurst", "Wave", "WaveTable"]
+__all__ = ["Constant", "Cosine", "CubicSpline", "Record", "Ricker", "SineBurst", "Triangle", "Wave", "WaveTable"]

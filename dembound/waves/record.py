@@ -89,37 +89,40 @@ class Record(Wave):
         return amplitude_spectrum(self.velocity(evenly), time_step)
 
 
-def read_samples(path: Path) -> np.ndarray:
-    """Read a two-column text file into an array (k, 2): times, s, and velocities, m/s.
+def read_samples(path: Path, quantity: str = "velocity (m/s)") -> np.ndarray:
+    """Read a two-column text file into an array (k, 2): times, s, and values of a quantity (error texts name it).
+
+    Columns are separated by blanks, in a file called ``.csv`` by commas.
 
     Raises
     ------
     ValueError
-        If the file is absent or does not hold a velocity history; the message starts with ``path:``.
+        If the file is absent or does not hold a history; the message starts with ``path:``.
     """
     if not path.is_file():
         raise ValueError(f'path: no file "{path}"')
+    separator = "," if path.suffix.lower() == ".csv" else None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # an empty file is reported below
-            samples = np.loadtxt(path, ndmin=2, encoding="utf-8")
+            samples = np.loadtxt(path, ndmin=2, encoding="utf-8", delimiter=separator)
     except ValueError as error:
         reason = str(error).split(" at row")[0]
         raise ValueError(
-            f'path: "{path}" is not two columns of numbers, separated by blanks, not commas: {reason}'
+            f'path: "{path}" is not two columns of numbers, separated by blanks, in a .csv file by commas: {reason}'
         ) from error
-    problem = _problem(samples)
+    problem = _problem(samples, quantity)
     if problem:
         raise ValueError(f'path: "{path}" {problem}')
     return samples
 
 
-def _problem(samples: np.ndarray) -> str:
-    """What keeps samples (k, c) from being a velocity history; empty if nothing does."""
+def _problem(samples: np.ndarray, quantity: str) -> str:
+    """What keeps samples (k, c) from being a history of a quantity; empty if nothing does."""
     if samples.size == 0:
         return "holds no numbers"
     if samples.shape[1] != 2:
-        return f"has {samples.shape[1]} columns, must have two: time (s), velocity (m/s)"
+        return f"has {samples.shape[1]} columns, must have two: time (s), {quantity}"
     if not np.isfinite(samples).all():
         return "holds values that are not finite"
     if len(samples) < 2:
@@ -129,5 +132,5 @@ def _problem(samples: np.ndarray) -> str:
         line = int(np.argmin(steps > 0.0)) + 2
         return f"must have increasing times; row {line} of its numbers does not follow the row before"
     if not samples[:, 1].any():
-        return "holds nothing but zero velocities"
+        return "holds nothing but zeros"
     return ""

@@ -111,6 +111,60 @@ def cracked_run(tmp_path_factory) -> Path:
     return path
 
 
+SPALLING = """
+[bar]
+length = 1.0
+spacing = 0.025
+density = 2500.0
+wave_speed = 1000.0
+strength = 8e6
+[method]
+type = "peridynamics"
+horizon = 3
+[[load]]
+name = "hit"
+pressure = 12e6
+nodes = 3
+wave = "hit"
+[wave.hit]
+type = "triangle"
+amplitude = 1.0
+rise = 2e-4
+fall = 2e-4
+[[monitor]]
+name = "gauge"
+position = 0.525
+[run]
+duration = 1.5e-3
+courant = 1.0
+"""
+"""A bar of 41 nodes, 60 steps: a compressive pulse of 0.4 m comes back as tension and tears off its free end."""
+
+
+@pytest.fixture(scope="session")
+def spalled_run(tmp_path_factory) -> Path:
+    """The record of that bar, called ``spalled``, with twelve snapshots and twelve entries of the ledger."""
+    planned = plan(loads(SPALLING, Path(), "spalled"))
+    simulation = Simulation(planned.scene, planned.time_step, np.array(list(planned.scene.monitors.values())))
+    path = tmp_path_factory.mktemp("spalled") / "run.h5"
+    with Recorder(path, simulation, planned.step_limit, 0.0) as recorder:
+        for _ in range(12):
+            recorder.append(recorder.enter_energy())
+            recorder.append(simulation.advance(planned.steps // 12 - 1))
+            recorder.snapshot()
+    return path
+
+
+@pytest.fixture
+def spalling() -> Callable[..., Case]:
+    """Makes cases: that bar with keys changed."""
+
+    def make(changes: Mapping[str, Any] | None = None, name: str = "spalling") -> Case:
+        return with_changes(loads(SPALLING, Path(), name), changes or {})
+
+    return make
+
+
 BAR = {
     "packing.size": [10.0, 1.0],
     "wave.pulse.period": 0.01,
@@ -129,3 +183,26 @@ def bar() -> Callable[..., Case]:
         return with_changes(loads(STARTER, Path(), name), {**BAR, **(changes or {})})
 
     return make
+
+
+@pytest.fixture
+def felt() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
+    """Makes what a gauge feels at 0.6 m of a bar of 0.99 m, in which waves run at 2740 m/s, sampled at 1 MHz.
+
+    A compressive triangle of unit height enters after 20 µs and runs to and fro between free ends; noise is the
+    standard deviation of what is added, in parts of the largest tension.
+    """
+
+    def feel(
+        rise: float = 40e-6, fall: float = 80e-6, attenuation: float = 0.52, noise: float = 0.0, seed: int = 0
+    ) -> tuple[np.ndarray, np.ndarray]:
+        time = 1e-6 * np.arange(5000)
+        stress = np.zeros_like(time)
+        for turn in range(8):
+            for sign, way in ((-1.0, 1.98 * turn + 0.6), (1.0, 1.98 * turn + 1.38)):
+                since = time - 20e-6 - way / 2740.0
+                triangle = np.clip(np.minimum(since / rise, 1.0 - (since - rise) / fall), 0.0, 1.0)
+                stress += sign * np.exp(-attenuation * way) * triangle
+        return time, stress + noise * stress.max() * np.random.default_rng(seed).standard_normal(len(time))
+
+    return feel

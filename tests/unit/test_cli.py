@@ -6,14 +6,17 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from unittest.mock import ANY
 
 import h5py
 import numba
+import numpy as np
 import pytest
+import tomli_w
 
 from dembound import __version__, cli
-from dembound.case import load
-from dembound.cli.cases import outcome
+from dembound.case import BarCase, load
+from dembound.cli.outcome import disk_outcome
 
 
 @dataclass
@@ -71,7 +74,7 @@ def test_version_and_help_end_well(dembound) -> None:
     assert dembound("--version") == Answer(0, f"dembound {__version__}\n", "")
     told = dembound("--help")
     assert told.code == 0
-    for command in ("new", "check", "run", "calibrate", "plot"):
+    for command in ("new", "check", "run", "calibrate", "plot", "dispersion", "gauge"):
         assert command in told.out
 
 
@@ -86,6 +89,13 @@ def test_a_new_case_can_be_run_as_it_stands(dembound, tmp_path) -> None:
 
     assert load(tmp_path / "first.toml").name == "first"
     assert dembound("check", "first.toml").code == 0
+
+
+def test_a_new_case_of_a_bar_can_be_run_as_it_stands(dembound, tmp_path) -> None:
+    assert dembound("new", "--bar", "first.toml").code == 0
+
+    assert isinstance(load(tmp_path / "first.toml"), BarCase)
+    assert dembound("check", "first.toml") == Answer(0, ANY, "")  # nothing to be warned of
 
 
 def test_new_overwrites_nothing(dembound, tmp_path) -> None:
@@ -163,21 +173,21 @@ def test_only_what_applies_is_told() -> None:
     settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0, "before": None, "asked": None}
     stage = "settled in 3,100 steps to a force ratio of 9.8e-06"
 
-    assert outcome(elastic, remembers=False) == []
-    assert outcome(elastic | {"static": settled}, remembers=False) == [stage]
-    assert outcome(elastic | quiet, remembers=True) == ["elastic law all through"]
+    assert disk_outcome(elastic, remembers=False) == []
+    assert disk_outcome(elastic | {"static": settled}, remembers=False) == [stage]
+    assert disk_outcome(elastic | quiet, remembers=True) == ["elastic law all through"]
     broken = {"cracks": {"tension": 1200, "shear": 30}, "static": settled | {"cracks": 1100}}
-    assert outcome(elastic | quiet | broken, remembers=True) == [
+    assert disk_outcome(elastic | quiet | broken, remembers=True) == [
         f"{stage}, breaking 1,100 bonds",
         "elastic law all through",
         "1,230 bonds broke (1,200 tension, 30 shear)",
     ]
     pressed = {"static": settled | {"asked": [-1e6, -2e6, 0.0], "stress": [-0.5e6, -2e6, 1e-3]}}
-    assert outcome(elastic | pressed, remembers=False) == [
+    assert disk_outcome(elastic | pressed, remembers=False) == [
         f"{stage} and a stress of (-0.5, -2, 0) where (-1, -2, 0) MPa was asked for"
     ]
     excavated = {"static": settled | {"steps": 900, "before": settled}}
-    assert outcome(elastic | excavated, remembers=False) == [
+    assert disk_outcome(elastic | excavated, remembers=False) == [
         stage,
         "after the excavation in 900 steps to a force ratio of 9.8e-06",
     ]
@@ -340,6 +350,45 @@ def test_what_cannot_be_drawn_is_bad_input(dembound, written, tmp_path) -> None:
     assert not (tmp_path / "plot.png").exists()
 
 
+def test_a_bar_leaves_pictures_and_what_paraview_shows(dembound, tmp_path) -> None:
+    dembound("new", "--bar", "rod.toml")
+    short = ("--set", "run.duration=5e-5", "--set", "bar.spacing=0.01", "--set", "output.snapshots=3")
+    assert dembound("run", "rod.toml", *short).code == 0
+
+    shown = {f"paraview/bar_{number:04d}.vtu" for number in range(3)} | {"paraview/bar.pvd", "paraview/view.py"}
+    assert files(tmp_path / "results" / "rod") == {"run.h5", "summary.json", "scene.png", "histories.png"} | shown
+
+
+def test_bars_are_drawn_and_compared(dembound, spalled_run, tmp_path) -> None:
+    for name, options in (
+        ("stress", ["--field", "stress"]),
+        ("damage", ["--field", "damage", "--snapshot", "-1"]),
+        ("gauge", ["--quantity", "stress"]),
+        ("energy", ["--energy"]),
+    ):
+        assert dembound("plot", spalled_run, "-o", f"{name}.png", *options).code == 0
+        assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+    answer = dembound("compare", spalled_run, spalled_run, "--quantity", "stress")
+    assert answer.code == 0
+    assert "0.000%" in answer.out
+
+
+def test_what_bars_and_disks_do_not_have_is_bad_input(dembound, spalled_run, small_run, tmp_path) -> None:
+    for arguments, said in (
+        (["plot", spalled_run, "--field", "peak"], "field: is peak, must be one of stress, damage, "),
+        (["plot", spalled_run, "--boundary", "left"], "each end of which is one node"),
+        (["plot", small_run, "--field", "damage"], "field: is damage, must be one of velocity, "),
+        (["plot", small_run, "--quantity", "stress"], "holds no stress of its monitors"),
+        (["compare", small_run, small_run, "--quantity", "stress"], "holds no stress of its monitors"),
+        (["view", spalled_run], "is a bar, view shows disks"),
+        (["view", small_run, "--field", "stress"], "--field"),
+    ):
+        answer = dembound(*arguments)
+        assert answer.code == 2
+        assert said in answer.err
+    assert not files(tmp_path)
+
+
 def test_bricks_are_kept_where_the_command_says_until_they_are_cleared(
     dembound, written, tmp_path, monkeypatch
 ) -> None:
@@ -389,3 +438,78 @@ def test_what_cannot_be_written_is_named(dembound, written, tmp_path) -> None:
         answer = dembound(*arguments)
         assert answer.code == 5
         assert len(answer.err.splitlines()) == 1
+
+
+def test_dispersion_is_told_drawn_and_written(dembound, tmp_path) -> None:
+    answer = dembound("dispersion", "--horizon", 1, "--horizon", 3, "--time-step", 2e-6, "--table", "table.csv")
+
+    assert answer.code == 0
+    first, second = [line for line in answer.out.splitlines() if "2e-06" in line]
+    assert "unstable" in first  # cΔt/Δx = 1.1052
+    assert "24.9" in second  # spacings per wavelength, below the 28.6 of short steps
+    assert answer.out.splitlines()[-2:] == ["wrote dispersion.png", "wrote table.csv"]
+    assert files(tmp_path) == {"dispersion.png", "table.csv"}
+
+
+def test_bars_of_cases_are_told_and_simulated(dembound, tmp_path) -> None:
+    tables = {
+        "bar": {"length": 0.5, "spacing": 0.005, "density": 2620.0, "wave_speed": 2500.0, "strength": 1e7},
+        "method": {"type": "patch", "horizon": 3},
+        "run": {"duration": 1e-4},
+    }
+    (tmp_path / "bar.toml").write_text(tomli_w.dumps(tables))
+    answer = dembound("dispersion", "bar.toml", "bar.toml", "--set", "run.time_step=1e-6", "--check")
+
+    assert answer.code == 0
+    first, second = [line for line in answer.out.splitlines() if "simulated" in line]
+    assert first.startswith("horizon 1, Δx = 5 mm, Δt = 1 µs: 12 simulated frequencies differ by at most ")
+    assert second.startswith("horizon 3, Δx = 5 mm, Δt = 1 µs: 12 simulated frequencies differ by at most ")
+    for arguments, said in (
+        (["bar.toml", "--horizon", 3], "--horizon: is the case's own, change it with --set\n"),
+        (["--set", "run.time_step=1e-6"], "--set: changes a case, and none is given\n"),
+    ):
+        assert dembound("dispersion", *arguments) == Answer(2, "", said)
+
+
+def test_lattices_that_make_no_sense_are_bad_input(dembound, tmp_path) -> None:
+    answer = dembound("dispersion", "--horizon", 0, "--spacing", -1)
+
+    assert answer.code == 2
+    assert answer.err == "--horizon: is 0, must be 1 to 1000\n--spacing: is -1, must be finite and above 0 m\n"
+    assert not files(tmp_path)
+
+
+def test_a_gauge_tells_what_its_history_and_options_allow(dembound, felt, tmp_path) -> None:
+    time, stress = felt()
+    np.savetxt("gauge.txt", np.column_stack([time, 1e6 * stress]))
+    np.savetxt("end.txt", np.column_stack([time, np.interp(time, [0.0, 1e-4, 2e-4, 3e-4], [0.0, 10.0, 4.0, 8.0])]))
+    bar = ("--position", 0.6, "--length", 0.99)
+
+    alone = dembound("gauge", "gauge.txt", *bar)
+    assert alone.code == 0
+    speed, attenuation = [line.split("│") for line in alone.out.splitlines() if "peaks" in line]
+    # as good as the lines through the peaks are: 0.04 % and 1 %
+    assert float(speed[2]) == pytest.approx(2740.0, rel=4.2e-4)
+    assert float(attenuation[2]) == pytest.approx(0.52, rel=0.01)
+    assert "strength" not in alone.out
+
+    known = ("--wave-speed", 2740, "--attenuation", 0.52, "--density", 2620)
+    full = dembound("gauge", "gauge.txt", *bar, *known, "--spall", 0.9, "--free-end", "end.txt", "-o", "gauge.png")
+    assert full.code == 0
+    rows = [line.split("│")[1].split() for line in full.out.splitlines() if "strength" in line]
+    assert [row[0] for row in rows] == ["nominal", "attenuated", "pull-back"]
+    assert "21.54" in full.out  # ½ · 2620 · 2740 · 6 Pa
+    assert full.out.splitlines()[-1] == "wrote gauge.png"
+    assert (tmp_path / "gauge.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_gauges_that_tell_nothing_are_bad_input(dembound, written) -> None:
+    Path("gauge.txt").write_text("0 1\n1 -2\n2 1\n")
+    dembound("run", written())
+    for arguments, said in (
+        (["gauge.txt"], "position: is not known, give it\nlength: is not known, give it\n"),
+        (["gauge.txt", "--position", 2, "--length", 1], "position: is 2 m, must be between 0 and the length, 1 m\n"),
+        (["absent.txt"], 'no file "absent.txt"\n'),
+        (["results/bar"], "results/bar/run.h5: holds no history of stress, which monitors on bars have\n"),
+    ):
+        assert dembound("gauge", *arguments) == Answer(2, "", said)

@@ -36,7 +36,7 @@ def test_differences_are_those_of_the_liveliest_component(tmp_path):
     assert found.rms == pytest.approx(0.1)
     assert found.peak == pytest.approx(0.1)
     assert (found.last, found.reference_last) == (pytest.approx(0.55), pytest.approx(0.5))
-    assert (found.unit, found.place, found.reference_place) == ("m/s", (1.0, 2.0), (0.0, 0.0))
+    assert (found.unit, found.place, found.reference_place) == ("m/s", "(1.00, 2.00) m", "(0.00, 0.00) m")
 
 
 def test_runs_without_a_common_monitor_are_refused(tmp_path):
@@ -48,5 +48,20 @@ def test_runs_without_a_common_monitor_are_refused(tmp_path):
 def test_a_reference_at_rest_is_refused(tmp_path):
     reference = record(tmp_path / "a.h5", "a", {"P": (TIME, 0.0 * TIME, 0.0 * TIME)})
     run = record(tmp_path / "b.h5", "b", {"P": (TIME, TIME, TIME)})
-    with pytest.raises(CaseError, match="does not move"):
+    with pytest.raises(CaseError, match="monitor P: its velocity stays zero"):
         compare(reference, [run], "velocity")
+
+
+def test_stresses_are_compared_in_megapascals(spalled_run, tmp_path):
+    run = tmp_path / "run.h5"
+    run.write_bytes(spalled_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        stress = file["histories/gauge/stress"]
+        stress[:] = 1.25 * stress[:]
+        last = stress[-1] / 1e6
+
+    (found,) = compare(spalled_run, [run], "stress")
+
+    assert (found.component, found.unit, found.place) == ("x", "MPa", "0.525 m")
+    assert (found.rms, found.peak) == (pytest.approx(0.25), pytest.approx(0.25))
+    assert (found.last, found.reference_last) == (pytest.approx(last), pytest.approx(last / 1.25))

@@ -6,8 +6,12 @@ from typing import get_args
 import pytest
 
 from dembound import errors
-from dembound.boundaries import BoundaryTable
+from dembound.boundaries import BarEndTable, BoundaryTable
 from dembound.case import load
+from dembound.case.bar import Bar
+from dembound.case.bar_load import BarLoad
+from dembound.case.bar_monitor import BarMonitor
+from dembound.case.bar_run import BarRun
 from dembound.case.load import Load
 from dembound.case.material import Material
 from dembound.case.monitor import Monitor
@@ -16,7 +20,9 @@ from dembound.case.output import Output
 from dembound.case.run import Run
 from dembound.case.static import Static, StaticSide
 from dembound.cli.app import EXIT_CODES
+from dembound.exact import cells_per_wavelength, courant_limit
 from dembound.holes import HoleTable
+from dembound.methods import MethodTable
 from dembound.packings import PackingTable
 from dembound.waves import WaveTable
 
@@ -29,29 +35,34 @@ def members(union):
     return get_args(get_args(union)[0])
 
 
-UNIONS = [PackingTable, BoundaryTable, StaticSide, WaveTable, HoleTable]
+BAR_CHAPTER = "\n## The case of a bar\n"
+DISK_UNIONS = [PackingTable, BoundaryTable, StaticSide, WaveTable, HoleTable]
+BAR_UNIONS = [MethodTable, BarEndTable]
+UNIONS = [(union, False) for union in DISK_UNIONS] + [(union, True) for union in BAR_UNIONS]
 TABLES = [
-    Material,
-    Motion,
-    Static,
-    Load,
-    Monitor,
-    Run,
-    Output,
-    *(table for union in UNIONS for table in members(union)),
+    *((table, False) for table in (Material, Motion, Static, Load, Monitor, Run, Output)),
+    *((table, True) for table in (Bar, BarLoad, BarMonitor, BarRun)),
+    *((table, of_bar) for union, of_bar in UNIONS for table in members(union)),
 ]
+"""Each with whether it is told in the chapter on bars."""
 
 
-@pytest.mark.parametrize("table", TABLES, ids=lambda table: table.__name__)
-def test_every_key_stands_in_the_reference(table):
-    text = REFERENCE.read_text()
+def reference(of_bar):
+    """The part of the reference that tells of bars, or of all else."""
+    disks, bars = REFERENCE.read_text().split(BAR_CHAPTER)
+    return bars if of_bar else disks
+
+
+@pytest.mark.parametrize(("table", "of_bar"), TABLES, ids=lambda value: getattr(value, "__name__", None))
+def test_every_key_stands_in_the_reference(table, of_bar):
+    text = reference(of_bar)
     missing = [key for key in table.model_fields if f"`{key}`" not in text and f"`{key} =" not in text]
     assert not missing
 
 
-@pytest.mark.parametrize("union", UNIONS)
-def test_every_type_stands_in_the_reference(union):
-    text = REFERENCE.read_text()
+@pytest.mark.parametrize(("union", "of_bar"), UNIONS)
+def test_every_type_stands_in_the_reference(union, of_bar):
+    text = reference(of_bar)
     for table in members(union):
         field = table.model_fields.get("type") or table.model_fields["pattern"]
         (name,) = get_args(field.annotation)
@@ -68,3 +79,15 @@ def test_exit_codes_are_the_same_wherever_they_are_told():
     assert told in " ".join((ROOT / "README.md").read_text().split())
     for code, meaning in (entry.split(" ", 1) for entry in told.removeprefix("Exit codes: ").rstrip(".").split("; ")):
         assert f"| {code} | {meaning}" in errors.__doc__
+
+
+def test_spacings_per_wavelength_are_those_that_are_computed():
+    text = (ROOT / "docs" / "dispersion.md").read_text()
+    rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line[:3].strip("| ").isdigit()]
+    assert [row[0] for row in rows] == ["1", "2", "3", "4", "5", "8", "10"]
+    for row in rows:
+        horizon, limit = int(row[0]), courant_limit(int(row[0]))
+        needed = [
+            cells_per_wavelength(horizon, courant, of=of) for courant in (0.5, 0.9 * limit) for of in ("phase", "group")
+        ]
+        assert row[1:] == [f"{limit:.3f}", *(f"{cells:.1f}" for cells in needed)]

@@ -5,6 +5,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
+from dembound.bar import build_bar
 from dembound.energy import Entry, Ledger
 from dembound.scene import build
 from dembound.simulate import Simulation
@@ -112,3 +113,23 @@ def test_what_was_locked_in_is_no_energy_gained(bar) -> None:
         ledger.step()
 
     assert not ledger.columns[:, 1:].any()
+
+
+def test_energies_of_a_bar_are_in_springs_and_in_bonds(spalling) -> None:
+    ends = {"method.corrected_ends": True, "bar.attenuation": 0.5, "bar.strength": 1e9}
+    scene = build_bar(spalling(ends))
+    ledger = Ledger(Simulation(scene, choose_step(scene)[0], np.zeros(0)))
+    for _ in range(12):
+        place, before = ledger.simulation.displacement[0].copy(), ledger.simulation.velocity[0].copy()
+        ledger.step()
+    entry, bonds = ledger.entries[-1], ledger.simulation.engine.bonds
+
+    stretched = [place[p:] - place[:-p] for p in (1, 2, 3)]
+    assert entry.kinetic == pytest.approx(0.5 * np.sum(scene.mass * before * ledger.simulation.velocity[0]), rel=1e-12)
+    assert entry.contact == pytest.approx(0.5 * np.sum(bonds.spring * stretched[0] ** 2), rel=1e-12)
+    of_bonds = sum(0.5 * np.sum(bonds.bond[p, : 40 - p] * each**2) for p, each in enumerate(stretched))
+    assert entry.bond == pytest.approx(of_bonds, rel=1e-12)
+    assert min(entry.kinetic, entry.contact, entry.bond, entry.damping, entry.outside) > 0.0
+    assert (entry.load, entry.friction, entry.crack, entry.handover) == (0.0,) * 4
+    # twelve steps of sums over 41 nodes and 120 bonds
+    assert abs(entry.error) < 12 * 41 * np.finfo(float).eps * entry.outside

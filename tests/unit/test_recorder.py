@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from dembound import __version__
+from dembound.bar import build_bar
 from dembound.energy import Entry
 from dembound.record import Recorder
 from dembound.scene import build
@@ -177,7 +178,7 @@ def test_every_dataset_has_its_unit(tmp_path, simulation) -> None:
     with h5py.File(tmp_path / "run.h5") as file:
         file.visititems(note)
     assert units.pop("laws/name") == ""  # text has none
-    assert len(units) == 4 + 2 * 3 + 4 * 4 + 2 + 10 + 4 + 1
+    assert len(units) == 4 + 2 * 3 + 4 * 4 + 2 + 11 + 4 + 1
     assert all(units.values())
     assert units["histories/front/time"] == units["energy/time"] == units["laws/time"] == "s"
     assert units["energy/kinetic"] == "J/m"
@@ -279,3 +280,58 @@ def test_what_was_appended_can_be_read_if_the_process_dies(tmp_path, simulation)
     with h5py.File(tmp_path / "as_found.h5") as file:
         assert not file.attrs["complete"]
         assert len(file["histories/front/time"]) == 5
+
+
+def test_a_bar_is_kept_with_its_section_and_volumes(spalled_run) -> None:
+    with h5py.File(spalled_run) as file:
+        about, particles = dict(file.attrs), file["particles"]
+        assert (about["kind"], about["density"], about["section"]) == ("bar", 2500.0, 1.0)
+        assert about["size"].tolist() == [1.0, 0.0]
+        assert set(particles) == {"position", "volume"}
+        assert particles["position"].shape == (41, 2)
+        np.testing.assert_allclose(particles["volume"], [0.0125, *39 * [0.025], 0.0125], rtol=1e-15)
+        assert particles["volume"].attrs["unit"] == "m³"
+        assert file["energy/kinetic"].attrs["unit"] == "J"
+        assert file["histories/gauge"].attrs["wanted"].tolist() == [0.525, 0.0]
+        assert set(file["boundaries"]) == {"left", "right"}
+        assert [name.decode() for name in file["laws/name"]] == ["peridynamics, m = 3"]
+
+
+def test_disks_are_kept_as_disks(tmp_path, simulation) -> None:
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        kept.append(simulation.advance(1))
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert file.attrs["kind"] == "disks"
+        assert "stress" not in file["histories/front"]
+
+
+def test_stress_and_damage_of_a_bar_are_kept(tmp_path, spalling) -> None:
+    scene = build_bar(spalling())
+    simulation = Simulation(scene, 2.5e-5, np.array([21]))
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        records = [simulation.advance(count) for count in (25, 35)]
+        for record in records:
+            kept.append(record)
+        kept.snapshot()
+
+    engine = simulation.engine
+    with h5py.File(tmp_path / "run.h5") as file:
+        history, snapshot = file["histories/gauge"], file["snapshots/0000"]
+        assert np.array_equal(history["stress"], np.concatenate(records)[:, 0, 6])
+        assert np.array_equal(history["velocity"], np.concatenate(records)[:, 0, 3:6])
+        assert np.array_equal(snapshot["stress"], engine.stress(simulation.displacement))
+        assert np.array_equal(snapshot["damage"], engine.bonds.damage())
+        assert snapshot["damage"][:].max() >= 0.3
+        assert (history["stress"].attrs["unit"], snapshot["stress"].attrs["unit"]) == ("Pa", "Pa")
+
+
+def test_cracks_of_a_bar_stand_between_the_nodes_they_part(spalled_run) -> None:
+    with h5py.File(spalled_run) as file:
+        cracks, place = file["cracks"], file["particles/position"][:, 0]
+        pairs = cracks["particles"][:]
+        assert len(pairs) > 0
+        assert np.all(np.diff(cracks["time"]) >= 0.0)
+        assert not cracks["shear"][:].any()
+        np.testing.assert_allclose(cracks["position"][:, 0], place[pairs].mean(axis=1), rtol=1e-15)
+        assert len(np.unique(pairs, axis=0)) == len(pairs)

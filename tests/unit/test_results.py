@@ -8,9 +8,11 @@ from dembound.errors import CaseError
 from dembound.results import (
     cracks_until,
     energy_of,
+    is_bar,
     laws_in_words,
     laws_of,
     open_record,
+    place_in_words,
     record_names,
     replacing,
     snapshot_of,
@@ -23,6 +25,16 @@ def test_what_is_no_record_is_refused_by_name(tmp_path):
     for path in (text, tmp_path / "missing.h5"):
         with pytest.raises(CaseError, match=path.name):
             open_record(path)
+
+
+def test_records_tell_bars_from_disks(small_run, spalled_run):
+    with open_record(small_run) as disks, open_record(spalled_run) as bar:
+        assert (is_bar(disks), is_bar(bar)) == (False, True)
+
+
+def test_a_place_on_a_bar_is_one_number():
+    assert place_in_words((2.4, 1.2), along_bar=False) == "(2.40, 1.20) m"
+    assert place_in_words((0.8755, 0.0), along_bar=True) == "0.8755 m"
 
 
 @pytest.mark.parametrize(("number", "name"), [(0, "0000"), (1, "0001"), (-1, "0001"), (-2, "0000")])

@@ -304,3 +304,37 @@ def test_the_same_case_gives_the_same_bits(bar, tmp_path) -> None:
             histories.append(file["histories/middle/velocity"][:])
 
     assert np.array_equal(*histories)
+
+
+def test_a_bar_is_run_from_its_tables_to_a_folder(spalling, tmp_path) -> None:
+    changes = {"output.pictures": True, "output.snapshots": 3, "method": {"type": "patch", "horizon": 3, "reach": 1}}
+    folder = run_case(spalling({**changes, "run.courant": 0.9}), tmp_path)
+
+    names = {path.name for path in folder.iterdir()}
+    assert names == {"run.h5", "summary.json", "paraview", "scene.png", "histories.png"}
+    found = summary(folder)
+    assert found["steps"] == 67  # 60/0.9
+    assert found["courant"] == pytest.approx(0.9, rel=1e-12)
+    assert len(found["spalls"]) > 0
+    assert len(found["laws"]) == 2
+    with h5py.File(folder / "run.h5") as file:
+        assert file.attrs["complete"]
+        assert [len(group["damage"]) for group in file["snapshots"].values()] == [41, 41, 41]
+        assert file["histories/gauge/stress"].shape == (67,)
+
+
+def test_blocks_of_a_bar_are_longer(spalling, tmp_path) -> None:
+    heard = Heard()
+    quiet = {"run.duration": 0.1, "output.pictures": False, "output.energy_interval": 0.1, "output.snapshots": 1}
+    run_case(spalling(quiet), tmp_path, heard)
+
+    # the first step and the last are entered in the ledger, and stand alone
+    assert [done for done, _ in heard.blocks] == [1, 2049, 3999, 4000]
+
+
+def test_a_bars_step_above_the_limit_is_refused_before_anything_is_written(spalling, tmp_path) -> None:
+    with pytest.raises(CaseError, match=r"run\.courant: is 2, must not be above 1\.96") as caught:
+        run_case(spalling({"run.courant": 2.0}), tmp_path)
+
+    assert caught.value.source == "spalling"
+    assert not list(tmp_path.iterdir())

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from dembound.bar import build_bar
 from dembound.boundaries.support import SupportBuilder
 from dembound.errors import CaseError
 from dembound.scene import Scene, build
-from dembound.stability import TOLERANCE, choose_step, step_limit
+from dembound.stability import ROUNDING, TOLERANCE, choose_step, step_limit
 
 MASS = 2500.0 * 0.5**2
 K = 2500.0 * 1000.0**2
@@ -107,3 +108,54 @@ def test_the_limit_is_never_too_large(bar) -> None:
         scene = build(bar({**ONLY_X, "packing.size": [width, height], "monitor": []}))
         squared = free_chain(K, round(2 * width)) + free_chain(0.5 * K, round(2 * height))
         assert step_limit(scene) <= 2.0 / np.sqrt(squared)
+
+
+CENTRAL = {"method": {"type": "finite_difference"}}
+UNIT = 0.025 / 1000.0
+"""Δx/c of the spalling bar, s; 1 is the largest Courant number of central differences with half masses at free ends."""
+
+
+def test_a_bar_may_run_at_its_limit_however_that_is_rounded(spalling) -> None:
+    # rounding may put the limit found on either side of 1
+    for spacing in (0.025, 0.02, 1.0 / 30.0, 0.1):
+        scene = build_bar(spalling({**CENTRAL, "bar.spacing": spacing, "bar.wave_speed": 2740.0}))
+        step, limit = choose_step(scene)
+        assert step == pytest.approx(spacing / 2740.0, rel=1e-15)
+        assert limit == pytest.approx(step, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("courant", [0.5, 1.0])
+def test_a_bars_step_may_be_given_by_its_courant_number(spalling, courant: float) -> None:
+    step, limit = choose_step(build_bar(spalling({**CENTRAL, "run.courant": courant})))
+
+    assert step == pytest.approx(courant * UNIT, rel=1e-15)
+    assert limit == pytest.approx(UNIT, rel=ROUNDING)
+
+
+def refusal(spalling, run: dict, **changes: object) -> str:
+    """The one line that a bar's step is refused with."""
+    scene = build_bar(spalling({**CENTRAL, **changes, "run": {"duration": 1.5e-3, **run}}))
+    with pytest.raises(CaseError) as caught:
+        choose_step(scene)
+    (problem,) = caught.value.problems
+    return problem
+
+
+def test_a_bars_step_above_its_limit_is_refused_in_the_words_of_the_case(spalling) -> None:
+    assert refusal(spalling, {"courant": 1.001}) == "run.courant: is 1.001, must not be above 1, the stability limit"
+    given = refusal(spalling, {"time_step": 1.001 * UNIT})
+    assert given == "run.time_step: is 2.5025e-05 s, must not be above the stability limit 2.5e-05 s"
+
+
+def test_a_step_must_serve_all_stages_of_a_bars_method(spalling) -> None:
+    # with three spacings alone it could be nearly twice as long
+    assert choose_step(build_bar(spalling({"run.courant": 1.9})))[0] == pytest.approx(1.9 * UNIT, rel=1e-15)
+    for kind in ("switch", "patch"):
+        problem = refusal(spalling, {"courant": 1.9}, method={"type": kind, "horizon": 3})
+        assert problem.startswith("run.courant: is 1.9, must not be above 1, ")
+
+
+def test_an_automatic_step_of_a_bar_is_the_share_of_its_limit(spalling) -> None:
+    step, limit = choose_step(build_bar(spalling({**CENTRAL, "run": {"duration": 1e-3, "safety": 0.75}})))
+
+    assert step == 0.75 * limit

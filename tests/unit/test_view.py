@@ -54,6 +54,11 @@ def test_a_missing_snapshot_is_refused_before_anything_is_drawn(small_run, monke
         view(small_run, snapshot=5)
 
 
+def test_bars_are_refused_with_the_command_that_draws_them(spalled_run):
+    with pytest.raises(CaseError, match="is a bar, view shows disks; `dembound plot RESULTS --field stress`"):
+        view(spalled_run)
+
+
 @pytest.fixture(scope="module")
 def drawing():
     """Skips where VTK cannot draw without a window."""

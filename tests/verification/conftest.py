@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import tomli_w
 
+from dembound.bar import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
 from dembound.case import Case, loads
 from dembound.edges import find_edges
@@ -91,6 +92,15 @@ class Lab:
         """The scene of `case`."""
         return build(self.case(pattern, size, **words))
 
+    def bar(self, cells: int, method: dict[str, Any], spacing: float = 2.0 * RADIUS) -> BarScene:
+        """A bar of so many spacings (m) of the same material, with free ends."""
+        tables = {
+            "bar": {"length": cells * spacing, "spacing": spacing, "density": DENSITY, "wave_speed": SPEED},
+            "method": method,
+            "run": {"duration": 1.0},
+        }
+        return build_bar(loads(tomli_w.dumps(tables)))
+
     def disks(
         self, positions: np.ndarray, radii: np.ndarray, pairs: Sequence[tuple[int, int]] = (), **words: Any
     ) -> Scene:
@@ -151,3 +161,44 @@ class Lab:
 @pytest.fixture(scope="session")
 def lab() -> Lab:
     return Lab()
+
+
+class Rock:
+    """Bars of L's rock, which the tests of peridynamics are about: 1 m long, 2620 kg/m³, 2740 m/s."""
+
+    density, speed, strength, length = 2620.0, 2740.0, 10e6, 1.0
+
+    def scene(
+        self,
+        method: dict[str, Any],
+        *,
+        spacing: float = 1e-3,
+        load: dict[str, Any] | None = None,
+        wave: dict[str, Any] | None = None,
+        boundary: dict[str, Any] | None = None,
+        **bar: Any,
+    ) -> BarScene:
+        """A bar under a load on its first node, whose time factor is the wave; `bar` has more keys of this table."""
+        stiffness = {} if "youngs_modulus" in bar else {"wave_speed": self.speed}
+        tables = {
+            "bar": {"length": self.length, "spacing": spacing, "density": self.density} | stiffness | bar,
+            "method": method,
+            "boundary": boundary or {},
+            "wave": {"pulse": wave} if wave else {},
+            "load": [{"name": "hit", "wave": "pulse"} | load] if load else [],
+            "run": {"duration": 1.0},
+        }
+        return build_bar(loads(tomli_w.dumps(tables)))
+
+    def triangle(self, length: float, rise: float = 1.0 / 3.0) -> dict[str, Any]:
+        """L's pulse of unit height, `length` s long, with its crest after a part of that."""
+        return {"type": "triangle", "amplitude": 1.0, "rise": rise * length, "fall": (1.0 - rise) * length}
+
+    def step(self, scene: BarScene, courant: float) -> float:
+        """The time step (s) of a Courant number cΔt/Δx."""
+        return courant * scene.rod.spacing / scene.case.bar.speed
+
+
+@pytest.fixture(scope="session")
+def rock() -> Rock:
+    return Rock()

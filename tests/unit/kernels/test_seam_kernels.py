@@ -129,7 +129,7 @@ def test_a_dashpot_follows_its_twin_at_the_middle_of_the_step_supported_or_not()
     model = Following()
     supports, body, log = model.bundles()
     v, spare, followed = model.before.copy(), np.full((3, 7), np.nan), np.empty((3, 3))
-    note_before(0, model.u, v, supports.seam, followed, log)
+    note_before(0, model.u, v, log.probes, log.record, supports.seam.twin, followed)
     v[:, model.free_ones] = model.after[:, model.free_ones]  # the free ones move first
     spare[:, model.nodes] = (model.force - model.across).T  # where the contacts' forces wait
     move_supported(0, model.u, v, spare, model.across, followed, supports, body, log.work)

@@ -40,3 +40,8 @@ def test_a_uniform_side_looks_uniform(small_run):
 def test_a_missing_side_is_refused_with_those_there(small_run):
     with pytest.raises(CaseError, match="no particles of side outer, sides there: bottom, left, right, top"):
         plot_boundary([small_run], "outer")
+
+
+def test_the_ends_of_a_bar_are_refused(spalled_run):
+    with pytest.raises(CaseError, match="is a bar, each end of which is one node"):
+        plot_boundary([spalled_run], "left")

@@ -48,3 +48,21 @@ def test_what_is_negligible_is_left_out_and_no_two_colours_are_alike(cracked_run
 def test_a_run_without_entries_is_refused(small_run):
     with pytest.raises(CaseError, match="no entries in its energy ledger"):
         plot_energy(small_run)
+
+
+def test_a_bar_keeps_its_books_in_its_own_words(spalled_run, tmp_path):
+    run = tmp_path / "run.h5"
+    run.write_bytes(spalled_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        for name in COLUMNS:
+            file["energy"][name][:] = 1.0
+    upper = plot_energy(run).axes[0]
+    assert upper.get_ylabel() == "energy"
+    labels = {line.get_label() for line in upper.lines}
+    assert {
+        "stored in local springs",
+        "stored in peridynamic bonds",
+        "taken by attenuation",
+        "in: added by a change of method",
+    } <= labels
+    assert len({line.get_color() for line in upper.lines}) == len(COLUMNS)

@@ -93,6 +93,21 @@ def test_the_command_hands_on_the_monitors(small_run, tmp_path, monkeypatch):
     assert [options["monitors"] for options in asked] == [None, ["back", "front"]]
 
 
+def test_gauges_of_bars_show_their_stress_and_their_place_along_the_bar(spalled_run):
+    figure = plot_histories([spalled_run], quantity="stress")
+    assert figure.get_supylabel() == "stress along x, tension positive (MPa)"
+    (panel,) = figure.axes
+    assert panel.get_title("left") == "gauge at 0.525 m"
+    with h5py.File(spalled_run) as file:
+        np.testing.assert_array_equal(panel.lines[0].get_ydata(), file["histories/gauge/stress"][:] / 1e6)
+    assert plot_histories([spalled_run]).get_supylabel() == "velocity along x (m/s)"
+
+
+def test_stress_that_is_not_there_is_refused(spalled_run, small_run):
+    with pytest.raises(CaseError, match=f"{small_run}: holds no stress of its monitors; runs of bars do"):
+        plot_histories([spalled_run, small_run], quantity="stress")
+
+
 def test_without_monitors_there_is_nothing_to_show(tmp_path):
     path = tmp_path / "run.h5"
     with h5py.File(path, "w") as file:

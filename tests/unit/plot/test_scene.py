@@ -223,3 +223,8 @@ def test_a_run_without_snapshots_is_refused(other_run):
 def test_a_missing_snapshot_is_refused(small_run, snapshot):
     with pytest.raises(CaseError, match=f"no snapshot {snapshot}, they are 0 to 1"):
         plot_scene(small_run, snapshot)
+
+
+def test_a_field_that_only_bars_have_is_refused(small_run):
+    with pytest.raises(CaseError, match="field: is damage, must be one of velocity, displacement, stress_xx"):
+        plot_scene(small_run, field="damage")

@@ -52,6 +52,13 @@ def test_frequencies_of_a_sampled_pulse(tmp_path: Path) -> None:
     assert 2.79 / 0.5 <= wave.highest_frequency() <= 2.80 / 0.5 + 0.25
 
 
+def test_commas_separate_the_columns_of_a_csv_file(tmp_path: Path) -> None:
+    path = tmp_path / "gauge.csv"
+    path.write_text("# time,stress\n0,0.5\n1, -2\n")
+
+    assert read_samples(path).tolist() == [[0.0, 0.5], [1.0, -2.0]]
+
+
 def test_equal_files_make_equal_waves(tmp_path: Path) -> None:
     assert record(tmp_path, TRIANGLE) == record(tmp_path, TRIANGLE)
     assert record(tmp_path, TRIANGLE) != record(tmp_path, "0 0\n1 1\n3 0\n")
@@ -72,7 +79,7 @@ def test_equal_files_make_equal_waves(tmp_path: Path) -> None:
         ("0 1\n", "at least two"),
         ("0 0\n1 1\n1 2\n", "row 3"),
         ("0 0\n2 1\n1 2\n3 0\n", "row 3"),
-        ("0 0\n1 0\n", "zero velocities"),
+        ("0 0\n1 0\n", "nothing but zeros"),
     ],
 )
 def test_bad_files_are_refused_with_their_name(tmp_path: Path, text: str, reason: str) -> None:

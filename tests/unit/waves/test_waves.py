@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from dembound.waves import Constant, Cosine, CubicSpline, Ricker, SineBurst
+from dembound.waves import Constant, Cosine, CubicSpline, Ricker, SineBurst, Triangle
 from dembound.waves.wave import Shape
 
 WAVES = [
     Cosine(type="cosine", start=0.3, amplitude=0.5, period=0.4),
     Cosine(type="cosine", amplitude=-2.0, period=1.5),
     CubicSpline(type="cubic_spline", start=0.2, amplitude=0.6, period=0.8),
+    Triangle(type="triangle", start=0.2, amplitude=-0.9, rise=0.1, fall=0.5),
+    Triangle(type="triangle", amplitude=1.7, rise=0.3, fall=0.3),
     Ricker(type="ricker", start=0.1, amplitude=-0.7, frequency=3.0),
     SineBurst(type="sine_burst", start=0.2, amplitude=1.3, frequency=5.0, cycles=1),
     SineBurst(type="sine_burst", amplitude=1.3, frequency=5.0, cycles=4),
@@ -103,6 +105,29 @@ def test_cubic_spline_fades_where_its_spectrum_says() -> None:
     # at T = 4 s the spectrum is sinc⁴f; the root is known to 1e-15, and sinc⁴'s slope there is below 0.1
     assert np.sinc(wave.highest_frequency()) ** 4 == pytest.approx(0.01, rel=1e-12)
     assert wave.highest_frequency() == pytest.approx(2.952 / 4.0, abs=1.3e-4)  # the docs round to 0.001/2
+
+
+def test_triangle_follows_its_equation() -> None:
+    wave = Triangle(type="triangle", start=1.0, amplitude=2.0, rise=0.5, fall=2.0)
+    t = np.array([0.9, 1.0, 1.25, 1.5, 2.5, 3.5, 9.0])
+
+    # straight legs, and the areas under them: M t_r/8 half-way up, M t_r/2 at the crest, M(t_r + t_f)/2 at the end
+    assert wave.velocity(t).tolist() == [0.0, 0.0, 1.0, 2.0, 1.0, 0.0, 0.0]
+    assert wave.displacement(t).tolist() == [0.0, 0.0, 0.125, 0.5, 2.0, 2.5, 2.5]
+    assert (wave.peak_time(), wave.duration(), wave.dominant_frequency()) == (1.5, 3.5, 0.4)
+
+
+def test_triangle_fades_where_its_spectrum_says() -> None:
+    even = Triangle(type="triangle", amplitude=1.0, rise=1.0, fall=1.0)
+    rises, falls = (Triangle(type="triangle", amplitude=1.0, rise=a, fall=4.0 - a) for a in (0.5, 3.5))
+    sudden = Triangle(type="triangle", amplitude=1.0, rise=1e-12, fall=1.0)
+
+    # with legs of 1 s it is sinc²f; the root is known to 1e-12, and sinc²'s slope there is below 0.1
+    assert np.sinc(even.highest_frequency()) ** 2 == pytest.approx(0.01, rel=1e-10)
+    # played backwards it has the same spectrum, but for round-off in the root
+    assert rises.highest_frequency() == pytest.approx(falls.highest_frequency(), rel=1e-11)
+    # a sudden front's fades as |1 − e^(−iπx) sinc x|/(πx), which is 0.01 at 100/π but for sinc x < 0.01
+    assert sudden.highest_frequency() == pytest.approx(100.0 / math.pi, rel=0.01)
 
 
 def test_ricker_troughs_and_vanishing_displacement() -> None:

@@ -1,0 +1,161 @@
+"""How fast bars are stepped, and how much of this machine that is.
+
+    python benchmarks/bar_rate.py [--nodes 1000 10000 100000] [--repeats 9]
+
+Sets bars of several lengths in motion under finite differences and peridynamics, compiles first, and times blocks of
+steps on one core, everything a run does at every step included: ends, one gauge, the watch for breaking bonds. A bar of
+a thousand nodes lives in the processor's first cache, so beside it the same run times a plain array copy there; the
+share of it is what is read and written per step over what the copy reads and writes in the same time. Medians are
+quoted. The last lines compare the time from load to spall of a bar by all methods.
+"""
+
+import argparse
+import time
+from collections.abc import Callable
+
+import numba
+import numpy as np
+
+from dembound.body import build_body
+from dembound.case import BarCase, loads
+from dembound.fracture import spalls
+from dembound.simulate import Simulation
+from dembound.stability import choose_step
+
+METHODS = {
+    "finite_difference": 'type = "finite_difference"',
+    "peridynamics, m = 1": 'type = "peridynamics"\nhorizon = 1',
+    "peridynamics, m = 3": 'type = "peridynamics"\nhorizon = 3',
+    "peridynamics, m = 10": 'type = "peridynamics"\nhorizon = 10',
+}
+SPALLING = {
+    "peridynamics": 'type = "peridynamics"\nhorizon = 3',
+    "switch": 'type = "switch"\nhorizon = 3',
+    "patch": 'type = "patch"\nhorizon = 3',
+    "finite_difference": 'type = "finite_difference"',
+}
+
+CASE = """
+[bar]
+length = 1.0
+spacing = {spacing}
+density = 2620.0
+wave_speed = 2740.0
+strength = {strength}
+[method]
+{method}
+[[load]]
+name = "impact"
+pressure = 12e6
+wave = "pulse"
+[wave.pulse]
+type = "triangle"
+amplitude = 1.0
+rise = 0.04e-3
+fall = 0.08e-3
+[[monitor]]
+name = "gauge"
+position = 0.5
+[run]
+duration = 0.45e-3
+courant = {courant}
+"""
+
+STEPS = 4096
+
+
+@numba.njit(fastmath={"contract"})
+def copy(source, target, times):
+    for number in range(times):
+        for i in range(source.size):
+            target[i] = source[i] + number  # differs each time, or all but one would be left out
+
+
+def bytes_per_node(horizon: int) -> float:
+    """Reads and writes of one node's step in bytes, each array as often as a loop passes it.
+
+    Finite differences: u twice for the watch; u three times, v read and written, the new u written. Peridynamics: the
+    local springs' u twice, stiffness, limit and force, written and read twice, the sum written; per bond u twice,
+    stiffness, force written and read twice, the sum read and written; then mobility, v, the mean, the force and u.
+    """
+    if horizon == 0:
+        return 8.0 * (2 + 3 + 2 + 1)
+    return 8.0 * (2 + 2 + 1 + 2 + 1 + horizon * (2 + 1 + 1 + 2 + 2) + 1 + 2 + 1 + 2 + 1)
+
+
+def median_time(work: Callable[[], object], repeats: int) -> float:
+    times = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - began)
+    return float(np.median(times))
+
+
+def case_of(method: str, nodes: int, strength: float, courant: float) -> BarCase:
+    text = CASE.format(spacing=1.0 / (nodes - 1), strength=strength, method=method, courant=courant)
+    case = loads(text)
+    assert isinstance(case, BarCase)
+    return case
+
+
+def stepping(name: str, nodes: int, repeats: int) -> None:
+    case = case_of(METHODS[name], nodes, strength=1e12, courant=0.9)
+    scene = build_body(case)
+    simulation = Simulation(scene, choose_step(scene)[0], np.array(list(scene.monitors.values())))
+    steps = max(256, STEPS * 1000 // nodes)
+    simulation.advance(steps)
+    step = median_time(lambda: simulation.advance(steps), repeats) / steps
+    horizon = 0 if name == "finite_difference" else case.method.largest_horizon
+    source, target = np.ones(nodes), np.ones(nodes)
+    copy(source, target, 1)
+    stream = 16.0 * nodes / (median_time(lambda: copy(source, target, steps), repeats) / steps)
+    moved = bytes_per_node(horizon) * nodes / step
+    bonds = f"{max(horizon, 1) * nodes / step / 1e9:.2f}"
+    print(
+        f"{name:22s} | {nodes:9,} | {step * 1e9:12.0f} | {nodes / step / 1e9:14.2f} | {bonds:>14s} | "
+        f"{moved / 1e9:6.0f} | {stream / 1e9:6.0f} | {moved / stream:6.0%}"
+    )
+
+
+def spalling(name: str, nodes: int, courant: float, repeats: int) -> None:
+    scene = build_body(case_of(SPALLING[name], nodes, strength=10e6, courant=courant))
+    time_step = choose_step(scene)[0]
+    steps = int(np.ceil(scene.case.run.duration / time_step))
+
+    def run() -> Simulation:
+        simulation = Simulation(scene, time_step, np.zeros(0, dtype=np.int64))
+        simulation.run(steps)
+        return simulation
+
+    engine = run().engine
+    first = spalls(engine.bonds, scene.positions[:, 0], time_step)[0]
+    taken = median_time(run, repeats)
+    low, high = first.start
+    print(
+        f"{name:22s} | {nodes:9,} | {courant:7g} | {taken * 1e3:8.2f} | {engine.bond_updates / 1e6:20.2f} | "
+        f"{low:.4f}–{high:.4f} m, {first.time * 1e3:.4f} ms"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--nodes", type=int, nargs="+", default=[1000, 10_000, 100_000])
+    parser.add_argument("--repeats", type=int, default=9)
+    options = parser.parse_args()
+    numba.set_num_threads(1)
+    print(
+        "method                 |     nodes | ns per step  | G nodes/s      | G bonds/s      | GB/s   | copy   | share"
+    )
+    for nodes in options.nodes:
+        for name in METHODS:
+            stepping(name, nodes, options.repeats)
+    print("\nmethod                 |     nodes | Courant | ms       | million bond updates | first spall")
+    for nodes in (1001, 4001):
+        for name in SPALLING:
+            spalling(name, nodes, 0.9, options.repeats)
+        spalling("peridynamics", nodes, 1.9, options.repeats)
+
+
+if __name__ == "__main__":
+    main()

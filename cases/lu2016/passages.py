@@ -1,0 +1,60 @@
+"""Lu & Wang (2016), section 3.2: how wrong the pulse is each time it passes the middle of the bar, as Markdown.
+
+    python cases/lu2016/passages.py RUN...
+
+The runs are of unbreakable bars with one pulse from the left. An error is the difference between the stress and that of
+d'Alembert's solution in the root mean square over a passage, L/c, in parts of that of the pulse.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from records import case_of, history, markdown, name_of
+
+from dembound.case import BarCase
+
+
+def exact_stress(case: BarCase, place: float, time: np.ndarray) -> np.ndarray:
+    """Stress (k,) Pa at a place (m) and times (k,) s: the pulse and its images, reversed at each free end."""
+    (load,), length, speed = case.load, case.bar.length, case.bar.speed
+    stress = np.zeros_like(time)
+    for turn in range(int(time[-1] * speed / length) + 2):
+        way = turn * length + (place if turn % 2 == 0 else length - place)
+        stress -= (-1.0) ** turn * load.pressure * case.wave[load.wave].velocity(time - way / speed)
+    return stress
+
+
+def errors(run: Path, monitor: str = "middle") -> list[float]:
+    """Of each whole passage of a run's pulse through the middle of the bar."""
+    case = case_of(run)
+    time, stress, place = history(run, monitor)
+    exact = exact_stress(case, place, time)
+    wait = case.bar.length / case.bar.speed  # from one passage to the next
+    begin = place / case.bar.speed + 0.5 * (case.wave[case.load[0].wave].duration() - wait)
+    found = []
+    for passage in range(int((time[-1] - begin) / wait)):
+        inside = (time >= begin + passage * wait) & (time < begin + (passage + 1) * wait)
+        error, pulse = (np.linalg.norm(values[inside]) for values in (stress - exact, exact))
+        found.append(float(error / pulse))
+    return found
+
+
+def main() -> None:
+    """Print the table."""
+    rows = []
+    for run in map(Path, sys.argv[1:]):
+        case = case_of(run)
+        found = errors(run)
+        time = history(run, "middle")[0]
+        courant = (time[1] - time[0]) * case.bar.speed / case.bar.spacing
+        duration = case.wave[case.load[0].wave].duration()
+        settings = name_of(case), f"{1e3 * case.bar.spacing:g}", f"{courant:.3f}", f"{1e3 * duration:.2f}"
+        rows.append((*settings, *(f"{error:.2%}" if error > 1e-6 else f"{error:.0e}" for error in found)))
+    passages = (f"passage {number}" for number in range(1, len(found) + 1))
+    heads = ("method", "Δx (mm)", "cΔt/Δx", "t_0 (ms)", *passages)
+    print(markdown(heads, rows))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# Lu & Wang (2016): everything that is reproduced, table 1 and figure 8 here, the rest in section2.sh, section32.sh and
+# section33.sh. Takes some three minutes.
+#
+#   cases/lu2016/run.sh [RESULTS]      (default: results/lu2016)
+set -euo pipefail
+cases=$(cd "$(dirname "$0")" && pwd)
+results=${1:-results/lu2016}
+mkdir -p "$results/figures"
+
+echo "== Table 1, figure 8: seven bars that spall"
+dembound run "$cases"/table1_row*.toml --output "$results"
+python3 "$cases/table1.py" "$results" | tee "$results/table1.md"
+python3 "$cases/figure8.py" "$results"
+
+for section in 2 32 33; do
+    bash "$cases/section$section.sh" "$results"
+done
+echo "figures are in $results/figures, tables in $results"

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Lu & Wang (2016), section 3.3: the spalling test (figures 10 to 12, table 2), by five methods and on finer bars too.
+# Two minutes.
+#
+#   cases/lu2016/section33.sh [RESULTS]      (default: results/lu2016)
+set -euo pipefail
+cases=$(cd "$(dirname "$0")" && pwd)
+results=${1:-results/lu2016}
+figures=$results/figures
+mkdir -p "$figures"
+patch='method={type="patch",horizon=3}'
+
+echo "== Figure 10: wave speed and attenuation from a weak pulse"
+dembound run "$cases/rod_test_weak.toml" --output "$results"
+dembound gauge "$results/rod_test_weak" --peaks 5 --output "$figures/fig10_attenuation.png"
+
+echo "== Figure 11: strength from a strong pulse, on a bar that attenuates and one that does not"
+for setting in "0.52 53.0e6" "0.0 25.6e6"; do
+    read -r attenuation pressure <<<"$setting"
+    name=rod_strong_$attenuation
+    dembound run "$cases/rod_test.toml" --set "$patch" --set bar.spacing=0.001 --set run.time_step=0.2e-6 \
+        --set run.duration=0.7e-3 --set "bar.attenuation=$attenuation" \
+        --set "load=[{name=\"pulse\",pressure=$pressure,wave=\"triangle\"}]" --name "$name" --output "$results"
+    dembound gauge "$results/$name" --monitor gauge --spall 0.79 --free-end end --wave-speed 2740 \
+        --attenuation "$attenuation" --output "$figures/fig11_$attenuation.png"
+done
+
+echo "== Figure 12, table 2: five methods, spacings and steps of the paper, a quarter and a tenth of them"
+runs=()
+test_bar() { # SPACING TIME_STEP NAME METHOD
+    local name=rod_$3_$1
+    dembound run "$cases/rod_test.toml" --set "bar.spacing=$1" --set "run.time_step=$2" --set "method={$4}" \
+        --name "$name" --output "$results"
+    runs+=("$results/$name")
+}
+for sizes in "0.01 2e-6" "0.0025 0.5e-6" "0.001 0.2e-6"; do
+    read -r spacing step <<<"$sizes"
+    test_bar "$spacing" "$step" pd3 'type="peridynamics",horizon=3'
+    test_bar "$spacing" "$step" pd1_pd3 'type="switch",horizon=3,before="peridynamics"'
+    test_bar "$spacing" "$step" fdm_pd3 'type="switch",horizon=3'
+    test_bar "$spacing" "$step" patch 'type="patch",horizon=3'
+    test_bar "$spacing" "$step" fdm 'type="finite_difference"'
+done
+python3 "$cases/figure12.py" "$figures/fig12_damage.png" "${runs[@]}"
+python3 "$cases/spall_costs.py" "${runs[@]}" | tee "$results/table2.md"
+
+echo "== The same under 36 pulses"
+python3 "$cases/many_pulses.py" "${runs[@]}" | tee "$results/many_pulses.md"

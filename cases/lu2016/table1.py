@@ -1,0 +1,51 @@
+"""Table 1 of Lu & Wang (2016): where and when the seven bars spall, beside the printed values, as Markdown.
+
+    python cases/lu2016/table1.py [RESULTS]      (default: results/lu2016)
+
+The last two columns are the closed form's.
+"""
+
+import sys
+from pathlib import Path
+
+from records import MEGA, MILLI, case_of, expected_spall, first_spall, in_millimetres, markdown
+
+PRINTED = [
+    ("906–909", 0.4395),
+    ("901–908", 0.4399),
+    ("900–910", 0.4407),
+    ("905–907", 0.4389),
+    ("904–908", 0.4392),
+    ("811–816", 0.5126),
+    ("924–928", 0.4327),
+]
+"""x_F in mm and t_F in ms."""
+
+HEADS = (
+    *("row", "m", "Δx (mm)", "p_m (MPa)", "t_0 (ms)", "x_F (mm)", "printed", "t_F (ms)", "printed"),
+    *("closed form: x (mm)", "t (ms)"),
+)
+
+
+def main() -> None:
+    """Print the table."""
+    results = Path(sys.argv[1] if len(sys.argv) > 1 else "results/lu2016")
+    rows = []
+    for number, (place, time) in enumerate(PRINTED, start=1):
+        run = results / f"table1_row{number}"
+        case, found = case_of(run), first_spall(run)
+        x, t = expected_spall(case)
+        load = case.load[0]
+        settings = (
+            case.method.largest_horizon,
+            f"{case.bar.spacing / MILLI:g}",
+            f"{load.pressure / MEGA:g}",
+            f"{case.wave[load.wave].duration() / MILLI:.2f}",
+        )
+        ours = in_millimetres(found["start"]), place, f"{found['time'] / MILLI:.4f}", f"{time:.4f}"
+        rows.append((number, *settings, *ours, f"{x / MILLI:.1f}", f"{t / MILLI:.4f}"))
+    print(markdown(HEADS, rows))
+
+
+if __name__ == "__main__":
+    main()

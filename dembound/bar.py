@@ -1,0 +1,135 @@
+"""A bar as a scene: the arrays a case with a ``[bar]`` becomes."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dembound.banded import is_stable, largest_stable_step
+from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
+from dembound.case import BarCase
+from dembound.kernels import tables
+from dembound.methods.bonds import Bonds, Rod
+
+HELD = (1, 2)
+"""A bar moves along x alone."""
+
+
+@dataclass(frozen=True)
+class BarScene:
+    """A bar of n nodes, all SI; its displacements and velocities fill the first row of the (3, n) state arrays.
+
+    Attributes
+    ----------
+    case : where it came from.
+    rod : nodes, section and stiffness.
+    positions : (n, 2) m, with y = 0.
+    edges : the two ends, left and right; what a node stands for there, its "diameter", is the section.
+    supports : the table of what pushes from outside, loads included.
+    monitors : name -> node.
+    """
+
+    case: BarCase
+    rod: Rod
+    positions: np.ndarray
+    edges: Mapping[str, Edge]
+    supports: Supports
+    monitors: Mapping[str, int]
+
+    damp = 0.0
+    seam = None
+    remembers = False
+
+    @property
+    def count(self) -> int:
+        """Number of nodes n."""
+        return self.rod.count
+
+    @property
+    def size(self) -> np.ndarray:
+        """(2,) length and height of the scene, m; the latter is 0."""
+        return np.array([self.case.bar.length, 0.0])
+
+    @cached_property
+    def mass(self) -> np.ndarray:
+        """(n,) kg; half at the ends."""
+        return self.case.bar.density * self.rod.volumes
+
+    @cached_property
+    def inertia(self) -> np.ndarray:
+        """(n,) kg·m² of thin slices as long as the spacing; they do not turn."""
+        return self.mass * self.rod.spacing**2 / 12.0
+
+    @property
+    def free(self) -> np.ndarray:
+        """(3,) 1 for a component that moves: x alone."""
+        return np.array([1.0, 0.0, 0.0])
+
+    @property
+    def steady_load(self) -> np.ndarray:
+        """(3, n) N: nothing, every load of a bar follows a wave."""
+        return np.zeros((3, self.count))
+
+    def seam_table(self, nodes: np.ndarray) -> tables.Seam:
+        """No free-field column does anything to nodes (k,)."""
+        k, empty = len(nodes), np.zeros(0, dtype=np.uint32)
+        return tables.Seam(np.full(k, -1), np.zeros((k, 3)), np.zeros(k + 1, dtype=np.uint32), empty, empty, empty)
+
+    def step_limit(self) -> float:
+        """Largest time step (s) that is stable at every stage of the case's method."""
+        return min(self.stable_step(bonds) for bonds in self.case.method.stages(self.rod))
+
+    def stable_step(self, bonds: Bonds) -> float:
+        """Largest stable time step (s) with these bonds."""
+        return largest_stable_step(bonds.stiffness(), self.mass, self._held)
+
+    def is_stable(self, bonds: Bonds, step: float) -> bool:
+        """Whether a time step (s) is stable with these bonds; quicker than `stable_step`."""
+        return is_stable(step, bonds.stiffness(), self.mass, self._held)
+
+    @cached_property
+    def _held(self) -> np.ndarray:
+        """Nodes (h,) whose velocity is prescribed."""
+        return self.supports.node[self.supports.prescribed & (self.supports.component == 0)]
+
+    @property
+    def bytes(self) -> int:
+        """Memory of the state, the bonds and the snapshots' arrays."""
+        return 8 * self.count * (9 + 10 + 3 * self.case.method.largest_horizon)
+
+
+def build_bar(case: BarCase) -> BarScene:
+    """Place a bar's nodes and support them."""
+    bar = case.bar
+    rod = Rod(bar.cells + 1, bar.length / bar.cells, bar.area, bar.modulus, bar.breaking_stretch)
+    positions = np.zeros((rod.count, 2))
+    positions[:, 0] = np.arange(rod.count) * rod.spacing
+    edges = {
+        side: Edge(side, np.array([node]), positions[[node]], np.array([bar.area]), bar.area)
+        for side, node in (("left", 0), ("right", rod.count - 1))
+    }
+    monitors = {monitor.name: round(monitor.position / rod.spacing) for monitor in case.monitor}
+    return BarScene(case, rod, positions, edges, _supports(case, rod, edges), monitors)
+
+
+def bar_medium(case: BarCase) -> Medium:
+    """What an end stands for: more of the same bar."""
+    none = np.zeros(1)
+    return Medium(case.bar.density, case.bar.speed, 0.0, lambda diameters: (none, none))
+
+
+def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge]) -> Supports:
+    """Both ends' recipes, all loads, and the attenuation of the nodes they act on, in one table."""
+    builder = SupportBuilder(held=HELD)
+    for side, table in case.boundary.items():
+        table.support(edges[side], bar_medium(case), case.wave, builder)
+    for load in case.load:
+        nodes = np.arange(load.nodes) if load.side == "left" else np.arange(rod.count - load.nodes, rod.count)
+        share = rod.volumes[nodes] / rod.volumes[nodes].sum()
+        inwards = 1.0 if load.side == "left" else -1.0
+        force = inwards * load.pressure * rod.section * share
+        builder.add(nodes, 0, drive=force, signal=case.wave[load.wave].velocity)
+    supported = np.unique(builder.table().node)
+    builder.add(supported, 0, damping=case.bar.drag_rate * case.bar.density * rod.volumes[supported])
+    return builder.table()

@@ -1,0 +1,84 @@
+"""A bar's run in numbers, for scripts."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dembound.bar import BarScene
+from dembound.bar_engine import BarEngine
+from dembound.boundaries.viscous import Dashpots
+from dembound.fracture import spalls
+from dembound.peaks import first_fall
+from dembound.results import open_record
+from dembound.simulate import Simulation
+
+
+def summarise_bar(scene: BarScene, simulation: Simulation, record: Path) -> dict[str, Any]:
+    """What a bar's summary has beside that of every run: plain JSON values, SI units."""
+    engine = simulation.engine
+    assert isinstance(engine, BarEngine)
+    found = spalls(engine.bonds, scene.positions[:, 0], simulation.time_step)
+    return {
+        "nodes": scene.count,
+        "method": scene.case.method.model_dump(),
+        "bond_updates": engine.bond_updates,
+        "courant": simulation.time_step * scene.case.bar.speed / scene.rod.spacing,
+        "spalls": [spall.describe() for spall in found],
+        "bar": describe_bar(scene),
+        "boundaries": {side: describe_end(scene, side) for side in scene.edges},
+        "stress": _largest_stresses(record),
+        "pull_back_strength": _pull_backs(scene, record) if found else {},
+    }
+
+
+def describe_bar(scene: BarScene) -> dict[str, float | None]:
+    """The bar in numbers: lengths m, area m², moduli Pa, speed m/s; strength and stretch null where nothing breaks."""
+    bar = scene.case.bar
+    breaks = np.isfinite(bar.breaking_stretch)
+    return {
+        "length": bar.length,
+        "spacing": scene.rod.spacing,
+        "section": bar.area,
+        "density": bar.density,
+        "youngs_modulus": bar.modulus,
+        "wave_speed": bar.speed,
+        "impedance": bar.density * bar.speed,
+        "critical_stretch": bar.breaking_stretch if breaks else None,
+        "strength": bar.breaking_stretch * bar.modulus if breaks else None,
+        "attenuation": bar.attenuation,
+    }
+
+
+def describe_end(scene: BarScene, side: str) -> dict[str, Any]:
+    """One end in numbers: its type, and β of a dashpot."""
+    table = scene.case.boundary.get(side)
+    described: dict[str, Any] = {"type": table.type if table is not None else "free"}
+    if isinstance(table, Dashpots):
+        described["beta_p"] = table.beta_p
+    return described
+
+
+def _largest_stresses(record: Path) -> dict[str, dict[str, float]]:
+    """Largest tension and compression (Pa) at every monitor."""
+    with open_record(record) as file:
+        histories = {name: group["stress"][:] for name, group in file["histories"].items()}
+    return {
+        name: {"tension": float(max(stress.max(), 0.0)), "compression": float(min(stress.min(), 0.0))}
+        for name, stress in histories.items()
+    }
+
+
+def _pull_backs(scene: BarScene, record: Path) -> dict[str, float]:
+    """Spall strength ½ρcΔV (Pa) from the velocity of every monitor at a free end, where it falls and rises again.
+
+    An end under load moves as that has it.
+    """
+    loaded = {load.side for load in scene.case.load}
+    free = [side for side in scene.edges if describe_end(scene, side)["type"] == "free" and side not in loaded]
+    outwards = {int(scene.edges[side].nodes[0]): -1.0 if side == "left" else 1.0 for side in free}
+    ends = {name: outwards[node] for name, node in scene.monitors.items() if node in outwards}
+    bar = scene.case.bar
+    with open_record(record) as file:
+        falls = {name: first_fall(sign * file[f"histories/{name}/velocity"][:, 0]) for name, sign in ends.items()}
+    return {name: 0.5 * bar.density * bar.speed * fall for name, fall in falls.items() if not np.isnan(fall)}

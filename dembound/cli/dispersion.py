@@ -1,0 +1,115 @@
+"""The command dispersion."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.table import Table
+
+from dembound.cli.app import Settings, app, load_case, out
+from dembound.dispersion import lattices, lattices_of, measure, write_table
+from dembound.errors import CaseError
+from dembound.exact.dispersion import Lattice, Speed, cells_per_wavelength, courant_limit
+from dembound.plot.dispersion import Points, name, plot_dispersion
+from dembound.plot.style import save
+
+HORIZONS, SPACINGS, TIME_STEPS = (1, 2, 3, 4, 8), (0.005,), (1e-6,)
+"""Spacing and step as in L figs 5 and 7."""
+
+WAVE_SPEED = 2763.0
+"""L's biotite granite, √(20 GPa / 2620 kg/m³), m/s."""
+
+HEADS = ("horizon", "Δx (m)", "Δt (s)", "cΔt/Δx", "stable up to", "phase", "group")
+
+CHECKED = np.arange(1, 13) / 12.0
+"""Wave numbers to simulate, in parts of the shortest wave's."""
+
+
+def _several(default: Sequence[float]) -> str:
+    """What the help says of an option that may be repeated."""
+    return f"May be repeated; by default {', '.join(f'{value:g}' for value in default)}."
+
+
+@app.command("dispersion", rich_help_panel="Cases")
+def dispersion(
+    cases: Annotated[
+        list[Path] | None, typer.Argument(metavar="CASE", help="Case files (TOML) of bars, to show their lattices.")
+    ] = None,
+    horizons: Annotated[
+        list[int] | None,
+        typer.Option("--horizon", help=f"Neighbours on either side; 1: central differences. {_several(HORIZONS)}"),
+    ] = None,
+    spacings: Annotated[
+        list[float] | None, typer.Option("--spacing", help=f"Distance Δx of the nodes (m). {_several(SPACINGS)}")
+    ] = None,
+    time_steps: Annotated[
+        list[float] | None,
+        typer.Option("--time-step", help=f"Time step Δt (s); 0: exact in time. {_several(TIME_STEPS)}"),
+    ] = None,
+    wave_speed: Annotated[
+        float | None, typer.Option(help=f"Speed c of long waves (m/s); by default {WAVE_SPEED:g}.")
+    ] = None,
+    check: Annotated[bool, typer.Option("--check", help="Simulate some waves, and say how far they are off.")] = False,
+    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write (PNG).")] = Path("dispersion.png"),
+    table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).")] = None,
+    changes: Settings = None,
+) -> None:
+    """Say how fast waves run on a bar of nodes, peridynamic or central differences, and how many nodes they need.
+
+    Shown are the bars of cases, or else all combinations of the options.
+    """
+    own = {"--horizon": horizons, "--spacing": spacings, "--time-step": time_steps, "--wave-speed": wave_speed}
+    if cases:
+        _refuse(own, "is the case's own, change it with --set")
+        found = [lattice for path in cases for lattice in lattices_of(load_case(path, changes))]
+        shown = list(dict.fromkeys(found))  # those that cases share only once
+    else:
+        _refuse({"--set": changes}, "changes a case, and none is given")
+        speed = WAVE_SPEED if wave_speed is None else wave_speed
+        shown = lattices(horizons or HORIZONS, spacings or SPACINGS, time_steps or TIME_STEPS, speed)
+    out.print(_overview(shown))
+    save(plot_dispersion(shown, _simulated(shown) if check else ()), output)
+    out.print(f"wrote {output}")
+    if table is not None:
+        write_table(shown, table)
+        out.print(f"wrote {table}")
+
+
+def _refuse(options: Mapping[str, object], why: str) -> None:
+    """Raise CaseError for every option that was given."""
+    problems = [f"{option}: {why}" for option, value in options.items() if value not in (None, [])]
+    if problems:
+        raise CaseError(problems)
+
+
+def _overview(shown: Sequence[Lattice]) -> Table:
+    """Courant numbers, their limits, and how many spacings a wavelength needs."""
+    overview = Table(*HEADS, title="Spacings per wavelength from which on waves run within 1 % of c")
+    for lattice in shown:
+        limit = courant_limit(lattice.horizon)
+        sizes = (str(lattice.horizon), f"{lattice.spacing:g}", f"{lattice.time_step:g}")
+        needed = (_needed(lattice, "phase"), _needed(lattice, "group"))
+        overview.add_row(*sizes, f"{lattice.courant:.4f}", f"{limit:.4f}", *needed)
+    return overview
+
+
+def _needed(lattice: Lattice, of: Speed) -> str:
+    """Spacings per wavelength for 1 %, in words."""
+    if not lattice.stable:
+        return "unstable"
+    return f"{cells_per_wavelength(lattice.horizon, lattice.courant, of=of):.1f}"
+
+
+def _simulated(shown: Sequence[Lattice]) -> list[Points]:
+    """Points found by simulation, where there is something to simulate; says how far they are from the formula."""
+    points = []
+    for lattice in shown:
+        wavenumber = CHECKED * lattice.shortest if lattice.stable and lattice.time_step > 0.0 else np.zeros(0)
+        frequency = measure(lattice, wavenumber)
+        points.append((wavenumber, frequency))
+        if len(frequency):
+            error = np.abs(frequency / lattice.frequency(wavenumber) - 1.0).max()
+            out.print(f"{name(lattice)}: {len(frequency)} simulated frequencies differ by at most {error:.1e}")
+    return points

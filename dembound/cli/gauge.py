@@ -1,0 +1,90 @@
+"""The command gauge."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.table import Table
+
+from dembound.cli.app import app, out
+from dembound.cli.results import results_file
+from dembound.gauges import Estimate
+from dembound.plot.gauge import plot_gauge
+from dembound.plot.style import save
+from dembound.spalling import Findings, evaluate, read_free_end, read_gauge
+
+MPA = 1e6
+"""Pascals in a megapascal."""
+
+
+@app.command("gauge", rich_help_panel="Results")
+def gauge(
+    record: Annotated[
+        Path, typer.Argument(metavar="RECORD", help="Text file of time (s) and stress (Pa), or a run's results.")
+    ],
+    monitor: Annotated[str | None, typer.Option(metavar="NAME", help="Monitor of the results.")] = None,
+    position: Annotated[float | None, typer.Option(help="Gauge from the loaded end (m).")] = None,
+    length: Annotated[float | None, typer.Option(help="Length of the bar (m).")] = None,
+    density: Annotated[float | None, typer.Option(help="Its density (kg/m³), for --free-end.")] = None,
+    scale: Annotated[float, typer.Option(help="Factor that makes the values Pa, positive in tension.")] = 1.0,
+    spall: Annotated[float | None, typer.Option(help="Where the bar spalled, from the loaded end (m).")] = None,
+    free_end: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Monitor at the free end, or a text file of time (s) and velocity (m/s)."),
+    ] = None,
+    peaks: Annotated[int | None, typer.Option(help="Use the first tension peaks only.", min=2)] = None,
+    pulse_end: Annotated[
+        float | None, typer.Option(help="Time at which the incident pulse has passed (s); by default when it returns.")
+    ] = None,
+    wave_speed: Annotated[
+        float | None, typer.Option(help="Wave speed (m/s) of another test; by default this one's.")
+    ] = None,
+    attenuation: Annotated[
+        float | None, typer.Option(help="Attenuation (1/m) of another test; by default this one's.")
+    ] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="Picture to write (PNG).")] = None,
+) -> None:
+    """Say what a gauge on a bar tells: wave speed, attenuation, and the stress at which the bar spalled.
+
+    Length, position and density of results are known. Strengths take --spall or --free-end.
+    """
+    path = results_file(record) if record.is_dir() else record
+    felt = read_gauge(path, monitor, position, length, density, scale)
+    found = evaluate(
+        felt,
+        spall=spall,
+        free_end=None if free_end is None else read_free_end(path, free_end),
+        count=peaks,
+        pulse_end=pulse_end,
+        speed=wave_speed,
+        coefficient=attenuation,
+    )
+    out.print(_overview(found))
+    if output is not None:
+        save(plot_gauge(felt, found), output)
+        out.print(f"wrote {output}")
+
+
+def _overview(found: Findings) -> Table:
+    """All that was found, a line each."""
+    overview = Table("", "value", "std. error", "from")
+    overview.add_row("wave speed (m/s)", *_fitted(found.speed, "times"))
+    if found.attenuation is not None:
+        overview.add_row("attenuation (1/m)", *_fitted(found.attenuation, "heights"))
+    if (spall := found.spall) is not None:
+        source = f"image at {spall.position:g} m"
+        overview.add_row("nominal strength (MPa)", f"{spall.nominal / MPA:.4g}", "", source)
+        if spall.attenuated is not None:
+            source = f"way of {spall.way:.3g} m"
+            overview.add_row("attenuated strength (MPa)", f"{spall.attenuated / MPA:.4g}", "", source)
+    if found.pull_back is not None:
+        overview.add_row("pull-back strength (MPa)", f"{found.pull_back / MPA:.4g}", "", "free end")
+    return overview
+
+
+def _fitted(estimate: Estimate, what: str) -> tuple[str, str, str]:
+    """Value, standard error and source of an estimate."""
+    if not estimate.points:
+        return f"{estimate.value:.5g}", "", "given"
+    error = f"{estimate.error:.2g}" if estimate.points > 2 else ""
+    return f"{estimate.value:.5g}", error, f"{what} of {estimate.points} peaks"

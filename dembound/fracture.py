@@ -1,0 +1,56 @@
+"""Where and when a bar came apart, from the steps in which its bonds broke."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from dembound.laws.peridynamic import CRACKED, ROUNDING
+from dembound.methods.bonds import Bonds
+
+
+@dataclass(frozen=True)
+class Spall:
+    """One place where local damage has reached 0.3 (L section 1.2).
+
+    time : s, when it first did; start : m, the range of cracked nodes at that moment; end : m, their range in the end.
+    """
+
+    time: float
+    start: tuple[float, float]
+    end: tuple[float, float]
+
+    def describe(self) -> dict[str, Any]:
+        """As plain JSON values."""
+        return {key: list(value) if isinstance(value, tuple) else value for key, value in asdict(self).items()}
+
+
+def cracked_since(bonds: Bonds) -> np.ndarray:
+    """Step (n,) in which the damage of each node reached 0.3, −1 where it never did.
+
+    Beside a crack damage is often 0.3 in exact arithmetic, so it is compared within rounding.
+    """
+    since = np.full(bonds.rod.count, -1)
+    for step in np.unique(bonds.breaks(0)[0]):
+        reached = (bonds.damage(int(step)) >= CRACKED - ROUNDING) & (since < 0)
+        since[reached] = step
+    return since
+
+
+def spalls(bonds: Bonds, positions: np.ndarray, time_step: float) -> list[Spall]:
+    """Every spall of a bar in the order they happened; positions (n,) m of its nodes, time_step s."""
+    since = cracked_since(bonds)
+    cracked = np.concatenate([[False], since >= 0, [False]])
+    edges = np.flatnonzero(np.diff(cracked))
+    found = []
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        steps, places = since[first:last], positions[first:last]
+        at_first = places[steps == steps.min()]
+        found.append(
+            Spall(
+                float(steps.min() * time_step),
+                (float(at_first.min()), float(at_first.max())),
+                (float(places.min()), float(places.max())),
+            )
+        )
+    return sorted(found, key=lambda spall: spall.time)

@@ -1,0 +1,313 @@
+"""A bar of nodes: local springs and peridynamic bonds, and the step of central differences.
+
+The force on node i of a bar is (L eq. 8 and its finite difference counterpart, eq. 17)
+
+    Σ_p k_{i,p} (u_{i+p} − u_i) − k_{i−p,p} (u_i − u_{i−p}),  p = 0 … m
+
+where p = 0 stands for the local springs between neighbours. Springs and bonds stand in rows by index offset, so every
+loop runs along contiguous numbers and no node looks for its family. Stretches of the bar with nothing but whole local
+springs are `plain`: one stencil with constants moves them.
+"""
+
+import numpy as np
+from numba import njit
+
+from dembound.kernels.common import FASTMATH, REST, U
+from dembound.kernels.step import move_supported, note_after, note_before, note_top_speeds
+
+DONE, ASKED = 0, 1
+"""Why the kernel returned: all steps are done; a spring has come to where the method has to answer."""
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def _plain_reached(u, a, b, limit):
+    """How many of the springs that hold nodes a to b − 1 are as long as their limit (m)."""
+    reached = 0
+    for i in range(U(a), U(b + 1)):
+        reached += u[i] - u[i - U(1)] >= limit
+    return reached
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def _move_plain(u, v, a, b, stiffness, step, spare):
+    """One step of nodes a to b − 1 between springs that are all alike; stiffness: Δt k/m."""
+    one = U(1)
+    for i in range(U(a), U(b)):
+        w = v[i] + stiffness * ((u[i + one] - u[i]) - (u[i] - u[i - one]))
+        w = 0.0 if abs(w) <= REST else w
+        v[i] = w
+        spare[i] = u[i] + step * w
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def _move_plain_dragged(u, v, a, b, stiffness, keep, step, spare, mean):
+    """`_move_plain` under attenuation; mean (n,) gets the means of the velocities half a step before and after."""
+    one = U(1)
+    for i in range(U(a), U(b)):
+        w = keep * v[i] + stiffness * ((u[i + one] - u[i]) - (u[i] - u[i - one]))
+        w = 0.0 if abs(w) <= REST else w
+        mean[i] = 0.5 * (v[i] + w)
+        v[i] = w
+        spare[i] = u[i] + step * w
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def _spring_forces(u, a, b, spring, limit, room, force):
+    """Fill the forces (N) of local springs on nodes a to b − 1; returns how many springs are at their limit."""
+    one, last = U(1), u.size - 1
+    reached = 0
+    for k in range(U(max(a - 1, 0)), U(min(b, last))):
+        e = u[k + one] - u[k]
+        reached += (e >= limit[k]) & (spring[k] > 0.0)
+        room[k + one] = spring[k] * e
+    if a == 0:
+        room[0] = 0.0
+    if b > last:
+        room[b] = 0.0
+    for i in range(U(a), U(b)):
+        force[i] = room[i + one] - room[i]
+    return reached
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def _add_bond_forces(u, a, b, p, bond, limit, room, force):
+    """Add the forces (N) of the bonds of one length among nodes a to b − 1; returns how many are at their limit."""
+    m, row = U(bond.shape[0]), U(p - 1)
+    p = U(p)
+    reached = 0
+    for i in range(U(a), U(b) - p):
+        e = u[i + p] - u[i]
+        reached += (e >= limit) & (bond[row, i] > 0.0)
+        room[i + m] = bond[row, i] * e
+    for i in range(p):  # no bonds begin before the first node or reach beyond the last
+        room[U(a) + m - p + i] = 0.0
+        room[U(b) + m - p + i] = 0.0
+    for i in range(U(a), U(b)):
+        force[i] += room[i + m] - room[i + (m - p)]
+    return reached
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def forces(u, mixed, spring, spring_limit, bond, bond_limit, room, force):
+    """Fill force (n,) N for the nodes that are not plain; returns how many springs and bonds are at their limit."""
+    reached = 0
+    for r in range(mixed.shape[0]):
+        a, b = mixed[r, 0], mixed[r, 1]
+        if mixed[r, 3]:
+            reached += _spring_forces(u, a, b, spring, spring_limit, room, force)
+        else:
+            force[a:b] = 0.0
+        for p in range(1, min(mixed[r, 2], b - a - 1) + 1):
+            reached += _add_bond_forces(u, a, b, p, bond, bond_limit[p - 1], room, force)
+    return reached
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def _plain_ask(u, plain, limit):
+    """Whether a spring that holds a plain node has reached its limit (m)."""
+    reached = 0
+    for r in range(plain.shape[0]):
+        reached += _plain_reached(u, plain[r, 0], plain[r, 1], limit)
+    return reached > 0
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def _asks(u, bonds):
+    """Whether one of the other springs has reached a limit where the method decides."""
+    for k in range(bonds.spring.size):
+        if bonds.asks[k] and bonds.spring[k] > 0.0 and u[k + 1] - u[k] >= bonds.spring_limit[k]:
+            return True
+    return False
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def break_at_limit(number, u, v, step, bonds):
+    """Break for good all that has reached its limit (L eq. 6), in step `number`; returns the energy (J) that took.
+
+    Of a spring k that was e⁻ long a step ago that is ½k e⁻e, which closes the books exactly; it can only be negative
+    where bonds swing from one side to the other within a step.
+    """
+    lost = 0.0
+    for k in range(bonds.spring.size):
+        e = u[k + 1] - u[k]
+        if bonds.spring[k] > 0.0 and e >= bonds.spring_limit[k]:
+            lost += 0.5 * bonds.spring[k] * e * (e - step * (v[k + 1] - v[k]))
+            bonds.spring[k] = 0.0
+            bonds.spring_broken[k] = number
+    for row in range(bonds.bond.shape[0]):
+        for i in range(bonds.bond.shape[1] - row - 1):
+            e = u[i + row + 1] - u[i]
+            if bonds.bond[row, i] > 0.0 and e >= bonds.bond_limit[row]:
+                lost += 0.5 * bonds.bond[row, i] * e * (e - step * (v[i + row + 1] - v[i]))
+                bonds.bond[row, i] = 0.0
+                bonds.bond_broken[row, i] = number
+    return lost
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def plane_force(k, u, spring, bond):
+    """Force (N, tension positive) through plane k, between nodes k and k + 1: of all that crosses it."""
+    total = spring[k] * (u[k + 1] - u[k])
+    for row in range(bond.shape[0]):
+        p = row + 1
+        for i in range(max(0, k - row), min(k, u.size - 1 - p) + 1):
+            total += bond[row, i] * (u[i + p] - u[i])
+    return total
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def node_stress(i, u, spring, bond, section):
+    """Stress (Pa, tension positive) at node i: the mean of the planes on both sides, at an end that of its one."""
+    total = 0.0
+    planes = 0
+    if i > 0:
+        total += plane_force(i - 1, u, spring, bond)
+        planes += 1
+    if i < u.size - 1:
+        total += plane_force(i, u, spring, bond)
+        planes += 1
+    return total / (planes * section)
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def stresses(u, bonds, stress):
+    """Fill stress (n,) Pa of all nodes, see `node_stress`."""
+    for i in range(u.size):
+        stress[i] = node_stress(i, u, bonds.spring, bonds.bond, bonds.section)
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def stored(u, bonds):
+    """Strain energy (J) in springs and in bonds at displacements u (n,) m."""
+    springs = 0.0
+    for k in range(bonds.spring.size):
+        springs += 0.5 * bonds.spring[k] * (u[k + 1] - u[k]) ** 2
+    peridynamic = 0.0
+    for row in range(bonds.bond.shape[0]):
+        for i in range(u.size - row - 1):
+            peridynamic += 0.5 * bonds.bond[row, i] * (u[i + row + 1] - u[i]) ** 2
+    return springs, peridynamic
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def _move_mixed(u, v, a, b, mobility, keep, step, spare, mean):
+    """One step of nodes a to b − 1 with their forces in spare (n,), which gets their new displacements."""
+    for i in range(U(a), U(b)):
+        w = keep * v[i] + mobility[i] * spare[i]
+        w = 0.0 if abs(w) <= REST else w
+        mean[i] = 0.5 * (v[i] + w)
+        v[i] = w
+        spare[i] = u[i] + step * w
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def _move_unsupported(u, v, plain, stiffness, mixed, mobility, keep, step, spare, mean, nodes, dragged):
+    """One step of all nodes but the supported ones (k,)."""
+    for r in range(plain.shape[0]):
+        a, b = plain[r, 0], plain[r, 1]
+        if dragged:
+            _move_plain_dragged(u, v, a, b, stiffness, keep, step, spare, mean)
+        else:
+            _move_plain(u, v, a, b, stiffness, step, spare)
+    for r in range(mixed.shape[0]):
+        first, b = mixed[r, 0], mixed[r, 1]
+        for s in range(nodes.size):
+            if first <= nodes[s] < b:
+                _move_mixed(u, v, first, nodes[s], mobility, keep, step, spare, mean)
+                first = nodes[s] + 1
+        _move_mixed(u, v, first, b, mobility, keep, step, spare, mean)
+
+
+@njit(cache=True, fastmath=FASTMATH | {"reassoc"}, error_model="numpy")
+def _drag_work(mean, v, drag):
+    """Work (J/s) of dashpots drag (n,) N·s/m that act on mean velocities: in a step, and from its half to its end."""
+    whole = 0.0
+    late = 0.0
+    for i in range(mean.size):
+        whole += drag[i] * mean[i] * mean[i]
+        late += drag[i] * mean[i] * v[i]
+    return whole, 0.5 * late
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def _note_drag(v, mean, before, nodes, drag, step, work):
+    """Enter what attenuation took in the books; for supported nodes their table entered it as the outside's work."""
+    for s in range(nodes.size):
+        i = nodes[s]
+        mean[i] = 0.5 * (before[s] + v[i])
+        taken = drag[i] * mean[i] * step
+        work[0, 0] += taken * mean[i]
+        work[1, 0] += taken * 0.5 * before[s]
+    whole, late = _drag_work(mean, v, drag)
+    work[1, 1] = work[0, 1] + step * (whole - late)
+    work[0, 1] += step * whole
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def advance(u, spare, v, number, bonds, body, keep, drag, supports, log):
+    """Advance by up to supports.drive.shape[0] steps; returns the steps done and why it stopped.
+
+    u, spare, v : (3, n) displacement now, room for the next one, velocity half a step ago, of which only the first row
+    moves; u holds the result. number : the first step's. bonds : see tables.BarBonds. keep : part of its velocity
+    that attenuation leaves a node in a step, drag : (n,) N·s/m of its dashpots, or (0,) for none. body, supports, log :
+    see tables.py; log.record is 7 wide here, stress (Pa) last.
+    """
+    # taken out of their bundles once: within the loop each look into one would cost as much as forty nodes
+    nodes, twin = supports.nodes, supports.seam.twin
+    probes, record, tracked, peaks, work = log.probes, log.record, log.tracked, log.peaks, log.work
+    plain, mixed, limit, room = bonds.plain, bonds.mixed, bonds.plain_limit, bonds.room
+    spring, spring_limit, bond, bond_limit = bonds.spring, bonds.spring_limit, bonds.bond, bonds.bond_limit
+    steps = supports.drive.shape[0]
+    across = np.zeros((nodes.size, 3))
+    followed = np.zeros((nodes.size, 3))
+    before = np.empty(nodes.size)
+    mean = np.zeros(u.shape[1])
+    dragged = drag.size > 0
+    mobility = (0.5 * (1.0 + keep)) * body.mobility
+    stiffness = (0.5 * (1.0 + keep)) * bonds.plain_mobility * bonds.plain_stiffness
+    done = steps
+    why = DONE
+    here, there = u, spare
+    w = v[0]
+    for step in range(steps):
+        x, y = here[0], there[0]
+        reached = forces(x, mixed, spring, spring_limit, bond, bond_limit, room, y)
+        if (limit < np.inf and _plain_ask(x, plain, limit)) or (reached > 0 and _asks(x, bonds)):
+            done, why = step, ASKED
+            break
+        if reached > 0:
+            work[0, 3] += break_at_limit(number + step, x, w, body.step, bonds)
+            work[1, 3] = work[0, 3]
+            forces(x, mixed, spring, spring_limit, bond, bond_limit, room, y)
+        note_before(step, here, v, probes, record, twin, followed)
+        for q in range(probes.size):
+            record[step, q, 6] = node_stress(probes[q], x, spring, bond, bonds.section)
+        for s in range(nodes.size):
+            before[s] = w[nodes[s]]
+        _move_unsupported(x, w, plain, stiffness, mixed, mobility, keep, body.step, y, mean, nodes, dragged)
+        move_supported(step, here, v, there, across, followed, supports, body, work)
+        if dragged:
+            _note_drag(w, mean, before, nodes, drag, body.step, work)
+        note_after(step, v, probes, record, tracked, peaks)
+        if log.top_speed.size > 0:
+            note_top_speeds(v, log.top_speed)
+        here, there = there, here
+    if done % 2 == 1:
+        u[:] = here
+    return done, why
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def all_forces(u, bonds, force):
+    """Fill force (n,) N of all nodes, plain ones included."""
+    for k in range(force.size):
+        force[k] = 0.0
+    for k in range(bonds.spring.size):
+        pull = bonds.spring[k] * (u[k + 1] - u[k])
+        force[k] += pull
+        force[k + 1] -= pull
+    for row in range(bonds.bond.shape[0]):
+        for i in range(u.size - row - 1):
+            pull = bonds.bond[row, i] * (u[i + row + 1] - u[i])
+            force[i] += pull
+            force[i + row + 1] -= pull

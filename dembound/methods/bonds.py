@@ -1,0 +1,239 @@
+"""The bonds of a bar, as methods lay and change them.
+
+Local springs join neighbours, peridynamic bonds join nodes in zones. A plane between two nodes is covered to the share
+of the stress that bonds carry across it; a local spring there carries the rest, 1 − coverage. So any zone fits into
+local springs: forces come in pairs, and rest and uniform strain feel no seam.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dembound.kernels.tables import BarBonds
+from dembound.laws.peridynamic import half_offsets, micromodulus, volume_factor
+
+TINY = 1e-12
+"""Coverage is compared within this, its rounding."""
+
+
+@dataclass(frozen=True)
+class Rod:
+    """What methods need to know of a bar: n nodes, spacing m, section m², Young's modulus Pa, critical stretch.
+
+    Nodes at the ends have half the volume of the others.
+    """
+
+    count: int
+    spacing: float
+    section: float
+    modulus: float
+    critical_stretch: float
+
+    @property
+    def spring(self) -> float:
+        """Stiffness EA/Δx of a whole local spring, N/m."""
+        return self.modulus * self.section / self.spacing
+
+    @cached_property
+    def volumes(self) -> np.ndarray:
+        """(n,) m³."""
+        volumes = np.full(self.count, self.section * self.spacing)
+        volumes[[0, -1]] *= 0.5
+        return volumes
+
+    def bond_rows(self, horizon: int) -> tuple[np.ndarray, np.ndarray]:
+        """All peridynamic bonds there can be: stiffness N/m, and the volume factor w; (m, n) and (m,).
+
+        Row p − 1 has the bonds between i and i + p, c_m V_i V_{i+p} w_p/(pΔx) (L eqs 4, 8 and 9).
+        """
+        rows = np.zeros((horizon, self.count))
+        if horizon == 0:
+            return rows, np.zeros(0)
+        steps = half_offsets(horizon, 1)[:, 0]
+        delta = horizon * self.spacing
+        factor = volume_factor(steps * self.spacing, self.spacing, delta)
+        c_m = micromodulus(self.modulus, delta, 1, self.section)
+        for row, p in zip(rows, steps, strict=True):
+            both = self.volumes[: self.count - p] * self.volumes[p:]
+            row[: self.count - p] = both * factor[p - 1] / (p * self.spacing)
+        return c_m * rows, factor
+
+
+class Bonds:
+    """Local springs and peridynamic bonds of a bar, to begin with all local.
+
+    Parameters
+    ----------
+    rod : the bar.
+    horizon : m of the zones; 0: there are none, and springs that reach the critical stretch ask to be broken.
+    complement : whether local springs carry what bonds leave; else a plane has either.
+    ask_at : share of the critical stretch at which local springs ask.
+
+    Attributes
+    ----------
+    spring, spring_limit, asks, spring_broken : (n − 1,) of local springs, bond, bond_broken : (m, n) of bonds; see
+        kernels.tables.BarBonds, whose arrays these are.
+    zones : (first, one beyond last) node of every zone, from left to right.
+    """
+
+    def __init__(self, rod: Rod, horizon: int, *, complement: bool = True, ask_at: float = 1.0) -> None:
+        self.rod = rod
+        self.horizon = horizon
+        self.complement = complement
+        self.ask_at = ask_at
+        self.zones: list[tuple[int, int]] = []
+        self._rows, self._factor = rod.bond_rows(horizon)
+        planes = rod.count - 1
+        self.spring = np.full(planes, rod.spring)
+        self.bond = np.zeros_like(self._rows)
+        self.spring_broken = np.full(planes, -1)
+        self.bond_broken = np.full(self.bond.shape, -1)
+        self.spring_limit = np.zeros(planes)
+        self.asks = np.ones(planes, dtype=np.bool_)
+        self._most_covered = self._coverage(self._rows)
+        self._set_limits(np.zeros(planes))
+
+    def cover(self, first: int, last: int) -> None:
+        """Make nodes first to last − 1 a zone of peridynamics, with what it touches of other zones and near ends."""
+        first, last = max(0, first), min(self.rod.count, last)
+        first = 0 if first <= self.horizon else first  # no zone leaves a rest at an end shorter than a family
+        last = self.rod.count if self.rod.count - last <= self.horizon else last
+        apart = [zone for zone in self.zones if zone[1] < first or zone[0] > last]
+        joined = [zone for zone in self.zones if zone not in apart]
+        zone = (min([first, *(a for a, _ in joined)]), max([last, *(b for _, b in joined)]))
+        self.zones = sorted([*apart, zone])
+        for row in range(self.horizon):
+            chosen = slice(zone[0], max(zone[0], zone[1] - row - 1))
+            whole = self.bond_broken[row, chosen] < 0
+            self.bond[row, chosen] = np.where(whole, self._rows[row, chosen], 0.0)
+        covered = self._coverage(np.where(self.laid, self._rows, 0.0))
+        left = 1.0 - covered if self.complement else (covered == 0.0).astype(float)
+        left[(np.abs(left) < TINY) | (self.spring_broken >= 0)] = 0.0
+        self.spring[:] = self.rod.spring * left
+        self._set_limits(covered)
+
+    def soften_ends(self) -> None:
+        """Halve the springs at both ends, as half volumes do in peridynamics with m = 1."""
+        self.spring[[0, -1]] *= 0.5
+
+    def asking(self, u: np.ndarray) -> np.ndarray:
+        """Springs (a,) that have asked at displacements u (n,) m."""
+        return np.flatnonzero(self.asks & (self.spring > 0.0) & (np.diff(u) >= self.spring_limit))
+
+    def break_springs(self, u: np.ndarray, before: np.ndarray, step: int) -> float:
+        """Break the springs that have asked, in this step; returns the energy (J) that took.
+
+        u, before (n,) m: displacements now and a step ago; see kernels.bar.break_at_limit.
+        """
+        broken = self.asking(u)
+        lost = 0.5 * float(np.sum((self.spring * np.diff(u) * np.diff(before))[broken]))
+        self.spring[broken] = 0.0
+        self.spring_broken[broken] = step
+        return lost
+
+    @property
+    def laid(self) -> np.ndarray:
+        """(m, n) which bonds there are or have been."""
+        return (self.bond > 0.0) | (self.bond_broken >= 0)
+
+    @property
+    def alive(self) -> int:
+        """Number of springs and bonds that pull."""
+        return int(np.count_nonzero(self.spring)) + int(np.count_nonzero(self.bond))
+
+    def stiffness(self) -> np.ndarray:
+        """The bar's stiffness matrix in N/m as lower bands (max(m, 1) + 1, n): row d has the entries K[i + d, i]."""
+        bands = np.zeros((max(self.horizon, 1) + 1, self.rod.count))
+        bands[1, :-1] -= self.spring
+        bands[1 : self.horizon + 1] -= self.bond
+        for d, band in enumerate(bands[1:], start=1):
+            bands[0, :-d] -= band[:-d]
+            bands[0, d:] -= band[:-d]
+        return bands
+
+    def damage(self, step: int | None = None) -> np.ndarray:
+        """Local damage φ (n,) at the end of a step, by default the last (L eq. 7).
+
+        A local spring counts for the bonds that are left out on its side of a node.
+        """
+        last = np.iinfo(np.int64).max if step is None else step
+        n, volumes = self.rod.count, self.rod.volumes
+        laid, broken = self.laid, (self.bond_broken >= 0) & (self.bond_broken <= last)
+        if self.horizon == 0:
+            laid = broken = np.zeros((1, n), dtype=np.bool_)
+        whole, lost = np.zeros(n), np.zeros(n)
+        left_out = np.zeros((2, n))  # on the left and on the right
+        for p, w in enumerate(self._factor if self.horizon else np.ones(1), start=1):
+            first, second = w * volumes[p:], w * volumes[: n - p]  # what the other node weighs for each
+            whole[: n - p] += first
+            whole[p:] += second
+            lost[: n - p] += first * broken[p - 1, : n - p]
+            lost[p:] += second * broken[p - 1, : n - p]
+            left_out[1, : n - p] += first * ~laid[p - 1, : n - p]
+            left_out[0, p:] += second * ~laid[p - 1, : n - p]
+        cut = (self.spring_broken >= 0) & (self.spring_broken <= last)
+        lost[:-1] += left_out[1, :-1] * cut
+        lost[1:] += left_out[0, 1:] * cut
+        return lost / whole
+
+    def breaks(self, since: int) -> tuple[np.ndarray, np.ndarray]:
+        """What broke in step `since` or later: steps (b,) and pairs of nodes (b, 2), in the order of the steps."""
+        planes = np.flatnonzero(self.spring_broken >= since)
+        rows, first = np.nonzero(self.bond_broken >= since)
+        steps = np.concatenate([self.spring_broken[planes], self.bond_broken[rows, first]])
+        pairs = np.concatenate([np.stack([planes, planes + 1], axis=1), np.stack([first, first + rows + 1], axis=1)])
+        order = np.argsort(steps, kind="stable")
+        return steps[order], pairs[order]
+
+    def arrays(self, supported: np.ndarray, plain_mobility: float) -> BarBonds:
+        """All of it for the kernels; supported (k,) are nodes that the support table moves, plain_mobility Δt/m."""
+        plain, mixed = self._ranges(supported)
+        return BarBonds(
+            spring=self.spring,
+            spring_limit=self.spring_limit,
+            asks=self.asks,
+            bond=self.bond,
+            bond_limit=np.arange(1, self.horizon + 1) * self._elongation,
+            spring_broken=self.spring_broken,
+            bond_broken=self.bond_broken,
+            plain=plain,
+            plain_stiffness=self.rod.spring,
+            plain_limit=self.ask_at * self._elongation,
+            plain_mobility=plain_mobility,
+            mixed=mixed,
+            section=self.rod.section,
+            room=np.zeros(self.rod.count + self.horizon + 1),
+        )
+
+    def _ranges(self, supported: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Ranges of plain nodes (r, 2); and of others, number of bond lengths and whether springs hold them (q, 4)."""
+        mixed, plain_spring = 1, (self.spring == self.rod.spring) & self.asks
+        label = np.full(self.rod.count, mixed)
+        label[1:-1][plain_spring[:-1] & plain_spring[1:]] = 0
+        label[supported] = mixed
+        for number, (first, last) in enumerate(self.zones, start=mixed + 1):
+            label[first:last] = number
+        edges = np.concatenate([[0], np.flatnonzero(np.diff(label)) + 1, [self.rod.count]])
+        runs = np.stack([edges[:-1], edges[1:], label[edges[:-1]]], axis=1)
+        plain, others = runs[runs[:, 2] == 0, :2], runs[runs[:, 2] > 0]
+        lengths = np.where(others[:, 2] > mixed, self.horizon, 0)
+        held = [self.spring[max(0, first - 1) : last].any() for first, last, _ in others]
+        return np.ascontiguousarray(plain), np.column_stack([others[:, :2], lengths, held]).astype(np.int64)
+
+    @property
+    def _elongation(self) -> float:
+        """Elongation (m) of a spring at the critical stretch."""
+        return self.rod.critical_stretch * self.rod.spacing
+
+    def _coverage(self, rows: np.ndarray) -> np.ndarray:
+        """Share (n − 1,) of the stress under uniform strain that bonds of stiffness rows (m, n) carry across planes."""
+        through = np.zeros(self.rod.count)
+        for p, row in enumerate(rows, start=1):
+            through += np.convolve(row * p * self.rod.spacing, np.ones(p))[: self.rod.count]  # p of them cross a plane
+        return through[:-1] / (self.rod.modulus * self.rod.section)
+
+    def _set_limits(self, covered: np.ndarray) -> None:
+        """Which springs leave it to the method what becomes of them, and how far each may be stretched."""
+        self.asks[:] = (covered < self._most_covered - TINY) | (self.horizon == 0)
+        self.spring_limit[:] = np.where(self.asks, self.ask_at, 1.0) * self._elongation

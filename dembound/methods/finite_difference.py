@@ -1,0 +1,26 @@
+"""Central finite differences: local springs between neighbours (L eq. 17)."""
+
+from typing import Literal
+
+from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.method import Method
+
+
+class FiniteDifference(Method):
+    """Every node is bonded to its two neighbours; a spring breaks at the critical stretch."""
+
+    type: Literal["finite_difference"]
+
+    @property
+    def name(self) -> str:
+        """What the method does at first, for reports."""
+        return "finite differences"
+
+    @property
+    def largest_horizon(self) -> int:
+        """1: local springs."""
+        return 1
+
+    def begin(self, rod: Rod) -> Bonds:
+        """Whole local springs, which ask at the critical stretch."""
+        return Bonds(rod, horizon=0)

@@ -1,0 +1,53 @@
+"""Finite differences everywhere, peridynamics only where and when something is about to break."""
+
+from typing import Literal
+
+import numpy as np
+
+from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.method import Method
+from dembound.table import quantity
+
+
+class Patch(Method):
+    """Zones of peridynamics that appear where a stretch reaches `trigger` of the critical one, and grow as needed.
+
+    Around a zone local springs carry the share of the stress that its bonds leave (complement springs): forces stay in
+    pairs, so that momentum is kept, and neither rest nor uniform strain feels the seam.
+    """
+
+    type: Literal["patch"]
+    horizon: int = quantity(..., unit="1", help="horizon m in spacings, in the zones", ge=1)
+    trigger: float = quantity(0.9, unit="1", help="share of the critical stretch that makes a zone", gt=0.0, le=1.0)
+    reach: int = quantity(4, unit="1", help="horizons that a zone extends beyond what made it", ge=1)
+
+    @property
+    def name(self) -> str:
+        """What the method does at first, for reports."""
+        return "finite differences"
+
+    @property
+    def largest_horizon(self) -> int:
+        """The horizon m in the zones."""
+        return self.horizon
+
+    def begin(self, rod: Rod) -> Bonds:
+        """Local springs that ask at the trigger."""
+        return Bonds(rod, self.horizon, complement=True, ask_at=self.trigger)
+
+    def stages(self, rod: Rod) -> list[Bonds]:
+        """No zone, one in the middle, one at each end, and one all over."""
+        width = min(rod.count, 2 * self.reach * self.horizon + 2)
+        middle = (rod.count - width) // 2
+        stages = [self.begin(rod)]
+        for first, last in ((middle, middle + width), (0, width), (rod.count - width, rod.count), (0, rod.count)):
+            stages.append(self.begin(rod))
+            stages[-1].cover(first, last)
+        return stages
+
+    def answer(self, bonds: Bonds, u: np.ndarray, before: np.ndarray, step: int) -> tuple[float, str]:
+        """A zone around every spring that has asked."""
+        beyond = self.reach * self.horizon
+        for k in bonds.asking(u):
+            bonds.cover(int(k) - beyond, int(k) + 2 + beyond)
+        return 0.0, f"finite differences and peridynamics, m = {self.horizon}"

@@ -1,0 +1,52 @@
+"""One method until something is about to break, peridynamics everywhere from then on (L section 3.1 and 3.3)."""
+
+from typing import Literal
+
+import numpy as np
+
+from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.method import Method
+from dembound.table import quantity
+
+
+class Switch(Method):
+    """Finite differences, or peridynamics with m = 1, until the largest stretch reaches `trigger` of the critical one.
+
+    From then on peridynamics with horizon m: L's FDM–PD3 and PD1–PD3.
+    """
+
+    type: Literal["switch"]
+    horizon: int = quantity(..., unit="1", help="horizon m in spacings, after the switch", ge=1)
+    before: Literal["finite_difference", "peridynamics"] = quantity(
+        "finite_difference", unit="1", help="what serves before: finite differences, or peridynamics with m = 1"
+    )
+    trigger: float = quantity(0.9, unit="1", help="share of the critical stretch at which it switches", gt=0.0, le=1.0)
+    corrected_ends: bool = quantity(False, unit="1", help="whether local springs repair the bar's soft ends")
+
+    @property
+    def name(self) -> str:
+        """What the method does at first, for reports."""
+        return "finite differences" if self.before == "finite_difference" else "peridynamics, m = 1"
+
+    @property
+    def largest_horizon(self) -> int:
+        """The horizon m after the switch."""
+        return self.horizon
+
+    def begin(self, rod: Rod) -> Bonds:
+        """Local springs that ask at the trigger; with m = 1 those of the ends are half as stiff."""
+        bonds = Bonds(rod, self.horizon, complement=self.corrected_ends, ask_at=self.trigger)
+        if self.before == "peridynamics" and not self.corrected_ends:
+            bonds.soften_ends()
+        return bonds
+
+    def stages(self, rod: Rod) -> list[Bonds]:
+        """Before and after the switch."""
+        after = self.begin(rod)
+        after.cover(0, rod.count)
+        return [self.begin(rod), after]
+
+    def answer(self, bonds: Bonds, u: np.ndarray, before: np.ndarray, step: int) -> tuple[float, str]:
+        """Peridynamics everywhere."""
+        bonds.cover(0, bonds.rod.count)
+        return 0.0, f"peridynamics, m = {self.horizon}"

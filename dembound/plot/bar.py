@@ -1,0 +1,198 @@
+"""A bar in pictures: stress, damage and motion along it and in time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
+
+from dembound.errors import CaseError
+from dembound.laws.peridynamic import CRACKED
+from dembound.plot.style import COLOURS, REFERENCE, SIGNED_MAP, line_style, new_figure, outside_legend, styled
+from dembound.results import cracks_until, laws_of, open_record, snapshot_of
+
+MILLI, MEGA = 1e-3, 1e6
+
+FEWEST = 10
+"""Fewer snapshots than this are drawn as profiles, each a line; more make a picture over place and time."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a field is shown: in words, its unit and what that is in SI, the sense of its sign, a map pale at zero."""
+
+    words: str
+    unit: str
+    scale: float
+    sense: str = ""
+    colours: str = SIGNED_MAP
+
+    @property
+    def label(self) -> str:
+        """For an axis or a colour bar."""
+        return f"{self.words}{self.sense} ({self.unit})"
+
+
+FIELDS = {
+    "stress": Look("stress", "MPa", MEGA, ", tension positive"),
+    "damage": Look("local damage", "–", 1.0, colours="Reds"),
+    "velocity": Look("velocity", "m/s", 1.0, ", positive to the right"),
+    "displacement": Look("displacement", "mm", MILLI, ", positive to the right"),
+}
+"""The fields of a bar by name."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """Fields of a bar of n nodes at k moments.
+
+    place (n,) m; time (k,) ms; values: name of a field -> (k, n) in its unit; crack_place (c,) m and crack_time (c,) ms
+    of the bonds broken by the last of them; changes: methods that took over by then, with the time in ms; case: name.
+    """
+
+    place: np.ndarray
+    time: np.ndarray
+    values: dict[str, np.ndarray]
+    crack_place: np.ndarray
+    crack_time: np.ndarray
+    changes: list[tuple[str, float]]
+    case: str
+
+
+@styled
+def plot_bar(run: Path) -> Figure:
+    """Stress and damage of a bar over place and time; below, both along the bar at the end. Broken bonds are marked.
+
+    A run with few snapshots shows both along the bar at each.
+
+    Parameters
+    ----------
+    run
+        the ``run.h5`` of a bar's run.
+
+    Raises CaseError when the file cannot be read or has no snapshot.
+    """
+    return _draw(read_course(run, ("stress", "damage")))
+
+
+@styled
+def plot_bar_field(run: Path, field: str, snapshot: int | None = None) -> Figure:
+    """One field of a bar, as in `plot_bar`, or only along the bar at one snapshot.
+
+    Parameters
+    ----------
+    run
+        the ``run.h5`` of a bar's run.
+    field
+        name of one of `FIELDS`.
+    snapshot
+        its number; negative ones count from the last. By default all are shown.
+
+    Raises CaseError when the file cannot be read, has no such snapshot, or bars have no such field.
+    """
+    if field not in FIELDS:
+        raise CaseError([f"field: is {field}, must be one of {', '.join(FIELDS)} for a bar"])
+    return _draw(read_course(run, (field,), snapshot))
+
+
+def read_course(run: Path, fields: Sequence[str], snapshot: int | None = None) -> Course:
+    """Fields of a bar's record at all snapshots, or at one.
+
+    Raises CaseError when the file cannot be read or has no such snapshot.
+    """
+    with open_record(run) as file:
+        chosen = snapshot_of(file, -1 if snapshot is None else snapshot)
+        groups = list(chosen.parent.values()) if snapshot is None else [chosen]
+        time = np.array([group.attrs["time"] for group in groups])
+        cracks = cracks_until(file, time[-1])
+        return Course(
+            place=file["particles/position"][:, 0],
+            time=time / MILLI,
+            values={name: np.array([_along(group[name]) for group in groups]) / FIELDS[name].scale for name in fields},
+            crack_place=cracks["position"][:, 0],
+            crack_time=cracks["time"] / MILLI,
+            changes=[(name, since / MILLI) for name, since in laws_of(file)[1:] if since <= time[-1]],
+            case=str(file.attrs["name"]),
+        )
+
+
+def _along(dataset: h5py.Dataset) -> np.ndarray:
+    """A field along the bar, (n,): a stress or damage as it is, of a motion (n, 3) the part along x."""
+    return dataset[:] if dataset.ndim == 1 else dataset[:, 0]
+
+
+def _draw(course: Course) -> Figure:
+    """All fields of a bar's course."""
+    figure = _draw_maps(course) if len(course.time) >= FEWEST else _draw_profiles(course)
+    shown = " and ".join(FIELDS[name].words for name in course.values)
+    figure.suptitle(f"{course.case}: {shown} along the bar", fontsize=11)
+    outside_legend(figure, figure.axes, columns=5)
+    return figure
+
+
+def _draw_maps(course: Course) -> Figure:
+    """A column of panels for each field: over place and time, and below that its last profile."""
+    count = len(course.values)
+    figure = new_figure(2.0 + 4.5 * count, 6.8)
+    panels = figure.subplots(2, count, sharex=True, squeeze=False, height_ratios=[5, 2])
+    for (upper, lower), name in zip(panels.T, course.values, strict=True):
+        colours = _draw_map(upper, course, name)
+        figure.colorbar(colours, ax=upper, label=FIELDS[name].label, location="top", aspect=40)
+        _draw_profile(lower, course, name, -1, color=COLOURS[0])
+        lower.set_ylabel(f"{FIELDS[name].words} ({FIELDS[name].unit})")  # there is no room for more
+        lower.set_title(f"at the end, t = {course.time[-1]:.4g} ms", loc="left", fontsize=9, pad=3)
+        lower.set_xlabel("x (m)")
+    return figure
+
+
+def _draw_map(panel: Axes, course: Course, name: str) -> ScalarMappable:
+    """A field over place and time, the bonds that broke and methods that took over; returns what a colour bar needs."""
+    values, look = course.values[name], FIELDS[name]
+    largest = float(np.abs(values).max()) or 1.0
+    limits = (0.0, 1.0) if name == "damage" else (-largest, largest)
+    place, time = _edges(course.place), _edges(course.time)
+    picture = panel.pcolorfast(place, time, values, cmap=look.colours, clim=limits)
+    if len(course.crack_time):
+        looks: dict[str, Any] = {"s": 4.0, "color": "black", "linewidths": 0.0, "label": "bond broken"}
+        panel.scatter(course.crack_place, course.crack_time, **looks)
+    for index, (method, since) in enumerate(course.changes):
+        dashes = line_style(index + 2)["linestyle"]  # unlike the line in the panel of damage below
+        panel.axhline(since, color="black", linewidth=1.0, linestyle=dashes, label=f"{method} from {since:.4g} ms")
+    panel.set_ylim(0.0, course.time[-1])
+    panel.set_ylabel("time (ms)")
+    panel.grid(False)
+    return picture
+
+
+def _draw_profiles(course: Course) -> Figure:
+    """A panel for each field, with a line for each moment."""
+    count = len(course.values)
+    figure = new_figure(9.0, 1.6 + 2.4 * count)
+    panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+    for panel, name in zip(panels, course.values, strict=True):
+        for number, time in enumerate(course.time):
+            _draw_profile(panel, course, name, number, label=f"t = {time:.4g} ms", **line_style(number))
+    panels[-1].set_xlabel("x (m)")
+    return figure
+
+
+def _draw_profile(panel: Axes, course: Course, name: str, number: int, **looks: Any) -> None:
+    """A field along the bar at one moment; damage with the line above which nodes count as cracked."""
+    panel.plot(course.place, course.values[name][number], **looks)
+    panel.margins(x=0.0)
+    panel.set_ylabel(FIELDS[name].label)
+    if name == "damage":
+        panel.set_ylim(-0.05, 1.05)
+        label = f"cracked from a damage of {CRACKED:g}"
+        panel.axhline(CRACKED, color=REFERENCE, linewidth=1.0, linestyle="--", zorder=1, label=label)
+
+
+def _edges(centres: np.ndarray) -> np.ndarray:
+    """Edges (k + 1,) of cells around k centres, two at least."""
+    middles = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate([[2.0 * centres[0] - middles[0]], middles, [2.0 * centres[-1] - middles[-1]]])

@@ -1,0 +1,89 @@
+"""How fast waves run on the nodes of a bar, for several lattices at once (L fig. 5)."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter, ScalarFormatter
+
+from dembound.exact.dispersion import Lattice
+from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legend, point_style, styled
+
+CELLS = np.geomspace(2.0, 100.0, 800)
+"""Spacings per wavelength shown, from the shortest wave to where even wide horizons are exact to a few per cent."""
+
+TICKS = (2, 3, 5, 10, 20, 50, 100)
+
+Points = tuple[np.ndarray, np.ndarray]
+"""Wave numbers (k,) rad/m and the angular frequencies (k,) rad/s found there."""
+
+
+@styled
+def plot_dispersion(lattices: Sequence[Lattice], measured: Sequence[Points] = ()) -> Figure:
+    """Frequency against wave number, and the speeds of crests and of energy against spacings per wavelength.
+
+    Parameters
+    ----------
+    lattices
+        Rows of nodes, each a line that ends at its shortest wave and stops where waves grow.
+    measured
+        What simulations of these lattices gave, one pair each in the same order; none: lines only.
+    """
+    figure = new_figure(11.0, 4.4)
+    left, middle, right = figure.subplots(1, 3)
+    for index, lattice in enumerate(lattices):
+        style = line_style(index)
+        wavenumber = np.linspace(0.0, lattice.shortest, 800)
+        left.plot(wavenumber, _kilohertz(lattice.frequency(wavenumber)), label=name(lattice), **style)
+        wavenumber = 2.0 * lattice.shortest / CELLS
+        middle.plot(CELLS, lattice.phase_velocity(wavenumber) / lattice.wave_speed, **style)
+        right.plot(CELLS, lattice.group_velocity(wavenumber) / lattice.wave_speed, **style)
+    for index, (lattice, (wavenumber, frequency)) in enumerate(zip(lattices, measured, strict=False)):
+        markers = {**point_style(index), "linestyle": "none"}
+        left.plot(wavenumber, _kilohertz(frequency), label="simulated", **markers)
+        middle.plot(2.0 * lattice.shortest / wavenumber, frequency / (wavenumber * lattice.wave_speed), **markers)
+    _exact_lines(left, lattices)
+    for panel, quantity in ((middle, "phase velocity ω/k / c (–)"), (right, "group velocity dω/dk / c (–)")):
+        panel.axhline(1.0, color=REFERENCE, linewidth=1.0, zorder=1)
+        _cells_axis(panel)
+        panel.set_ylabel(quantity)
+    figure.suptitle("Dispersion of a bar of nodes; a horizon of 1 spacing is central differences", fontsize=11)
+    outside_legend(figure, [left], columns=3)
+    return figure
+
+
+def name(lattice: Lattice) -> str:
+    """A lattice in words, such as "horizon 3, Δx = 5 mm, Δt = 1 µs"."""
+    step = f"Δt = {1e6 * lattice.time_step:g} µs" if lattice.time_step else "exact in time"
+    unstable = "" if lattice.stable else ", unstable"
+    return f"horizon {lattice.horizon}, Δx = {1e3 * lattice.spacing:g} mm, {step}{unstable}"
+
+
+def _exact_lines(panel: Axes, lattices: Sequence[Lattice]) -> None:
+    """Frequencies kc/2π of a bar without nodes, as far as the lattices' own go."""
+    ends = np.array([0.0, max(lattice.shortest for lattice in lattices)])
+    highest = max(np.nanmax(lattice.frequency(np.linspace(0.0, lattice.shortest, 100))) for lattice in lattices)
+    for speed in sorted({lattice.wave_speed for lattice in lattices}):
+        label = f"no dispersion, c = {speed:g} m/s"
+        panel.plot(ends, _kilohertz(speed * ends), color=REFERENCE, linewidth=1.0, zorder=1, label=label)
+    panel.set_xlim(0.0, ends[1])
+    panel.set_ylim(0.0, 1.1 * float(_kilohertz(highest)))
+    panel.set_xlabel("wave number k (rad/m)")
+    panel.set_ylabel("frequency ω/2π (kHz)")
+
+
+def _cells_axis(panel: Axes) -> None:
+    """Spacings per wavelength, long waves to the right."""
+    panel.set_xscale("log")
+    panel.set_xlim(CELLS[0], CELLS[-1])
+    panel.set_xticks(TICKS)
+    panel.xaxis.set_major_formatter(ScalarFormatter())
+    panel.xaxis.set_minor_formatter(NullFormatter())
+    panel.set_ylim(0.0, 1.15)
+    panel.set_xlabel("spacings per wavelength (–)")
+
+
+def _kilohertz(frequency: np.ndarray | float) -> np.ndarray:
+    """Frequencies in kHz from rad/s."""
+    return np.asarray(frequency) / (2e3 * np.pi)

@@ -1,0 +1,74 @@
+"""What a gauge on a bar has felt, and the stress beside the bar's free end (L figs 10 and 11)."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from dembound.gauges import near_free_end
+from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled
+from dembound.spalling import Findings, Gauge, Spall
+
+MPA = 1e6
+"""Pascals in a megapascal."""
+
+STEPS = (-1.5, -1.0, -0.5, 0.0, 0.5)
+"""Times of the stresses beside the free end, about that of the spall, in ways from there to the end."""
+
+PLACES = 500
+"""Points of each line along the bar."""
+
+
+@styled
+def plot_gauge(gauge: Gauge, findings: Findings) -> Figure:
+    """The history with its tension peaks and their exponential fit; beside it the stress near the free end.
+
+    The latter, at several times, is that of the incident pulse and its image, without attenuation. It is drawn if it is
+    known where the bar has spalled.
+
+    Parameters
+    ----------
+    gauge, findings
+        what it has felt, and what `spalling.evaluate` has found.
+    """
+    figure = new_figure(10.0 if findings.spall else 7.0, 4.6)
+    panels = figure.subplots(1, 2 if findings.spall else 1, squeeze=False)[0]
+    _history(panels[0], gauge, findings)
+    if findings.spall:
+        _free_end(panels[1], gauge, findings.speed.value, findings.spall)
+    figure.suptitle(f"Gauge at {gauge.position:g} m of a bar of {gauge.length:g} m", fontsize=11)
+    outside_legend(figure, panels, columns=3)
+    return figure
+
+
+def _history(panel: Axes, gauge: Gauge, findings: Findings) -> None:
+    """Stress against time, its tension peaks, and the exponential through them."""
+    peaks, decay = findings.peaks, findings.attenuation
+    panel.plot(1e3 * gauge.time, gauge.stress / MPA, color=REFERENCE, linewidth=1.0, label="stress at the gauge")
+    if len(peaks.time):
+        panel.plot(1e3 * peaks.time, peaks.height / MPA, "o", color=COLOURS[1], label="tension peaks")
+    if decay is not None and len(peaks.time) > 1:
+        time = np.linspace(peaks.time[0], peaks.time[-1], PLACES)
+        weights = peaks.height**2  # through the middle of the line that was fitted
+        first, middle = (np.average(each, weights=weights) for each in (np.log(peaks.height), peaks.time))
+        height = np.exp(first - decay.value * findings.speed.value * (time - middle))
+        label = f"exp(−βct), β = {decay.value:.3g} 1/m, c = {findings.speed.value:.4g} m/s"
+        panel.plot(1e3 * time, height / MPA, color=COLOURS[0], linestyle="--", label=label)
+    panel.set_xlabel("time (ms)")
+    panel.set_ylabel("stress, tension positive (MPa)")
+
+
+def _free_end(panel: Axes, gauge: Gauge, speed: float, spall: Spall) -> None:
+    """Stress along the last part of the bar at several times, and the largest tension where it spalled."""
+    places = np.linspace(min(gauge.position, spall.position), gauge.length, PLACES)
+    times = spall.time + np.array(STEPS) * (gauge.length - spall.position) / speed
+    stresses = near_free_end(*spall.pulse, gauge.position, gauge.length, speed, places, times)
+    for index, (time, stress) in enumerate(zip(times, stresses.T, strict=True)):
+        looks: dict[str, Any] = line_style(index)
+        panel.plot(places, stress / MPA, label=f"at {1e3 * time:.3f} ms", **looks)
+    label = f"largest tension at {spall.position:g} m: {spall.nominal / MPA:.3g} MPa"
+    panel.plot(spall.position, spall.nominal / MPA, "*", color=COLOURS[-1], markersize=10, label=label)
+    panel.axvline(spall.position, color=REFERENCE, linewidth=1.0, zorder=1)
+    panel.set_xlabel("distance from the loaded end (m)")
+    panel.set_ylabel("stress, tension positive (MPa)")

@@ -1,0 +1,347 @@
+"""Springs and bonds of a bar as methods lay them: what they carry, when they give way, and what that leaves."""
+
+import numpy as np
+import pytest
+
+from dembound.methods.bonds import Bonds, Rod
+
+EPS = np.finfo(float).eps
+COUNT, STRETCH = 41, 1e-3
+ROD = Rod(COUNT, spacing=0.25, section=0.5, modulus=2e9, critical_stretch=STRETCH)
+WHOLE = 2e9 * 0.5 / 0.25
+"""Stiffness EA/Δx of a spring, N/m."""
+LIMIT = 0.25 * STRETCH
+"""Elongation at which a spring breaks, m."""
+
+
+def zoned(horizon: int, *zones: tuple[int, int], **words) -> Bonds:
+    bonds = Bonds(ROD, horizon, **words)
+    for first, last in zones:
+        bonds.cover(first, last)
+    return bonds
+
+
+def stress(bonds: Bonds) -> np.ndarray:
+    """Share (n − 1,) of EAε that springs and bonds carry across each plane under uniform strain, bond by bond."""
+    carried = bonds.spring * 0.25
+    for row, first in zip(*np.nonzero(bonds.bond), strict=True):
+        carried[first : first + row + 1] += bonds.bond[row, first] * 0.25 * (row + 1)
+    return carried / (2e9 * 0.5)
+
+
+def pulled(*planes: int, elongation: float = LIMIT) -> np.ndarray:
+    """Displacements (n,) m that stretch these planes alone."""
+    u = np.zeros(COUNT)
+    for k in planes:
+        u[k + 1 :] += elongation
+    return u
+
+
+def test_end_nodes_have_half_a_volume() -> None:
+    assert ROD.volumes.tolist() == [0.0625] + 39 * [0.125] + [0.0625]
+    assert ROD.spring == WHOLE
+
+
+@pytest.mark.parametrize("horizon", [1, 2, 3, 5])
+def test_bonds_are_those_of_the_law(horizon: int) -> None:
+    rows, factor = ROD.bond_rows(horizon)
+
+    assert factor.tolist() == (horizon - 1) * [1.0] + [0.5]
+    for p in range(1, horizon + 1):
+        # c_m V² w/(pΔx) with c_m = 2E/(A m²Δx²): 2w/(m²p) of a spring, half of that at each end
+        stiffness = WHOLE * 2.0 * factor[p - 1] / (horizon**2 * p)
+        halves = np.ones(COUNT - p)
+        halves[[0, -1]] = 0.5
+        np.testing.assert_allclose(rows[p - 1, : COUNT - p], stiffness * halves, rtol=8 * EPS)
+        assert not rows[p - 1, COUNT - p :].any()
+
+
+def test_without_a_horizon_there_are_springs_alone() -> None:
+    bonds = Bonds(ROD, 0)
+
+    assert bonds.bond.shape == (0, COUNT)
+    assert np.array_equal(bonds.spring, np.full(40, WHOLE))
+    assert bonds.asks.all()
+    assert np.array_equal(bonds.spring_limit, np.full(40, LIMIT))
+    assert bonds.alive == 40
+
+
+def test_a_spring_asks_at_its_share_of_the_critical_stretch() -> None:
+    bonds = Bonds(ROD, 3, ask_at=0.8)
+    nearly, reached = pulled(7, elongation=0.8 * LIMIT * (1 - 1e-9)), pulled(7, 30, elongation=0.8 * LIMIT)
+
+    assert bonds.asking(nearly).tolist() == []
+    assert bonds.asking(reached).tolist() == [7, 30]
+    assert bonds.asking(-reached).tolist() == []
+
+
+ZONES = [[(10, 30)], [(10, 20), (25, 35)], [(0, 20)], [(15, 41)], [(0, 41)], [(18, 20)], [(10, 20), (15, 32)]]
+
+
+@pytest.mark.parametrize("zones", ZONES, ids=str)
+@pytest.mark.parametrize("horizon", [1, 2, 3, 5])
+def test_springs_carry_what_bonds_leave(horizon: int, zones: list[tuple[int, int]]) -> None:
+    bonds = zoned(horizon, *zones)
+
+    # 2m terms of at most 1
+    np.testing.assert_allclose(stress(bonds), 1.0, atol=4 * horizon * EPS)
+    # deep in a zone bonds carry it all, and no spring is left that rounding has made; outside springs do
+    outside = np.ones(40, dtype=bool)
+    for first, last in bonds.zones:
+        outside[first : last - 1] = False
+        assert not bonds.spring[first + horizon : last - horizon - 1].any()
+    assert np.all(bonds.spring[outside] == WHOLE)
+    assert bonds.spring.min() >= 0.0
+
+
+@pytest.mark.parametrize("horizon", [2, 3, 5])
+def test_without_complement_a_plane_has_springs_or_bonds(horizon: int) -> None:
+    bonds = zoned(horizon, (10, 30), complement=False)
+    spanned = stress(bonds) - bonds.spring / WHOLE > 0.0
+
+    assert np.array_equal(bonds.spring == 0.0, spanned)
+    assert np.flatnonzero(spanned).tolist() == list(range(10, 29))
+    assert stress(bonds).min() < 0.9
+
+
+def test_bonds_join_the_nodes_of_a_zone_alone() -> None:
+    bonds = zoned(3, (10, 20), (25, 40))  # the second reaches the end, see below
+    inside = {(i, p) for a, b in ((10, 20), (25, 41)) for p in (1, 2, 3) for i in range(a, b - p)}
+
+    assert {(i, row + 1) for row, i in zip(*np.nonzero(bonds.bond), strict=True)} == inside
+    assert np.array_equal(bonds.laid, bonds.bond > 0.0)
+    assert bonds.alive == len(inside) + np.count_nonzero(bonds.spring)
+
+
+@pytest.mark.parametrize(
+    ("asked", "zones"),
+    [
+        ([(-5, 12)], [(0, 12)]),
+        ([(30, 60)], [(30, 41)]),
+        ([(3, 12)], [(0, 12)]),  # three nodes would be left, less than a family
+        ([(4, 12)], [(4, 12)]),
+        ([(30, 38)], [(30, 41)]),
+        ([(30, 37)], [(30, 37)]),
+        ([(10, 20), (20, 30)], [(10, 30)]),
+        ([(10, 20), (21, 30)], [(10, 20), (21, 30)]),
+        ([(20, 30), (5, 9), (8, 21)], [(5, 30)]),
+        ([(10, 20), (12, 15)], [(10, 20)]),
+    ],
+    ids=str,
+)
+def test_zones_end_with_the_bar_and_grow_together(asked: list, zones: list) -> None:
+    assert zoned(3, *asked).zones == zones
+
+
+def test_bonds_of_zones_do_not_depend_on_their_order() -> None:
+    whole = zoned(3, (8, 32))
+    for parts in (((8, 20), (15, 32)), ((15, 32), (8, 20)), ((8, 20), (20, 32))):
+        bonds = zoned(3, *parts)
+        assert np.array_equal(bonds.bond, whole.bond)
+        assert np.array_equal(bonds.spring, whole.spring)
+
+
+def test_springs_ask_until_bonds_cover_their_plane_as_far_as_they_can() -> None:
+    bonds = zoned(3, (10, 30), ask_at=0.5)
+    # bonds of three across plane k need the nodes k − 2 to k + 3
+    covered = np.zeros(40, dtype=bool)
+    covered[12:27] = True
+
+    assert np.array_equal(bonds.asks, ~covered)
+    assert np.array_equal(bonds.spring_limit, np.where(covered, LIMIT, 0.5 * LIMIT))
+    # all over, no spring is left to a method: at soft ends they break as bonds do
+    everywhere = zoned(3, (0, COUNT), ask_at=0.5)
+    assert not everywhere.asks.any()
+    assert np.flatnonzero(everywhere.spring).tolist() == [0, 1, 2, 37, 38, 39]
+    assert everywhere.asking(pulled(0)).size == 0
+
+
+def test_soft_ends_are_those_of_one_spacing() -> None:
+    soft = Bonds(ROD, 3)
+    soft.soften_ends()
+    one = zoned(1, (0, COUNT), complement=False)
+
+    np.testing.assert_allclose(soft.spring, one.bond[0, :-1], rtol=8 * EPS)
+
+
+@pytest.mark.parametrize("zones", [[], *ZONES], ids=str)
+def test_stiffness_is_that_of_all_pairs(zones: list[tuple[int, int]]) -> None:
+    bonds = zoned(3, *zones)
+    dense = np.zeros((COUNT, COUNT))
+    pairs = [(k, k + 1, bonds.spring[k]) for k in range(40)]
+    pairs += [(i, i + row + 1, bonds.bond[row, i]) for row, i in zip(*np.nonzero(bonds.bond), strict=True)]
+    for i, j, k in pairs:
+        dense[np.ix_((i, j), (i, j))] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    bands = bonds.stiffness()
+
+    assert bands.shape == (4, COUNT)
+    for d, band in enumerate(bands):
+        np.testing.assert_allclose(band[: COUNT - d], np.diag(dense, -d), atol=16 * EPS * WHOLE)
+
+
+def test_breaking_springs_takes_half_of_their_force_times_elongation_before() -> None:
+    bonds = Bonds(ROD, 0)
+    u, before = pulled(5, 9, elongation=1.5 * LIMIT), pulled(5, 9, elongation=0.5 * LIMIT)
+    lost = bonds.break_springs(u, before, step=12)
+
+    assert lost == pytest.approx(2 * 0.5 * WHOLE * 1.5 * LIMIT * 0.5 * LIMIT, rel=8 * EPS * COUNT)
+    assert np.flatnonzero(bonds.spring == 0.0).tolist() == [5, 9]
+    assert bonds.spring_broken[[5, 6, 9]].tolist() == [12, -1, 12]
+    assert bonds.asking(u).size == 0
+    assert bonds.break_springs(u, before, step=13) == 0.0
+    assert bonds.spring_broken[5] == 12
+
+
+def broken_at(bonds: Bonds, plane: int, step: int) -> Bonds:
+    """With all that crosses a plane broken in a step."""
+    if bonds.spring[plane] > 0.0:
+        bonds.spring[plane] = 0.0
+        bonds.spring_broken[plane] = step
+    for row in range(bonds.horizon):
+        for i in range(max(0, plane - row), min(plane, COUNT - 2 - row) + 1):
+            if bonds.bond[row, i] > 0.0:
+                bonds.bond[row, i] = 0.0
+                bonds.bond_broken[row, i] = step
+    return bonds
+
+
+def test_what_is_broken_stays_broken_when_a_zone_grows() -> None:
+    bonds = broken_at(zoned(3, (10, 30)), 20, step=5)
+    bonds.cover(5, 35)
+
+    carried = stress(bonds)
+    assert carried[20] == 0.0
+    assert bonds.bond_broken[2, 18] == 5
+    # bonds of up to three across that plane are missing on two planes on each side of it, too
+    np.testing.assert_allclose(np.delete(carried, range(18, 23)), 1.0, atol=12 * EPS)
+    assert carried[18:23].max() < 0.99
+
+
+def test_a_broken_spring_is_not_replaced() -> None:
+    bonds = zoned(3, (0, COUNT))
+    bonds.spring[0], bonds.spring_broken[0] = 0.0, 3
+    bonds.cover(0, COUNT)
+
+    assert bonds.spring[0] == 0.0
+    assert bonds.spring[1] > 0.0
+
+
+def lost_beside(horizon: int, away: int) -> float:
+    """Share of its family that an interior node loses when all beyond `away` nodes on one side breaks off."""
+    weights = np.array((horizon - 1) * [1.0] + [0.5])
+    return float(weights[away:].sum() / (2.0 * weights.sum()))
+
+
+@pytest.mark.parametrize("horizon", [1, 2, 3, 5])
+@pytest.mark.parametrize("zones", [[(0, COUNT)], [(10, 31)], []], ids=["all", "zone", "none"])
+def test_damage_beside_a_crack_is_the_same_whatever_was_there(horizon: int, zones: list[tuple[int, int]]) -> None:
+    bonds = broken_at(zoned(horizon, *zones), 20, step=4)
+    damage = np.zeros(COUNT)
+    reach = horizon if zones else 1
+    for away in range(reach):
+        damage[[20 - away, 21 + away]] = lost_beside(horizon, away)
+
+    # with three spacings the node beside it loses 2.5 of 5: a half. 0.3 is reached by the next, 1.5 of 5
+    np.testing.assert_allclose(bonds.damage(), damage, atol=4 * EPS)
+    assert not zoned(horizon, *zones).damage().any()
+
+
+def test_damage_of_finite_differences() -> None:
+    bonds = broken_at(broken_at(broken_at(Bonds(ROD, 0), 20, step=4), 0, step=6), 1, step=7)
+    damage = bonds.damage()
+
+    # the first node has lost all it had, the next both the half volume there and the whole one
+    assert damage[[0, 1, 2, 3, 20, 21]].tolist() == pytest.approx([1.0, 1.0, 0.5, 0.0, 0.5, 0.5], abs=4 * EPS)
+    assert bonds.damage(6)[[0, 1, 2]].tolist() == pytest.approx([1.0, 1.0 / 3.0, 0.0], abs=4 * EPS)
+
+
+def test_damage_near_an_end_is_of_the_cut_family() -> None:
+    bonds = broken_at(zoned(3, (0, COUNT), complement=False), 0, step=4)
+
+    # node 1 has 0.5 on its left, 1 + 1 + 0.5 on its right; nodes 2 and 3 have it in the second and third place
+    expected = [1.0, 0.5 / 3.0, 0.5 / 4.0, 0.25 / 4.75, 0.0]
+    np.testing.assert_allclose(bonds.damage()[:5], expected, atol=4 * EPS)
+
+
+def test_damage_at_the_edge_of_a_zone_counts_the_spring_for_what_is_left_out() -> None:
+    bonds = zoned(3, (10, 31))
+    # the spring beside the zone: node 9 has springs alone, node 10 bonds on its right
+    damage = broken_at(bonds, 9, step=2).damage()
+
+    assert damage[[9, 10]].tolist() == pytest.approx([0.5, 0.5], abs=4 * EPS)
+    assert not np.delete(damage, [9, 10]).any()
+
+
+def test_damage_at_the_end_of_an_earlier_step() -> None:
+    bonds = broken_at(broken_at(zoned(3, (0, COUNT)), 10, step=4), 30, step=9)
+
+    assert not bonds.damage(3).any()
+    assert np.flatnonzero(bonds.damage(4)).tolist() == list(range(8, 14))
+    assert np.array_equal(bonds.damage(9), bonds.damage())
+
+
+def test_breaks_are_told_in_the_order_of_their_steps() -> None:
+    bonds = zoned(3, (10, 31))
+    bonds.bond_broken[2, 15], bonds.bond_broken[0, 12] = 7, 3
+    bonds.spring_broken[2] = 5
+    steps, pairs = bonds.breaks(0)
+
+    assert steps.tolist() == [3, 5, 7]
+    assert pairs.tolist() == [[12, 13], [2, 3], [15, 18]]
+    assert bonds.breaks(5)[1].tolist() == [[2, 3], [15, 18]]
+    assert bonds.breaks(8)[0].size == 0
+
+
+def ranges(bonds: Bonds, supported: list[int]) -> tuple[np.ndarray, np.ndarray]:
+    arrays = bonds.arrays(np.array(supported, dtype=np.int64), 1.0)
+    return arrays.plain, arrays.mixed
+
+
+def test_ranges_of_a_zone_between_springs() -> None:
+    plain, mixed = ranges(zoned(3, (15, 25)), supported=[0, 1])
+
+    # springs next to the zone are whole as bonds reach no further than its nodes; so nodes up to it are plain
+    assert plain.tolist() == [[2, 15], [25, 40]]
+    assert mixed.tolist() == [[0, 2, 0, 1], [15, 25, 3, 1], [40, 41, 0, 1]]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_every_node_is_moved_once_and_holds_on_to_what_its_range_says(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    horizon = int(rng.integers(0, 6))
+    bonds = Bonds(ROD, horizon)
+    for first in rng.integers(0, 38, rng.integers(0, 4) if horizon else 0):
+        bonds.cover(int(first), int(first + rng.integers(2, 15)))
+    for plane in rng.integers(0, 40, rng.integers(0, 4)):
+        bonds.spring[plane] = 0.0
+    supported = np.unique(rng.integers(0, COUNT, rng.integers(0, 4)))
+    plain, mixed = ranges(bonds, supported.tolist())
+
+    moved = np.concatenate([np.arange(a, b) for a, b, *_ in [*plain, *mixed]])
+    assert np.sort(moved).tolist() == list(range(COUNT))
+    bonded = np.zeros(COUNT, dtype=bool)
+    for row, i in zip(*np.nonzero(bonds.bond), strict=True):
+        bonded[[i, i + row + 1]] = True
+    for a, b in plain:
+        assert not bonded[a:b].any()
+        assert np.all(bonds.spring[a - 1 : b] == WHOLE)
+        assert bonds.asks[a - 1 : b].all()
+        assert not np.isin(supported, np.arange(a, b)).any()
+    for a, b, lengths, held in mixed:
+        # a range with bonds is a zone, which no bond leaves
+        assert ((a, b) in bonds.zones) == (lengths > 0)
+        assert lengths in (0, horizon)
+        assert held == bonds.spring[max(a - 1, 0) : b].any()
+    zoned_nodes = [i for a, b, lengths, _ in mixed if lengths for i in range(a, b)]
+    assert np.all(np.isin(np.flatnonzero(bonded), zoned_nodes))
+
+
+def test_arrays_for_kernels_are_the_bonds_own() -> None:
+    bonds = zoned(3, (10, 30), ask_at=0.5)
+    arrays = bonds.arrays(np.array([0]), 2.0)
+
+    for name in ("spring", "spring_limit", "asks", "bond", "spring_broken", "bond_broken"):
+        assert getattr(arrays, name) is getattr(bonds, name)
+    np.testing.assert_allclose(arrays.bond_limit, LIMIT * np.array([1.0, 2.0, 3.0]), rtol=2 * EPS)
+    assert (arrays.plain_stiffness, arrays.plain_limit, arrays.plain_mobility) == (WHOLE, 0.5 * LIMIT, 2.0)
+    assert (arrays.section, arrays.room.size) == (0.5, COUNT + 4)

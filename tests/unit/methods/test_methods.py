@@ -1,0 +1,146 @@
+"""The methods for bars: what they begin with, what they answer, and for which stages the time step must serve."""
+
+import numpy as np
+import pytest
+from pydantic import TypeAdapter, ValidationError
+
+from dembound.methods import MethodTable
+from dembound.methods.bonds import Rod
+
+ROD = Rod(61, spacing=0.25, section=0.5, modulus=2e9, critical_stretch=1e-3)
+LIMIT = 0.25e-3
+"""Elongation of a spring at the critical stretch, m."""
+EPS = np.finfo(float).eps
+
+adapter = TypeAdapter(MethodTable)
+
+
+def method(type: str, **keys):
+    return adapter.validate_python({"type": type, **keys})
+
+
+def pulled(*planes: int, elongation: float = LIMIT) -> np.ndarray:
+    """Displacements (n,) m that stretch these planes alone."""
+    u = np.zeros(61)
+    for k in planes:
+        u[k + 1 :] += elongation
+    return u
+
+
+@pytest.mark.parametrize(
+    ("keys", "name", "horizon"),
+    [
+        ({"type": "finite_difference"}, "finite differences", 1),
+        ({"type": "peridynamics", "horizon": 4}, "peridynamics, m = 4", 4),
+        ({"type": "switch", "horizon": 3}, "finite differences", 3),
+        ({"type": "switch", "horizon": 3, "before": "peridynamics"}, "peridynamics, m = 1", 3),
+        ({"type": "patch", "horizon": 3}, "finite differences", 3),
+    ],
+    ids=str,
+)
+def test_what_a_method_does_at_first(keys: dict, name: str, horizon: int) -> None:
+    found = method(**keys)
+
+    assert (found.name, found.largest_horizon) == (name, horizon)
+    # the first stage is what it begins with
+    assert np.array_equal(found.stages(ROD)[0].stiffness(), found.begin(ROD).stiffness())
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"type": "peridynamics"},
+        {"type": "peridynamics", "horizon": 0},
+        {"type": "switch", "horizon": 3, "trigger": 1.1},
+        {"type": "switch", "horizon": 3, "trigger": 0.0},
+        {"type": "switch", "horizon": 3, "before": "patch"},
+        {"type": "patch", "horizon": 3, "reach": 0},
+        {"type": "finite_difference", "horizon": 1},
+        {"type": "finite_elements"},
+    ],
+    ids=str,
+)
+def test_keys_out_of_range_are_refused(keys: dict) -> None:
+    with pytest.raises(ValidationError):
+        adapter.validate_python(keys)
+
+
+def test_finite_differences_break_what_asks() -> None:
+    found = method("finite_difference")
+    bonds = found.begin(ROD)
+    lost, name = found.answer(bonds, pulled(10, 20), pulled(10, elongation=0.5 * LIMIT), 7)
+
+    assert bonds.horizon == 0
+    assert np.flatnonzero(bonds.spring_broken == 7).tolist() == [10, 20]
+    # ½ k e⁻ e, and e⁻ was 0 of the second; displacements of up to two elongations are rounded
+    assert lost == pytest.approx(0.25 * ROD.spring * LIMIT**2, rel=8 * EPS)
+    assert name == "finite differences"
+    assert len(found.stages(ROD)) == 1
+
+
+@pytest.mark.parametrize("corrected", [False, True])
+def test_peridynamics_never_asks(corrected: bool) -> None:
+    bonds = method("peridynamics", horizon=3, corrected_ends=corrected).begin(ROD)
+
+    assert bonds.zones == [(0, 61)]
+    assert not bonds.asks.any()
+    assert np.flatnonzero(bonds.spring).tolist() == ([0, 1, 2, 57, 58, 59] if corrected else [])
+
+
+@pytest.mark.parametrize("corrected", [False, True])
+@pytest.mark.parametrize("before", ["finite_difference", "peridynamics"])
+def test_a_switch_turns_into_peridynamics_all_over(before: str, corrected: bool) -> None:
+    found = method("switch", horizon=3, before=before, trigger=0.8, corrected_ends=corrected)
+    bonds = found.begin(ROD)
+    soft = before == "peridynamics" and not corrected
+    assert bonds.spring[[0, 1, -1]].tolist() == [ROD.spring * (0.5 if soft else 1.0), ROD.spring, bonds.spring[0]]
+    assert bonds.asking(pulled(30, elongation=0.81 * LIMIT)).tolist() == [30]
+    u = pulled(30, elongation=0.81 * LIMIT)
+    lost, name = found.answer(bonds, u, u, 7)
+
+    after = method("peridynamics", horizon=3, corrected_ends=corrected).begin(ROD)
+    for part in ("spring", "spring_limit", "asks", "bond", "bond_broken"):
+        assert np.array_equal(getattr(bonds, part), getattr(after, part)), part
+    assert (lost, name) == (0.0, "peridynamics, m = 3")
+    assert np.array_equal(found.stages(ROD)[1].stiffness(), after.stiffness())
+
+
+def test_a_patch_lays_zones_around_all_that_asks() -> None:
+    found = method("patch", horizon=2, reach=3, trigger=0.8)
+    bonds = found.begin(ROD)
+    lost, name = found.answer(bonds, pulled(20, 50, elongation=0.8 * LIMIT), np.zeros(61), 7)
+
+    # three horizons of two beyond the two nodes of the spring
+    assert bonds.zones == [(14, 28), (44, 58)]
+    assert (lost, name) == (0.0, "finite differences and peridynamics, m = 2")
+    assert not bonds.asks[[20, 50]].any()
+
+
+def test_a_patch_grows_from_where_its_edge_asks() -> None:
+    found = method("patch", horizon=2, reach=3)
+    bonds = found.begin(ROD)
+    bonds.cover(20, 40)
+    assert bonds.asking(pulled(39)).tolist() == [39]
+    found.answer(bonds, pulled(39), np.zeros(61), 7)
+
+    assert bonds.zones == [(20, 47)]
+
+
+@pytest.mark.parametrize("horizon", [1, 2, 3, 8])
+@pytest.mark.parametrize("plane", [0, 1, 5, 30, 57, 59])
+def test_what_a_patch_has_answered_does_not_ask_again(horizon: int, plane: int) -> None:
+    found = method("patch", horizon=horizon, reach=1, trigger=1.0)
+    bonds = found.begin(ROD)
+    u = pulled(plane)
+    found.answer(bonds, u, u, 0)
+
+    # or a run would stand still
+    assert bonds.asking(u).size == 0
+
+
+def test_a_patch_is_stable_wherever_it_may_stand() -> None:
+    stages = method("patch", horizon=3, reach=2).stages(ROD)
+
+    assert [stage.zones for stage in stages] == [[], [(23, 37)], [(0, 14)], [(47, 61)], [(0, 61)]]
+    # a bar shorter than a patch is one
+    assert method("patch", horizon=3, reach=20).stages(ROD)[1].zones == [(0, 61)]

@@ -1,0 +1,148 @@
+"""What scripts read of a bar's run."""
+
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.bar import build_bar
+from dembound.bar_summary import describe_bar, describe_end, summarise_bar
+from dembound.fracture import spalls
+from dembound.peaks import first_fall
+from dembound.record import Recorder
+from dembound.run import plan
+from dembound.simulate import Simulation
+from dembound.summary import summarise
+
+ENDS = {"boundary.left": {"type": "fixed"}, "boundary.right": {"type": "viscous", "beta_p": 0.9}, "load": []}
+
+
+@pytest.fixture
+def run(spalling, tmp_path):
+    """Runs the spalling bar with keys changed: its plan, simulation and record."""
+
+    def make(**changes: object):
+        planned = plan(spalling(changes))
+        monitors = np.array(list(planned.scene.monitors.values()), dtype=np.int64)
+        simulation = Simulation(planned.scene, planned.time_step, monitors)
+        path: Path = tmp_path / "run.h5"
+        with Recorder(path, simulation, planned.step_limit, 0.0) as recorder:
+            recorder.append(simulation.advance(planned.steps - 1))
+            recorder.append(recorder.enter_energy())
+        return planned, simulation, path
+
+    return make
+
+
+def test_a_bar_in_numbers(spalling) -> None:
+    described = describe_bar(build_bar(spalling({"bar.section": 0.5, "bar.attenuation": 0.1})))
+
+    assert described == {
+        "length": 1.0,
+        "spacing": 0.025,
+        "section": 0.5,
+        "density": 2500.0,
+        "youngs_modulus": 2.5e9,
+        "wave_speed": 1000.0,
+        "impedance": 2.5e6,
+        "critical_stretch": 8e6 / 2.5e9,
+        "strength": pytest.approx(8e6, rel=1e-15),
+        "attenuation": 0.1,
+    }
+
+
+def test_a_bar_that_does_not_break_has_no_strength(spalling) -> None:
+    bar = {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}
+    described = describe_bar(build_bar(spalling({"bar": bar})))
+
+    assert described["critical_stretch"] is described["strength"] is None
+
+
+def test_ends_in_numbers(spalling) -> None:
+    scene, free = build_bar(spalling(ENDS)), build_bar(spalling())
+
+    assert describe_end(scene, "left") == {"type": "fixed"}
+    assert describe_end(scene, "right") == {"type": "viscous", "beta_p": 0.9}
+    assert describe_end(free, "right") == {"type": "free"}
+
+
+def test_the_summary_of_a_bar_is_plain_json(run) -> None:
+    planned, simulation, path = run()
+    found = json.loads(json.dumps(summarise(planned, simulation, None, path, 1.0), allow_nan=False))
+
+    assert (found["name"], found["nodes"], found["steps"]) == ("spalling", 41, 60)
+    assert found["method"] == {"type": "peridynamics", "horizon": 3, "corrected_ends": False}
+    assert found["courant"] == pytest.approx(1.0, rel=1e-12)
+    assert found["laws"] == [{"law": "peridynamics, m = 3", "from": 0.0}]
+    assert found["bar"]["wave_speed"] == 1000.0
+    assert found["boundaries"] == {"left": {"type": "free"}, "right": {"type": "free"}}
+    assert found["bond_updates"] == simulation.engine.bond_updates > 0
+    assert not {"particles", "contacts", "packing", "static"} & set(found)
+    # the books close to rounding: 60 steps of sums over 41 nodes
+    assert found["energy"]["relative_error"] < 60 * 41 * np.finfo(float).eps
+
+
+def test_spalls_and_cracks_are_those_of_the_bonds(run) -> None:
+    planned, simulation, path = run()
+    found = summarise(planned, simulation, None, path, 1.0)
+    expected = spalls(simulation.engine.bonds, planned.scene.positions[:, 0], planned.time_step)
+
+    assert found["spalls"] == [spall.describe() for spall in expected]
+    assert len(expected) > 0
+    # tension comes once crest and tail, 0.4 m apart, have met at the far end
+    assert expected[0].time > 1e-3
+    assert found["cracks"] == {"tension": len(simulation.engine.bonds.breaks(0)[0]), "shear": 0}
+
+
+def test_largest_stresses_are_those_a_gauge_has_felt(run) -> None:
+    hit = {"name": "hit", "pressure": 12e6, "wave": "hit"}
+    changes = {"bar.strength": 1e9, "method": {"type": "finite_difference"}, "load": [hit]}
+    for duration, tension in ((1.4e-3, 0.0), (2e-3, 12e6)):
+        planned, simulation, path = run(**changes, **{"run.duration": duration})
+        (gauge,) = summarise_bar(planned.scene, simulation, path)["stress"].values()
+
+        # cΔt = Δx carries the pulse as it is, its crest sampled after eight steps; rounding adds up over 80 steps
+        assert gauge["compression"] == pytest.approx(-12e6, rel=80**2 * np.finfo(float).eps)
+        # from the free end it comes back as tension, to the gauge at 1.475 ms
+        assert gauge["tension"] == pytest.approx(tension, abs=80**2 * np.finfo(float).eps * 12e6)
+
+
+def test_a_stress_that_never_came_is_zero(run) -> None:
+    planned, simulation, path = run(**{"run.duration": 1e-4})
+    (gauge,) = summarise_bar(planned.scene, simulation, path)["stress"].values()
+
+    assert gauge == {"tension": 0.0, "compression": 0.0}
+
+
+GAUGES = {"monitor": [{"name": name, "position": place} for name, place in (("hit", 0.0), ("in", 0.5), ("free", 1.0))]}
+
+
+def test_pull_back_is_that_of_a_free_end_beyond_a_spall(run) -> None:
+    planned, simulation, path = run(**GAUGES, **{"run.duration": 2e-3})
+    with h5py.File(path) as file:
+        velocity = file["histories/free/velocity"][:, 0]
+
+    # ½ρc of how far the velocity falls; the loaded end and the middle tell nothing of it
+    found = summarise_bar(planned.scene, simulation, path)["pull_back_strength"]
+    assert found == {"free": 0.5 * 2500.0 * 1000.0 * first_fall(velocity)}
+
+
+def test_pull_back_of_the_other_end_counts_outwards(run) -> None:
+    hit = {"name": "hit", "pressure": 12e6, "nodes": 3, "wave": "hit", "side": "right"}
+    planned, simulation, path = run(**GAUGES, load=[hit], **{"run.duration": 2e-3})
+    with h5py.File(path) as file:
+        velocity = file["histories/hit/velocity"][:, 0]
+
+    found = summarise_bar(planned.scene, simulation, path)["pull_back_strength"]
+    assert found == {"hit": 0.5 * 2500.0 * 1000.0 * first_fall(-velocity)}
+
+
+@pytest.mark.parametrize(
+    "changes", [{"bar.strength": 1e9}, {"boundary.right": {"type": "viscous"}}], ids=["unbroken", "no free end"]
+)
+def test_there_is_no_pull_back_without_a_spall_or_a_free_end(run, changes: dict) -> None:
+    planned, simulation, path = run(**GAUGES, **changes)
+
+    assert summarise_bar(planned.scene, simulation, path)["pull_back_strength"] == {}

@@ -1,0 +1,99 @@
+"""Where and when a bar came apart, from bonds broken by hand."""
+
+import numpy as np
+import pytest
+
+from dembound.fracture import Spall, cracked_since, spalls
+from dembound.methods.bonds import Bonds, Rod
+
+COUNT, SPACING, STEP = 41, 0.25, 1e-3
+ROD = Rod(COUNT, SPACING, section=1.0, modulus=1e9, critical_stretch=1e-3)
+PLACES = SPACING * np.arange(COUNT)
+
+
+@pytest.fixture
+def bonds() -> Bonds:
+    """Peridynamics with m = 3 all over."""
+    made = Bonds(ROD, 3, complement=False)
+    made.cover(0, COUNT)
+    return made
+
+
+def cut(bonds: Bonds, plane: int, step: int, lengths: tuple[int, ...] = (1, 2, 3)) -> None:
+    """Break the bonds of these lengths that cross a plane."""
+    for p in lengths:
+        across = np.arange(max(0, plane - p + 1), min(plane, COUNT - 1 - p) + 1)
+        whole = across[bonds.bond[p - 1, across] > 0.0]
+        bonds.bond[p - 1, whole] = 0.0
+        bonds.bond_broken[p - 1, whole] = step
+
+
+def test_a_whole_bar_has_no_spall(bonds) -> None:
+    assert np.array_equal(cracked_since(bonds), np.full(COUNT, -1))
+    assert spalls(bonds, PLACES, STEP) == []
+
+
+def test_a_cut_cracks_the_nodes_that_lose_three_tenths(bonds) -> None:
+    cut(bonds, 20, step=7)
+    since = cracked_since(bonds)
+
+    # of 5 parts of a family 2.5 are beyond the cut, then 1.5, exactly three tenths, then 0.5
+    assert np.flatnonzero(since >= 0).tolist() == [19, 20, 21, 22]
+    assert np.all(since[19:23] == 7)
+    place = (PLACES[19], PLACES[22])
+    assert spalls(bonds, PLACES, STEP) == [Spall(7 * STEP, place, place)]
+
+
+def test_a_spall_begins_when_the_first_node_has_lost_enough(bonds) -> None:
+    cut(bonds, 20, step=5, lengths=(1,))  # a fifth of the families of 20 and 21
+    cut(bonds, 20, step=8, lengths=(2,))  # another fifth of theirs, and one of 19 and 22
+    cut(bonds, 20, step=11, lengths=(3,))
+    since = cracked_since(bonds)
+
+    assert since[[19, 20, 21, 22]].tolist() == [11, 8, 8, 11]
+    (spall,) = spalls(bonds, PLACES, STEP)
+    assert spall.time == pytest.approx(8 * STEP)
+    assert (spall.start, spall.end) == ((PLACES[20], PLACES[21]), (PLACES[19], PLACES[22]))
+
+
+def test_what_breaks_later_does_not_make_an_earlier_crack_younger(bonds) -> None:
+    cut(bonds, 20, step=5)
+    before = cracked_since(bonds)
+    cut(bonds, 21, step=9)
+    after = cracked_since(bonds)
+
+    assert np.array_equal(after[before >= 0], before[before >= 0])
+    # 23 is beside the second cut as 22 was beside the first
+    assert np.flatnonzero((after >= 0) & (before < 0)).tolist() == [23]
+    assert after[23] == 9
+
+
+def test_spalls_stand_in_the_order_they_happened(bonds) -> None:
+    cut(bonds, 8, step=9)
+    cut(bonds, 30, step=4)
+    cut(bonds, 20, step=6)
+
+    found = spalls(bonds, PLACES, STEP)
+    assert [round(spall.time / STEP) for spall in found] == [4, 6, 9]
+    assert [spall.start[0] for spall in found] == [PLACES[29], PLACES[19], PLACES[7]]
+
+
+@pytest.mark.parametrize(("plane", "nodes"), [(0, (0, 0)), (39, (40, 40))])
+def test_a_spall_may_reach_an_end(bonds, plane: int, nodes: tuple[int, int]) -> None:
+    cut(bonds, plane, step=3)
+
+    # the end node has lost all, the next one half a volume of three
+    (spall,) = spalls(bonds, PLACES, STEP)
+    assert spall.end == (PLACES[nodes[0]], PLACES[nodes[1]])
+
+
+def test_springs_count_as_well() -> None:
+    bonds = Bonds(ROD, 0)
+    bonds.spring[12], bonds.spring_broken[12] = 0.0, 4
+
+    (spall,) = spalls(bonds, PLACES, STEP)
+    assert spall.start == (PLACES[12], PLACES[13])
+
+
+def test_a_spall_is_described_in_plain_values() -> None:
+    assert Spall(1e-3, (0.5, 0.75), (0.25, 1.0)).describe() == {"time": 1e-3, "start": [0.5, 0.75], "end": [0.25, 1.0]}

@@ -1,0 +1,60 @@
+"""Finite differences at cΔt = Δx are d'Alembert's solution itself: they carry a sampled load without any error.
+
+Then u_i^{n+1} = u_{i+1}^n + u_{i−1}^n − u_i^{n−1}, which travelling shapes f(n − i) + g(n + i) solve. At the
+loaded end, with half a mass, u_0^{n+1} = 2u_1^n − u_0^{n−1} + 2p^nΔx/E, which a wave to the right solves with
+
+    f(n + 1) − f(n − 1) = 2p^nΔx/E :  the mean velocity over two steps at node i is p^{n−i}/(ρc), the stress −p^{n−i}.
+
+A free end with half a mass, u_N^{n+1} = 2u_{N−1}^n − u_N^{n−1}, reflects: velocities come back as they are, stresses
+reversed. So the motion is the sum over images that d'Alembert gives, sample by sample.
+"""
+
+import numpy as np
+import pytest
+
+from dembound.simulate import Simulation
+
+PRESSURE, PULSE = 10e6, 0.12e-3
+PASSAGES = 6
+PLACES = [0, 250, 500, 901, 1000]
+CELLS = 1000
+
+
+@pytest.fixture(scope="module")
+def motion(rock):
+    """Record (k, p, 7) of the places' nodes through several reflections, and the pulse's samples (k,) of the load."""
+    scene = rock.scene({"type": "finite_difference"}, load={"pressure": PRESSURE}, wave=rock.triangle(PULSE))
+    step = rock.step(scene, 1.0)
+    steps = PASSAGES * CELLS
+    record = Simulation(scene, step, np.array(PLACES)).advance(steps)
+    return record, PRESSURE * scene.case.wave["pulse"].velocity(step * np.arange(steps))
+
+
+def images(samples: np.ndarray, node: int, reflected: float) -> np.ndarray:
+    """What arrives at a node (k,): the samples each time they pass, times `reflected` for every end they met."""
+    total = np.zeros_like(samples)
+    for turn in range(PASSAGES):
+        way = 2 * CELLS * (turn // 2) + (node if turn % 2 == 0 else 2 * CELLS - node)
+        total[way:] += reflected**turn * samples[: max(0, len(samples) - way)]
+    return total
+
+
+LARGEST = PASSAGES * PULSE * 2740.0 * CELLS
+"""Bound of displacements in units of what the peak moves a node in a step: each passage adds half a pulse twice."""
+
+TOLERANCE = 4.0 * np.finfo(float).eps * LARGEST * np.sqrt(PASSAGES * CELLS)
+"""Rounding of displacements kicks the velocities by up to ε of them at every step, either way: four times the root."""
+
+
+@pytest.mark.parametrize("index", range(len(PLACES)), ids=[f"node {place}" for place in PLACES])
+def test_velocity_is_that_of_dalembert(rock, motion, index):
+    record, samples = motion
+    expected = images(samples, PLACES[index], 1.0) / (rock.density * rock.speed)
+    np.testing.assert_allclose(record[:, index, 3], expected, rtol=0, atol=TOLERANCE * expected.max())
+
+
+@pytest.mark.parametrize("index", range(1, len(PLACES) - 1), ids=[f"node {place}" for place in PLACES[1:-1]])
+def test_stress_is_that_of_dalembert(motion, index):
+    record, samples = motion
+    expected = -images(samples, PLACES[index], -1.0)
+    np.testing.assert_allclose(record[:, index, 6], expected, rtol=0, atol=TOLERANCE * PRESSURE)

@@ -1,0 +1,73 @@
+"""A triangular pulse breaks a piece of the length off a bar that d'Alembert gives, to first order in the spacing.
+
+Behind the reflected crest, p_m, the incident pulse has fallen by p_m·2d/(c t_d) at a distance d from the free end,
+which is the tension there: it reaches the strength at d = ½c t_d σ_t/p_m, when the crest comes, at t_r + (L + d)/c.
+
+Finite differences at cΔt = Δx carry a sampled pulse exactly (test_exact_at_courant_one): the stresses g of springs,
+halfway between nodes and steps, follow g_{n+1} = 2p_n − g_n. They run along a straight leg without error, and where
+the slope changes by Δa a step, a part φ of a step after a sample, they begin to swing about it by Δa|½ − φ|. So the
+stress is wrong by parts of what it changes by in a step, and the place by parts of a cell: first order in Δx.
+"""
+
+import numpy as np
+import pytest
+
+from dembound.simulate import Simulation
+
+RISE, FALL = 0.04e-3, 0.08e-3
+PRESSURES = np.linspace(11e6, 18e6, 32)
+
+
+@pytest.fixture(scope="module")
+def errors(rock):
+    """Finds by how much place (m) and time (s) of the first break are off.
+
+    The pulse begins `late` steps late and takes `slow` steps longer to rise.
+    """
+
+    def find(spacing: float, pressure: float, late: float = 0.0, slow: float = 0.0) -> tuple[float, float]:
+        step = spacing / rock.speed
+        rise = RISE + slow * step
+        scene = rock.scene(
+            {"type": "finite_difference"},
+            spacing=spacing,
+            load={"pressure": pressure},
+            wave={"type": "triangle", "amplitude": 1.0, "start": late * step, "rise": rise, "fall": FALL},
+            strength=rock.strength,
+        )
+        simulation = Simulation(scene, step, np.zeros(0))
+        simulation.advance(int(0.48e-3 / step))
+        cracks = simulation.take_cracks()
+        distance = 0.5 * rock.speed * FALL * rock.strength / pressure
+        time = late * step + rise + (rock.length + distance) / rock.speed
+        return cracks.position[0, 0] - (rock.length - distance), cracks.step[0] * step - time
+
+    return find
+
+
+@pytest.mark.parametrize("pressure", PRESSURES)
+def test_break_is_within_a_step_and_a_cell_and_a_half(errors, rock, pressure):
+    """With 1 mm the crest comes 0.6 steps after a sample, and the legs' slopes are as 2 to −1.
+
+    In slopes of the fall the swings are 2·½ + 3·0.1 = 1.3 in either wave; against the 2 by which the sum of both
+    changes in a cell, 1.3 cells in all. The nearest spring may be half a cell away; the worst of both do not meet.
+    """
+    place, time = errors(1e-3, pressure)
+    assert abs(place) <= 1.5e-3
+    assert abs(time) <= 1e-3 / rock.speed
+
+
+def test_first_order_in_spacing(errors):
+    """The slope of the mean error over pulses whose kinks fall anywhere in a step, and breaks anywhere in a cell.
+
+    The mean of 32 errors spread evenly up to a bound scatters by 1/√96 of itself, 0.15 in its binary logarithm, and so
+    by 0.15/√5 = 0.07 in the slope of a line through four of them, one for each halving. Three times that is allowed.
+    """
+    spacings = np.array([4e-3, 2e-3, 1e-3, 0.5e-3])
+    parts = np.outer(np.arange(len(PRESSURES)), np.sqrt([2.0, 3.0])) % 1.0  # fill the steps evenly
+    mean = [
+        np.mean([np.abs(errors(spacing, p, *part)) for p, part in zip(PRESSURES, parts, strict=True)], axis=0)
+        for spacing in spacings
+    ]
+    orders, _ = np.polyfit(np.log(spacings), np.log(mean), 1)
+    assert orders == pytest.approx(1.0, abs=0.2)
