@@ -39,6 +39,7 @@ class BarScene:
 
     damp = 0.0
     seam = None
+    threads = 1
     remembers = False
 
     @property

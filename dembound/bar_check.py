@@ -4,6 +4,7 @@ import numpy as np
 
 from dembound.bar import BarScene
 from dembound.bar_summary import describe_bar, describe_end
+from dembound.boundaries.viscous import Dashpots
 from dembound.case import BarCase
 from dembound.case.bar import Bar
 from dembound.exact.dispersion import cells_per_wavelength, courant_limit
@@ -59,13 +60,21 @@ def _strength_in_words(bar: Bar) -> str:
 
 
 def bar_warnings(case: BarCase, time_step: float) -> list[str]:
-    """Waves too short for the nodes."""
+    """Waves too short for the nodes, and dashpots at ends too soft for them."""
     finer = "" if case.method.largest_horizon == 1 else " or method.horizon"
-    return [
+    warnings = [
         f"wave.{name}: has {cells:.3g} cells in its shortest wavelength, fewer than the {needed:.3g} that keep "
         f"the error of its speed under {PERCENT}; take a smaller bar.spacing{finer}"
         for name, (cells, needed) in cells_of_waves(case, time_step).items()
         if cells < needed
+    ]
+    if getattr(case.method, "corrected_ends", True):
+        return warnings
+    return warnings + [
+        f"boundary.{side}: stands at a soft end of peridynamics and returns a part of every wave; "
+        "give method.corrected_ends = true"
+        for side, table in case.boundary.items()
+        if isinstance(table, Dashpots)
     ]
 
 

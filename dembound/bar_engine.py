@@ -47,12 +47,6 @@ class BarEngine:
         mass = self.scene.case.bar.density * self.scene.rod.section * self.scene.rod.spacing
         return self.bonds.arrays(self._supported, self._step / mass)
 
-    def force(self, displacement: np.ndarray) -> np.ndarray:
-        """Forces (3, n) N of springs and bonds at displacements (3, n)."""
-        force = np.zeros_like(displacement)
-        bar.all_forces(displacement[0], self._arrays, force[0])
-        return force
-
     def advance(
         self, u: np.ndarray, spare: np.ndarray, v: np.ndarray, number: int, body: Body, supports: Supports, log: Log
     ) -> int:
@@ -78,7 +72,7 @@ class BarEngine:
             limit = self.scene.stable_step(self.bonds)
             raise RunError(
                 f"the method's bonds at t = {step * self._step:g} s allow a time step of {limit:.6g} s only; "
-                f"take a smaller run.time_step than {self._step:.6g}"
+                f"take a smaller run.time_step or run.courant"
             )
 
     def _is_stable(self) -> bool:

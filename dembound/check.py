@@ -16,7 +16,6 @@ from dembound.run import foresee, plan
 from dembound.scene import Scene, boundary_medium
 from dembound.simulate import Simulation
 from dembound.summary import Plan, describe_packing, describe_side
-from dembound.threads import worthwhile_threads
 
 FEWEST_PER_WAVELENGTH = 20.0
 """Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
@@ -50,13 +49,13 @@ def precautions(case: Case) -> list[str]:
 def _run_facts(planned: Plan) -> dict[str, str]:
     """Steps, memory and time."""
     scene = planned.scene
-    threads = worthwhile_threads(scene.count)
     return {
         "time step": f"{planned.time_step:.4g} s, {planned.time_step / planned.step_limit:.3f} of the limit "
         f"{planned.step_limit:.6g} s",
         "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s",
         "memory": f"{scene.bytes / 1e6:.3g} MB",
-        "estimated time": f"about {_estimate(planned):.2g} s with {threads} thread(s){_not_estimated(scene.case)}",
+        "estimated time": f"about {_estimate(planned):.2g} s with {scene.threads} thread(s)"
+        f"{_not_estimated(scene.case)}",
     }
 
 

@@ -25,6 +25,7 @@ from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
 from dembound.packings.tiling import Assembly, tile
 from dembound.rows import contact_rows, palette_of
+from dembound.threads import worthwhile_threads
 
 
 @dataclass(frozen=True)
@@ -70,6 +71,11 @@ class Scene:
     def size(self) -> np.ndarray:
         """(2,) width and height, m."""
         return self.assembly.size
+
+    @property
+    def threads(self) -> int:
+        """Threads its steps use."""
+        return worthwhile_threads(self.count)
 
     @property
     def damp(self) -> float:

@@ -154,19 +154,25 @@ class Simulation:
         """
         record = np.empty((steps, len(self.probes), 7 if isinstance(self.engine, BarEngine) else 6))
         at_once = max(1, int(DRIVEN_BYTES / (24 * max(1, len(self._supports.nodes)))))
-        done = 0
         with threads_for(self.scene.count):
-            while done < steps:
-                done += self._advance(min(at_once, steps - done), record[done:])
+            for first in range(0, steps, at_once):
+                self._advance(record[first : first + at_once])
         record[..., :3] -= self.datum[:, self.probes].T
         if self.contacts is not None:
             self.contacts.note_cracks(self.displacement)
         self._watch()
         return record
 
-    def _advance(self, steps: int, record: np.ndarray) -> int:
-        """Up to `steps` steps under one law; returns those done."""
-        times = (self.steps + np.arange(steps)) * self.time_step
+    def _advance(self, record: np.ndarray) -> None:
+        """As many steps as the record (k, p, 6 or 7) has room for, under one law after the other if need be."""
+        supports = self._supports.table((self.steps + np.arange(len(record))) * self.time_step)
+        done = 0
+        while done < len(record):
+            remaining = supports._replace(drive=supports.drive[done:])
+            done += self._advance_under_one_law(record[done:], remaining)
+
+    def _advance_under_one_law(self, record: np.ndarray, supports: tables.Supports) -> int:
+        """As many of these steps as one law, or one list of pairs or bonds, is good for; returns those done."""
         elastic = not isinstance(self.engine, Bonded)
         body = tables.Body(
             self._mobility,
@@ -176,8 +182,7 @@ class Simulation:
             self._damp,
             self.time_step,
         )
-        log = tables.Log(self.probes, record[:steps], self.tracked, self.peaks, self.top_speed, self.work)
-        supports = self._supports.table(times)
+        log = tables.Log(self.probes, record, self.tracked, self.peaks, self.top_speed, self.work)
         done = self.engine.advance(self.displacement, self._spare, self.velocity, self.steps, body, supports, log)
         self.steps += done
         if self.engine.ended:

@@ -18,7 +18,6 @@ from dembound.results import energy_of, open_record
 from dembound.scene import Scene, boundary_medium
 from dembound.simulate import Simulation
 from dembound.static import Settled
-from dembound.threads import worthwhile_threads
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ def summarise(
         "steps": simulation.steps,
         "duration": simulation.time,
         "wall_time": wall_time,
-        "threads": worthwhile_threads(scene.count),
+        "threads": scene.threads,
         "particle_steps_per_second": scene.count * simulation.steps / wall_time,
         "memory_bytes": scene.bytes,
         "laws": [{"law": name, "from": step * simulation.time_step} for name, step in simulation.laws],

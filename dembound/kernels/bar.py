@@ -96,7 +96,8 @@ def forces(u, mixed, spring, spring_limit, bond, bond_limit, room, force):
         if mixed[r, 3]:
             reached += _spring_forces(u, a, b, spring, spring_limit, room, force)
         else:
-            force[a:b] = 0.0
+            for i in range(U(a), U(b)):
+                force[i] = 0.0
         for p in range(1, min(mixed[r, 2], b - a - 1) + 1):
             reached += _add_bond_forces(u, a, b, p, bond, bond_limit[p - 1], room, force)
     return reached
@@ -295,19 +296,3 @@ def advance(u, spare, v, number, bonds, body, keep, drag, supports, log):
     if done % 2 == 1:
         u[:] = here
     return done, why
-
-
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def all_forces(u, bonds, force):
-    """Fill force (n,) N of all nodes, plain ones included."""
-    for k in range(force.size):
-        force[k] = 0.0
-    for k in range(bonds.spring.size):
-        pull = bonds.spring[k] * (u[k + 1] - u[k])
-        force[k] += pull
-        force[k + 1] -= pull
-    for row in range(bonds.bond.shape[0]):
-        for i in range(u.size - row - 1):
-            pull = bonds.bond[row, i] * (u[i + row + 1] - u[i])
-            force[i] += pull
-            force[i + row + 1] -= pull

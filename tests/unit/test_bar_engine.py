@@ -35,7 +35,7 @@ def simulation(spalling):
     return make
 
 
-def test_forces_and_stresses_under_uniform_strain(simulation, method: dict) -> None:
+def test_stresses_under_uniform_strain(simulation, method: dict) -> None:
     engine = simulation(method=method).engine
     u = np.zeros((3, 41))
     u[0] = 1e-4 * engine.scene.positions[:, 0]
@@ -43,8 +43,6 @@ def test_forces_and_stresses_under_uniform_strain(simulation, method: dict) -> N
 
     # E·1e-4; displacements of up to 1e-4 rounded, over elongations of 2.5e-6
     np.testing.assert_allclose(engine.stress(u)[inside], 2.5e5, rtol=40 * 8 * EPS)
-    np.testing.assert_allclose(engine.force(u)[0, inside], 0.0, atol=40 * 8 * EPS * 2.5e5)
-    assert not engine.force(u)[1:].any()
 
 
 def test_energy_is_told_apart_by_springs_and_bonds(simulation) -> None:
@@ -165,7 +163,7 @@ def test_an_answer_that_the_step_is_too_long_for_ends_the_run(simulation, monkey
     # no such bonds come about by themselves, as the step serves at every stage that the method names
     monkeypatch.setattr(type(run.scene), "is_stable", lambda scene, bonds, step: step <= limit)
     monkeypatch.setattr(type(run.scene), "stable_step", lambda scene, bonds: limit)
-    with pytest.raises(RunError, match=rf"allow a time step of {limit:.6g} s only; .* than {0.99 * UNIT:.6g}$"):
+    with pytest.raises(RunError, match=rf"allow a time step of {limit:.6g} s only; take a smaller run.time_step"):
         run.advance(70)
 
 

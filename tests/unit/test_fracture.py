@@ -44,6 +44,18 @@ def test_a_cut_cracks_the_nodes_that_lose_three_tenths(bonds) -> None:
     assert spalls(bonds, PLACES, STEP) == [Spall(7 * STEP, place, place)]
 
 
+@pytest.mark.parametrize("section", [1.0, 0.1, 0.7])
+def test_three_tenths_count_however_they_are_rounded(section: float) -> None:
+    rod = Rod(COUNT, SPACING, section, modulus=1e9, critical_stretch=1e-3)
+    bonds = Bonds(rod, 3, complement=False)
+    bonds.cover(0, COUNT)
+    cut(bonds, 20, step=7)
+
+    # 1.5 of 5 volumes; with these sections the sums come to 0.3, and to the floats above and below it
+    assert bonds.damage()[19] == pytest.approx(0.3, abs=1e-15)
+    assert cracked_since(bonds)[19] == 7
+
+
 def test_a_spall_begins_when_the_first_node_has_lost_enough(bonds) -> None:
     cut(bonds, 20, step=5, lengths=(1,))  # a fifth of the families of 20 and 21
     cut(bonds, 20, step=8, lengths=(2,))  # another fifth of theirs, and one of 19 and 22

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.bar import build_bar
+from dembound.bar import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
 from dembound.errors import CaseError
 from dembound.scene import Scene, build
@@ -115,13 +115,22 @@ UNIT = 0.025 / 1000.0
 """Δx/c of the spalling bar, s; 1 is the largest Courant number of central differences with half masses at free ends."""
 
 
-def test_a_bar_may_run_at_its_limit_however_that_is_rounded(spalling) -> None:
-    # rounding may put the limit found on either side of 1
-    for spacing in (0.025, 0.02, 1.0 / 30.0, 0.1):
-        scene = build_bar(spalling({**CENTRAL, "bar.spacing": spacing, "bar.wave_speed": 2740.0}))
-        step, limit = choose_step(scene)
-        assert step == pytest.approx(spacing / 2740.0, rel=1e-15)
-        assert limit == pytest.approx(step, rel=ROUNDING)
+@pytest.mark.parametrize("cells", [10, 30, 41, 57, 99])
+def test_a_bar_may_run_at_its_limit(spalling, cells: int) -> None:
+    step, limit = choose_step(build_bar(spalling({**CENTRAL, "bar.spacing": 1.0 / cells})))
+
+    assert step == pytest.approx(1e-3 / cells, rel=1e-15)
+    assert limit == pytest.approx(step, rel=1e-12)
+
+
+def test_a_limit_may_be_wrong_by_rounding_and_no_more(spalling, monkeypatch) -> None:
+    scene = build_bar(spalling(CENTRAL))
+    monkeypatch.setattr(BarScene, "step_limit", lambda scene: UNIT * (1.0 - 1e-12))
+    assert choose_step(scene)[0] == pytest.approx(UNIT, rel=1e-15)
+
+    monkeypatch.setattr(BarScene, "step_limit", lambda scene: UNIT * (1.0 - 1e-8))
+    with pytest.raises(CaseError, match="must not be above 1, "):
+        choose_step(scene)
 
 
 @pytest.mark.parametrize("courant", [0.5, 1.0])
