@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from dembound.bar import BarScene
-from dembound.bar_check import bar_facts, bar_warnings
+from dembound.bar.check import bar_facts, bar_warnings
+from dembound.bar.scene import BarScene
 from dembound.boundaries import SIDES, Periodic
 from dembound.boundaries.driven import Driven
 from dembound.case import Case, DiskCase

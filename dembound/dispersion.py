@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import tomli_w
 
-from dembound.bar import BarScene, build_bar
+from dembound.bar.scene import BarScene, build_bar
 from dembound.case import BarCase, Case, loads
 from dembound.errors import CaseError
 from dembound.exact.dispersion import Lattice

@@ -7,7 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.contacts import ContactList, plain_contacts
+from dembound.contacts import NO_CRACKS, ContactList, Cracks, plain_contacts
+from dembound.engine import Engine
 from dembound.kernels import bonded, elastic
 from dembound.kernels.contacts import REFERENCE, strain_energy
 from dembound.kernels.tables import Body, Contacts, Limits, Log, Supports, Watch
@@ -36,7 +37,7 @@ UNWATCHED = Watch(
 """For a scene whose own law is the elastic one."""
 
 
-class Elastic:
+class Elastic(Engine):
     """The history-free law (kernels/elastic.py), on watch if the scene's law is another one.
 
     Parameters
@@ -81,6 +82,10 @@ class Elastic:
         pairs = self._plain_contacts if self.contacts is None else self.contacts.arrays
         return strain_energy(displacement, pairs, REFERENCE)
 
+    def take_cracks(self, steps: int) -> Cracks:
+        """The bonds that broke since this was last called, as in a static stage before."""
+        return NO_CRACKS if self.contacts is None else self.contacts.take_cracks()
+
     @cached_property
     def _plain_contacts(self) -> Contacts:
         return plain_contacts(self.scene.ground, self.scene.assembly)
@@ -92,11 +97,10 @@ class Elastic:
         return Watch(contacts.arrays, contacts.limits, contacts.origin, contacts.skin, contacts.arms)
 
 
-class Bonded:
+class Bonded(Engine):
     """The contact law with a memory (kernels/bonded.py), on a list of pairs that knows what went before."""
 
     name = "linearpbond"
-    ended = False
 
     def __init__(self, contacts: ContactList) -> None:
         self.contacts = contacts
@@ -121,3 +125,11 @@ class Bonded:
     def stored(self, displacement: np.ndarray) -> tuple[float, float]:
         """Energy (J) in contacts and in bonds."""
         return strain_energy(displacement, self.contacts.arrays, self.contacts.limits.geometry)
+
+    def take_cracks(self, steps: int) -> Cracks:
+        """The bonds that broke since this was last called."""
+        return self.contacts.take_cracks()
+
+    def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
+        """Intact bonds and pushing contacts of every particle."""
+        return {"coordination": (self.contacts.coordination(), "1")}

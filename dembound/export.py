@@ -1,7 +1,7 @@
 """Snapshots for ParaView: one VTU file each, a PVD file listing their times, and a script that shows them.
 
 Every disk is a vertex at its reference position moved by its displacement (z = 0), with these point data; what a bar
-has instead is told in `export_bar`:
+has instead is told in `bar.export`:
 
 | name | unit | shape | what |
 |---|---|---|---|
@@ -41,7 +41,8 @@ import h5py
 import meshio
 import numpy as np
 
-from dembound import export_bar
+from dembound.bar.export import VIEW_SCRIPT as BAR_VIEW_SCRIPT
+from dembound.bar.export import bar_mesh
 from dembound.results import cracks_until, is_bar, open_record, replacing
 
 VIEW_SCRIPT = '''\
@@ -93,7 +94,7 @@ def write_vtu(run: Path, folder: Path) -> Path | None:
         if not snapshots:
             return None
         folder.mkdir(parents=True, exist_ok=True)
-        bar = ("bar", export_bar.bar_mesh, export_bar.VIEW_SCRIPT)
+        bar = ("bar", bar_mesh, BAR_VIEW_SCRIPT)
         stem, mesh, script = bar if is_bar(file) else ("particles", _disks, VIEW_SCRIPT)
         times = {}
         for number, snapshot in snapshots.items():

@@ -18,6 +18,9 @@ ONSET = 0.01
 ENDED = 0.2
 """Share of its largest compression below which a pulse counts as ended when its reflection returns."""
 
+FEWEST = 3
+"""Samples of a history that say something of its noise."""
+
 
 class Estimate(NamedTuple):
     """A value from a line through so many points, and its standard error, which takes three; none: it was given."""
@@ -85,19 +88,24 @@ def incident_pulse(
     speed : c, m/s.
     end : that time in s; by default when the pulse's front comes back from the free end.
 
-    Raises CaseError when there is no compression or, without an end, the pulse goes on when its front comes back.
+    Raises CaseError when there is no compression, the end comes before it, or, without an end, the pulse goes on when
+    its front comes back; and for fewer than three samples.
     """
     largest = -stress.min()
     if not largest > 0.0:
         raise CaseError(["stress: is nowhere compressive, must be negative in compression"])
+    risen = int(np.argmax(stress < -0.5 * largest))
     if end is None:
-        risen = int(np.argmax(stress < -0.5 * largest))
         quiet = np.flatnonzero(stress[:risen] > -ONSET * largest)
         end = float(time[quiet[-1] + 1 if len(quiet) else 0]) + 2.0 * (length - gauge) / speed
-        if abs(np.interp(end, time, stress)) > ENDED * largest:
-            raise CaseError(["stress: the pulse goes on when its reflection is back at the gauge, tell when it ends"])
-    alone = time <= end
-    return time[alone], quietened(stress[alone])
+        if end < time[risen] or abs(np.interp(end, time, stress)) > ENDED * largest:
+            raise CaseError(["stress: the pulse goes on when its reflection is back at the gauge, give --pulse-end"])
+    elif not end > time[risen]:
+        raise CaseError([f"--pulse-end: is {end:g} s, must be after {time[risen]:g} s, when the pulse is half risen"])
+    count = int(np.searchsorted(time, end, side="right"))
+    if count < FEWEST:
+        raise CaseError([f"stress: has {count} samples of the incident pulse, must have three or more"])
+    return time[:count], quietened(stress[:count])
 
 
 def near_free_end(
@@ -155,12 +163,9 @@ def pull_back_strength(free_end_velocity: np.ndarray, density: float, speed: flo
     free_end_velocity : (k,) m/s, positive outwards, evenly sampled.
     density, speed : kg/m³ and m/s.
 
-    Raises CaseError when the velocity has no maximum with a minimum after it.
+    Is nan where the velocity has no maximum with a minimum after it.
     """
-    fall = first_fall(free_end_velocity)
-    if np.isnan(fall):
-        raise CaseError(["free_end: has no largest velocity with a smallest after it, as where a bar spalls"])
-    return 0.5 * density * speed * fall
+    return 0.5 * density * speed * first_fall(free_end_velocity)
 
 
 def _slope(x: np.ndarray, y: np.ndarray, weights: np.ndarray) -> Estimate:

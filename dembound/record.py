@@ -2,17 +2,21 @@
 
 Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset of numbers)::
 
-    /                       attributes: case, name, version, seed, time_step, step_limit, steps, complete, …
-    particles/              position (n, 2), radius (n,), brick_particle (n,), bonds (n,) of each at the start; if the
-                            case asks for it peak_velocity (n,), the largest speed of each in the whole run
-    histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3); attributes particle, position, wanted
-    boundaries/<side>/      particle, position, diameter, peak_velocity (q, 3, 2)
+    /                       attributes: case, name, kind ("disks", "bar"), version, size, time_step, step_limit, steps,
+                            complete; of disks seed, of a bar density, section and loaded, the end that is
+    particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
+                            of a bar's nodes volume (n,); if the case asks for it peak_velocity (n,), the largest speed
+                            of each in the whole run
+    histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle,
+                            position, wanted
+    boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2)
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
-                            under a law with a memory; stress (n, 3) if the case asks for it; attribute time
+                            under a law with a memory; stress (n, 3) if the case asks for it; on a bar stress (n,) and
+                            local damage (n,); attribute time
     energy/                 time and the columns of `energy.Entry`, (k,) each
     cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
                             displacements, positions count from the start of the run
-    laws/                   name (l,) of each law used and time (l,) it began at
+    laws/                   name (l,) of each law or method used and time (l,) it began at
     static/                 attributes: what the static stage came to, if there was one; displacement (n, 3) at its end
     static/before/          the same before an excavation, of the particles that are left by it
 """
@@ -20,19 +24,14 @@ Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset of numb
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
-from typing import Any
 
 import h5py
 import numpy as np
 
 from dembound import __version__
-from dembound.bar import BarScene
-from dembound.bar_engine import BarEngine
-from dembound.case import DiskCase
 from dembound.case.monitor import FREE_FIELD
 from dembound.contacts import Cracks
 from dembound.energy import Entry, Ledger
-from dembound.engines import Bonded
 from dembound.simulate import Simulation
 from dembound.static import Settled
 from dembound.stress import stress_now
@@ -85,7 +84,7 @@ class Recorder:
         self.file.close()
 
     def append(self, record: np.ndarray) -> None:
-        """Keep a block's probe record (k, p, 6), of which every stride-th step."""
+        """Keep a block's probe record, see `Simulation.advance`, of which every stride-th step."""
         count = len(record)
         first = -self._done % self.stride
         rows = np.arange(first, count, self.stride)
@@ -101,7 +100,7 @@ class Recorder:
         self.file.flush()
 
     def enter_energy(self) -> np.ndarray:
-        """Advance by one step and enter its energies in the ledger; returns the step's probe record (1, p, 6)."""
+        """Advance by one step and enter its energies in the ledger; returns the step's probe record."""
         return self.ledger.step()
 
     def snapshot(self) -> None:
@@ -111,13 +110,9 @@ class Recorder:
         moved = self.simulation.displacement - self.simulation.datum
         _write(group, "displacement", moved.T, DISPLACEMENT_UNIT)
         _write(group, "velocity", self.simulation.velocity.T, VELOCITY_UNIT)
-        contacts = self.simulation.contacts
-        if contacts is not None and isinstance(self.simulation.engine, Bonded):
-            _write(group, "coordination", contacts.coordination(), "1")
-        if isinstance(self.simulation.engine, BarEngine):
-            _write(group, "stress", self.simulation.engine.stress(self.simulation.displacement), "Pa")
-            _write(group, "damage", self.simulation.engine.bonds.damage(), "1")
-        elif self.simulation.scene.case.output.stress:
+        for name, (values, unit) in self.simulation.engine.snapshot(self.simulation.displacement).items():
+            _write(group, name, values, unit)
+        if self.simulation.scene.case.output.stress and "stress" not in group:
             _write(group, "stress", stress_now(self.simulation), "Pa")
         self._snapshots += 1
 
@@ -129,42 +124,22 @@ class Recorder:
                 "title": case.title,
                 "case": case.text,
                 "version": __version__,
-                "seed": getattr(case.packing, "seed", 0) if isinstance(case, DiskCase) else 0,
                 "time_step": self.simulation.time_step,
                 "step_limit": step_limit,
                 "size": scene.size,
-                "kind": "bar" if isinstance(scene, BarScene) else "disks",
+                "kind": scene.kind,
                 "complete": False,
+                **scene.attributes,
             }
         )
 
     def _write_particles(self) -> None:
-        scene = self.simulation.scene
-        if isinstance(scene, BarScene):
-            self._write_nodes(scene)
-            return
-        assembly = scene.assembly
-        bonded = scene.ground.moduli.pb_emod > 0.0
-        bonds = np.bincount(assembly.pairs.ravel(), minlength=scene.count) * int(bonded)
         group = self.file.create_group("particles")
-        _write(group, "position", assembly.positions, "m")
-        _write(group, "radius", assembly.radii, "m")
-        _write(group, "brick_particle", assembly.brick_particle, "1")
-        _write(group, "bonds", bonds, "1")
-
-    def _write_nodes(self, scene: BarScene) -> None:
-        self.file.attrs["density"] = scene.case.bar.density
-        self.file.attrs["section"] = scene.rod.section
-        group = self.file.create_group("particles")
-        _write(group, "position", scene.positions, "m")
-        _write(group, "volume", scene.rod.volumes, "m³")
+        for name, (values, unit) in self.simulation.scene.columns.items():
+            _write(group, name, values, unit)
 
     def _make_histories(self) -> list[h5py.Group]:
         scene = self.simulation.scene
-        on_axis = isinstance(scene, BarScene)
-        wanted: dict[str, Any] = {
-            each.name: (each.position, 0.0) if on_axis else each.position for each in scene.case.monitor
-        }
         histories = self.file.create_group("histories", track_order=True)  # the case's order, not the alphabet's
         groups = []
         for name, node in scene.monitors.items():
@@ -172,7 +147,7 @@ class Recorder:
             group.attrs["particle"] = node
             group.attrs["position"] = scene.positions[node]
             twin = name.endswith(FREE_FIELD)  # its place is nobody's wish
-            group.attrs["wanted"] = scene.positions[node] if twin else wanted[name]
+            group.attrs["wanted"] = scene.positions[node] if twin else scene.places[name]
             group.attrs["unit"] = "m"
             for dataset, width, unit in (
                 ("time", (), "s"),
@@ -180,7 +155,7 @@ class Recorder:
                 ("velocity", (3,), VELOCITY_UNIT),
             ):
                 _make(group, dataset, width, "f8", unit)
-            if isinstance(scene, BarScene):
+            if scene.record_width > 6:
                 _make(group, "stress", (), "f8", "Pa")
             groups.append(group)
         return groups
@@ -225,7 +200,7 @@ class Recorder:
         self._append_cracks(cracks, 0.0)  # before the run began
 
     def _write_energy(self) -> None:
-        unit = "J" if isinstance(self.simulation.scene, BarScene) else "J/m"
+        unit = self.simulation.scene.energy_unit
         group = self.file.create_group("energy")
         for field, column in zip(fields(Entry), self.ledger.columns.T, strict=True):
             _write(group, field.name, column, "s" if field.name == "time" else unit)

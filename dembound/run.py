@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from dembound.bar import BarScene
-from dembound.body import build_body
+from dembound.any_scene import build_scene
+from dembound.bar.scene import BarScene
 from dembound.case import Case, DiskCase
 from dembound.errors import CaseError, DemboundError
 from dembound.export import write_vtu
@@ -25,6 +25,9 @@ from dembound.simulate import Simulation
 from dembound.stability import choose_step
 from dembound.static import Settled, settle
 from dembound.summary import Plan, summarise
+
+MOST_STEPS = 1e11
+"""Steps that no run of a few nodes finishes within a day: a mistake in a time."""
 
 ENTRIES = 100
 """Entries of the energy ledger where the case does not say how often."""
@@ -44,15 +47,19 @@ def plan(case: Case) -> Plan:
     """Build the scene and choose the step.
 
     Raises PackingError for an impossible brick and CaseError for a load that no particle feels, a material without
-    stiffness and a step above the stability limit.
+    stiffness, a step above the stability limit and one so small that the run would never end.
     """
     with _told_of(case):
-        scene = build_body(case)
+        scene = build_scene(case)
         _ = scene.steady_load  # a load beside all particles must be found before anything is written
         if isinstance(scene, Scene):
             _ = scene.ground.material_tensor  # the summary needs it: a singular material must not end a finished run
         time_step, limit = choose_step(scene)
-    return Plan(scene, time_step, limit, max(1, int(np.ceil(case.run.duration / time_step - 1e-9))))
+        steps = case.run.duration / time_step
+        if steps > MOST_STEPS:
+            asked = f"takes {steps:.3g} steps of {time_step:.3g} s"
+            raise CaseError([f"run.duration: {asked}, must take no more than {MOST_STEPS:g}"])
+    return Plan(scene, time_step, limit, max(1, int(np.ceil(steps - 1e-9))))
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -41,6 +42,8 @@ class Scene:
     edges : side -> its exposed particles, for every side that is not periodic.
     supports : the table of what pushes from outside, loads that follow a wave included.
     monitors : name -> particle.
+    kind, energy_unit : what records call it and its energies; record_width : columns of a probe's record; block : steps
+        between two looks at a run, which compiled code does not leave in between.
     seam : what joins the free-field column, which stands first in the arrays, to the body; None without one.
     before : the scene before it was excavated, in which the static stage begins; None where nothing is excavated.
     kept : (n,) indices into that one's particles of those that are left.
@@ -56,6 +59,32 @@ class Scene:
     seam: Seam | None = None
     before: "Scene | None" = None
     kept: np.ndarray | None = None
+
+    kind = "disks"
+    energy_unit = "J/m"
+    record_width = 6
+    block = 256
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What a record's header has beside that of every run."""
+        return {"seed": getattr(self.case.packing, "seed", 0)}
+
+    @property
+    def columns(self) -> dict[str, tuple[np.ndarray, str]]:
+        """What a record keeps of every particle, by name: values (n, …) and unit."""
+        assembly, bonded = self.assembly, self.ground.moduli.pb_emod > 0.0
+        return {
+            "position": (assembly.positions, "m"),
+            "radius": (assembly.radii, "m"),
+            "brick_particle": (assembly.brick_particle, "1"),
+            "bonds": (np.bincount(assembly.pairs.ravel(), minlength=self.count) * int(bonded), "1"),
+        }
+
+    @property
+    def places(self) -> dict[str, tuple[float, float]]:
+        """Where monitors were wanted, m."""
+        return {monitor.name: monitor.position for monitor in self.case.monitor}
 
     @property
     def count(self) -> int:

@@ -5,18 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dembound.bar import BarScene
-from dembound.bar_engine import BarEngine
-from dembound.body import Body
+from dembound.any_scene import AnyScene
+from dembound.bar.engine import BarEngine
+from dembound.bar.scene import BarScene
 from dembound.boundaries.support import Supports
-from dembound.contacts import NO_CRACKS, ContactList, Cracks
+from dembound.contacts import ContactList, Cracks
+from dembound.engine import Engine
 from dembound.engines import Bonded, Elastic
 from dembound.errors import RunError
 from dembound.kernels import tables
 from dembound.threads import threads_for
-
-BLOCK, BAR_BLOCK = 256, 2048
-"""Steps between two looks at a run, and at a bar's, which are short: compiled code does not return in between."""
 
 DRIVEN_BYTES = 64e6
 """Most memory for the drives of a block; many driven particles make blocks shorter."""
@@ -66,7 +64,7 @@ class Simulation:
 
     def __init__(
         self,
-        scene: Body,
+        scene: AnyScene,
         time_step: float,
         probes: np.ndarray,
         *,
@@ -94,7 +92,7 @@ class Simulation:
         self._mobility = self._where_unsupported(time_step / scene.mass)
         self._inverse_inertia = self._where_unsupported(time_step / scene.inertia)
         self.contacts: ContactList | None = None
-        self.engine: Elastic | Bonded | BarEngine
+        self.engine: Engine
         self.load = scene.steady_load if load is None else load
         if isinstance(scene, BarScene):
             self.engine = BarEngine(scene, time_step)
@@ -152,7 +150,7 @@ class Simulation:
         Displacements count from the start. In a bar stress (Pa) is a seventh. Raises RunError when the motion grows
         without bound, saying when and where.
         """
-        record = np.empty((steps, len(self.probes), 7 if isinstance(self.engine, BarEngine) else 6))
+        record = np.empty((steps, len(self.probes), self.scene.record_width))
         at_once = max(1, int(DRIVEN_BYTES / (24 * max(1, len(self._supports.nodes)))))
         with threads_for(self.scene.count):
             for first in range(0, steps, at_once):
@@ -193,18 +191,15 @@ class Simulation:
 
     def take_cracks(self) -> Cracks:
         """The bonds that broke since this was last called."""
-        if isinstance(self.engine, BarEngine):
-            return self.engine.take_cracks(self.steps)
-        return NO_CRACKS if self.contacts is None else self.contacts.take_cracks()
+        return self.engine.take_cracks(self.steps)
 
     def run(self, steps: int, on_block: Callable[["Simulation", np.ndarray], None] | None = None) -> None:
         """Advance to `steps` steps in all, block by block.
 
-        on_block gets the simulation and the block's record (k, p, 6).
+        on_block gets the simulation and the block's record, see `advance`.
         """
-        block = BAR_BLOCK if isinstance(self.scene, BarScene) else BLOCK
         while self.steps < steps:
-            record = self.advance(min(block, steps - self.steps))
+            record = self.advance(min(self.scene.block, steps - self.steps))
             if on_block is not None:
                 on_block(self, record)
 
@@ -227,18 +222,16 @@ class Simulation:
         """Raise RunError when a particle is faster than any wave could make it."""
         speed = np.abs(self.velocity[:2]).max(axis=0)
         sound = speed <= self._fastest  # false for what is not a number, too
-        where = None if sound.all() else int(np.argmin(sound))
-        if where is None and isinstance(self.engine, BarEngine):
-            where = self.engine.blown_up(self.velocity)
+        where = self.engine.blown_up(self.velocity) if sound.all() else int(np.argmin(sound))
         if where is not None:
             place = self.scene.positions[where]
             raise RunError(
                 f"the motion grew without bound: at t = {self.time:g} s near ({place[0]:g}, {place[1]:g}) m; "
-                "take a smaller run.time_step or safety"
+                "take a smaller run.time_step, run.safety or, of a bar, run.courant"
             )
 
 
-def _runaway_speed(scene: Body) -> float:
+def _runaway_speed(scene: AnyScene) -> float:
     """Speed (m/s) that no particle can have; without a limit where more than waves moves them."""
     waves = sum(wave.peak() for wave in scene.case.wave.values())
     free = scene.case.load or scene.remembers
@@ -251,7 +244,7 @@ class NodeSupports:
     Attributes: nodes (k,); inertia, keep, mobility, stiffness, prescribed (k, 3), see kernels.tables.Supports.
     """
 
-    def __init__(self, scene: Body, time_step: float) -> None:
+    def __init__(self, scene: AnyScene, time_step: float) -> None:
         self._rows: Supports = scene.supports
         self._half_step = 0.5 * time_step
         across = scene.seam.node if scene.seam is not None else np.zeros(0, dtype=np.int64)

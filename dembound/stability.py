@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
-from dembound.bar import BarScene
-from dembound.body import Body
+from dembound.any_scene import AnyScene
+from dembound.bar.scene import BarScene
 from dembound.errors import CaseError, RunError
 from dembound.kernels.elastic import contact_forces
 from dembound.scene import Scene
@@ -97,7 +97,7 @@ def _rounded_down(step: float) -> float:
     return float(np.floor(step / unit) * unit)
 
 
-def choose_step(scene: Body) -> tuple[float, float]:
+def choose_step(scene: AnyScene) -> tuple[float, float]:
     """Time step to run with and the stability limit (s), that of a bar at every stage of its method.
 
     Raises CaseError when the case gives a step above the limit.

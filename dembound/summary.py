@@ -9,9 +9,9 @@ import h5py
 import numpy as np
 
 from dembound import __version__
-from dembound.bar import BarScene
-from dembound.bar_summary import summarise_bar
-from dembound.body import Body
+from dembound.any_scene import AnyScene
+from dembound.bar.scene import BarScene
+from dembound.bar.summary import summarise_bar
 from dembound.boundaries.support import Edge
 from dembound.boundaries.viscoelastic import Springs
 from dembound.results import energy_of, open_record
@@ -24,7 +24,7 @@ from dembound.static import Settled
 class Plan:
     """What a case comes to before its first step: the scene, the step and its limit (s), the number of steps."""
 
-    scene: Body
+    scene: AnyScene
     time_step: float
     step_limit: float
     steps: int

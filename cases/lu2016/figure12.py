@@ -10,7 +10,7 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from records import MILLI, case_of, damage_along, expected_spall, first_spall, name_of
+from records import MILLI, case_of, damage_at_first_spall, expected_spall, name_of
 
 from dembound.laws.peridynamic import CRACKED
 from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legend, save, styled
@@ -40,7 +40,7 @@ def _draw(panel: Axes, runs: list[Path]) -> None:
     panel.axhline(CRACKED, color=REFERENCE, linewidth=1.0, zorder=1)
     panel.axvline(expected_spall(case_of(runs[0]))[0], color=REFERENCE, zorder=1, label="closed form")
     for index, run in enumerate(runs):
-        x, damage = damage_along(run, first_spall(run)["time"])
+        x, damage = damage_at_first_spall(run)
         panel.plot(x, damage, label=name_of(case_of(run)), **line_style(index))
 
 

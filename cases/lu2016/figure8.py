@@ -10,7 +10,7 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from records import MEGA, MILLI, case_of, damage_along, first_spall, stress_along
+from records import MEGA, MILLI, case_of, damage_at_first_spall, first_spall, stress_along
 
 from dembound.laws.peridynamic import CRACKED
 from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, save, styled
@@ -39,7 +39,7 @@ def _draw_damage(panel: Axes, run: Path, number: int) -> None:
     """Damage of a row of table 1 at its first spall."""
     time = first_spall(run)["time"]
     case = case_of(run)
-    x, damage = damage_along(run, time)
+    x, damage = damage_at_first_spall(run)
     label = f"{number}: m = {case.method.largest_horizon}, Δx = {case.bar.spacing / MILLI:g} mm, {time / MILLI:.4f} ms"
     style = line_style(number - 1)
     panel.plot(x[damage > 0], damage[damage > 0], marker=".", label=label, **style)

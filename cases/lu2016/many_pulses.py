@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 from records import MILLI, case_of, expected_spall, markdown, name_of
 
+from dembound.bar.fracture import spalls
 from dembound.case import BarCase
 from dembound.case.writer import with_changes
-from dembound.fracture import spalls
 from dembound.run import plan
 from dembound.simulate import Simulation
 

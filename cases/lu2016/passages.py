@@ -13,16 +13,14 @@ import numpy as np
 from records import case_of, history, markdown, name_of
 
 from dembound.case import BarCase
+from dembound.exact import bar_stress
 
 
 def exact_stress(case: BarCase, place: float, time: np.ndarray) -> np.ndarray:
-    """Stress (k,) Pa at a place (m) and times (k,) s: the pulse and its images, reversed at each free end."""
-    (load,), length, speed = case.load, case.bar.length, case.bar.speed
-    stress = np.zeros_like(time)
-    for turn in range(int(time[-1] * speed / length) + 2):
-        way = turn * length + (place if turn % 2 == 0 else length - place)
-        stress -= (-1.0) ** turn * load.pressure * case.wave[load.wave].velocity(time - way / speed)
-    return stress
+    """Stress (k,) Pa of d'Alembert's solution at a place (m) and times (k,) s."""
+    (load,) = case.load
+    pulse = case.wave[load.wave].velocity
+    return bar_stress(place, time, lambda t: load.pressure * pulse(t), case.bar.length, case.bar.speed)
 
 
 def errors(run: Path, monitor: str = "middle") -> list[float]:

@@ -8,9 +8,10 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dembound.bar import build_bar
 from dembound.case import BarCase, loads
-from dembound.methods.bonds import Bonds
+from dembound.exact import triangle_spall
+from dembound.run import plan
+from dembound.simulate import Simulation
 
 MILLI, MEGA = 1e-3, 1e6
 
@@ -47,28 +48,20 @@ def stress_along(run: Path, time: float) -> tuple[np.ndarray, np.ndarray, float]
         return file["particles/position"][:, 0], nearest["stress"][:], float(nearest.attrs["time"])
 
 
-def damage_along(run: Path, time: float) -> tuple[np.ndarray, np.ndarray]:
-    """Places (n,) m and local damage (n,) at any time in s, from the bonds that had broken by then (L eq. 7)."""
-    case = case_of(run)
-    scene = build_bar(case)
-    with h5py.File(run / "run.h5") as file:
-        first, second = file["cracks/particles"][file["cracks/time"][:] <= time].T
-    if case.method.type == "finite_difference":
-        bonds = Bonds(scene.rod, 0)
-        bonds.spring_broken[first] = 0
-    else:
-        bonds = Bonds(scene.rod, case.method.largest_horizon)
-        bonds.bond_broken[second - first - 1, first] = 0
-        bonds.cover(0, scene.rod.count)
-    return scene.positions[:, 0], bonds.damage()
+def damage_at_first_spall(run: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Places (n,) m and local damage (n,) in the step of the first spall, which no snapshot meets: it is run anew."""
+    planned = plan(case_of(run))
+    step = round(first_spall(run)["time"] / planned.time_step)
+    simulation = Simulation(planned.scene, planned.time_step, np.zeros(0))
+    simulation.run(step + 1)
+    return planned.scene.positions[:, 0], simulation.engine.bonds.damage(step)
 
 
 def expected_spall(case: BarCase) -> tuple[float, float]:
-    """Place (m) and time (s) of the first spall by the closed form, d = ½c t_d σ_t/p_m and t_r + (L + d)/c."""
+    """Place (m) and time (s) of the first spall by the closed form."""
     (load,), bar = case.load, case.bar
-    pulse = case.wave[load.wave]
-    distance = 0.5 * bar.speed * pulse.fall * bar.modulus * bar.breaking_stretch / load.pressure
-    return bar.length - distance, pulse.rise + (bar.length + distance) / bar.speed
+    pulse, strength = case.wave[load.wave], bar.modulus * bar.breaking_stretch
+    return triangle_spall(bar.length, bar.speed, pulse.rise, pulse.fall, load.pressure, strength)
 
 
 def name_of(case: BarCase) -> str:
@@ -84,8 +77,8 @@ def name_of(case: BarCase) -> str:
 
 
 def in_millimetres(range_of: Sequence[float]) -> str:
-    """A range in m as "906–909"."""
-    return "–".join(f"{place / MILLI:.4g}" for place in range_of)
+    """A range in m as "906–909", or "906" where it is a single node."""
+    return "–".join(f"{place / MILLI:.4g}" for place in sorted(set(range_of)))
 
 
 def markdown(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:

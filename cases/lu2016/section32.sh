@@ -9,16 +9,25 @@ results=${1:-results/lu2016}
 mkdir -p "$results/figures"
 
 echo "== Figures 6, 7a: finite differences and four horizons"
-dembound run "$cases"/fig7_*.toml --output "$results"
-dembound run "$cases/fig7_fdm.toml" --set run.time_step=auto --set run.courant=1.0 --name fig7_fdm_courant_1 \
-    --output "$results"
+passage() { # NAME SETTING...
+    local settings=()
+    for setting in "${@:2}"; do settings+=(--set "$setting"); done
+    dembound run "$cases/fig7.toml" "${settings[@]}" --name "fig7_$1" --output "$results"
+}
+peridynamics() { # HORIZON
+    echo "method={type=\"peridynamics\",horizon=$1}"
+}
+passage fdm 'method={type="finite_difference"}'
+passage fdm_courant_1 run.time_step=auto run.courant=1.0
+for horizon in 1 2 4 8; do
+    passage "m$horizon" "$(peridynamics "$horizon")"
+done
 
 echo "== Figure 7b: three spacings to the horizon; coarser; coarser under a longer pulse"
-three=("$cases/fig7_m1.toml" --set method.horizon=3 --output "$results")
-dembound run "${three[@]}" --name fig7_m3
-dembound run "${three[@]}" --set bar.spacing=0.01 --name fig7_m3_coarse
-dembound run "${three[@]}" --set bar.spacing=0.01 --set wave.triangle.rise=0.08e-3 --set wave.triangle.fall=0.16e-3 \
-    --name fig7_m3_coarse_long
+three=$(peridynamics 3)
+passage m3 "$three"
+passage m3_coarse "$three" bar.spacing=0.01
+passage m3_coarse_long "$three" bar.spacing=0.01 wave.triangle.rise=0.08e-3 wave.triangle.fall=0.16e-3
 python3 "$cases/figures_6_7.py" "$results"
 
 echo "== Errors by passage"

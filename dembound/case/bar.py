@@ -1,6 +1,7 @@
 """The ``[bar]`` table: a straight bar that moves along itself, and what it is made of."""
 
 import math
+from collections.abc import Iterator
 
 from pydantic import model_validator
 
@@ -8,6 +9,12 @@ from dembound.table import Table, quantity
 
 PAIRS = (("section", "diameter"), ("wave_speed", "youngs_modulus"), ("strength", "critical_stretch"))
 """Keys of which a bar takes one or the other."""
+
+MOST_CELLS = 2_000_000
+"""A bar cut into more is a mistake; its limit of stability alone would take minutes."""
+
+SMALLEST, LARGEST = 1e-30, 1e30
+"""Lengths (m), sections (m²), moduli (Pa) and squared speeds (m²/s²) between these neither overflow nor vanish."""
 
 
 class Bar(Table):
@@ -38,16 +45,35 @@ class Bar(Table):
             for first, second in PAIRS
             if getattr(self, first) is not None and getattr(self, second) is not None
         ]
-        if self.wave_speed is None and self.youngs_modulus is None:
-            problems.append("wave_speed: is missing; give either wave_speed or youngs_modulus")
-        cells = self.length / self.spacing
-        if not 1.5 < cells < math.inf or abs(cells - round(cells)) > 1e-6 * cells:
-            problems.append(
-                f"spacing: is {self.spacing:g}, must divide bar.length, {self.length:g} m, into two or more equal parts"
-            )
+        problems += [*self._problems_with_size(), *self._problems_with_stiffness(), *self._problems_with_spacing()]
         if problems:
             raise ValueError("\n".join(problems))
         return self
+
+    def _problems_with_size(self) -> Iterator[str]:
+        """A length or a section beyond what numbers can hold."""
+        for key in ("length", "section", "diameter"):
+            value = getattr(self, key)
+            if value is not None and not SMALLEST < value < LARGEST:
+                yield f"{key}: is {value:g}, beyond any bar"
+
+    def _problems_with_stiffness(self) -> Iterator[str]:
+        """No stiffness, or one beyond what numbers can hold."""
+        key = "youngs_modulus" if self.wave_speed is None else "wave_speed"
+        if self.wave_speed is None and self.youngs_modulus is None:
+            yield "wave_speed: is missing; give either wave_speed or youngs_modulus"
+        elif not SMALLEST < self.modulus < LARGEST or not SMALLEST < self.modulus / self.density < LARGEST:
+            yield f"{key}: is {getattr(self, key):g}, with density {self.density:g} beyond any material"
+
+    def _problems_with_spacing(self) -> Iterator[str]:
+        """Spacings that do not fit into the length, or too many of them."""
+        cells = self.length / self.spacing
+        if cells > MOST_CELLS:
+            yield f"spacing: is {self.spacing:g}, must cut bar.length, {self.length:g} m, into {MOST_CELLS:,} or less"
+        elif cells < 1.5 or abs(cells - round(cells)) > 1e-6 * cells:
+            yield (
+                f"spacing: is {self.spacing:g}, must divide bar.length, {self.length:g} m, into two or more equal parts"
+            )
 
     @property
     def cells(self) -> int:
@@ -67,7 +93,7 @@ class Bar(Table):
         if self.youngs_modulus is not None:
             return self.youngs_modulus
         assert self.wave_speed is not None
-        return self.density * self.wave_speed**2
+        return self.density * (self.wave_speed * self.wave_speed)  # ** would raise where it overflows
 
     @property
     def speed(self) -> float:

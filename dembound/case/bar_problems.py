@@ -8,6 +8,7 @@ from dembound.boundaries.driven import Driven
 from dembound.boundaries.viscous import Dashpots
 from dembound.case.bar import Bar
 from dembound.case.bar_load import BarLoad
+from dembound.case.bar_run import BarRun
 from dembound.case.between import repeated_names, steps_too_long, unknown_waves
 from dembound.case.sentences import numbered
 from dembound.methods import Method
@@ -35,6 +36,14 @@ def bar_problems(tables: Mapping[str, Any]) -> Iterator[str]:
             yield from _horizon_too_long(bar, tables["method"])
     if tables["run"]:
         yield from steps_too_long(tables["run"], tables["output"])
+        if bar:
+            yield from _courant_too_large(bar, tables["run"])
+
+
+def _courant_too_large(bar: Bar, run: BarRun) -> Iterator[str]:
+    """A step by its Courant number that the run is over before."""
+    if run.courant is not None and (step := run.courant * bar.spacing / bar.speed) > run.duration:
+        yield f"run.courant: makes a step of {step:g} s, must be at most run.duration, {run.duration:g} (s)"
 
 
 def _across_the_bar(ends: Mapping[str, Any]) -> Iterator[str]:

@@ -15,4 +15,6 @@ class BarRun(Run):
     def _one_step(self) -> "BarRun":
         if self.courant is not None and self.time_step != "auto":
             raise ValueError("courant: is not allowed together with time_step")
+        if self.courant is not None and "safety" in self.model_fields_set:
+            raise ValueError("safety: is for an automatic time step, courant gives it")
         return self

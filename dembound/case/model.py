@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from dembound.boundaries import BoundaryTable
+from dembound.boundaries.driven import Driven
 from dembound.case.bar import Bar
 from dembound.case.bar_load import BarLoad
 from dembound.case.bar_monitor import BarMonitor
@@ -87,3 +88,10 @@ class BarCase(Case):
     load: tuple[BarLoad, ...]
     monitor: tuple[BarMonitor, ...]
     run: BarRun
+
+    @property
+    def loaded(self) -> str:
+        """The end that loads act on or a wave drives: "left", "right", "both" or "none"."""
+        driven = {side for side, table in self.boundary.items() if isinstance(table, Driven)}
+        ends = driven | {load.side for load in self.load}
+        return "both" if len(ends) > 1 else next(iter(ends), "none")

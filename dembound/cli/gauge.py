@@ -11,7 +11,8 @@ from dembound.cli.results import results_file
 from dembound.gauges import Estimate
 from dembound.plot.gauge import plot_gauge
 from dembound.plot.style import save
-from dembound.spalling import Findings, evaluate, read_free_end, read_gauge
+from dembound.readings import read_free_end, read_gauge
+from dembound.spalling import Findings, evaluate
 
 MPA = 1e6
 """Pascals in a megapascal."""
@@ -71,12 +72,12 @@ def _overview(found: Findings) -> Table:
     overview.add_row("wave speed (m/s)", *_fitted(found.speed, "times"))
     if found.attenuation is not None:
         overview.add_row("attenuation (1/m)", *_fitted(found.attenuation, "heights"))
-    if (spall := found.spall) is not None:
-        source = f"image at {spall.position:g} m"
-        overview.add_row("nominal strength (MPa)", f"{spall.nominal / MPA:.4g}", "", source)
-        if spall.attenuated is not None:
-            source = f"way of {spall.way:.3g} m"
-            overview.add_row("attenuated strength (MPa)", f"{spall.attenuated / MPA:.4g}", "", source)
+    if (strength := found.strength) is not None:
+        source = f"image at {strength.position:g} m"
+        overview.add_row("nominal strength (MPa)", f"{strength.nominal / MPA:.4g}", "", source)
+        if strength.attenuated is not None:
+            source = f"way of {strength.way:.3g} m"
+            overview.add_row("attenuated strength (MPa)", f"{strength.attenuated / MPA:.4g}", "", source)
     if found.pull_back is not None:
         overview.add_row("pull-back strength (MPa)", f"{found.pull_back / MPA:.4g}", "", "free end")
     return overview

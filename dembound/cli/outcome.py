@@ -20,10 +20,7 @@ def outcome(summary: dict[str, Any], case: Case) -> list[str]:
 def bar_outcome(summary: dict[str, Any]) -> list[str]:
     """What became of a bar: changes of method, and where and when it spalled."""
     facts = [f"{used['law']} from {used['from'] * 1e3:.4g} ms" for used in summary["laws"][1:]]
-    facts += [
-        "spall at {:.4g}–{:.4g} m, {:.4f} ms".format(*spall["start"], spall["time"] * 1e3)
-        for spall in summary["spalls"]
-    ]
+    facts += [f"spall at {_range(spall['start'])} m, {spall['time'] * 1e3:.4f} ms" for spall in summary["spalls"]]
     if not summary["spalls"] and summary["bar"]["strength"] is not None:
         facts.append("no spall")
     gained = -summary["energy"]["crack"]
@@ -52,6 +49,11 @@ def disk_outcome(summary: dict[str, Any], *, remembers: bool) -> list[str]:
         if error := summary["energy"]["relative_error"]:  # zero where nothing came in
             facts.append(f"energy closes to {100.0 * error:.2g} %")
     return facts
+
+
+def _range(ends: Sequence[float]) -> str:
+    """Ends of a range as "0.906–0.909", a single place as it is."""
+    return "–".join(f"{end:.4g}" for end in sorted(set(ends)))
 
 
 def _stage(static: dict[str, Any]) -> str:

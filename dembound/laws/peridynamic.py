@@ -98,8 +98,10 @@ def bond_forces(
 def damage(pairs: np.ndarray, weight: np.ndarray, intact: np.ndarray, count: int) -> np.ndarray:
     """Local damage φ (count,) of nodes: the part of their family, by volume, that they have lost (L eq. 7).
 
-    pairs (b, 2) nodes of each bond; weight (b, 2), the volume that the other node has for each of them; intact (b,).
+    pairs (b, 2) nodes of each bond; weight (b, 2), the volume that the other node has for each of them; intact (b,), or
+    (b, 2) where the two may differ.
     """
     whole = np.bincount(pairs.ravel(), weights=weight.ravel(), minlength=count)
-    left = np.bincount(pairs.ravel(), weights=(weight * intact[:, None]).ravel(), minlength=count)
+    held = weight * intact.reshape(len(pairs), -1)
+    left = np.bincount(pairs.ravel(), weights=held.ravel(), minlength=count)
     return 1.0 - np.divide(left, whole, out=np.ones(count), where=whole > 0.0)

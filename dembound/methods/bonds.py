@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from dembound.kernels.tables import BarBonds
-from dembound.laws.peridynamic import half_offsets, micromodulus, volume_factor
+from dembound.laws.peridynamic import Family, damage, families, micromodulus
 
 TINY = 1e-12
 """Coverage is compared within this, its rounding."""
@@ -42,22 +42,19 @@ class Rod:
         volumes[[0, -1]] *= 0.5
         return volumes
 
-    def bond_rows(self, horizon: int) -> tuple[np.ndarray, np.ndarray]:
-        """All peridynamic bonds there can be: stiffness N/m, and the volume factor w; (m, n) and (m,).
+    def bond_rows(self, horizon: int) -> np.ndarray:
+        """Stiffness (m, n) N/m of all peridynamic bonds there can be: c_m V_i V_{i+p} w_p/(pΔx) (L eqs 4, 8 and 9).
 
-        Row p − 1 has the bonds between i and i + p, c_m V_i V_{i+p} w_p/(pΔx) (L eqs 4, 8 and 9).
+        Row p − 1 has the bonds between i and i + p.
         """
         rows = np.zeros((horizon, self.count))
-        if horizon == 0:
-            return rows, np.zeros(0)
-        steps = half_offsets(horizon, 1)[:, 0]
-        delta = horizon * self.spacing
-        factor = volume_factor(steps * self.spacing, self.spacing, delta)
-        c_m = micromodulus(self.modulus, delta, 1, self.section)
-        for row, p in zip(rows, steps, strict=True):
-            both = self.volumes[: self.count - p] * self.volumes[p:]
-            row[: self.count - p] = both * factor[p - 1] / (p * self.spacing)
-        return c_m * rows, factor
+        if horizon > 0:
+            family = families((self.count,), horizon)
+            (first, second), apart = family.pairs.T, family.offset[:, 0]
+            c_m = micromodulus(self.modulus, horizon * self.spacing, 1, self.section)
+            both = self.volumes[first] * self.volumes[second]
+            rows[apart - 1, first] = c_m * both * family.factor / (apart * self.spacing)
+        return rows
 
 
 class Bonds:
@@ -66,7 +63,7 @@ class Bonds:
     Parameters
     ----------
     rod : the bar.
-    horizon : m of the zones; 0: there are none, and springs that reach the critical stretch ask to be broken.
+    horizon : m of the zones; 0: there are none, and springs ask when they reach the critical stretch.
     complement : whether local springs carry what bonds leave; else a plane has either.
     ask_at : share of the critical stretch at which local springs ask.
 
@@ -83,7 +80,7 @@ class Bonds:
         self.complement = complement
         self.ask_at = ask_at
         self.zones: list[tuple[int, int]] = []
-        self._rows, self._factor = rod.bond_rows(horizon)
+        self._rows = rod.bond_rows(horizon)
         planes = rod.count - 1
         self.spring = np.full(planes, rod.spring)
         self.bond = np.zeros_like(self._rows)
@@ -121,16 +118,10 @@ class Bonds:
         """Springs (a,) that have asked at displacements u (n,) m."""
         return np.flatnonzero(self.asks & (self.spring > 0.0) & (np.diff(u) >= self.spring_limit))
 
-    def break_springs(self, u: np.ndarray, before: np.ndarray, step: int) -> float:
-        """Break the springs that have asked, in this step; returns the energy (J) that took.
-
-        u, before (n,) m: displacements now and a step ago; see kernels.bar.break_at_limit.
-        """
-        broken = self.asking(u)
-        lost = 0.5 * float(np.sum((self.spring * np.diff(u) * np.diff(before))[broken]))
-        self.spring[broken] = 0.0
-        self.spring_broken[broken] = step
-        return lost
+    def stop_asking(self) -> None:
+        """Let springs break at the critical stretch without asking from now on."""
+        self.asks[:] = False
+        self.spring_limit[:] = self._elongation
 
     @property
     def laid(self) -> np.ndarray:
@@ -158,24 +149,16 @@ class Bonds:
         A local spring counts for the bonds that are left out on its side of a node.
         """
         last = np.iinfo(np.int64).max if step is None else step
-        n, volumes = self.rod.count, self.rod.volumes
-        laid, broken = self.laid, (self.bond_broken >= 0) & (self.bond_broken <= last)
-        if self.horizon == 0:
-            laid = broken = np.zeros((1, n), dtype=np.bool_)
-        whole, lost = np.zeros(n), np.zeros(n)
-        left_out = np.zeros((2, n))  # on the left and on the right
-        for p, w in enumerate(self._factor if self.horizon else np.ones(1), start=1):
-            first, second = w * volumes[p:], w * volumes[: n - p]  # what the other node weighs for each
-            whole[: n - p] += first
-            whole[p:] += second
-            lost[: n - p] += first * broken[p - 1, : n - p]
-            lost[p:] += second * broken[p - 1, : n - p]
-            left_out[1, : n - p] += first * ~laid[p - 1, : n - p]
-            left_out[0, p:] += second * ~laid[p - 1, : n - p]
-        cut = (self.spring_broken >= 0) & (self.spring_broken <= last)
-        lost[:-1] += left_out[1, :-1] * cut
-        lost[1:] += left_out[0, 1:] * cut
-        return lost / whole
+        first, second = self._family.pairs.T
+        row = self._family.offset[:, 0] - 1
+        whole = (self.spring_broken < 0) | (self.spring_broken > last)
+        intact = np.column_stack([whole[first], whole[second - 1]])
+        if self.horizon > 0:
+            broken = self.bond_broken[row, first]
+            laid = self.laid[row, first]
+            intact[laid] = ((broken < 0) | (broken > last))[laid, None]
+        volumes = self.rod.volumes[self._family.pairs[:, ::-1]]
+        return damage(self._family.pairs, self._family.factor[:, None] * volumes, intact, self.rod.count)
 
     def breaks(self, since: int) -> tuple[np.ndarray, np.ndarray]:
         """What broke in step `since` or later: steps (b,) and pairs of nodes (b, 2), in the order of the steps."""
@@ -220,6 +203,11 @@ class Bonds:
         lengths = np.where(others[:, 2] > mixed, self.horizon, 0)
         held = [self.spring[max(0, first - 1) : last].any() for first, last, _ in others]
         return np.ascontiguousarray(plain), np.column_stack([others[:, :2], lengths, held]).astype(np.int64)
+
+    @cached_property
+    def _family(self) -> Family:
+        """The nodes' families, of one spacing where there is no horizon."""
+        return families((self.rod.count,), max(self.horizon, 1))
 
     @property
     def _elongation(self) -> float:

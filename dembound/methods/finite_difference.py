@@ -2,6 +2,8 @@
 
 from typing import Literal
 
+import numpy as np
+
 from dembound.methods.bonds import Bonds, Rod
 from dembound.methods.method import Method
 
@@ -21,6 +23,16 @@ class FiniteDifference(Method):
         """1: local springs."""
         return 1
 
+    @property
+    def carrying_horizon(self) -> int:
+        """1: local springs."""
+        return 1
+
     def begin(self, rod: Rod) -> Bonds:
         """Whole local springs, which ask at the critical stretch."""
         return Bonds(rod, horizon=0)
+
+    def answer(self, bonds: Bonds, u: np.ndarray) -> str:
+        """From the first break on every spring is looked at by itself, and none asks."""
+        bonds.stop_asking()
+        return self.name

@@ -21,6 +21,11 @@ class Method(Table, ABC):
     def largest_horizon(self) -> int:
         """The largest horizon (in spacings) it ever uses; 1 for local springs."""
 
+    @property
+    @abstractmethod
+    def carrying_horizon(self) -> int:
+        """The horizon that carries waves where nothing is about to break."""
+
     @abstractmethod
     def begin(self, rod: Rod) -> Bonds:
         """The bonds it begins with."""
@@ -29,9 +34,9 @@ class Method(Table, ABC):
         """Bonds of the whole bar at each stage it may come to: what the time step must be stable for."""
         return [self.begin(rod)]
 
-    def answer(self, bonds: Bonds, u: np.ndarray, before: np.ndarray, step: int) -> tuple[float, str]:
-        """Answer springs that have asked in step `step`, at displacements u (n,) m, those a step ago being `before`.
+    @abstractmethod
+    def answer(self, bonds: Bonds, u: np.ndarray) -> str:
+        """Answer springs that ask at displacements u (n,) m, so that they ask no more.
 
-        Returns the energy (J) that breaking took, and what the method does from now on, for reports.
+        Returns what the method does from now on, for reports.
         """
-        return bonds.break_springs(u, before, step), self.name

@@ -31,6 +31,11 @@ class Patch(Method):
         """The horizon m in the zones."""
         return self.horizon
 
+    @property
+    def carrying_horizon(self) -> int:
+        """1: outside the zones."""
+        return 1
+
     def begin(self, rod: Rod) -> Bonds:
         """Local springs that ask at the trigger."""
         return Bonds(rod, self.horizon, complement=True, ask_at=self.trigger)
@@ -45,10 +50,10 @@ class Patch(Method):
             stages[-1].cover(first, last)
         return stages
 
-    def answer(self, bonds: Bonds, u: np.ndarray, before: np.ndarray, step: int) -> tuple[float, str]:
+    def answer(self, bonds: Bonds, u: np.ndarray) -> str:
         """A zone around every spring that has asked; one that grows grows by a quarter, so that it seldom has to."""
         for k in bonds.asking(u):
             grown = max((last - first for first, last in bonds.zones if first <= k + 1 and k <= last), default=0)
             beyond = max(self.reach * self.horizon, grown // 4)
             bonds.cover(int(k) - beyond, int(k) + 2 + beyond)
-        return 0.0, f"finite differences and peridynamics, m = {self.horizon}"
+        return f"finite differences and peridynamics, m = {self.horizon}"

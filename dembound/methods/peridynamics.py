@@ -2,6 +2,8 @@
 
 from typing import Literal
 
+import numpy as np
+
 from dembound.methods.bonds import Bonds, Rod
 from dembound.methods.method import Method
 from dembound.table import quantity
@@ -28,8 +30,17 @@ class Peridynamics(Method):
         """The horizon m."""
         return self.horizon
 
+    @property
+    def carrying_horizon(self) -> int:
+        """The horizon m."""
+        return self.horizon
+
     def begin(self, rod: Rod) -> Bonds:
         """All bonds, and the springs of corrected ends."""
         bonds = Bonds(rod, self.horizon, complement=self.corrected_ends)
         bonds.cover(0, rod.count)
         return bonds
+
+    def answer(self, bonds: Bonds, u: np.ndarray) -> str:
+        """No spring asks: those of corrected ends break by themselves."""
+        return self.name

@@ -33,6 +33,11 @@ class Switch(Method):
         """The horizon m after the switch."""
         return self.horizon
 
+    @property
+    def carrying_horizon(self) -> int:
+        """1: before the switch."""
+        return 1
+
     def begin(self, rod: Rod) -> Bonds:
         """Local springs that ask at the trigger; with m = 1 those of the ends are half as stiff."""
         bonds = Bonds(rod, self.horizon, complement=self.corrected_ends, ask_at=self.trigger)
@@ -46,7 +51,7 @@ class Switch(Method):
         after.cover(0, rod.count)
         return [self.begin(rod), after]
 
-    def answer(self, bonds: Bonds, u: np.ndarray, before: np.ndarray, step: int) -> tuple[float, str]:
+    def answer(self, bonds: Bonds, u: np.ndarray) -> str:
         """Peridynamics everywhere."""
         bonds.cover(0, bonds.rod.count)
-        return 0.0, f"peridynamics, m = {self.horizon}"
+        return f"peridynamics, m = {self.horizon}"

@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 
 from dembound.gauges import near_free_end
 from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled
-from dembound.spalling import Findings, Gauge, Spall
+from dembound.readings import Gauge
+from dembound.spalling import Findings, Strength
 
 MPA = 1e6
 """Pascals in a megapascal."""
@@ -32,11 +33,11 @@ def plot_gauge(gauge: Gauge, findings: Findings) -> Figure:
     gauge, findings
         what it has felt, and what `spalling.evaluate` has found.
     """
-    figure = new_figure(10.0 if findings.spall else 7.0, 4.6)
-    panels = figure.subplots(1, 2 if findings.spall else 1, squeeze=False)[0]
+    figure = new_figure(10.0 if findings.strength else 7.0, 4.6)
+    panels = figure.subplots(1, 2 if findings.strength else 1, squeeze=False)[0]
     _history(panels[0], gauge, findings)
-    if findings.spall:
-        _free_end(panels[1], gauge, findings.speed.value, findings.spall)
+    if findings.strength:
+        _free_end(panels[1], gauge, findings.speed.value, findings.strength)
     figure.suptitle(f"Gauge at {gauge.position:g} m of a bar of {gauge.length:g} m", fontsize=11)
     outside_legend(figure, panels, columns=3)
     return figure
@@ -59,16 +60,16 @@ def _history(panel: Axes, gauge: Gauge, findings: Findings) -> None:
     panel.set_ylabel("stress, tension positive (MPa)")
 
 
-def _free_end(panel: Axes, gauge: Gauge, speed: float, spall: Spall) -> None:
+def _free_end(panel: Axes, gauge: Gauge, speed: float, strength: Strength) -> None:
     """Stress along the last part of the bar at several times, and the largest tension where it spalled."""
-    places = np.linspace(min(gauge.position, spall.position), gauge.length, PLACES)
-    times = spall.time + np.array(STEPS) * (gauge.length - spall.position) / speed
-    stresses = near_free_end(*spall.pulse, gauge.position, gauge.length, speed, places, times)
+    places = np.linspace(min(gauge.position, strength.position), gauge.length, PLACES)
+    times = strength.time + np.array(STEPS) * (gauge.length - strength.position) / speed
+    stresses = near_free_end(*strength.pulse, gauge.position, gauge.length, speed, places, times)
     for index, (time, stress) in enumerate(zip(times, stresses.T, strict=True)):
         looks: dict[str, Any] = line_style(index)
         panel.plot(places, stress / MPA, label=f"at {1e3 * time:.3f} ms", **looks)
-    label = f"largest tension at {spall.position:g} m: {spall.nominal / MPA:.3g} MPa"
-    panel.plot(spall.position, spall.nominal / MPA, "*", color=COLOURS[-1], markersize=10, label=label)
-    panel.axvline(spall.position, color=REFERENCE, linewidth=1.0, zorder=1)
+    label = f"largest tension at {strength.position:g} m: {strength.nominal / MPA:.3g} MPa"
+    panel.plot(strength.position, strength.nominal / MPA, "*", color=COLOURS[-1], markersize=10, label=label)
+    panel.axvline(strength.position, color=REFERENCE, linewidth=1.0, zorder=1)
     panel.set_xlabel("distance from the loaded end (m)")
     panel.set_ylabel("stress, tension positive (MPa)")

@@ -16,7 +16,7 @@ import tomli_w
 
 from dembound import __version__, cli
 from dembound.case import BarCase, load
-from dembound.cli.outcome import disk_outcome
+from dembound.cli.outcome import bar_outcome, disk_outcome
 
 
 @dataclass
@@ -191,6 +191,17 @@ def test_only_what_applies_is_told() -> None:
         stage,
         "after the excavation in 900 steps to a force ratio of 9.8e-06",
     ]
+
+
+def test_a_spall_of_one_node_has_one_place() -> None:
+    places = [[0.906, 0.909], [1.0, 1.0]]
+    summary = {
+        "laws": [{"law": "peridynamics, m = 3", "from": 0.0}],
+        "spalls": [{"start": place, "time": 4.393e-4} for place in places],
+        "bar": {"strength": 1e7},
+        "energy": {"crack": 0.0, "outside": 1.0, "relative_error": 0.0},
+    }
+    assert bar_outcome(summary) == ["spall at 0.906–0.909 m, 0.4393 ms", "spall at 1 m, 0.4393 ms"]
 
 
 def test_a_mistake_in_the_last_case_keeps_the_first_from_running(dembound, written, tmp_path) -> None:
@@ -507,9 +518,56 @@ def test_gauges_that_tell_nothing_are_bad_input(dembound, written) -> None:
     Path("gauge.txt").write_text("0 1\n1 -2\n2 1\n")
     dembound("run", written())
     for arguments, said in (
-        (["gauge.txt"], "position: is not known, give it\nlength: is not known, give it\n"),
-        (["gauge.txt", "--position", 2, "--length", 1], "position: is 2 m, must be between 0 and the length, 1 m\n"),
+        (["gauge.txt"], "--position: is not known, give it\n--length: is not known, give it\n"),
+        (["gauge.txt", "--position", 2, "--length", 1], "--position: is 2 m, must be between 0 and the length, 1 m\n"),
         (["absent.txt"], 'no file "absent.txt"\n'),
         (["results/bar"], "results/bar/run.h5: holds no history of stress, which monitors on bars have\n"),
+    ):
+        assert dembound("gauge", *arguments) == Answer(2, "", said)
+
+
+def test_options_of_gauges_that_make_no_sense_are_bad_input(dembound, felt, tmp_path) -> None:
+    np.savetxt("gauge.txt", np.column_stack(felt()))
+    for options, said in (
+        (["--position", 0.6, "--length", -1], "--length: is -1 m, must be finite and above 0\n"),
+        (["--position", 0.6, "--length", 0.99, "--scale", "nan"], "--scale: is nan, must be finite and not 0\n"),
+        (
+            ["--position", 0.6, "--length", 0.99, "--attenuation", "nan", "--wave-speed", 0, "--spall", 1],
+            "--spall: is 1 m, must be between 0 and the length, 0.99 m\n"
+            "--wave-speed: is 0 m/s, must be finite and above 0\n"
+            "--attenuation: is nan 1/m, must be finite and not below 0\n",
+        ),
+        (
+            ["--position", 0.6, "--length", 0.99, "--spall", 0.9, "--pulse-end", 0],
+            "--pulse-end: is 0 s, must be after 0.000259 s, when the pulse is half risen\n",
+        ),
+    ):
+        assert dembound("gauge", "gauge.txt", *options, "-o", "gauge.png") == Answer(2, "", said)
+    assert files(tmp_path) == {"gauge.txt"}
+
+
+def test_runs_on_bars_are_read_by_gauge_where_one_end_is_loaded(dembound, spalling) -> None:
+    two = [{"name": "gauge", "position": 0.4}, {"name": "end", "position": 1.0}]
+    load = {"name": "hit", "pressure": 12e6, "nodes": 3, "wave": "hit"}
+    for name, changes in (
+        ("one", {"monitor": two, "run.duration": 5e-3}),
+        ("blind", {"monitor": []}),
+        ("both", {"monitor": two, "load": [load, load | {"name": "back", "side": "right"}]}),
+        ("none", {"monitor": two, "load": []}),
+    ):
+        Path(f"{name}.toml").write_text(spalling(changes).text)
+        assert dembound("run", f"{name}.toml", "--set", "output.pictures=false").code == 0
+    told = dembound("gauge", "results/one", "--monitor", "gauge", "--free-end", "end", "--wave-speed", 1000)
+    assert (told.code, told.err) == (0, "")
+    assert "pull-back strength" in told.out
+    refused = "/run.h5: is of a bar loaded at {}, must be loaded at the left or the right\n"
+    for arguments, said in (
+        (["results/one"], "--monitor: is not named, must be one of gauge, end\n"),
+        (["results/one", "--monitor", "far"], "--monitor: is far, must be one of gauge, end\n"),
+        (["results/one", "--monitor", "end"], "--position: is 1 m, must be between 0 and the length, 1 m\n"),
+        (["results/blind"], "results/blind/run.h5: holds no history of stress, which monitors on bars have\n"),
+        (["results/both", "--monitor", "gauge"], f"results/both{refused.format('both ends')}"),
+        (["results/none", "--monitor", "gauge"], f"results/none{refused.format('neither end')}"),
+        (["results"], "results: holds no results, must be a folder with run.h5 or calibration.h5\n"),
     ):
         assert dembound("gauge", *arguments) == Answer(2, "", said)

@@ -5,7 +5,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from dembound.bar import build_bar
+from dembound.bar.scene import build_bar
 from dembound.energy import Entry, Ledger
 from dembound.scene import build
 from dembound.simulate import Simulation

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from dembound import __version__
-from dembound.bar import build_bar
+from dembound.bar.scene import build_bar
 from dembound.energy import Entry
 from dembound.record import Recorder
 from dembound.scene import build
@@ -286,6 +286,7 @@ def test_a_bar_is_kept_with_its_section_and_volumes(spalled_run) -> None:
     with h5py.File(spalled_run) as file:
         about, particles = dict(file.attrs), file["particles"]
         assert (about["kind"], about["density"], about["section"]) == ("bar", 2500.0, 1.0)
+        assert about["loaded"] == "left"
         assert about["size"].tolist() == [1.0, 0.0]
         assert set(particles) == {"position", "volume"}
         assert particles["position"].shape == (41, 2)

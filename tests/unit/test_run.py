@@ -332,6 +332,11 @@ def test_blocks_of_a_bar_are_longer(spalling, tmp_path) -> None:
     assert [done for done, _ in heard.blocks] == [1, 2049, 3999, 4000]
 
 
+def test_a_run_that_would_never_end_is_refused(spalling) -> None:
+    with pytest.raises(CaseError, match=r"^run.duration: takes \S+ steps of \S+ s, must take no more than 1e\+11$"):
+        plan(spalling({"run.courant": 1e-300}))
+
+
 def test_a_bars_step_above_the_limit_is_refused_before_anything_is_written(spalling, tmp_path) -> None:
     with pytest.raises(CaseError, match=r"run\.courant: is 2, must not be above 1\.96") as caught:
         run_case(spalling({"run.courant": 2.0}), tmp_path)

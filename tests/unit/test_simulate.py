@@ -9,7 +9,7 @@ from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.case import with_changes
 from dembound.errors import RunError
 from dembound.scene import Scene, build
-from dembound.simulate import BLOCK, Simulation, Start
+from dembound.simulate import Simulation, Start
 from dembound.stability import choose_step, step_limit
 
 NOBODY = np.zeros(0, dtype=np.int64)
@@ -90,9 +90,9 @@ def test_time_goes_on_from_call_to_call(bar) -> None:
 
 def test_a_run_goes_block_by_block_to_the_step_asked_for(bar) -> None:
     simulation, seen = simulated(bar), []
-    simulation.run(BLOCK + 10, lambda s, record: seen.append((s.steps, len(record))))
+    simulation.run(Scene.block + 10, lambda s, record: seen.append((s.steps, len(record))))
 
-    assert seen == [(BLOCK, BLOCK), (BLOCK + 10, 10)]
+    assert seen == [(Scene.block, Scene.block), (Scene.block + 10, 10)]
 
 
 def test_peaks_of_a_side_are_the_extremes_of_its_particles(bar) -> None:
@@ -135,7 +135,7 @@ def test_motion_that_grows_without_bound_ends_the_run_and_says_when_and_where(ba
         simulation.run(100_000)
 
     # twice the limit multiplies by −7 − √48 = −13.9 each step: 308 decimal powers are gone within 271 steps
-    assert simulation.steps <= 2 * BLOCK
+    assert simulation.steps <= 2 * Scene.block
     assert f"t = {simulation.steps * step:g} s" in str(caught.value)
     assert caught.value.exit_code == 3
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import tomli_w
 
-from dembound.bar import BarScene, build_bar
+from dembound.bar.scene import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
 from dembound.case import Case, loads
 from dembound.edges import find_edges

@@ -7,8 +7,8 @@ end of it: what is left looks like a fractured bar. So it is the step that decid
 import numpy as np
 import pytest
 
+from dembound.bar.fracture import spalls
 from dembound.errors import RunError
-from dembound.fracture import spalls
 from dembound.simulate import Simulation
 
 SPACING = 5e-3

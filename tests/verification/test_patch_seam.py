@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.bar import BarScene
+from dembound.bar.scene import BarScene
 from dembound.kernels import bar
 from dembound.methods import Patch
 from dembound.methods.bonds import Bonds, Rod

@@ -1,8 +1,5 @@
 """A triangular pulse breaks a piece of the length off a bar that d'Alembert gives, to first order in the spacing.
 
-Behind the reflected crest, p_m, the incident pulse has fallen by p_m·2d/(c t_d) at a distance d from the free end,
-which is the tension there: it reaches the strength at d = ½c t_d σ_t/p_m, when the crest comes, at t_r + (L + d)/c.
-
 Finite differences at cΔt = Δx carry a sampled pulse exactly (test_exact_at_courant_one): the stresses g of springs,
 halfway between nodes and steps, follow g_{n+1} = 2p_n − g_n. They run along a straight leg without error, and where
 the slope changes by Δa a step, a part φ of a step after a sample, they begin to swing about it by Δa|½ − φ|. So the
@@ -12,6 +9,7 @@ stress is wrong by parts of what it changes by in a step, and the place by parts
 import numpy as np
 import pytest
 
+from dembound.exact import triangle_spall
 from dembound.simulate import Simulation
 
 RISE, FALL = 0.04e-3, 0.08e-3
@@ -38,9 +36,8 @@ def errors(rock):
         simulation = Simulation(scene, step, np.zeros(0))
         simulation.advance(int(0.48e-3 / step))
         cracks = simulation.take_cracks()
-        distance = 0.5 * rock.speed * FALL * rock.strength / pressure
-        time = late * step + rise + (rock.length + distance) / rock.speed
-        return cracks.position[0, 0] - (rock.length - distance), cracks.step[0] * step - time
+        place, time = triangle_spall(rock.length, rock.speed, rise, FALL, pressure, rock.strength)
+        return cracks.position[0, 0] - place, cracks.step[0] * step - (late * step + time)
 
     return find
 

@@ -87,6 +87,23 @@ def test_optional_tables_may_be_absent() -> None:
     assert (case.title, case.boundary, case.wave, case.load, case.monitor) == ("", {}, {}, (), ())
 
 
+@pytest.mark.parametrize(
+    ("changes", "loaded"),
+    [
+        ({"boundary": {}}, "left"),
+        ({"load": []}, "left"),  # by the wave that its dashpot lets in
+        ({}, "left"),
+        ({"load": [{"name": "blow", "pressure": 12e6, "wave": "pulse", "side": "right"}]}, "both"),
+        ({"load": [], "boundary.left": {"type": "free"}}, "none"),
+        ({"load": [], "boundary": {"right": {"type": "velocity", "wave_p": "pulse"}}}, "right"),
+    ],
+)
+def test_an_end_is_loaded_by_loads_and_by_waves(changes: dict, loaded: str) -> None:
+    case = with_changes(loads(GOOD), changes)
+    assert isinstance(case, BarCase)
+    assert case.loaded == loaded
+
+
 def test_stiffness_is_given_by_speed_or_modulus() -> None:
     by_speed = loads(GOOD).bar
     by_modulus = loads(changed("wave_speed = 2740.0", f"youngs_modulus = {2620.0 * 2740.0**2!r}")).bar
@@ -133,9 +150,25 @@ def test_a_spacing_need_not_divide_the_length_to_the_last_bit(length: float, spa
         ),
         ("spacing = 0.01", "spacing = 1", "spacing: is 1, must divide bar.length, 1 m, into two or more equal parts"),
         ("spacing = 0.01", "spacing = 3", "spacing: is 3, must divide bar.length, 1 m, into two or more equal parts"),
-        ("spacing = 0.01", "spacing = 1e-320", "spacing: is 9.99989e-321, must divide "),  # 1/1e-320 overflows
+        ("spacing = 0.01", "spacing = 4e-7", "spacing: is 4e-07, must cut bar.length, 1 m, into 2,000,000 or less"),
+        ("spacing = 0.01", "spacing = 1e-320", "spacing: is 9.99989e-321, must cut bar."),  # 1/1e-320 overflows
         ("spacing = 0.01", "spacing = 0.01\nsection = 1\ndiameter = 1", "diameter: is not allowed together with "),
+        ("length = 1\nspacing = 0.01", "length = 1e300\nspacing = 1e298", "length: is 1e+300, beyond any bar"),
+        ("spacing = 0.01", "spacing = 0.01\nsection = 1e-310", "section: is 1e-310, beyond any bar"),
+        ("spacing = 0.01", "spacing = 0.01\ndiameter = 1e200", "diameter: is 1e+200, beyond any bar"),
         ("wave_speed = 2740.0\n", "", "wave_speed: is missing; give either wave_speed or youngs_modulus"),
+        (
+            "wave_speed = 2740.0",
+            "wave_speed = 1e-20",
+            "wave_speed: is 1e-20, with density 2620 beyond any material",
+        ),
+        ("wave_speed = 2740.0", "wave_speed = 1e200", "wave_speed: is 1e+200, with density "),  # its square overflows
+        (
+            "wave_speed = 2740.0",
+            "youngs_modulus = 1e31",
+            "youngs_modulus: is 1e+31, with density 2620 beyond any material",
+        ),
+        ("density = 2620.0", "density = 1e-300", "wave_speed: is 2740, with density 1e-300 beyond any material"),
         (
             "wave_speed = 2740.0",
             "wave_speed = 2740.0\nyoungs_modulus = 2e10",
@@ -277,6 +310,16 @@ def test_no_load_pushes_an_end_whose_motion_is_prescribed(end: str) -> None:
             "run.courant: is not allowed together with time_step",
         ),
         ("duration = 5e-4", "duration = 5e-4\ncourant = 0", "run.courant: is 0, must be greater than 0"),
+        (
+            "duration = 5e-4",
+            "duration = 5e-4\ncourant = 0.5\nsafety = 0.8",
+            "run.safety: is for an automatic time step, courant gives it",
+        ),
+        (
+            "duration = 5e-4",
+            "duration = 5e-4\ncourant = 274",
+            "run.courant: makes a step of 0.001 s, must be at most run.duration, 0.0005 (s)",
+        ),
         (
             "duration = 5e-4",
             "duration = 5e-4\ntime_step = 1",

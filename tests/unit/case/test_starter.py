@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
+from dembound.bar.fracture import spalls
 from dembound.case import BAR_STARTER, loads
-from dembound.fracture import spalls
 from dembound.run import plan
 from dembound.simulate import Simulation
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dembound.kernels import bar, tables
+from dembound.laws.peridynamic import bond_forces, families, micromodulus
 from dembound.methods.bonds import Bonds, Rod
 
 EPS = np.finfo(float).eps
@@ -177,6 +178,32 @@ def test_forces_are_those_of_the_stiffness_matrix(layout) -> None:
     plain = np.concatenate([np.zeros(0, dtype=int), *(np.arange(a, b) for a, b in arrays.plain)])
     assert np.array_equal(np.isnan(of_ranges), np.isin(np.arange(COUNT), plain))
     np.testing.assert_allclose(np.delete(of_ranges, plain), np.delete(expected, plain), rtol=0.0, atol=tolerance)
+
+
+@pytest.mark.parametrize("horizon", [1, 2, 3, 5, 8])
+def test_forces_of_a_peridynamic_bar_are_those_of_the_law(horizon: int) -> None:
+    family = families((COUNT,), horizon)
+    first, second = family.pairs.T
+    u = shaken()[0][0]
+    apart, moved = ROD.spacing * family.offset, (u[second] - u[first])[:, None]
+    volumes = ROD.volumes[first] * ROD.volumes[second] * family.factor
+    c_m = micromodulus(ROD.modulus, horizon * ROD.spacing, 1, ROD.section)
+    pull = bond_forces(apart, moved, c_m, volumes, np.ones(len(apart), dtype=bool))[:, 0]
+    expected = np.bincount(first, pull, COUNT) - np.bincount(second, pull, COUNT)
+
+    bonds = laid(ROD, horizon, (0, COUNT), complement=False)
+    arrays = bonds.arrays(np.zeros(0, dtype=np.int64), STEP)
+    force = np.empty(COUNT)
+    limits = arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.room
+    bar.forces(u, arrays.mixed, arrays.spring, *limits, force)
+
+    # along a line stretch goes with displacements exactly, as no node moves by half a spacing and passes another: what
+    # differs is rounding. The law takes lengths ξ + η < 2ξ from each other, within 2εξ; a bond pulls by c_m V² w/ξ of
+    # that, and the 2m bonds of a node together by 2E·A (2m − 1)/m² ≤ 2EA. Each force, below c_m V² w, is rounded by
+    # some ε in its factors, and by one in every sum of 2m of them
+    tolerance = (2.0 + 8.0 + 2.0 * horizon) * EPS * 2.0 * ROD.modulus * ROD.section
+    np.testing.assert_allclose(force, expected, rtol=0.0, atol=tolerance)
+    assert np.abs(expected).max() > 0.01
 
 
 def test_what_is_at_its_limit_is_counted(layout) -> None:

@@ -44,12 +44,13 @@ def test_end_nodes_have_half_a_volume() -> None:
 
 @pytest.mark.parametrize("horizon", [1, 2, 3, 5])
 def test_bonds_are_those_of_the_law(horizon: int) -> None:
-    rows, factor = ROD.bond_rows(horizon)
+    rows = ROD.bond_rows(horizon)
 
-    assert factor.tolist() == (horizon - 1) * [1.0] + [0.5]
+    assert rows.shape == (horizon, COUNT)
     for p in range(1, horizon + 1):
         # c_m V² w/(pΔx) with c_m = 2E/(A m²Δx²): 2w/(m²p) of a spring, half of that at each end
-        stiffness = WHOLE * 2.0 * factor[p - 1] / (horizon**2 * p)
+        w = 0.5 if p == horizon else 1.0
+        stiffness = WHOLE * 2.0 * w / (horizon**2 * p)
         halves = np.ones(COUNT - p)
         halves[[0, -1]] = 0.5
         np.testing.assert_allclose(rows[p - 1, : COUNT - p], stiffness * halves, rtol=8 * EPS)
@@ -179,17 +180,19 @@ def test_stiffness_is_that_of_all_pairs(zones: list[tuple[int, int]]) -> None:
         np.testing.assert_allclose(band[: COUNT - d], np.diag(dense, -d), atol=16 * EPS * WHOLE)
 
 
-def test_breaking_springs_takes_half_of_their_force_times_elongation_before() -> None:
-    bonds = Bonds(ROD, 0)
-    u, before = pulled(5, 9, elongation=1.5 * LIMIT), pulled(5, 9, elongation=0.5 * LIMIT)
-    lost = bonds.break_springs(u, before, step=12)
+@pytest.mark.parametrize("horizon", [0, 3])
+def test_springs_that_ask_no_more_break_at_the_critical_stretch(horizon: int) -> None:
+    bonds = Bonds(ROD, horizon, ask_at=0.8)
+    u = pulled(7, elongation=2.0 * LIMIT)
+    assert bonds.asking(u).tolist() == [7]
+    bonds.stop_asking()
 
-    assert lost == pytest.approx(2 * 0.5 * WHOLE * 1.5 * LIMIT * 0.5 * LIMIT, rel=8 * EPS * COUNT)
-    assert np.flatnonzero(bonds.spring == 0.0).tolist() == [5, 9]
-    assert bonds.spring_broken[[5, 6, 9]].tolist() == [12, -1, 12]
     assert bonds.asking(u).size == 0
-    assert bonds.break_springs(u, before, step=13) == 0.0
-    assert bonds.spring_broken[5] == 12
+    assert np.array_equal(bonds.spring_limit, np.full(40, LIMIT))
+    # the kernel has to look at each of them: no node is plain any more
+    plain, mixed = ranges(bonds, supported=[])
+    assert plain.size == 0
+    assert mixed.tolist() == [[0, COUNT, 0, 1]]
 
 
 def broken_at(bonds: Bonds, plane: int, step: int) -> Bonds:

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from dembound.plot.gauge import plot_gauge
-from dembound.spalling import Gauge, evaluate
+from dembound.readings import Gauge
+from dembound.spalling import evaluate
 
 
 @pytest.fixture
@@ -37,11 +38,11 @@ def test_a_spalled_bar_shows_the_stress_near_its_end(gauge):
     for line in lines:
         assert (line.get_xdata()[0], line.get_xdata()[-1]) == (0.6, 0.99)
         assert line.get_ydata()[-1] == pytest.approx(0.0, abs=1e-12)  # the end is free
-    assert mark.get_data() == (pytest.approx([0.9]), pytest.approx([found.spall.nominal / 1e6]))
+    assert mark.get_data() == (pytest.approx([0.9]), pytest.approx([found.strength.nominal / 1e6]))
     # the fourth line is that of the time of the largest tension, which stands in it, between two of its points
     through = np.interp(0.9, *lines[3].get_data())
     between = (0.99 - 0.6) / 499 / 2740.0 / 40e-6  # the steeper side of the pulse over the way from point to point
-    assert through == pytest.approx(found.spall.nominal / 1e6, abs=between)
+    assert through == pytest.approx(found.strength.nominal / 1e6, abs=between)
     assert panel.get_xlabel() == "distance from the loaded end (m)"
 
 

@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from dembound.banded import is_stable, largest_stable_step
+from dembound.bar.banded import is_stable, largest_stable_step
 from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
 from dembound.case import BarCase
 from dembound.kernels import tables
@@ -28,6 +29,8 @@ class BarScene:
     edges : the two ends, left and right; what a node stands for there, its "diameter", is the section.
     supports : the table of what pushes from outside, loads included.
     monitors : name -> node.
+    kind, energy_unit, record_width, block : see scene.Scene; stress is the seventh column, and blocks are long, as
+        steps are short.
     """
 
     case: BarCase
@@ -37,10 +40,29 @@ class BarScene:
     supports: Supports
     monitors: Mapping[str, int]
 
+    kind = "bar"
+    energy_unit = "J"
+    record_width = 7
+    block = 2048
+    threads = 1
     damp = 0.0
     seam = None
-    threads = 1
     remembers = False
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What a record's header has beside that of every run: kg/m³, m², and the end that is loaded."""
+        return {"density": self.case.bar.density, "section": self.rod.section, "loaded": self.case.loaded}
+
+    @property
+    def columns(self) -> dict[str, tuple[np.ndarray, str]]:
+        """What a record keeps of every node, by name: values (n, …) and unit."""
+        return {"position": (self.positions, "m"), "volume": (self.rod.volumes, "m³")}
+
+    @property
+    def places(self) -> dict[str, tuple[float, float]]:
+        """Where monitors were wanted, m."""
+        return {monitor.name: (monitor.position, 0.0) for monitor in self.case.monitor}
 
     @property
     def count(self) -> int:

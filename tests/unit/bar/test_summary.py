@@ -7,9 +7,9 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.bar import build_bar
-from dembound.bar_summary import describe_bar, describe_end, summarise_bar
-from dembound.fracture import spalls
+from dembound.bar.fracture import spalls
+from dembound.bar.scene import build_bar
+from dembound.bar.summary import describe_bar, describe_end, summarise_bar
 from dembound.peaks import first_fall
 from dembound.record import Recorder
 from dembound.run import plan

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from dembound.bar import BarScene
+from dembound.bar.scene import BarScene
 from dembound.contacts import Cracks
+from dembound.engine import Engine
 from dembound.errors import RunError
 from dembound.kernels import bar
 from dembound.kernels.tables import BarBonds, Body, Log, Supports
@@ -15,17 +16,14 @@ SWING = 1e-6
 """The same of a kinetic energy, in which a node with a prescribed velocity may swing a little beyond the bound."""
 
 
-class BarEngine:
+class BarEngine(Engine):
     """Moves a bar, and lets its method answer.
 
     Attributes
     ----------
     bonds : springs and bonds as they are now.
     bond_updates : forces of springs and bonds computed so far.
-    ended : never; a bar's engine serves to the end.
     """
-
-    ended = False
 
     def __init__(self, scene: BarScene, time_step: float) -> None:
         self.scene = scene
@@ -64,10 +62,9 @@ class BarEngine:
     def _answer(self, u: np.ndarray, before: np.ndarray, step: int, log: Log) -> None:
         """Let the method answer at displacements u (n,), those a step ago being `before`, and enter what that did."""
         stored, alive = self._between(u, before), self.bonds.alive
-        lost, self.name = self.scene.case.method.answer(self.bonds, u, before, step)
+        self.name = self.scene.case.method.answer(self.bonds, u)
         self._arrays = self._lay()
-        log.work[:, 3] += lost
-        log.work[:, 4] += self._between(u, before) + lost - stored
+        log.work[:, 4] += self._between(u, before) - stored
         if self.bonds.alive > alive and not self._is_stable():
             limit = self.scene.stable_step(self.bonds)
             raise RunError(
@@ -106,6 +103,10 @@ class BarEngine:
         self._told = steps
         middle = self.scene.positions[pair].mean(axis=1)
         return Cracks(step, pair, middle, np.zeros(len(step), dtype=np.bool_))
+
+    def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
+        """Stress, tension positive, and local damage of every node."""
+        return {"stress": (self.stress(displacement), "Pa"), "damage": (self.bonds.damage(), "1")}
 
     def stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (n,) Pa along the bar at displacements (3, n), tension positive."""

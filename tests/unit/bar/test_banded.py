@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.banded import is_stable, largest_stable_step
+from dembound.bar.banded import is_stable, largest_stable_step
 
 NOBODY = np.zeros(0, dtype=np.int64)
 ROUNDING = 1e-13

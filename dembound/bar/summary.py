@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from dembound.bar import BarScene
-from dembound.bar_engine import BarEngine
+from dembound.bar.engine import BarEngine
+from dembound.bar.fracture import spalls
+from dembound.bar.scene import BarScene
 from dembound.boundaries.viscous import Dashpots
-from dembound.fracture import spalls
-from dembound.peaks import first_fall
+from dembound.gauges import pull_back_strength
 from dembound.results import open_record
 from dembound.simulate import Simulation
 
@@ -70,7 +70,7 @@ def _largest_stresses(record: Path) -> dict[str, dict[str, float]]:
 
 
 def _pull_backs(scene: BarScene, record: Path) -> dict[str, float]:
-    """Spall strength ½ρcΔV (Pa) from the velocity of every monitor at a free end, where it falls and rises again.
+    """Pull-back strength (Pa) from the velocity of every monitor at a free end, where it falls and rises again.
 
     An end under load moves as that has it.
     """
@@ -80,5 +80,6 @@ def _pull_backs(scene: BarScene, record: Path) -> dict[str, float]:
     ends = {name: outwards[node] for name, node in scene.monitors.items() if node in outwards}
     bar = scene.case.bar
     with open_record(record) as file:
-        falls = {name: first_fall(sign * file[f"histories/{name}/velocity"][:, 0]) for name, sign in ends.items()}
-    return {name: 0.5 * bar.density * bar.speed * fall for name, fall in falls.items() if not np.isnan(fall)}
+        velocities = {name: sign * file[f"histories/{name}/velocity"][:, 0] for name, sign in ends.items()}
+    found = {name: pull_back_strength(each, bar.density, bar.speed) for name, each in velocities.items()}
+    return {name: strength for name, strength in found.items() if not np.isnan(strength)}

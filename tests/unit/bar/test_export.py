@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import pyvista
 
+from dembound.bar.export import broken_across
 from dembound.export import write_vtu
-from dembound.export_bar import broken_across
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def test_lines_join_neighbours_and_know_how_many_bonds_across_them_have_broken(s
             np.testing.assert_array_equal(mesh.cell_connectivity.reshape(-1, 2), [[k, k + 1] for k in range(40)])
             broken = pairs[times <= snapshot.attrs["time"]]
             counted = [sum(first <= k < last for first, last in broken) for k in range(40)]
-            np.testing.assert_array_equal(mesh.cell_data["broken"], counted)
+            np.testing.assert_array_equal(mesh.cell_data["brokenBonds"], counted)
             totals.append(sum(counted))
     assert totals[0] == 0 < totals[-1]
 

@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.bar import BarScene, build_bar
-from dembound.body import build_body
+from dembound.bar.scene import BarScene, build_bar
 from dembound.exact.dispersion import courant_limit
-from dembound.scene import Scene
 
 EPS = np.finfo(float).eps
 LINE = {"bar.diameter": 0.2, "load": []}
@@ -144,8 +142,3 @@ def test_bytes_grow_with_nodes_and_horizon(spalling) -> None:
 
     assert fine.bytes / small.bytes == pytest.approx(81 / 41, rel=1e-12)
     assert wide.bytes > small.bytes > small.count * 8 * 9
-
-
-def test_a_body_is_a_bar_or_disks(spalling, bar) -> None:
-    assert isinstance(build_body(spalling()), BarScene)
-    assert isinstance(build_body(bar()), Scene)

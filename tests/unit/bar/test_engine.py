@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from dembound.bar import build_bar
-from dembound.bar_engine import BarEngine
+from dembound.bar.engine import BarEngine
+from dembound.bar.scene import build_bar
 from dembound.energy import Ledger
 from dembound.errors import RunError
+from dembound.methods import FiniteDifference
 from dembound.simulate import Simulation
 
 EPS = np.finfo(float).eps
@@ -97,6 +98,29 @@ def test_breaking_and_changes_of_method_close_the_books(simulation, method: dict
     assert last.crack > 1e-6 * came_in
     # bonds of three spacings store another energy than springs in a wave that is not uniform
     assert (abs(last.handover) > 1e-6 * came_in) == (method["type"] in ("switch", "patch"))
+
+
+def test_finite_differences_answer_once_then_springs_break_by_themselves(simulation, monkeypatch) -> None:
+    answers = []
+    answer = FiniteDifference.answer
+    monkeypatch.setattr(FiniteDifference, "answer", lambda self, *state: answers.append(1) or answer(self, *state))
+    # three times the strength and a little, of which three spalls come
+    load = {"name": "hit", "pressure": 25e6, "nodes": 3, "wave": "hit"}
+    run = simulation(method=METHODS["finite_difference"], load=[load])
+    ledger, bonds = Ledger(run), run.engine.bonds
+    limit = 8e6 / 2.5e9 * 0.025
+    for step in range(70):
+        due = (bonds.spring > 0.0) & (np.diff(run.displacement[0]) >= limit)
+        ledger.step()
+        assert np.array_equal(bonds.spring_broken == step, due)
+
+    assert len(np.unique(bonds.spring_broken)) > 3
+    assert len(answers) == 1
+    # 70 steps of sums over 41 nodes
+    came_in = max(entry.outside for entry in ledger.entries)
+    assert max(abs(entry.error) for entry in ledger.entries) < 70 * 41 * EPS * came_in
+    assert ledger.entries[-1].crack > 1e-6 * came_in
+    assert ledger.entries[-1].handover == 0.0
 
 
 def test_every_break_is_told_once(simulation, method: dict) -> None:

@@ -12,7 +12,7 @@ Every node stands at its reference position moved by its displacement (y = z = 0
 | ``damage`` | 1 | (n,) | local damage φ, 0 whole to 1 cut off (L eq. 7) |
 | ``peakVelocity`` | m/s | (n,) | largest speed in the whole run, in every file; if the case asks for it |
 
-Every line has the cell data ``broken`` (n − 1,): bonds across it that have broken so far.
+Every line has the cell data ``brokenBonds`` (n − 1,): how many bonds across it have broken so far.
 
 To see a bar in ParaView, run ``paraview --script=view.py`` in the folder, or open ``bar.pvd``, press Apply and choose
 an array to colour by. A bar is thin: *Warp By Scalar* with ``stress`` and the normal (0, 1, 0) draws it as a curve.
@@ -64,7 +64,7 @@ def bar_mesh(particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.n
         data["peakVelocity"] = particles["peak_velocity"][:]
     lines = np.stack([np.arange(count - 1), np.arange(1, count)], axis=1)
     broken = broken_across(cracks["particles"], count)
-    return meshio.Mesh(places + displacement, [("line", lines)], point_data=data, cell_data={"broken": [broken]})
+    return meshio.Mesh(places + displacement, [("line", lines)], point_data=data, cell_data={"brokenBonds": [broken]})
 
 
 def broken_across(pairs: np.ndarray, count: int) -> np.ndarray:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.fracture import Spall, cracked_since, spalls
+from dembound.bar.fracture import Spall, cracked_since, spalls
 from dembound.methods.bonds import Bonds, Rod
 
 COUNT, SPACING, STEP = 41, 0.25, 1e-3

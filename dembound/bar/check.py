@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from dembound.bar import BarScene
-from dembound.bar_summary import describe_bar, describe_end
+from dembound.bar.scene import BarScene
+from dembound.bar.summary import describe_bar, describe_end
+from dembound.boundaries.driven import Driven
 from dembound.boundaries.viscous import Dashpots
 from dembound.case import BarCase
 from dembound.case.bar import Bar
@@ -33,8 +34,10 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
     for side in scene.edges:
         facts[f"{side} end"] = str(describe_end(scene, side)["type"])
     for load in case.load:
+        largest = abs(load.pressure) * case.wave[load.wave].peak()
         facts[f"load {load.name}"] = (
-            f"{load.pressure / 1e6:.4g} MPa times wave {load.wave} on {load.nodes} node(s) at the {load.side} end"
+            f"up to {largest / 1e6:.4g} MPa, {load.pressure:.4g} Pa times wave {load.wave}, "
+            f"on {load.nodes} node(s) at the {load.side} end"
         )
     for name, node in scene.monitors.items():
         facts[f"monitor {name}"] = f"node {node} at {scene.positions[node, 0]:.4g} m"
@@ -61,7 +64,7 @@ def _strength_in_words(bar: Bar) -> str:
 
 def bar_warnings(case: BarCase, time_step: float) -> list[str]:
     """Waves too short for the nodes, and dashpots at ends too soft for them."""
-    finer = "" if case.method.largest_horizon == 1 else " or method.horizon"
+    finer = "" if case.method.carrying_horizon == 1 else " or method.horizon"
     warnings = [
         f"wave.{name}: has {cells:.3g} cells in its shortest wavelength, fewer than the {needed:.3g} that keep "
         f"the error of its speed under {PERCENT}; take a smaller bar.spacing{finer}"
@@ -79,18 +82,22 @@ def bar_warnings(case: BarCase, time_step: float) -> list[str]:
 
 
 def cells_of_waves(case: BarCase, time_step: float) -> dict[str, tuple[float, float]]:
-    """Of every wave the cells in its shortest wavelength, and how many the method needs for no more than ERROR.
+    """Of every wave in use the cells in its shortest wavelength, and how many keep the error of its speed below ERROR.
 
     The shortest wavelength is that of the wave's highest frequency.
     """
-    horizon = case.method.largest_horizon
+    horizon = case.method.carrying_horizon
     courant = min(_courant(case, time_step), courant_limit(horizon))
     needed = cells_per_wavelength(horizon, courant, ERROR)
     spacing = case.bar.length / case.bar.cells
-    return {
-        name: (case.bar.speed / (wave.highest_frequency() * spacing) if wave.highest_frequency() else np.inf, needed)
-        for name, wave in case.wave.items()
-    }
+    fading = {name: wave.highest_frequency() for name, wave in case.wave.items() if name in _waves_used(case)}
+    return {name: (case.bar.speed / (f * spacing) if f > 0.0 else np.inf, needed) for name, f in fading.items()}
+
+
+def _waves_used(case: BarCase) -> set[str | None]:
+    """Names of the waves that load the bar or enter at its ends."""
+    driven = [end for end in case.boundary.values() if isinstance(end, Driven)]
+    return {load.wave for load in case.load} | {end.wave_p for end in driven}
 
 
 def _courant(case: BarCase, time_step: float) -> float:

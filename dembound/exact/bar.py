@@ -1,0 +1,80 @@
+"""A pressure pulse in a bar, and where it breaks the far end off: d'Alembert's solution (L section 3.2).
+
+Both ends return a wave, so what a pulse p(t) on the end x = 0 does at x is a sum over its passages there, the k-th after
+a way w_k = kL + x or kL + L − x for even and odd k. A wave to the right has the stress −p and the velocity p/(ρc), one to
+the left −p and −p/(ρc). A free end returns pressure as tension, a fixed one as pressure; beside its own load the end
+x = 0 is a free one.
+
+Where a triangle first reaches the strength σ_t = s p_m: behind the reflected crest, at a distance d
+from the free end, the incident pulse has fallen by p_m·2d/(c t_f), which is the tension there. So a pulse that falls as
+slowly as it rises, t_f ≥ t_r, breaks the bar when its crest is at
+
+    d = ½ c t_f s,    t = t_r + (L + d)/c .
+
+One that falls faster leaves more tension ahead of the reflected crest than behind: its foot, as the tail of the incident
+pulse runs off, has p_m τ/t_r after τ, and the strength is first met τ = s t_r behind the front, where
+
+    d = ½ c (t_r + t_f − s t_r),    t = s t_r + (L + d)/c .
+"""
+
+from collections.abc import Callable, Iterator
+from typing import Literal
+
+import numpy as np
+
+End = Literal["free", "fixed"]
+Pulse = Callable[[np.ndarray], np.ndarray]
+
+
+def bar_stress(
+    place: float, time: np.ndarray, pressure: Pulse, length: float, speed: float, far_end: End = "free"
+) -> np.ndarray:
+    """Stress (k,) Pa, tension positive, at a place (m) of a bar and at times (k,) s.
+
+    pressure: Pa on the end x = 0 at times in s, nothing before 0; length m of the bar; speed m/s of its waves. The end
+    x = length is free or fixed.
+    """
+    far = -1.0 if far_end == "free" else 1.0
+    stress = np.zeros_like(time)
+    for turn, way in _passages(place, length, time.max() * speed):
+        stress -= far ** ((turn + 1) // 2) * (-1.0) ** (turn // 2) * pressure(time - way / speed)
+    return stress
+
+
+def bar_velocity(
+    place: float,
+    time: np.ndarray,
+    pressure: Pulse,
+    length: float,
+    speed: float,
+    impedance: float,
+    far_end: End = "free",
+) -> np.ndarray:
+    """Velocity (k,) m/s, positive away from the loaded end, for an impedance ρc in Pa·s/m; the rest as `bar_stress`."""
+    far = 1.0 if far_end == "free" else -1.0
+    velocity = np.zeros_like(time)
+    for turn, way in _passages(place, length, time.max() * speed):
+        velocity += far ** ((turn + 1) // 2) * pressure(time - way / speed) / impedance
+    return velocity
+
+
+def triangle_spall(
+    length: float, speed: float, rise: float, fall: float, crest: float, strength: float
+) -> tuple[float, float]:
+    """Where (m) and when (s) a bar with a free end x = length first breaks under a triangular pulse on x = 0.
+
+    length m, longer than the pulse; speed m/s of waves; the pulse rises from t = 0 for `rise` s to `crest` Pa and falls
+    for `fall` s; strength Pa. Raises ValueError where the strength exceeds the crest: the bar stays whole.
+    """
+    if not 0.0 < strength <= crest:
+        raise ValueError(f"strength ({strength:g} Pa) must be positive and at most the crest ({crest:g} Pa)")
+    share = strength / crest
+    behind, after = (share * fall, rise) if fall >= rise else (rise + fall - share * rise, share * rise)
+    distance = 0.5 * speed * behind
+    return length - distance, after + (length + distance) / speed
+
+
+def _passages(place: float, length: float, longest: float) -> Iterator[tuple[int, float]]:
+    """Number of ends met and way (m) from x = 0 of each passage at a place, up to the longest way that counts."""
+    for turn in range(int(longest / length) + 1):
+        yield turn, turn * length + (place if turn % 2 == 0 else length - place)
