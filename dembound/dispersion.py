@@ -10,8 +10,9 @@ import tomli_w
 
 from dembound.bar.scene import BarScene, build_bar
 from dembound.case import BarCase, Case, loads
+from dembound.case.bar import LARGEST, SMALLEST
 from dembound.errors import CaseError
-from dembound.exact.dispersion import Lattice
+from dembound.exact.dispersion import Lattice, courant_limit
 from dembound.methods.bonds import Bonds
 from dembound.results import replacing
 from dembound.run import plan
@@ -45,24 +46,27 @@ def lattices(
 ) -> list[Lattice]:
     """Rows of nodes with all combinations of horizons, spacings (m) and time steps (s).
 
-    Raises CaseError, as the options of the command line, for a number that makes no sense.
+    Raises CaseError, as the options of the command line, for a number that makes no sense and if no lattice is stable.
     """
-    tiny = np.finfo(float).tiny
     limits = (
-        ("horizon", horizons, 1, WIDEST, f"1 to {WIDEST}"),
-        ("spacing", spacings, tiny, np.finfo(float).max, "finite and above 0 m"),
-        ("time-step", time_steps, 0.0, np.finfo(float).max, "finite and at least 0 s"),
-        ("wave-speed", [wave_speed], tiny, np.finfo(float).max, "finite and above 0 m/s"),
+        ("horizon", horizons, 1, WIDEST, ""),
+        ("spacing", spacings, SMALLEST, LARGEST, " m"),
+        ("time-step", time_steps, 0.0, LARGEST, " s"),
+        ("wave-speed", [wave_speed], SMALLEST**0.5, LARGEST**0.5, " m/s"),
     )
     problems = [
-        f"--{option}: is {value:g}, must be {allowed}"
-        for option, values, least, most, allowed in limits
+        f"--{option}: is {value:g}, must be {least:g} to {most:g}{unit}"
+        for option, values, least, most, unit in limits
         for value in values
         if not least <= value <= most
     ]
     if problems:
         raise CaseError(problems)
-    return [Lattice(*numbers, wave_speed) for numbers in product(horizons, spacings, time_steps)]
+    made = [Lattice(*numbers, wave_speed) for numbers in product(horizons, spacings, time_steps)]
+    if not any(lattice.stable for lattice in made):
+        limit = max(courant_limit(lattice.horizon) * lattice.spacing / wave_speed for lattice in made)
+        raise CaseError([f"--time-step: is {min(time_steps):g} s, must not be above the stability limit {limit:.6g} s"])
+    return made
 
 
 def lattices_of(case: Case) -> list[Lattice]:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.peaks import Peaks, first_fall, positive_peaks, quietened
+from dembound.peaks import SMALLEST, Peaks, first_fall, positive_peaks, quietened
 
 ONSET = 0.01
 """Share of its largest compression at which a pulse begins."""
@@ -33,12 +33,16 @@ class Estimate(NamedTuple):
 def tension_peaks(time: np.ndarray, stress: np.ndarray, count: int | None = None) -> Peaks:
     """Successive tension peaks at a gauge between free ends, 2L/c apart; how they are found says `positive_peaks`.
 
+    Where all tension is less than `SMALLEST` of the compression, it is what rings behind a pulse that has not returned,
+    and no peak.
+
     Parameters
     ----------
     time, stress : (k,) s, evenly spaced, and any unit.
     count : keep the first ones only; all by default.
     """
-    return positive_peaks(time, stress, count)
+    rings = stress.max() < SMALLEST * np.abs(stress).max()
+    return positive_peaks(time, stress, 0 if rings else count)
 
 
 def wave_speed(peak_times: np.ndarray, length: float, weights: np.ndarray | None = None) -> Estimate:
@@ -53,6 +57,8 @@ def wave_speed(peak_times: np.ndarray, length: float, weights: np.ndarray | None
 
     Raises CaseError for fewer than two times.
     """
+    if len(peak_times) < 2:
+        raise CaseError([f"--wave-speed: takes two tension peaks to be estimated, {len(peak_times)} found; give it"])
     weights = np.ones(len(peak_times)) if weights is None else weights
     spacing = _slope(np.arange(len(peak_times)), peak_times, weights)
     speed = 2.0 * length / spacing.value
@@ -66,11 +72,10 @@ def attenuation(peak_times: np.ndarray, peak_heights: np.ndarray, speed: float) 
 
     Parameters
     ----------
-    peak_times : (k,) s.
+    peak_times : (k,) s, two or more.
     peak_heights : (k,) in any unit, positive.
     speed : c, m/s.
 
-    Raises CaseError for fewer than two peaks.
     """
     slope = _slope(speed * peak_times, np.log(peak_heights), peak_heights)
     return slope._replace(value=-slope.value)
@@ -93,18 +98,17 @@ def incident_pulse(
     """
     largest = -stress.min()
     if not largest > 0.0:
-        raise CaseError(["stress: is nowhere compressive, must be negative in compression"])
-    risen = int(np.argmax(stress < -0.5 * largest))
+        raise CaseError(["--scale: leaves no compression, which must be negative; a negative scale turns the sign"])
+    begun, risen = _rise(-stress)
     if end is None:
-        quiet = np.flatnonzero(stress[:risen] > -ONSET * largest)
-        end = float(time[quiet[-1] + 1 if len(quiet) else 0]) + 2.0 * (length - gauge) / speed
+        end = float(time[begun]) + 2.0 * (length - gauge) / speed
         if end < time[risen] or abs(np.interp(end, time, stress)) > ENDED * largest:
-            raise CaseError(["stress: the pulse goes on when its reflection is back at the gauge, give --pulse-end"])
+            raise CaseError(["--pulse-end: give it, the pulse goes on when its reflection is back at the gauge"])
     elif not end > time[risen]:
         raise CaseError([f"--pulse-end: is {end:g} s, must be after {time[risen]:g} s, when the pulse is half risen"])
     count = int(np.searchsorted(time, end, side="right"))
     if count < FEWEST:
-        raise CaseError([f"stress: has {count} samples of the incident pulse, must have three or more"])
+        raise CaseError([f"--pulse-end: leaves {count} samples of the incident pulse, must leave three or more"])
     return time[:count], quietened(stress[:count])
 
 
@@ -155,27 +159,40 @@ def attenuated_strength(nominal: float, coefficient: float, distance: float) -> 
     return float(nominal * np.exp(-coefficient * distance))
 
 
-def pull_back_strength(free_end_velocity: np.ndarray, density: float, speed: float) -> float:
+def pull_back_strength(time: np.ndarray, velocity: np.ndarray, density: float, speed: float, length: float) -> float:
     """Spall strength ½ρcΔV in Pa, ΔV the free end's fall from its first fastest to its next slowest (Novikov).
+
+    Only the pulse's first arrival counts: a whole bar's end comes to rest and moves on when the pulse is back, 2L/c
+    after it came.
 
     Parameters
     ----------
-    free_end_velocity : (k,) m/s, positive outwards, evenly sampled.
-    density, speed : kg/m³ and m/s.
+    time, velocity : (k,) of the free end, s, evenly spaced, and m/s, positive outwards.
+    density, speed, length : kg/m³, c in m/s, and L of the bar in m.
 
     Is nan where the velocity has no maximum with a minimum after it.
     """
-    return 0.5 * density * speed * first_fall(free_end_velocity)
+    if not velocity.max() > 0.0:
+        return np.nan
+    begun, _ = _rise(velocity)
+    end = int(np.searchsorted(time, time[begun] + 2.0 * length / speed))
+    return 0.5 * density * speed * first_fall(velocity[begun:end]) if end - begun >= FEWEST else np.nan
 
 
 def _slope(x: np.ndarray, y: np.ndarray, weights: np.ndarray) -> Estimate:
     """Slope of the straight line through points (k,) by least squares, each deviation times its weight."""
-    if len(x) < 2:
-        raise CaseError([f"peaks: {len(x)} found in tension, must be two or more"])
     if len(x) == 2:
         return Estimate(float((y[1] - y[0]) / (x[1] - x[0])), points=2)
     (slope, _), covariance = np.polyfit(x, y, 1, w=weights, cov=True)
     return Estimate(float(slope), float(np.sqrt(covariance[0, 0])), len(x))
+
+
+def _rise(values: np.ndarray) -> tuple[int, int]:
+    """Where a history (k,), positive somewhere, begins to rise to half its largest value, and where it is there."""
+    largest = values.max()
+    risen = int(np.argmax(values > 0.5 * largest))
+    quiet = np.flatnonzero(values[:risen] < ONSET * largest)
+    return (int(quiet[-1]) + 1 if len(quiet) else 0), risen
 
 
 def _delays(gauge: float, length: float, speed: float, position: Any) -> tuple[Any, Any]:

@@ -3,7 +3,8 @@
 Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset of numbers)::
 
     /                       attributes: case, name, kind ("disks", "bar"), version, size, time_step, step_limit, steps,
-                            complete; of disks seed, of a bar density, section and loaded, the end that is
+                            complete; of disks seed, of a bar density, section, wave_speed, attenuation, loaded,
+                            the end that is, and ends, the types of the left and the right one
     particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
                             of a bar's nodes volume (n,); if the case asks for it peak_velocity (n,), the largest speed
                             of each in the whole run

@@ -1,5 +1,6 @@
 """Result files: opening records, and writing what is made of them whole or not at all."""
 
+import errno
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -110,9 +111,19 @@ def record_names(paths: Sequence[Path]) -> list[str]:
     ]
 
 
+def require_folder(path: Path) -> None:
+    """Raise FileNotFoundError, which names the folder, where the one that `path` is to be in is not there."""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(path.parent))
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Give a neighbouring path to write to, which takes the place of `path` when all went well."""
+    """Give a neighbouring path to write to, which takes the place of `path` when all went well.
+
+    Raises FileNotFoundError as `require_folder`.
+    """
+    require_folder(path)
     part = path.with_name(f"{path.name}.part")
     try:
         yield part

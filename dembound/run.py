@@ -112,14 +112,21 @@ def run_case(case: Case, results: Path, progress: Progress | None = None) -> Pat
     (partial / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
     write_vtu(partial / "run.h5", partial / "paraview")
     if case.output.pictures:
-        picture = plot_bar if isinstance(planned.scene, BarScene) else plot_scene
-        save(picture(partial / "run.h5"), partial / "scene.png")
-        if case.monitor:
-            save(plot_histories([partial / "run.h5"]), partial / "histories.png")
+        _draw(planned, partial)
     if folder.exists():
         shutil.rmtree(folder)
     partial.rename(folder)
     return folder
+
+
+def _draw(planned: Plan, folder: Path) -> None:
+    """The pictures of a run beside its record: the scene and the monitors' velocities, of bars their stresses, too."""
+    record, bar = folder / "run.h5", isinstance(planned.scene, BarScene)
+    save(plot_bar(record) if bar else plot_scene(record), folder / "scene.png")
+    if planned.scene.case.monitor:
+        save(plot_histories([record]), folder / "histories.png")
+        if bar:
+            save(plot_histories([record], quantity="stress"), folder / "histories_stress.png")
 
 
 def _must_be_replaceable(folder: Path) -> None:

@@ -22,6 +22,9 @@ DRIVEN_BYTES = 64e6
 RUNAWAY = 1e4
 """A particle this many times as fast as all waves together has left physics: resonance gives factors of ten."""
 
+FASTEST = 1e100
+"""Speed (m/s) beyond which energies come near the end of what numbers can say, 1e308 J."""
+
 
 @dataclass(frozen=True)
 class Start:
@@ -227,15 +230,15 @@ class Simulation:
             place = self.scene.positions[where]
             raise RunError(
                 f"the motion grew without bound: at t = {self.time:g} s near ({place[0]:g}, {place[1]:g}) m; "
-                "take a smaller run.time_step, run.safety or, of a bar, run.courant"
+                "take a smaller run.time_step, run.safety or, of a bar, run.courant, or smaller waves and loads"
             )
 
 
 def _runaway_speed(scene: AnyScene) -> float:
-    """Speed (m/s) that no particle can have; without a limit where more than waves moves them."""
+    """Speed (m/s) that no particle can have; where more than waves moves them, that of the largest numbers."""
     waves = sum(wave.peak() for wave in scene.case.wave.values())
     free = scene.case.load or scene.remembers
-    return RUNAWAY * waves if waves and not free else float(np.finfo(float).max)
+    return min(RUNAWAY * waves, FASTEST) if waves and not free else FASTEST
 
 
 class NodeSupports:

@@ -10,9 +10,8 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from records import MEGA, MILLI, case_of, damage_at_first_spall, first_spall, stress_along
+from records import MEGA, MILLI, case_of, draw_damage, first_spall, stress_along
 
-from dembound.laws.peridynamic import CRACKED
 from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, save, styled
 
 BEFORE = (36, 27, 18, 9, 0)
@@ -22,28 +21,22 @@ BEFORE = (36, 27, 18, 9, 0)
 @styled
 def figure_8(results: Path) -> Figure:
     """Both parts, one above the other."""
-    figure = new_figure(8.5, 7.5)
-    damage, stress = figure.subplots(2, 1)
-    for number in range(1, 8):
-        _draw_damage(damage, results / f"table1_row{number}", number)
-    damage.axhline(CRACKED, color=REFERENCE, linewidth=1.0, zorder=1, label="a crack")
-    damage.set_xlim(0.78, 1.0)
-    damage.set_ylim(0.0, 1.0)
-    damage.set_ylabel("local damage φ (–)")
-    damage.legend(fontsize=8.0, loc="center", bbox_to_anchor=(0.33, 0.5))
-    _draw_stress(stress, results / "table1_row1")
+    figure = new_figure(8.5, 9.5)
+    damage, stress = figure.subplots(2, 1, height_ratios=[5, 4])
+    runs = [results / f"table1_row{number}" for number in range(1, 8)]
+    draw_damage(damage, [(f"{number}: {_describe(run)}", run) for number, run in enumerate(runs, start=1)])
+    damage.set_xlim(0.80, 0.94)
+    damage.set_title("local damage of each row at its first spall, from 0 to 1")
+    damage.legend(fontsize=8.0, loc="upper left")
+    _draw_stress(stress, runs[0])
     return figure
 
 
-def _draw_damage(panel: Axes, run: Path, number: int) -> None:
-    """Damage of a row of table 1 at its first spall."""
-    time = first_spall(run)["time"]
+def _describe(run: Path) -> str:
+    """A row of table 1 in words: what sets it apart, and when it spalls."""
     case = case_of(run)
-    x, damage = damage_at_first_spall(run)
-    label = f"{number}: m = {case.method.largest_horizon}, Δx = {case.bar.spacing / MILLI:g} mm, {time / MILLI:.4f} ms"
-    style = line_style(number - 1)
-    panel.plot(x[damage > 0], damage[damage > 0], marker=".", label=label, **style)
-    panel.set_xlabel("x (m)")
+    sizes = f"m = {case.method.largest_horizon}, Δx = {case.bar.spacing / MILLI:g} mm"
+    return f"{sizes}\n{first_spall(run)['time'] / MILLI:.4f} ms"
 
 
 def _draw_stress(panel: Axes, run: Path) -> None:

@@ -7,13 +7,19 @@ from typing import Any
 
 import h5py
 import numpy as np
+from matplotlib.axes import Axes
 
 from dembound.case import BarCase, loads
 from dembound.exact import triangle_spall
+from dembound.laws.peridynamic import CRACKED
+from dembound.plot.style import COLOURS, REFERENCE
 from dembound.run import plan
 from dembound.simulate import Simulation
 
 MILLI, MEGA = 1e-3, 1e6
+
+ROW = 1.25
+"""From one row of damage to the next; damage itself is 1 high."""
 
 
 def summary_of(run: Path) -> dict[str, Any]:
@@ -55,6 +61,21 @@ def damage_at_first_spall(run: Path) -> tuple[np.ndarray, np.ndarray]:
     simulation = Simulation(planned.scene, planned.time_step, np.zeros(0))
     simulation.run(step + 1)
     return planned.scene.positions[:, 0], simulation.engine.bonds.damage(step)
+
+
+def draw_damage(panel: Axes, runs: Sequence[tuple[str, Path]]) -> None:
+    """Damage of named runs, each at its first spall, in rows one below the other with the line that is a crack."""
+    for index, (_, run) in enumerate(runs):
+        x, damage = damage_at_first_spall(run)
+        base, colour = -ROW * index, COLOURS[index % len(COLOURS)]
+        panel.fill_between(x, base, base + damage, color=colour, alpha=0.25, linewidth=0.0)
+        panel.plot(x, base + damage, color=colour)
+        panel.plot(x[damage > 0], base + damage[damage > 0], ".", color=colour)
+        label = f"a crack, φ = {CRACKED:g}" if index == 0 else None
+        panel.axhline(base + CRACKED, color=REFERENCE, linewidth=0.8, linestyle="--", zorder=1, label=label)
+    panel.set_yticks([-ROW * index for index in range(len(runs))], [name for name, _ in runs])
+    panel.set_ylim(-ROW * (len(runs) - 1) - 0.3, 1.1)
+    panel.set_xlabel("x (m)")
 
 
 def expected_spall(case: BarCase) -> tuple[float, float]:

@@ -33,16 +33,23 @@ test_bar() { # SPACING TIME_STEP NAME METHOD
         --name "$name" --output "$results"
     runs+=("$results/$name")
 }
-for sizes in "0.01 2e-6" "0.0025 0.5e-6" "0.001 0.2e-6"; do
-    read -r spacing step <<<"$sizes"
-    test_bar "$spacing" "$step" pd3 'type="peridynamics",horizon=3'
-    test_bar "$spacing" "$step" pd1_pd3 'type="switch",horizon=3,before="peridynamics"'
-    test_bar "$spacing" "$step" fdm_pd3 'type="switch",horizon=3'
-    test_bar "$spacing" "$step" patch 'type="patch",horizon=3'
-    test_bar "$spacing" "$step" fdm 'type="finite_difference"'
-done
+test_bars() { # SPACING TIME_STEP
+    test_bar "$1" "$2" pd3 'type="peridynamics",horizon=3'
+    test_bar "$1" "$2" pd1_pd3 'type="switch",horizon=3,before="peridynamics"'
+    test_bar "$1" "$2" fdm_pd3 'type="switch",horizon=3'
+    test_bar "$1" "$2" patch 'type="patch",horizon=3'
+    test_bar "$1" "$2" fdm 'type="finite_difference"'
+}
+test_bars 0.01 2e-6
+test_bars 0.0025 0.5e-6
+test_bars 0.001 0.2e-6
 python3 "$cases/figure12.py" "$figures/fig12_damage.png" "${runs[@]}"
 python3 "$cases/spall_costs.py" "${runs[@]}" | tee "$results/table2.md"
 
 echo "== The same under 36 pulses"
 python3 "$cases/many_pulses.py" "${runs[@]}" | tee "$results/many_pulses.md"
+
+echo "== What the methods cost on 4000 nodes"
+runs=()
+test_bars 0.00025 0.05e-6
+python3 "$cases/spall_costs.py" --repeats 11 "${runs[@]}" | tee "$results/table2_fine.md"

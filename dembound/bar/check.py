@@ -9,12 +9,16 @@ from dembound.boundaries.viscous import Dashpots
 from dembound.case import BarCase
 from dembound.case.bar import Bar
 from dembound.exact.dispersion import cells_per_wavelength, courant_limit
+from dembound.waves import Record
 
 ERROR = 0.01
 """Error of the phase speed that the shortest wavelength may have without a warning."""
 
 PERCENT = f"{100.0 * ERROR:g} %"
 """The same in words."""
+
+LONG = 1000.0
+"""A record this many times as long as the run probably counts its times in microseconds."""
 
 
 def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
@@ -63,13 +67,19 @@ def _strength_in_words(bar: Bar) -> str:
 
 
 def bar_warnings(case: BarCase, time_step: float) -> list[str]:
-    """Waves too short for the nodes, and dashpots at ends too soft for them."""
+    """Waves too short for the nodes, records in another unit, and dashpots at ends too soft for them."""
     finer = "" if case.method.carrying_horizon == 1 else " or method.horizon"
     warnings = [
         f"wave.{name}: has {cells:.3g} cells in its shortest wavelength, fewer than the {needed:.3g} that keep "
         f"the error of its speed under {PERCENT}; take a smaller bar.spacing{finer}"
         for name, (cells, needed) in cells_of_waves(case, time_step).items()
         if cells < needed
+    ]
+    warnings += [
+        f"wave.{name}: its {wave.duration() - wave.start:g} s are longer than the run of {case.run.duration:g} s; "
+        "are its file's times in s?"
+        for name, wave in case.wave.items()
+        if isinstance(wave, Record) and wave.duration() - wave.start > LONG * case.run.duration
     ]
     if getattr(case.method, "corrected_ends", True):
         return warnings

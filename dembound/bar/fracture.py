@@ -1,6 +1,6 @@
 """Where and when a bar came apart, from the steps in which its bonds broke."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -21,8 +21,14 @@ class Spall:
     end: tuple[float, float]
 
     def describe(self) -> dict[str, Any]:
-        """As plain JSON values."""
-        return {key: list(value) if isinstance(value, tuple) else value for key, value in asdict(self).items()}
+        """As plain JSON values to twelve digits; beyond them stands the rounding of steps and spacings."""
+        ranges = {"start": self.start, "end": self.end}
+        return {"time": _short(self.time)} | {key: [_short(x) for x in ends] for key, ends in ranges.items()}
+
+
+def _short(value: float) -> float:
+    """A number to twelve digits."""
+    return float(f"{value:.12g}")
 
 
 def cracked_since(bonds: Bonds) -> np.ndarray:

@@ -51,8 +51,20 @@ class BarScene:
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """What a record's header has beside that of every run: kg/m³, m², and the end that is loaded."""
-        return {"density": self.case.bar.density, "section": self.rod.section, "loaded": self.case.loaded}
+        """What a record's header has beside that of every run.
+
+        Density in kg/m³, section in m², wave speed in m/s, attenuation in 1/m, which end is loaded, and what the left
+        and the right one are.
+        """
+        bar = self.case.bar
+        return {
+            "density": bar.density,
+            "section": self.rod.section,
+            "wave_speed": bar.speed,
+            "attenuation": bar.attenuation,
+            "loaded": self.case.loaded,
+            "ends": [self.case.boundary[side].type if side in self.case.boundary else "free" for side in self.edges],
+        }
 
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:

@@ -80,6 +80,9 @@ def _pull_backs(scene: BarScene, record: Path) -> dict[str, float]:
     ends = {name: outwards[node] for name, node in scene.monitors.items() if node in outwards}
     bar = scene.case.bar
     with open_record(record) as file:
-        velocities = {name: sign * file[f"histories/{name}/velocity"][:, 0] for name, sign in ends.items()}
-    found = {name: pull_back_strength(each, bar.density, bar.speed) for name, each in velocities.items()}
+        moved = {
+            name: (file[f"histories/{name}/time"][:], sign * file[f"histories/{name}/velocity"][:, 0])
+            for name, sign in ends.items()
+        }
+    found = {name: pull_back_strength(*each, bar.density, bar.speed, bar.length) for name, each in moved.items()}
     return {name: strength for name, strength in found.items() if not np.isnan(strength)}

@@ -68,6 +68,9 @@ ORDER = (
 ENDS = ("left", "right")
 """The sides of a bar."""
 
+NEITHER = "has neither [packing] (disks) nor [bar]; `dembound new` and `dembound new --bar` write a case to start from"
+"""What is wrong with a file that does not say what its case is of."""
+
 
 def load(path: Path) -> Case:
     """Read a case file.
@@ -75,7 +78,7 @@ def load(path: Path) -> Case:
     Raises
     ------
     CaseError
-        With one line per mistake. A file that is absent or not TOML shows only that.
+        With one line per mistake. A file that is absent, not TOML, or neither of disks nor of a bar shows only that.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -99,6 +102,9 @@ def _read(text: str, folder: Path, name: str, source: str) -> Case:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise CaseError([_syntax_problem(str(error), text)], source) from None
+    if not {"packing", "bar", "method"} & data.keys():
+        strange = [f"{key}: {unknown('table', key, ORDER)}" for key in data if key not in ORDER]
+        raise CaseError([*strange, NEITHER], source)
     kind: type[Case] = BarCase if "bar" in data or "method" in data else DiskCase
     tables, problems = _Reader(folder, kind).read(data)
     if problems:

@@ -40,30 +40,40 @@ def describe(error: ValidationError, path: str, raw: object, schema: Mapping[str
     if not isinstance(raw, Mapping) or not {"properties", "discriminator"} & schema.keys():
         return [f"{path}: is {show(raw)}, must be {allowed(schema)}"]
     details = error.errors(include_url=False)
+    keys, others = schema.get("properties", {}), {}
     if "discriminator" in schema:
         selector, variants = schema["discriminator"]["propertyName"], schema["discriminator"]["mapping"]
         if details[0]["type"].startswith("union_tag"):
             found = f"is {show(raw[selector])}" if selector in raw else "is missing"
             return [f"{path}.{selector}: {found}, must be {_one_of(variants)}"]
-        schema = schema["$defs"][variants[raw[selector]].rsplit("/", 1)[-1]]
+        others = {name: schema["$defs"][place.rsplit("/", 1)[-1]]["properties"] for name, place in variants.items()}
+        keys = others.pop(raw[selector])
         for detail in details:
             detail["loc"] = detail["loc"][1:]  # without the variant
     by_key: dict[str, list[ErrorDetails]] = {}
     for detail in details:
         by_key.setdefault(str(detail["loc"][0]) if detail["loc"] else "", []).append(detail)
-    return [line for key, found in by_key.items() for line in _lines(path, key, found, raw, schema["properties"])]
+    return [line for key, found in by_key.items() for line in _lines(path, key, found, raw, keys, others)]
 
 
 def _lines(
-    path: str, key: str, details: list[ErrorDetails], raw: Mapping[str, Any], keys: Mapping[str, Any]
+    path: str,
+    key: str,
+    details: list[ErrorDetails],
+    raw: Mapping[str, Any],
+    keys: Mapping[str, Any],
+    others: Mapping[str, Collection[str]],
 ) -> Iterator[str]:
-    """The lines about one key, or about the table as a whole when the key is empty."""
+    """The lines about one key, or about the table as a whole when the key is empty.
+
+    raw is the table, keys the schemas of what it may have, others the keys of its other types.
+    """
     first = details[0]
     if first["type"] == "value_error":
         for line in str(first["ctx"]["error"]).splitlines():
             yield _join(path, key, line, keys)
     elif first["type"] == "extra_forbidden":
-        yield f"{path}.{key}: {unknown('key', key, keys)}"
+        yield f"{path}.{key}: {_stray(key, keys, others)}"
     elif key not in raw:
         yield f"{path}.{key}: is missing, must be {allowed(keys[key])}"
     elif any(detail["type"] == "finite_number" for detail in details):
@@ -75,6 +85,12 @@ def _lines(
         yield f"{path}.{key}: is {show(raw[key])}, must be {allowed(keys[key])}"
     else:
         yield f"{path}.{key}: is {show(raw[key])}; {first['msg']}"
+
+
+def _stray(key: str, keys: Collection[str], others: Mapping[str, Collection[str]]) -> str:
+    """Say that a table has no such key, and which other types of it do."""
+    having = [show(name) for name, known in others.items() if key in known]
+    return f"is for {', '.join(having)}; allowed here: {', '.join(keys)}" if having else unknown("key", key, keys)
 
 
 def _join(path: str, key: str, message: str, keys: Iterable[str]) -> str:

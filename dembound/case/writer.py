@@ -11,6 +11,7 @@ import tomli_w
 
 from dembound.case.model import Case
 from dembound.case.reader import loads
+from dembound.case.sentences import unknown
 from dembound.errors import CaseError
 from dembound.waves import Record
 
@@ -24,12 +25,13 @@ def with_changes(case: Case, changes: Mapping[str, Any]) -> Case:
         The case to start from; it stays as it is.
     changes
         Dotted key -> value in TOML terms, such as ``{"boundary.right.beta_p": 0.81}``. A value may be a whole
-        table; tables that are not there yet are made. Keys set by neither case nor changes stay unset.
+        table; tables that are not there yet are made. A load, monitor or hole goes by its name or its number, from 1:
+        ``load.blow.pressure`` or ``load.1.pressure``. Keys set by neither case nor changes stay unset.
 
     Raises
     ------
     CaseError
-        If the changed case is not valid.
+        If a key leads nowhere or the changed case is not valid.
     """
     return loads(_changed(case.text, changes), case.folder, case.name)
 
@@ -53,11 +55,34 @@ def _changed(text: str, changes: Mapping[str, Any]) -> str:
     """TOML text with the values at dotted keys replaced or added."""
     data = tomllib.loads(text)
     for dotted, value in changes.items():
-        *path, key = dotted.split(".")
-        table = data
+        *path, last = dotted.split(".")
+        if not all((*path, last)):
+            raise CaseError([f"{dotted}: is no key, must be names with one dot between two, such as run.duration"])
+        table: Any = data
         for name in path:
-            table = table.setdefault(name, {})
-            if not isinstance(table, dict):
-                raise CaseError([f"{dotted}: {name} is not a table"])
-        table[key] = deepcopy(value)  # a later change may reach into it
+            table = _inner(table, name, dotted)
+        table[_key(table, last, dotted)] = deepcopy(value)  # a later change may reach into it
     return tomli_w.dumps(data)
+
+
+def _inner(table: Any, name: str, dotted: str) -> Any:
+    """The table, or list of tables, that a name leads to; a table that is not there is made."""
+    key = _key(table, name, dotted)
+    inner = table.setdefault(key, {}) if isinstance(table, dict) else table[key]
+    tables = inner if isinstance(inner, list) else [inner]
+    if not tables or not all(isinstance(each, dict) for each in tables):
+        raise CaseError([f"{dotted}: {name} is not a table"])
+    return inner
+
+
+def _key(table: Any, name: str, dotted: str) -> Any:
+    """Where a table keeps what has a name; in a list of tables each has its own, and its number from 1."""
+    if isinstance(table, dict):
+        return name
+    names = [str(each.get("name", "")) for each in table]
+    numbers = [str(number) for number in range(1, len(table) + 1)]
+    for known in (names, numbers):
+        if name in known:
+            return known.index(name)
+    kind, _, _ = dotted.partition(".")
+    raise CaseError([f"{dotted}: {unknown(kind, name, names)}, or a number up to {len(table)}"])

@@ -15,6 +15,7 @@ from dembound import __version__
 from dembound.boundaries import SIDES
 from dembound.case import Case, DiskCase, load, with_changes
 from dembound.errors import CaseError, DemboundError
+from dembound.results import require_folder
 
 EXIT_CODES = """
 Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration or view failed; 4 a packing
@@ -33,6 +34,26 @@ app = typer.Typer(
 )
 out = Console(highlight=False, soft_wrap=True)
 err = Console(stderr=True, highlight=False, soft_wrap=True)
+
+
+def writable(path: Path | None) -> Path | None:
+    """A file to write, if its folder is there; found out before anything is computed.
+
+    Raises FileNotFoundError where it is not.
+    """
+    if path is not None:
+        require_folder(path)
+    return path
+
+
+def png(param: typer.CallbackParam, path: Path | None) -> Path | None:
+    """The same of a picture. Raises CaseError where its name is not that of a PNG file."""
+    if path is not None and path.suffix.lower() != ".png":
+        raise CaseError([f"{param.opts[0]}: is {path}, must end in .png"])
+    return writable(path)
+
+
+PICTURE = typer.Option("--output", "-o", help="Picture to write (PNG).", callback=png)
 
 Cases = Annotated[list[Path], typer.Argument(metavar="CASE...", help="Case files (TOML).")]
 Output = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")]
@@ -77,7 +98,7 @@ def load_disks(path: Path, changes: list[str] | None, name: str | None = None) -
 def _setting(text: str) -> tuple[str, Any]:
     """Key and value of ``--set key=value``; the value is TOML, or else a plain string."""
     key, equals, value = text.partition("=")
-    if not equals or not key:
+    if not equals or not key.strip():
         raise CaseError([f"--set: is {text}, must be KEY=VALUE, e.g. boundary.right.beta_p=0.8"])
     try:
         return key.strip(), tomllib.loads(f"value = {value}")["value"]

@@ -14,6 +14,7 @@ from dembound.boundaries.support import Edge
 from dembound.case import BAR_STARTER, STARTER
 from dembound.check import check, precautions
 from dembound.cli.app import (
+    PICTURE,
     Cases,
     Name,
     Output,
@@ -106,7 +107,7 @@ def run(
 @app.command("packing", rich_help_panel="Cases")
 def packing(
     cases: Cases,
-    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write (PNG).")] = Path("packing.png"),
+    output: Annotated[Path, PICTURE] = Path("packing.png"),
     side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = RIGHT,
     brick: Annotated[bool, typer.Option("--brick", help="Show the first case's whole brick with its seams.")] = False,
     changes: Settings = None,

@@ -8,7 +8,7 @@ import numpy as np
 import typer
 from rich.table import Table
 
-from dembound.cli.app import Settings, app, load_case, out
+from dembound.cli.app import PICTURE, Settings, app, load_case, out, writable
 from dembound.dispersion import lattices, lattices_of, measure, write_table
 from dembound.errors import CaseError
 from dembound.exact.dispersion import Lattice, Speed, cells_per_wavelength, courant_limit
@@ -52,8 +52,8 @@ def dispersion(
         float | None, typer.Option(help=f"Speed c of long waves (m/s); by default {WAVE_SPEED:g}.")
     ] = None,
     check: Annotated[bool, typer.Option("--check", help="Simulate some waves, and say how far they are off.")] = False,
-    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write (PNG).")] = Path("dispersion.png"),
-    table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).")] = None,
+    output: Annotated[Path, PICTURE] = Path("dispersion.png"),
+    table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
     changes: Settings = None,
 ) -> None:
     """Say how fast waves run on a bar of nodes, peridynamic or central differences, and how many nodes they need.

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from dembound.cli.app import app, out
+from dembound.cli.app import PICTURE, app, out
 from dembound.cli.results import results_file
 from dembound.gauges import Estimate
 from dembound.plot.gauge import plot_gauge
@@ -33,21 +33,25 @@ def gauge(
         str | None,
         typer.Option(metavar="NAME", help="Monitor at the free end, or a text file of time (s) and velocity (m/s)."),
     ] = None,
-    peaks: Annotated[int | None, typer.Option(help="Use the first tension peaks only.", min=2)] = None,
+    estimate: Annotated[
+        bool,
+        typer.Option("--estimate", help="Take speed and attenuation from tension peaks, though the results tell them."),
+    ] = False,
+    peaks: Annotated[int | None, typer.Option(help="The same, from the first peaks only.", min=2)] = None,
     pulse_end: Annotated[
         float | None, typer.Option(help="Time at which the incident pulse has passed (s); by default when it returns.")
     ] = None,
     wave_speed: Annotated[
-        float | None, typer.Option(help="Wave speed (m/s) of another test; by default this one's.")
+        float | None, typer.Option(help="Wave speed (m/s) of another test; else the results', or estimated from peaks.")
     ] = None,
     attenuation: Annotated[
-        float | None, typer.Option(help="Attenuation (1/m) of another test; by default this one's.")
+        float | None, typer.Option(help="Attenuation (1/m) of another test; else as the speed.")
     ] = None,
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="Picture to write (PNG).")] = None,
+    output: Annotated[Path | None, PICTURE] = None,
 ) -> None:
     """Say what a gauge on a bar tells: wave speed, attenuation, and the stress at which the bar spalled.
 
-    Length, position and density of results are known. Strengths take --spall or --free-end.
+    Results tell place, length, density, speed and attenuation. Strengths take --spall or --free-end.
     """
     path = results_file(record) if record.is_dir() else record
     felt = read_gauge(path, monitor, position, length, density, scale)
@@ -55,23 +59,24 @@ def gauge(
         felt,
         spall=spall,
         free_end=None if free_end is None else read_free_end(path, free_end),
+        estimate=estimate,
         count=peaks,
         pulse_end=pulse_end,
         speed=wave_speed,
         coefficient=attenuation,
     )
-    out.print(_overview(found))
+    out.print(_overview(found, *("results" if given is None else "given" for given in (wave_speed, attenuation))))
     if output is not None:
         save(plot_gauge(felt, found), output)
         out.print(f"wrote {output}")
 
 
-def _overview(found: Findings) -> Table:
-    """All that was found, a line each."""
+def _overview(found: Findings, speed_from: str, attenuation_from: str) -> Table:
+    """All that was found, a line each; speed and attenuation come from there if not from peaks."""
     overview = Table("", "value", "std. error", "from")
-    overview.add_row("wave speed (m/s)", *_fitted(found.speed, "times"))
+    overview.add_row("wave speed (m/s)", *_fitted(found.speed, "times", speed_from))
     if found.attenuation is not None:
-        overview.add_row("attenuation (1/m)", *_fitted(found.attenuation, "heights"))
+        overview.add_row("attenuation (1/m)", *_fitted(found.attenuation, "heights", attenuation_from))
     if (strength := found.strength) is not None:
         source = f"image at {strength.position:g} m"
         overview.add_row("nominal strength (MPa)", f"{strength.nominal / MPA:.4g}", "", source)
@@ -83,9 +88,9 @@ def _overview(found: Findings) -> Table:
     return overview
 
 
-def _fitted(estimate: Estimate, what: str) -> tuple[str, str, str]:
-    """Value, standard error and source of an estimate."""
+def _fitted(estimate: Estimate, what: str, source: str) -> tuple[str, str, str]:
+    """Value, standard error and source of an estimate; that source if it was not fitted."""
     if not estimate.points:
-        return f"{estimate.value:.5g}", "", "given"
+        return f"{estimate.value:.5g}", "", source
     error = f"{estimate.error:.2g}" if estimate.points > 2 else ""
     return f"{estimate.value:.5g}", error, f"{what} of {estimate.points} peaks"

@@ -9,6 +9,9 @@ from dembound.results import laws_in_words
 GAINED = 1e-3
 """Share of the energy that fracture may give instead of taking it before a run says so."""
 
+TOLD = 3
+"""Spalls that are told one by one."""
+
 
 def outcome(summary: dict[str, Any], case: Case) -> list[str]:
     """What became of a case."""
@@ -20,7 +23,11 @@ def outcome(summary: dict[str, Any], case: Case) -> list[str]:
 def bar_outcome(summary: dict[str, Any]) -> list[str]:
     """What became of a bar: changes of method, and where and when it spalled."""
     facts = [f"{used['law']} from {used['from'] * 1e3:.4g} ms" for used in summary["laws"][1:]]
-    facts += [f"spall at {_range(spall['start'])} m, {spall['time'] * 1e3:.4f} ms" for spall in summary["spalls"]]
+    facts += [
+        f"spall at {_range(spall['start'])} m, {spall['time'] * 1e3:.4f} ms" for spall in summary["spalls"][:TOLD]
+    ]
+    if (more := len(summary["spalls"]) - TOLD) > 0:
+        facts.append(f"and {more} more, see summary.json")
     if not summary["spalls"] and summary["bar"]["strength"] is not None:
         facts.append("no spall")
     gained = -summary["energy"]["crack"]

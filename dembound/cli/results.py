@@ -1,14 +1,14 @@
 """Commands that look at results: plot, view, cache."""
 
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from matplotlib.figure import Figure
 from rich.table import Column, Table
 
-from dembound.cli.app import Side, app, out
+from dembound.cli.app import PICTURE, Side, app, out, png
 from dembound.compare import compare
 from dembound.errors import CaseError
 from dembound.packings.cache import cache_folder, clear
@@ -21,6 +21,9 @@ from dembound.plot.scene import plot_scene
 from dembound.plot.style import save
 from dembound.results import is_bar, open_record
 from dembound.view import view
+
+BARS, DISKS, CALIBRATIONS = "runs of bars", "runs of disks", "calibrations"
+"""Kinds of results, none of which makes a picture together with another."""
 
 
 class Field(StrEnum):
@@ -54,10 +57,11 @@ class SceneField(StrEnum):
 @app.command("plot", rich_help_panel="Results")
 def plot(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="Picture to write (PNG).")] = Path("plot.png"),
+    output: Annotated[Path, PICTURE] = Path("plot.png"),
     quantity: Annotated[
-        Quantity, typer.Option(help="What of the monitors to show; the stress of bars alone.")
-    ] = Quantity.velocity,
+        Quantity | None,
+        typer.Option(help="What of the monitors to show, by default velocity; the stress of bars alone."),
+    ] = None,
     monitor: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Show this monitor only. May be repeated.")
     ] = None,
@@ -79,35 +83,59 @@ def plot(
 ) -> None:
     """Overlay the histories of several runs, or the passes of several calibrations, in one picture."""
     files = [results_file(path) for path in results]
-    calibrations = [file for file in files if file.name == "calibration.h5"]
-    if calibrations and len(calibrations) < len(files):
-        raise CaseError(["RESULTS: holds runs and calibrations, which make no common picture; name one kind"])
-    for option, asked in (("--energy", energy), ("--field", field is not None)):
-        if asked and (calibrations or len(files) > 1):
+    kind = _common_kind(files)
+    pictures = {"--field": field, "--energy": energy, "--boundary": boundary}
+    _one_picture(pictures, {"--quantity": quantity, "--monitor": monitor}, kind)
+    for option in ("--field", "--energy"):
+        if pictures[option] and len(files) > 1:
             raise CaseError([f"{option}: shows one run, name one"])
     if snapshot is not None and field is None:
         raise CaseError(["--snapshot: goes with --field"])
-    if field is not None:
-        figure = _scene(files[0], field, snapshot)
+    if kind == CALIBRATIONS:
+        figure = plot_convergence(files)
+    elif field is not None and kind == BARS:
+        figure = plot_bar_field(files[0], field.value, snapshot)
+    elif field is not None:
+        figure = plot_scene(files[0], snapshot, field.value)  # type: ignore[arg-type]  # says itself what disks have
     elif energy:
         figure = plot_energy(files[0])
-    elif calibrations:
-        figure = plot_convergence(files)
     elif boundary is not None:
         figure = plot_boundary(files, boundary.value)
     else:
-        figure = plot_histories(files, quantity=quantity.value, monitors=monitor or None)
+        figure = plot_histories(files, quantity=(quantity or Quantity.velocity).value, monitors=monitor or None)
     save(figure, output)
     out.print(f"wrote {output}")
 
 
-def _scene(run: Path, field: SceneField, snapshot: int | None) -> Figure:
-    """A field of a whole scene, whichever kind it is."""
-    with open_record(run) as file:
-        bar = is_bar(file)
-    if bar:
-        return plot_bar_field(run, field.value, snapshot)
-    return plot_scene(run, snapshot, field.value)  # type: ignore[arg-type]  # says itself what disks have
+def _common_kind(files: Sequence[Path]) -> str:
+    """Whether results are of bars, of disks, or calibrations. Raises CaseError where they are not all alike."""
+    kinds = sorted({_kind(file) for file in files})
+    if len(kinds) > 1:
+        raise CaseError([f"RESULTS: holds {' and '.join(kinds)}, which make no common picture; name one kind"])
+    return kinds[0]
+
+
+def _kind(file: Path) -> str:
+    """Of what a result is."""
+    if file.name == "calibration.h5":
+        return CALIBRATIONS
+    with open_record(file) as record:
+        return BARS if is_bar(record) else DISKS
+
+
+def _one_picture(pictures: Mapping[str, object], choices: Mapping[str, object], kind: str) -> None:
+    """Raise CaseError where options ask for several pictures, or for a choice that the one asked for does not have.
+
+    pictures are those options that ask for another one than histories, which alone have choices.
+    """
+    asked = [option for option, value in pictures.items() if value]
+    chosen = [option for option, value in choices.items() if value]
+    if kind == CALIBRATIONS:
+        problems = [f"{option}: is for runs, not for calibrations" for option in asked + chosen]
+    else:
+        problems = [f"{option}: is not allowed together with {asked[0]}" for option in (asked[1:] + chosen) if asked]
+    if problems:
+        raise CaseError(problems)
 
 
 @app.command("view", rich_help_panel="Results")
@@ -117,7 +145,9 @@ def view_disks(
         int | None, typer.Option(help="Number of the snapshot to begin with, −1 the last; by default the liveliest.")
     ] = None,
     field: Annotated[Field, typer.Option(help="What colours the disks.")] = Field.velocity,
-    picture: Annotated[Path | None, typer.Option(help="Picture to write (PNG) instead of opening a window.")] = None,
+    picture: Annotated[
+        Path | None, typer.Option(help="Picture to write (PNG) instead of opening a window.", callback=png)
+    ] = None,
     exaggerate: Annotated[
         float, typer.Option(help="Show disks moved by this many times their displacement; 0: where they began.")
     ] = 0.0,

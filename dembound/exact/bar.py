@@ -1,18 +1,18 @@
 """A pressure pulse in a bar, and where it breaks the far end off: d'Alembert's solution (L section 3.2).
 
-Both ends return a wave, so what a pulse p(t) on the end x = 0 does at x is a sum over its passages there, the k-th after
-a way w_k = kL + x or kL + L − x for even and odd k. A wave to the right has the stress −p and the velocity p/(ρc), one to
-the left −p and −p/(ρc). A free end returns pressure as tension, a fixed one as pressure; beside its own load the end
-x = 0 is a free one.
+Both ends return a wave, so what a pulse p(t) on the end x = 0 does at x is a sum over its passages there, the k-th
+after a way w_k = kL + x or kL + L − x for even and odd k. A wave to the right has the stress −p and the velocity
+p/(ρc), one to the left −p and −p/(ρc). A free end returns pressure as tension, a fixed one as pressure; beside its own
+load the end x = 0 is a free one.
 
-Where a triangle first reaches the strength σ_t = s p_m: behind the reflected crest, at a distance d
-from the free end, the incident pulse has fallen by p_m·2d/(c t_f), which is the tension there. So a pulse that falls as
-slowly as it rises, t_f ≥ t_r, breaks the bar when its crest is at
+Where a triangle first reaches the strength σ_t = s p_m: behind the reflected crest, at a distance d from the free end,
+the incident pulse has fallen by p_m·2d/(c t_f), which is the tension there. So a pulse that falls as slowly as it
+rises, t_f ≥ t_r, breaks the bar when its crest is at
 
     d = ½ c t_f s,    t = t_r + (L + d)/c .
 
-One that falls faster leaves more tension ahead of the reflected crest than behind: its foot, as the tail of the incident
-pulse runs off, has p_m τ/t_r after τ, and the strength is first met τ = s t_r behind the front, where
+One that falls faster leaves more tension ahead of the reflected crest than behind: its foot, as the tail of the
+incident pulse runs off, has p_m τ/t_r after τ, and the strength is first met τ = s t_r behind the front, where
 
     d = ½ c (t_r + t_f − s t_r),    t = s t_r + (L + d)/c .
 """

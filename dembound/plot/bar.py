@@ -3,17 +3,28 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import h5py
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.image import NonUniformImage
 
 from dembound.errors import CaseError
 from dembound.laws.peridynamic import CRACKED
-from dembound.plot.style import COLOURS, REFERENCE, SIGNED_MAP, line_style, new_figure, outside_legend, styled
+from dembound.plot.style import (
+    COLOURS,
+    REFERENCE,
+    SIGNED_MAP,
+    TimeUnit,
+    line_style,
+    new_figure,
+    outside_legend,
+    styled,
+    time_unit,
+)
 from dembound.results import cracks_until, laws_of, open_record, snapshot_of
 
 MILLI, MEGA = 1e-3, 1e6
@@ -24,13 +35,17 @@ FEWEST = 10
 
 @dataclass(frozen=True)
 class Look:
-    """How a field is shown: in words, its unit and what that is in SI, the sense of its sign, a map pale at zero."""
+    """How a field is shown: in words, its unit and what that is in SI, the sense of its sign, a map pale at zero.
+
+    jumps: whether it changes at once, so that nothing may be drawn between one snapshot and the next.
+    """
 
     words: str
     unit: str
     scale: float
     sense: str = ""
     colours: str = SIGNED_MAP
+    jumps: bool = False
 
     @property
     def label(self) -> str:
@@ -40,7 +55,7 @@ class Look:
 
 FIELDS = {
     "stress": Look("stress", "MPa", MEGA, ", tension positive"),
-    "damage": Look("local damage", "–", 1.0, colours="Reds"),
+    "damage": Look("local damage", "–", 1.0, colours="Reds", jumps=True),
     "velocity": Look("velocity", "m/s", 1.0, ", positive to the right"),
     "displacement": Look("displacement", "mm", MILLI, ", positive to the right"),
 }
@@ -51,8 +66,9 @@ FIELDS = {
 class Course:
     """Fields of a bar of n nodes at k moments.
 
-    place (n,) m; time (k,) ms; values: name of a field -> (k, n) in its unit; crack_place (c,) m and crack_time (c,) ms
-    of the bonds broken by the last of them; changes: methods that took over by then, with the time in ms; case: name.
+    place (n,) m; time (k,) in `unit`, as all times; values: name of a field -> (k, n) in its unit; crack_place (c,) m
+    and crack_time (c,) of the bonds broken by the last of them; changes: methods that took over by then, and when;
+    case: its name.
     """
 
     place: np.ndarray
@@ -62,6 +78,11 @@ class Course:
     crack_time: np.ndarray
     changes: list[tuple[str, float]]
     case: str
+    unit: TimeUnit
+
+    def moment(self, time: float) -> str:
+        """A time in words."""
+        return f"{time:.4g} {self.unit.name}"
 
 
 @styled
@@ -110,14 +131,16 @@ def read_course(run: Path, fields: Sequence[str], snapshot: int | None = None) -
         groups = list(chosen.parent.values()) if snapshot is None else [chosen]
         time = np.array([group.attrs["time"] for group in groups])
         cracks = cracks_until(file, time[-1])
+        unit = time_unit(time[-1])
         return Course(
             place=file["particles/position"][:, 0],
-            time=time / MILLI,
+            time=time / unit.seconds,
             values={name: np.array([_along(group[name]) for group in groups]) / FIELDS[name].scale for name in fields},
             crack_place=cracks["position"][:, 0],
-            crack_time=cracks["time"] / MILLI,
-            changes=[(name, since / MILLI) for name, since in laws_of(file)[1:] if since <= time[-1]],
+            crack_time=cracks["time"] / unit.seconds,
+            changes=[(name, since / unit.seconds) for name, since in laws_of(file)[1:] if since <= time[-1]],
             case=str(file.attrs["name"]),
+            unit=unit,
         )
 
 
@@ -145,7 +168,7 @@ def _draw_maps(course: Course) -> Figure:
         figure.colorbar(colours, ax=upper, label=FIELDS[name].label, location="top", aspect=40)
         _draw_profile(lower, course, name, -1, color=COLOURS[0])
         lower.set_ylabel(f"{FIELDS[name].words} ({FIELDS[name].unit})")  # there is no room for more
-        lower.set_title(f"at the end, t = {course.time[-1]:.4g} ms", loc="left", fontsize=9, pad=3)
+        lower.set_title(f"at the end, t = {course.moment(course.time[-1])}", loc="left", fontsize=9, pad=3)
         lower.set_xlabel("x (m)")
     return figure
 
@@ -155,16 +178,20 @@ def _draw_map(panel: Axes, course: Course, name: str) -> ScalarMappable:
     values, look = course.values[name], FIELDS[name]
     largest = float(np.abs(values).max()) or 1.0
     limits = (0.0, 1.0) if name == "damage" else (-largest, largest)
-    place, time = _edges(course.place), _edges(course.time)
-    picture = panel.pcolorfast(place, time, values, cmap=look.colours, clim=limits)
+    window = (course.place[0], course.place[-1], 0.0, course.time[-1])
+    between: Literal["nearest", "bilinear"] = "nearest" if look.jumps else "bilinear"
+    picture = NonUniformImage(panel, interpolation=between, extent=window, cmap=look.colours, clim=limits)
+    # a bar begins at rest
+    picture.set_data(course.place, np.append(0.0, course.time), np.vstack([np.zeros(len(course.place)), values]))
+    panel.add_image(picture)
     if len(course.crack_time):
         looks: dict[str, Any] = {"s": 4.0, "color": "black", "linewidths": 0.0, "label": "bond broken"}
         panel.scatter(course.crack_place, course.crack_time, **looks)
     for index, (method, since) in enumerate(course.changes):
         dashes = line_style(index + 2)["linestyle"]  # unlike the line in the panel of damage below
-        panel.axhline(since, color="black", linewidth=1.0, linestyle=dashes, label=f"{method} from {since:.4g} ms")
-    panel.set_ylim(0.0, course.time[-1])
-    panel.set_ylabel("time (ms)")
+        label = f"{method} from {course.moment(since)}"
+        panel.axhline(since, color="black", linewidth=1.0, linestyle=dashes, label=label)
+    panel.set(xlim=window[:2], ylim=window[2:], ylabel=course.unit.label)
     panel.grid(False)
     return picture
 
@@ -176,7 +203,7 @@ def _draw_profiles(course: Course) -> Figure:
     panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
     for panel, name in zip(panels, course.values, strict=True):
         for number, time in enumerate(course.time):
-            _draw_profile(panel, course, name, number, label=f"t = {time:.4g} ms", **line_style(number))
+            _draw_profile(panel, course, name, number, label=f"t = {course.moment(time)}", **line_style(number))
     panels[-1].set_xlabel("x (m)")
     return figure
 
@@ -190,9 +217,3 @@ def _draw_profile(panel: Axes, course: Course, name: str, number: int, **looks: 
         panel.set_ylim(-0.05, 1.05)
         label = f"cracked from a damage of {CRACKED:g}"
         panel.axhline(CRACKED, color=REFERENCE, linewidth=1.0, linestyle="--", zorder=1, label=label)
-
-
-def _edges(centres: np.ndarray) -> np.ndarray:
-    """Edges (k + 1,) of cells around k centres, two at least."""
-    middles = 0.5 * (centres[1:] + centres[:-1])
-    return np.concatenate([[2.0 * centres[0] - middles[0]], middles, [2.0 * centres[-1] - middles[-1]]])

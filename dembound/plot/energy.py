@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
-from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled
+from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled, time_unit
 from dembound.results import energy_of, is_bar, open_record
 
 COLUMNS = {
@@ -52,6 +52,8 @@ def plot_energy(run: Path) -> Figure:
     """
     with open_record(run) as file:
         name, columns, bar = str(file.attrs["name"]), energy_of(file), is_bar(file)
+    unit = time_unit(columns["time"][-1])
+    time = columns["time"] / unit.seconds
     figure = new_figure(9.0, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[4, 1])
     largest = {column: float(np.abs(columns[column]).max()) for column in COLUMNS}
@@ -59,12 +61,12 @@ def plot_energy(run: Path) -> Figure:
     for index, (column, label) in enumerate((BAR_COLUMNS if bar else COLUMNS).items()):
         if largest[column] > least:
             looks = line_style(index) | {"color": HUES[index]}
-            upper.plot(columns["time"], columns[column], label=label, **looks)
-    lower.plot(columns["time"], columns["relative_error"], color=REFERENCE)
+            upper.plot(time, columns[column], label=label, **looks)
+    lower.plot(time, columns["relative_error"], color=REFERENCE)
     upper.set_ylabel("energy" if bar else "energy per metre of thickness")
     upper.yaxis.set_major_formatter(EngFormatter(unit="J"))
     lower.set_ylabel("error (–)")
-    lower.set_xlabel("time (s)")
+    lower.set_xlabel(unit.label)
     lower.set_title("error of the balance, in parts of the most that came in", loc="left", fontsize=9, pad=3)
     figure.suptitle(f"{name}: where its energy is, and where it went", fontsize=11)
     outside_legend(figure, [upper], columns=3)

@@ -23,10 +23,10 @@ PLACES = 500
 
 @styled
 def plot_gauge(gauge: Gauge, findings: Findings) -> Figure:
-    """The history with its tension peaks and their exponential fit; beside it the stress near the free end.
+    """The history, with the tension peaks and their exponential fit if they were used; beside it the stress by the end.
 
-    The latter, at several times, is that of the incident pulse and its image, without attenuation. It is drawn if it is
-    known where the bar has spalled.
+    The latter, at several times, is that of the incident pulse and its image near the free end, without attenuation. It
+    is drawn if it is known where the bar has spalled.
 
     Parameters
     ----------
@@ -47,9 +47,9 @@ def _history(panel: Axes, gauge: Gauge, findings: Findings) -> None:
     """Stress against time, its tension peaks, and the exponential through them."""
     peaks, decay = findings.peaks, findings.attenuation
     panel.plot(1e3 * gauge.time, gauge.stress / MPA, color=REFERENCE, linewidth=1.0, label="stress at the gauge")
-    if len(peaks.time):
+    if peaks is not None and len(peaks.time):
         panel.plot(1e3 * peaks.time, peaks.height / MPA, "o", color=COLOURS[1], label="tension peaks")
-    if decay is not None and len(peaks.time) > 1:
+    if peaks is not None and decay is not None and len(peaks.time) > 1:
         time = np.linspace(peaks.time[0], peaks.time[-1], PLACES)
         weights = peaks.height**2  # through the middle of the line that was fitted
         first, middle = (np.average(each, weights=weights) for each in (np.log(peaks.height), peaks.time))

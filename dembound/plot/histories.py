@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
-from dembound.plot.style import UNITS, line_style, new_figure, outside_legend, styled
+from dembound.plot.style import UNITS, line_style, new_figure, outside_legend, styled, time_unit
 from dembound.results import COMPONENTS, is_bar, open_record, place_in_words, record_names
 
 Quantity = Literal["velocity", "displacement", "stress"]
@@ -63,17 +63,18 @@ def plot_histories(
     shown = _choose(runs, histories, monitors)
     histories = [{name: run[name] for name in shown if name in run} for run in histories]
     column = _largest(histories) if component is None else COMPONENTS.index(component)
+    unit = time_unit(max(history.time.max(initial=0.0) for run in histories for history in run.values()))
     figure = new_figure(9.0, 1.6 + len(shown) * np.clip(9.0 / len(shown), 0.6, 1.6))
     panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
     for index, (label, run) in enumerate(zip(record_names(runs), histories, strict=True)):
         for panel, monitor in zip(panels, shown, strict=True):
             if monitor in run:
                 history = run[monitor]
-                panel.plot(history.time, history.values[:, column], label=label, **line_style(index))
+                panel.plot(history.time / unit.seconds, history.values[:, column], label=label, **line_style(index))
     for panel, monitor in zip(panels, shown, strict=True):
         _tell_places(panel, monitor, [run[monitor].place for run in histories if monitor in run])
     direction = _direction(column)
-    panels[-1].set_xlabel("time (s)")
+    panels[-1].set_xlabel(unit.label)
     figure.supylabel(f"{quantity} {direction}{SENSES[quantity]} ({UNITS[quantity][column]})", fontsize=10)
     figure.suptitle(f"{quantity.capitalize()} {direction} at the monitors", fontsize=11)
     outside_legend(figure, panels, columns=3)

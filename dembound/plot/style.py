@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
-from typing import Any, ParamSpec
+from typing import Any, NamedTuple, ParamSpec
 
 from matplotlib import style
 from matplotlib.artist import Artist
@@ -32,7 +32,27 @@ FONTS = ("DejaVu Sans", "Noto Sans CJK SC", "Microsoft YaHei", "PingFang SC", "S
 UNITS = {"velocity": ("m/s", "m/s", "rad/s"), "displacement": ("m", "m", "rad"), "stress": ("MPa",)}
 """Units of x, y and rotation; the stress is along x."""
 
+SHORT = 0.1
+"""A picture of less than so many seconds tells times in milliseconds."""
+
 Parameters = ParamSpec("Parameters")
+
+
+class TimeUnit(NamedTuple):
+    """What times are told in: its name, and what it is in seconds."""
+
+    name: str
+    seconds: float
+
+    @property
+    def label(self) -> str:
+        """For an axis."""
+        return f"time ({self.name})"
+
+
+def time_unit(last: float) -> TimeUnit:
+    """The unit for a picture of times up to `last` seconds."""
+    return TimeUnit("ms", 1e-3) if last < SHORT else TimeUnit("s", 1.0)
 
 
 def styled(draw: Callable[Parameters, Figure]) -> Callable[Parameters, Figure]:
@@ -77,13 +97,21 @@ def point_style(index: int) -> dict[str, Any]:
 
 
 def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None:
-    """Put one legend of all labels in the panels, each once, below everything else."""
+    """Put one legend of all labels in the panels, each once, below everything else.
+
+    It has as many columns as the figure is wide enough for, at most `columns`.
+    """
     handles: dict[str, Artist] = {}
     for panel in panels:
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
             handles.setdefault(label, handle)
-    if handles:
-        figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=columns)
+    if not handles:
+        return
+    for count in range(columns, 0, -1):
+        legend = figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=count)
+        if count == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            return
+        legend.remove()
 
 
 def save(figure: Figure, path: Path) -> None:

@@ -15,9 +15,9 @@ from dembound.waves.wave import NonZero, Wave
 class Record(Wave):
     """Velocities from a file, joined by straight lines and zero outside.
 
-    The file has two columns, time (s) and velocity (m/s). Its times are counted from `start`; a ``#`` begins
-    a comment. A relative path is taken from the case file's folder, which validation passes as the
-    context ``{"folder": Path}``; without one, from the current folder.
+    The file is one for `read_samples`, of times (s) and velocities (m/s). Its times are counted from `start`. A
+    relative path is taken from the case file's folder, which validation passes as the context ``{"folder": Path}``;
+    without one, from the current folder.
     """
 
     type: Literal["file"]
@@ -89,10 +89,11 @@ class Record(Wave):
         return amplitude_spectrum(self.velocity(evenly), time_step)
 
 
-def read_samples(path: Path, quantity: str = "velocity (m/s)") -> np.ndarray:
+def read_samples(path: Path, quantity: str = "values") -> np.ndarray:
     """Read a two-column text file into an array (k, 2): times, s, and values of a quantity (error texts name it).
 
-    Columns are separated by blanks, in a file called ``.csv`` by commas.
+    Columns are separated by semicolons, where numbers may have decimal commas; in a file called ``.csv`` by commas; or
+    else by blanks. A ``#`` begins a comment, and a first line without numbers is a header.
 
     Raises
     ------
@@ -101,20 +102,41 @@ def read_samples(path: Path, quantity: str = "velocity (m/s)") -> np.ndarray:
     """
     if not path.is_file():
         raise ValueError(f'path: no file "{path}"')
-    separator = "," if path.suffix.lower() == ".csv" else None
     try:
+        lines, separator = _numbers(path)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # an empty file is reported below
-            samples = np.loadtxt(path, ndmin=2, encoding="utf-8", delimiter=separator)
+            samples = np.loadtxt(lines, ndmin=2, delimiter=separator)
     except ValueError as error:
         reason = str(error).split(" at row")[0]
         raise ValueError(
-            f'path: "{path}" is not two columns of numbers, separated by blanks, in a .csv file by commas: {reason}'
+            f'path: "{path}" is not two columns of numbers, separated by blanks or semicolons, in a .csv file by '
+            f"commas: {reason}"
         ) from error
     problem = _problem(samples, quantity)
     if problem:
         raise ValueError(f'path: "{path}" {problem}')
     return samples
+
+
+def _numbers(path: Path) -> tuple[list[str], str | None]:
+    """The lines of a file that hold numbers, with decimal points, and what separates their columns; None: blanks."""
+    text = path.read_text(encoding="utf-8-sig")  # which takes the mark that spreadsheets begin with
+    lines = [line for line in (line.partition("#")[0] for line in text.splitlines()) if line.strip()]
+    separator = "," if path.suffix.lower() == ".csv" else None
+    if lines and ";" in lines[-1]:
+        lines, separator = [line.replace(",", ".") for line in lines], ";"
+    has_header = bool(lines) and not any(_is_number(field) for field in lines[0].split(separator))
+    return lines[has_header:], separator
+
+
+def _is_number(text: str) -> bool:
+    """Whether a text reads as a number."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _problem(samples: np.ndarray, quantity: str) -> str:

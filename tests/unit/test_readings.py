@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.readings import read_free_end, read_gauge
+from dembound.readings import Told, read_free_end, read_gauge
 
 BAR = {"position": 0.6, "length": 0.99}
 VELOCITY = np.interp(np.arange(400), [0, 100, 140, 240, 270], [0.0, 0.0, 10.0, 4.0, 8.0])
@@ -67,9 +67,9 @@ def test_the_only_gauge_needs_no_name_and_a_record_no_density(record):
     [
         ({}, ["--position: is not known, give it", "--length: is not known, give it"]),
         ({"position": 0.6}, ["--length: is not known, give it"]),
-        (BAR | {"position": 0.99}, ["--position: is 0.99 m, must be between 0 and the length, 0.99 m"]),
-        (BAR | {"position": 0.0}, ["--position: is 0 m, must be between 0 and the length, 0.99 m"]),
-        (BAR | {"position": np.nan}, ["--position: is nan m, must be between 0 and the length, 0.99 m"]),
+        (BAR | {"position": 0.99}, ["--position: is 0.99 m, must be above 0 and below the length, 0.99 m"]),
+        (BAR | {"position": 0.0}, ["--position: is 0 m, must be above 0 and below the length, 0.99 m"]),
+        (BAR | {"position": np.nan}, ["--position: is nan m, must be above 0 and below the length, 0.99 m"]),
         (BAR | {"length": -1.0}, ["--length: is -1 m, must be finite and above 0"]),
         (BAR | {"length": np.inf}, ["--length: is inf m, must be finite and above 0"]),
         (BAR | {"density": 0.0}, ["--density: is 0 kg/m³, must be finite and above 0"]),
@@ -97,7 +97,7 @@ def test_files_that_hold_no_history_are_refused(tmp_path, small_run):
         (tmp_path / "absent.txt", "no file"),
         (tmp_path / "wide.txt", r"has 3 columns, must have two: time \(s\), stress \(Pa\)"),
         (short, "holds 2 samples, must hold three or more"),
-        (small_run, "holds no history of stress"),
+        (small_run, "holds no history of stress between the ends of a bar"),
     ):
         with pytest.raises(CaseError, match=said):
             read_gauge(path, position=0.6, length=0.99)
@@ -106,26 +106,77 @@ def test_files_that_hold_no_history_are_refused(tmp_path, small_run):
 def test_monitors_go_by_name(record):
     with pytest.raises(CaseError, match="--monitor: is not named, must be one of far, near"):
         read_gauge(record)
-    with pytest.raises(CaseError, match="--monitor: is end, must be one of far, near"):
+    with pytest.raises(CaseError, match="--monitor: is end, must be between the bar's ends, which is far or near"):
         read_gauge(record, "end")
-    with pytest.raises(CaseError, match="--free-end: is top, must be one of end, far, near"):
-        read_free_end(record, "top")
+
+
+def test_monitors_at_the_ends_are_no_gauges(record):
+    with h5py.File(record, "r+") as file:
+        for name, place in (("start", 0.0), ("tip", 0.99 * (1.0 - 1e-15))):
+            file.copy("histories/far", f"histories/{name}")
+            file[f"histories/{name}"].attrs["position"] = [place]
+        del file["histories/far"]
+    assert read_gauge(record).position == 0.6
+    with h5py.File(record, "r+") as file:
+        del file["histories/near"]
+    with pytest.raises(CaseError, match="holds no history of stress between the ends of a bar"):
+        read_gauge(record)
 
 
 def test_the_free_end_is_a_monitor_or_a_file(record, text, tmp_path):
     np.savetxt(tmp_path / "end.txt", np.column_stack([np.arange(400), VELOCITY]))
-    np.testing.assert_array_equal(read_free_end(record, "end")[:400], VELOCITY)
-    np.testing.assert_array_equal(read_free_end(text, str(tmp_path / "end.txt")), VELOCITY)
+    time, velocity = read_free_end(record, "end")
+    with h5py.File(record) as file:
+        np.testing.assert_array_equal(time, file["histories/end/time"][:])
+    np.testing.assert_array_equal(velocity[:400], VELOCITY)
+    time, velocity = read_free_end(text, str(tmp_path / "end.txt"))
+    np.testing.assert_array_equal(time, np.arange(400))
+    np.testing.assert_array_equal(velocity, VELOCITY)
 
 
-def test_what_does_not_move_with_the_free_end_is_refused(record, text, tmp_path):
+@pytest.mark.parametrize("name", ["near", "end.txt"])
+def test_what_does_not_move_with_the_free_end_is_refused(record, name):
+    said = f"--free-end: is {name}, must be a monitor at the end opposite the load, "
     with pytest.raises(CaseError) as caught:
-        read_free_end(record, "near")
-    place = "0.6 m from the loaded end of a bar of 0.99 m"
-    assert caught.value.problems == [f"--free-end: is near, {place}, must be at its other end"]
+        read_free_end(record, name)
+    assert caught.value.problems == [said + "which is end"]
+    with h5py.File(record, "r+") as file:
+        del file["histories/end"]
+    with pytest.raises(CaseError) as caught:
+        read_free_end(record, name)
+    assert caught.value.problems == [said + "but the results have none there"]
+
+
+def test_beside_a_text_file_the_free_end_is_another(text, tmp_path):
+    with pytest.raises(CaseError) as caught:
+        read_free_end(text, "end")
+    assert caught.value.problems == ["--free-end: is end, must be a text file of time (s) and velocity (m/s)"]
     (tmp_path / "end.txt").write_text("0 1\n1 2\n")
     with pytest.raises(CaseError, match="holds 2 samples, must hold three or more"):
         read_free_end(text, str(tmp_path / "end.txt"))
+
+
+@pytest.mark.parametrize("loaded", ["left", "right"])
+def test_a_record_tells_of_its_bar(record, loaded):
+    assert read_gauge(record, "near").told is None
+    with h5py.File(record, "r+") as file:
+        file.attrs.update({"wave_speed": 2740.0, "attenuation": 0.52, "ends": ["viscous", "fixed"], "loaded": loaded})
+        file["cracks/time"] = np.empty(0)
+    ends = ("viscous", "fixed") if loaded == "left" else ("fixed", "viscous")
+    assert read_gauge(record, "near").told == Told(2740.0, 0.52, ends, np.inf)
+    with h5py.File(record, "r+") as file:
+        del file["cracks/time"]
+        file["cracks/time"] = [4e-4, 3e-4, 5e-4]
+    assert read_gauge(record, "near").told.broken == 3e-4
+
+
+def test_an_end_that_is_held_is_not_free(record):
+    with h5py.File(record, "r+") as file:
+        file.attrs.update({"wave_speed": 2740.0, "attenuation": 0.0, "ends": ["free", "fixed"]})
+        file["cracks/time"] = np.empty(0)
+    with pytest.raises(CaseError) as caught:
+        read_free_end(record, "end")
+    assert caught.value.problems == ["--free-end: is end, where the bar's end is fixed, must be free"]
 
 
 def test_places_and_velocities_count_from_the_loaded_end(record, felt):
@@ -137,7 +188,7 @@ def test_places_and_velocities_count_from_the_loaded_end(record, felt):
     np.testing.assert_array_equal(near.stress, 1e6 * felt()[1])
     assert (near.position, far.position) == (0.99 - 0.6, 0.99 - 0.9)
     assert read_gauge(record, "near", position=0.6).position == 0.6  # options count from there anyway
-    np.testing.assert_array_equal(read_free_end(record, "start")[:400], -VELOCITY)  # outwards is to the left
+    np.testing.assert_array_equal(read_free_end(record, "start")[1][:400], -VELOCITY)  # outwards is to the left
 
 
 @pytest.mark.parametrize(

@@ -286,7 +286,8 @@ def test_a_bar_is_kept_with_its_section_and_volumes(spalled_run) -> None:
     with h5py.File(spalled_run) as file:
         about, particles = dict(file.attrs), file["particles"]
         assert (about["kind"], about["density"], about["section"]) == ("bar", 2500.0, 1.0)
-        assert about["loaded"] == "left"
+        assert (about["loaded"], list(about["ends"])) == ("left", ["free", "free"])
+        assert (about["wave_speed"], about["attenuation"]) == (1000.0, 0.0)
         assert about["size"].tolist() == [1.0, 0.0]
         assert set(particles) == {"position", "volume"}
         assert particles["position"].shape == (41, 2)

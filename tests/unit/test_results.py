@@ -139,6 +139,12 @@ def test_a_file_is_replaced_whole(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_a_folder_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(FileNotFoundError) as refused, replacing(tmp_path / "nowhere" / "file"):
+        pytest.fail("nothing can be written")
+    assert refused.value.filename == str(tmp_path / "nowhere")
+
+
 def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
     path = tmp_path / "file"
     path.write_text("old")

@@ -311,7 +311,7 @@ def test_a_bar_is_run_from_its_tables_to_a_folder(spalling, tmp_path) -> None:
     folder = run_case(spalling({**changes, "run.courant": 0.9}), tmp_path)
 
     names = {path.name for path in folder.iterdir()}
-    assert names == {"run.h5", "summary.json", "paraview", "scene.png", "histories.png"}
+    assert names == {"run.h5", "summary.json", "paraview", "scene.png", "histories.png", "histories_stress.png"}
     found = summary(folder)
     assert found["steps"] == 67  # 60/0.9
     assert found["courant"] == pytest.approx(0.9, rel=1e-12)

@@ -8,8 +8,9 @@ import pytest
 from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.case import with_changes
 from dembound.errors import RunError
+from dembound.run import plan
 from dembound.scene import Scene, build
-from dembound.simulate import Simulation, Start
+from dembound.simulate import FASTEST, Simulation, Start
 from dembound.stability import choose_step, step_limit
 
 NOBODY = np.zeros(0, dtype=np.int64)
@@ -156,6 +157,24 @@ def test_what_is_not_a_number_ends_the_run(bar) -> None:
     simulation.displacement[0, 5] = np.nan
     with pytest.raises(RunError, match="grew without bound"):
         simulation.advance(1)
+
+
+def test_a_speed_ends_the_run_before_its_energy_is_no_number(spalling) -> None:
+    planned = plan(spalling())  # a load moves it, whose effect no wave bounds
+    simulation = Simulation(planned.scene, planned.time_step, NOBODY)
+    simulation.velocity[0] = 0.9 * FASTEST  # of all nodes, so that no bond feels it
+    simulation.advance(1)
+    assert np.isfinite(np.sum(planned.scene.mass * simulation.velocity[0] ** 2))
+
+    simulation.velocity[0] *= 1.2
+    with pytest.raises(RunError, match="smaller waves and loads"):
+        simulation.advance(1)
+
+
+def test_waves_of_any_size_are_bounded(bar) -> None:
+    scene = build(bar({"wave.pulse.amplitude": 1e200}))
+    with pytest.raises(RunError, match="grew without bound"):
+        Simulation(scene, choose_step(scene)[0], NOBODY).run(29)
 
 
 def test_a_calm_scene_stays_at_rest(bar) -> None:

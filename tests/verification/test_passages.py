@@ -35,7 +35,7 @@ class Middle:
         return simulation.advance(len(self.time))[:, 0, 6]
 
     def exact(self) -> np.ndarray:
-        """d'Alembert's."""
+        """That of d'Alembert."""
         bar = self.scene.case.bar
         return bar_stress(0.5 * bar.length, self.time, lambda t: PRESSURE * self.pulse(t), bar.length, bar.speed)
 

@@ -21,7 +21,7 @@ CELLS, FIRST, RISE, FALL = 200, 50, 20, 60
 
 @pytest.fixture(params=["load", "viscous_input"])
 def swing(request, rock):
-    """Finds the pressure in a spring less that of the pulse (k,) in the crest's units, which begins `late` steps late."""
+    """Finds pressure in a spring less that of the pulse (k,), in parts of its crest; it begins `late` steps late."""
 
     def find(late: float) -> np.ndarray:
         spacing = rock.length / CELLS

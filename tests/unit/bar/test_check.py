@@ -155,6 +155,18 @@ def test_dashpots_at_soft_ends_are_warned_of(spalling, method: dict, warned: boo
     assert bar_warnings(spalling({"method": method, "boundary": ends, "load": []}), 2e-5) == []
 
 
+@pytest.mark.parametrize(("unit", "warned"), [(1.0, False), (1e6, True)])
+def test_a_record_in_microseconds_is_warned_of(spalling, tmp_path, unit: float, warned: bool) -> None:
+    # of a millisecond, sampled often enough that what its spectrum holds is long beside the nodes
+    time = np.linspace(0.0, 1e-3, 101)
+    path = tmp_path / "blow.txt"
+    np.savetxt(path, np.column_stack([unit * time, 1.0 - np.cos(2e3 * np.pi * time)]))
+    case = spalling({"wave.hit": {"type": "file", "path": str(path), "start": 1e4}})
+
+    said = "wave.hit: its 1000 s are longer than the run of 0.0015 s; are its file's times in s?"
+    assert [warning for warning in bar_warnings(case, 2.5e-5) if "times" in warning] == warned * [said]
+
+
 def test_check_tells_of_the_run_and_the_bar(spalling) -> None:
     facts, warnings = check(spalling())
 

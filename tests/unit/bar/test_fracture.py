@@ -109,3 +109,10 @@ def test_springs_count_as_well() -> None:
 
 def test_a_spall_is_described_in_plain_values() -> None:
     assert Spall(1e-3, (0.5, 0.75), (0.25, 1.0)).describe() == {"time": 1e-3, "start": [0.5, 0.75], "end": [0.25, 1.0]}
+
+
+def test_rounding_of_products_is_not_told() -> None:
+    assert (3 * 0.1, 696 * 1e-3) == (0.30000000000000004, 0.6960000000000001)
+    described = Spall(3 * 0.1, (696 * 1e-3, 1e-7 / 3.0), (0.25, 1.0)).describe()
+
+    assert described == {"time": 0.3, "start": [0.696, 3.33333333333e-8], "end": [0.25, 1.0]}

@@ -50,6 +50,19 @@ def test_edges_are_the_two_end_nodes(spalling) -> None:
         assert edges[side].length == pytest.approx(SECTION, rel=2 * EPS)
 
 
+def test_a_record_is_told_of_the_bar_and_its_ends(spalling) -> None:
+    told = build_bar(spalling({"bar.attenuation": 0.3, "boundary.right": {"type": "viscous"}})).attributes
+
+    assert told == {
+        "density": 2500.0,
+        "section": 1.0,
+        "wave_speed": 1000.0,
+        "attenuation": 0.3,
+        "loaded": "left",
+        "ends": ["free", "viscous"],
+    }
+
+
 def test_a_monitor_stands_at_the_nearest_node(spalling) -> None:
     places = {"start": 0.0, "below": 0.512, "above": 0.513, "end": 1.0}
     monitors = [{"name": name, "position": place} for name, place in places.items()]

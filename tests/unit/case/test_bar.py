@@ -198,7 +198,10 @@ METHODS = '"finite_difference", "patch", "peridynamics", "switch"'
     [
         ('type = "fem"', f'type: is "fem", must be one of {METHODS}'),
         ("horizon = 3", f"type: is missing, must be one of {METHODS}"),
-        ('type = "finite_difference"\nhorizon = 3', "horizon: unknown key; allowed: type"),
+        (
+            'type = "finite_difference"\nhorizon = 3',
+            'horizon: is for "patch", "peridynamics", "switch"; allowed here: type',
+        ),
         ('type = "peridynamics"', "horizon: is missing, must be a whole number no less than 1"),
         ('type = "peridynamics"\nhorizon = 0', "horizon: is 0, must be at least 1"),
         ('type = "peridynamics"\nhorizon = 2.5', "horizon: is 2.5, must be a whole number no less than 1"),
@@ -206,7 +209,11 @@ METHODS = '"finite_difference", "patch", "peridynamics", "switch"'
         ('type = "switch"\nhorizon = 51', "horizon: is 51, must be at most 50, half the bar's spacings"),
         (
             'type = "peridynamics"\nhorizon = 3\ntrigger = 0.9',
-            "trigger: unknown key; allowed: type, horizon, corrected_ends",
+            'trigger: is for "patch", "switch"; allowed here: type, horizon, corrected_ends',
+        ),
+        (
+            'type = "peridynamics"\nhorizon = 3\nhorizons = 3',
+            "horizons: unknown key; allowed: type, horizon, corrected_ends (did you mean horizon?)",
         ),
         (
             'type = "switch"\nhorizon = 3\nbefore = "patch"',

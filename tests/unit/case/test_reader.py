@@ -246,8 +246,17 @@ def test_all_mistakes_of_all_tables_are_listed_at_once() -> None:
     ]
 
 
-def test_empty_case_names_what_is_missing() -> None:
-    assert [line.split(":")[0] for line in problems("")] == [
+def test_a_case_of_neither_disks_nor_a_bar_is_asked_what_it_is() -> None:
+    (line,) = problems("")
+    assert line.startswith("has neither [packing] (disks) nor [bar]; `dembound new` ")
+    # what else it holds cannot be judged, but for tables that no case has
+    found = problems(GOOD.replace("[packing]", "[pakcing]").replace("density", "densitty"))
+    assert [text.split(":")[0] for text in found] == ["pakcing", line]
+    assert found[0].endswith("(did you mean packing?)")
+
+
+def test_one_table_of_disks_names_what_is_missing() -> None:
+    assert [text.split(":")[0] for text in problems("[packing]")] == [
         "packing.pattern",
         "material.density",
         "run.duration",

@@ -73,6 +73,66 @@ def test_a_change_within_a_table_given_as_a_whole_leaves_that_one_alone() -> Non
     assert push["period"] == 0.1
 
 
+NAMED = """
+[[load]]
+name = "weight"
+acceleration = [-9.81, 0.0]
+[[load]]
+name = "1"
+acceleration = [1.0, 0.0]
+[[hole]]
+name = "pit"
+type = "circle"
+centre = [50.0, 5.0]
+radius = 1.0
+"""
+
+
+def test_tables_of_lists_go_by_name_or_by_number() -> None:
+    case = loads(STARTER + NAMED)
+    changed = with_changes(
+        case,
+        {"load.weight.acceleration": [-1.0, 0.0], "monitor.1.position": [3.0, 2.5], "hole.pit.radius": 2.0}
+        | {"load.2.acceleration": [2.0, 0.0]},
+    )
+    assert [load.acceleration for load in changed.load] == [(-1.0, 0.0), (2.0, 0.0)]
+    assert [(monitor.name, monitor.position) for monitor in changed.monitor] == [("middle", (3.0, 2.5))]
+    assert changed.hole[0].radius == 2.0
+    # a name comes before a number, and a new name is known from then on
+    assert with_changes(case, {"load.1.name": "push"}).load[1].name == "push"
+    renamed = with_changes(case, {"load.weight.name": "heavy", "load.heavy.acceleration": [-2.0, 0.0]})
+    assert (renamed.load[0].name, renamed.load[0].acceleration) == ("heavy", (-2.0, 0.0))
+    whole = {"name": "gauge", "position": [1.0, 2.5]}
+    assert with_changes(case, {"monitor.middle": whole}).monitor[0].name == "gauge"
+
+
+@pytest.mark.parametrize(
+    ("key", "line"),
+    [
+        (
+            "load.wieght.acceleration",
+            "unknown load; allowed: weight, 1 (did you mean weight?), or a number up to 2",
+        ),
+        ("load.3.acceleration", "unknown load; allowed: weight, 1, or a number up to 2"),
+        ("monitor.0", "unknown monitor; allowed: middle, or a number up to 1"),
+        ("packing.size.0", "size is not a table"),
+        ("packing.size.0.x", "size is not a table"),
+        ("..", "is no key, must be names with one dot between two, such as run.duration"),
+        ("run.", "is no key, must be names with one dot between two, such as run.duration"),
+        ("", "is no key, must be names with one dot between two, such as run.duration"),
+    ],
+)
+def test_keys_that_lead_nowhere_are_refused(key: str, line: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        with_changes(loads(STARTER + NAMED), {key: 3})
+    assert caught.value.problems == [f"{key}: {line}"]
+
+
+def test_no_table_of_an_empty_list_can_be_changed() -> None:
+    with pytest.raises(CaseError, match=r"monitor\.middle\.position: monitor is not a table"):
+        with_changes(loads(STARTER), {"monitor": [], "monitor.middle.position": [1.0, 1.0]})
+
+
 def test_wrong_changes_are_refused_like_wrong_files() -> None:
     case = loads(STARTER)
     with pytest.raises(CaseError, match=r"boundary\.left\.beta_p: is -1"):

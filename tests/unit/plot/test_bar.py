@@ -1,7 +1,5 @@
 """A bar is drawn over place and time, or along itself, in the units its labels tell."""
 
-from types import SimpleNamespace
-
 import h5py
 import numpy as np
 import pytest
@@ -44,11 +42,23 @@ def picture_of(panel):
     return picture
 
 
+def from_rest(values: np.ndarray) -> np.ndarray:
+    """Values (k, n) after those of a bar at rest."""
+    return np.vstack([np.zeros(values.shape[1]), values])
+
+
+def drawn(panel, place: float, time: float) -> np.ndarray:
+    """The colour (red, green, blue) that the panel's picture has at a place in m and a time in ms."""
+    image, left, bottom, _ = picture_of(panel).make_image(None)
+    column, row = panel.transData.transform((place, time)) - (left, bottom)
+    return image[int(row), int(column), :3].astype(float)
+
+
 def test_stress_and_damage_stand_over_place_and_time_and_below_along_the_bar(spalled_run, recorded):
     figure = plot_bar(spalled_run)
     stress, damage, *last = figure.axes[:4]
-    np.testing.assert_array_equal(picture_of(stress).get_array(), recorded["stress"] / 1e6)
-    np.testing.assert_array_equal(picture_of(damage).get_array(), recorded["damage"])
+    np.testing.assert_array_equal(picture_of(stress).get_array(), from_rest(recorded["stress"] / 1e6))
+    np.testing.assert_array_equal(picture_of(damage).get_array(), from_rest(recorded["damage"]))
     largest = np.abs(recorded["stress"]).max() / 1e6
     assert picture_of(stress).get_clim() == (-largest, largest)
     assert picture_of(damage).get_clim() == (0.0, 1.0)
@@ -63,17 +73,51 @@ def test_stress_and_damage_stand_over_place_and_time_and_below_along_the_bar(spa
     assert figure.get_suptitle() == "spalled: stress and local damage along the bar"
 
 
-def test_cells_are_centred_on_nodes_and_snapshots_however_these_are_spaced(changed):
+def test_pictures_fill_the_whole_bar_from_the_start_to_the_end(spalled_run):
+    for panel in plot_bar(spalled_run).axes[:2]:
+        assert panel.get_xlim() == (0.0, 1.0)
+        assert panel.get_ylim() == (0.0, 1.5)
+        assert picture_of(panel).get_extent() == (0.0, 1.0, 0.0, 1.5)
+
+
+def test_stress_changes_evenly_between_snapshots_and_damage_at_once(changed):
     run, file = changed
-    left, right, bottom, top = picture_of(plot_bar(run).axes[0]).get_extent()
-    # 41 nodes from 0 to 1 m, 12 snapshots from 0.125 to 1.5 ms, and half a cell around them
-    assert (left, right, bottom, top) == pytest.approx((-0.0125, 1.0125, 0.0625, 1.5625))
-    file["snapshots/0000"].attrs["time"] = 5e-5
+    shots = list(file["snapshots"].values())
+    for number, shot in enumerate(shots):
+        shot["stress"][:] = 1e6 * (number >= 6)
+        shot["damage"][:] = float(number >= 6)
+    for number, time in ((5, 0.7e-3), (6, 1.1e-3)):  # not where evenly spaced ones are, 0.75 and 0.875 ms
+        shots[number].attrs["time"] = time
     file.flush()
-    picture = picture_of(plot_bar(run).axes[0])
-    for time, row in ((0.14, 0), (0.16, 1), (0.31, 1), (0.32, 2)):  # half way between 0.05, 0.25 and 0.375 ms
-        there = picture.get_cursor_data(SimpleNamespace(xdata=0.2, ydata=time))
-        assert there == picture.get_array()[row, 8]
+    stress, damage = plot_bar(run).axes[:2]
+    below, above = drawn(stress, 0.5, 0.6), drawn(stress, 0.5, 1.1)
+    # one pixel of some 500 in 1.5 ms is less than 1 % of the way between the snapshots, and colours are whole numbers
+    for share in (0.25, 0.5, 0.75):
+        expected = below + share * (above - below)
+        np.testing.assert_allclose(drawn(stress, 0.5, 0.7 + 0.4 * share), expected, rtol=0, atol=4.0)
+    np.testing.assert_array_equal(drawn(damage, 0.5, 0.89), drawn(damage, 0.5, 0.6))
+    np.testing.assert_array_equal(drawn(damage, 0.5, 0.91), drawn(damage, 0.5, 1.4))
+    assert np.any(drawn(damage, 0.5, 0.89) != drawn(damage, 0.5, 0.91))
+
+
+def test_a_bar_begins_at_rest(changed):
+    run, file = changed
+    file["snapshots/0000/stress"][:] = 1e6
+    file.flush()
+    stress = plot_bar(run).axes[0]
+    assert picture_of(stress).get_array()[0].max() == 0.0
+    assert np.ptp(drawn(stress, 0.5, 0.002)) < np.ptp(drawn(stress, 0.5, 0.06))  # white is grey: red, green, blue alike
+
+
+def test_a_long_run_tells_seconds(changed):
+    run, file = changed
+    for shot in file["snapshots"].values():
+        shot.attrs["time"] *= 100.0
+    file.flush()
+    figure = plot_bar(run)
+    assert figure.axes[0].get_ylabel() == "time (s)"
+    assert figure.axes[0].get_ylim() == pytest.approx((0.0, 0.15))
+    assert figure.axes[2].get_title("left") == "at the end, t = 0.15 s"
 
 
 def test_broken_bonds_are_marked_where_and_when_they_broke(spalled_run, recorded):
@@ -132,7 +176,7 @@ def test_the_last_state_alone_is_enough(changed, recorded):
 )
 def test_one_field_is_shown_at_all_snapshots_or_one(spalled_run, recorded, field, scale, label):
     whole, _, colours = plot_bar_field(spalled_run, field).axes
-    np.testing.assert_array_equal(picture_of(whole).get_array(), recorded[field] / scale)
+    np.testing.assert_array_equal(picture_of(whole).get_array(), from_rest(recorded[field] / scale))
     assert colours.get_xlabel() == label
     for snapshot in (5, -1):
         figure = plot_bar_field(spalled_run, field, snapshot)

@@ -17,7 +17,7 @@ def test_every_column_that_is_not_zero_is_a_line(cracked_run):
     assert ledger.keys() == {"time", "error", *COLUMNS}
     for name, label in COLUMNS.items():
         if np.any(ledger[name]):
-            np.testing.assert_array_equal(drawn.pop(label).get_data(), [ledger["time"], ledger[name]])
+            np.testing.assert_array_equal(drawn.pop(label).get_data(), [ledger["time"] / 1e-3, ledger[name]])
     assert drawn == {}
     assert np.any(ledger["kinetic"])
     assert not np.any(ledger["damping"])
@@ -28,7 +28,7 @@ def test_every_column_that_is_not_zero_is_a_line(cracked_run):
 def test_units_and_the_name_are_told(cracked_run):
     figure = plot_energy(cracked_run)
     upper, lower = figure.axes
-    assert (upper.get_ylabel(), lower.get_xlabel()) == ("energy per metre of thickness", "time (s)")
+    assert (upper.get_ylabel(), lower.get_xlabel()) == ("energy per metre of thickness", "time (ms)")
     assert figure.get_suptitle().startswith("cracked: ")
     assert [upper.yaxis.get_major_formatter()(value) for value in (0.0, 20.0, 5e4)] == ["0 J", "20 J", "50 kJ"]
 

@@ -22,13 +22,25 @@ from dembound.plot.style import new_figure
 def test_each_monitor_has_a_panel_with_its_history(small_run, component, quantity, column, label):
     figure = plot_histories([small_run], component, quantity)
     assert figure.get_supylabel() == label
-    assert figure.axes[-1].get_xlabel() == "time (s)"
+    assert figure.axes[-1].get_xlabel() == "time (ms)"
     with h5py.File(small_run) as file:
         for panel, (name, group) in zip(figure.axes, file["histories"].items(), strict=True):
             assert panel.get_title("left") == name + " at ({:.2f}, {:.2f}) m".format(*group.attrs["wanted"])
             (line,) = panel.lines
-            np.testing.assert_array_equal(line.get_xdata(), group["time"][:])
+            np.testing.assert_array_equal(line.get_xdata(), group["time"][:] / 1e-3)
             np.testing.assert_array_equal(line.get_ydata(), group[quantity][:, column])
+
+
+def test_runs_that_are_not_all_short_tell_seconds(small_run, other_run, tmp_path):
+    run = tmp_path / "run.h5"
+    run.write_bytes(other_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        file["histories/front/time"][-1] = 0.2
+        last = file["histories/back/time"][-1]
+    front, back = plot_histories([small_run, run]).axes
+    assert back.get_xlabel() == "time (s)"
+    assert front.lines[1].get_xdata()[-1] == 0.2
+    assert back.lines[1].get_xdata()[-1] == last
 
 
 def test_runs_lie_over_each_other_in_different_styles(small_run, other_run):

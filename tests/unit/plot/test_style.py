@@ -4,7 +4,7 @@ import matplotlib
 import pytest
 from matplotlib import image
 
-from dembound.plot.style import line_style, new_figure, point_style, save, styled
+from dembound.plot.style import line_style, new_figure, outside_legend, point_style, save, styled, time_unit
 
 
 def test_a_saved_figure_is_a_png_of_its_size(tmp_path):
@@ -17,6 +17,28 @@ def test_the_same_figure_saves_to_the_same_bytes(tmp_path):
     for name in ("first.png", "second.png"):
         save(new_figure(2.0, 1.0), tmp_path / name)
     assert (tmp_path / "first.png").read_bytes() == (tmp_path / "second.png").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("letters", "columns"),
+    # of 4 inches at 10 points a column takes some 0.7 and each letter 0.08 to 0.09; the last do not fit at all
+    [(2, 4), (5, 3), (12, 2), (30, 1), (90, 1)],
+)
+def test_a_legend_has_as_many_columns_as_the_figure_is_wide_enough_for(letters, columns):
+    figure = new_figure(4.0, 3.0)
+    panel = figure.subplots()
+    for letter in "abcd":
+        panel.plot([0.0, 1.0], label=letter * letters)
+    outside_legend(figure, [panel], columns=4)
+    (legend,) = figure.legends
+    figure.draw_without_rendering()
+    assert len({text.get_window_extent().x0 for text in legend.get_texts()}) == columns
+    assert letters == 90 or legend.get_window_extent().width <= figure.bbox.width
+
+
+def test_times_of_less_than_a_tenth_of_a_second_are_told_in_milliseconds():
+    assert [time_unit(last).label for last in (0.0, 0.0999, 0.1, 20.0)] == ["time (ms)"] * 2 + ["time (s)"] * 2
+    assert [0.05 / time_unit(last).seconds for last in (0.05, 0.5)] == [50.0, 0.05]
 
 
 def test_the_style_ends_with_the_drawing_and_does_not_depend_on_the_users():

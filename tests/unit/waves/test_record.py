@@ -59,6 +59,32 @@ def test_commas_separate_the_columns_of_a_csv_file(tmp_path: Path) -> None:
     assert read_samples(path).tolist() == [[0.0, 0.5], [1.0, -2.0]]
 
 
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("gauge.csv", "Time (s),Stress 1 (Pa)\n0,0.5\n1, -2\n"),
+        ("gauge.csv", "\ufefft;s\n0;0.5\n1;-2\n"),
+        ("gauge.csv", "0;0,5\n1,0;-2\n"),
+        ("gauge.txt", "# a gauge; in Pa\nt; s\n0; 0.5  # first\n1; -2\n"),
+        ("gauge.txt", "\ufefftime stress\n0 0.5\n1\t-2\n"),
+        ("gauge.txt", "\ufeff0 0.5\r\n1 -2\r\n"),
+    ],
+)
+def test_headers_marks_of_spreadsheets_and_semicolons_are_read(tmp_path: Path, name: str, text: str) -> None:
+    (tmp_path / name).write_text(text, encoding="utf-8", newline="")
+
+    assert read_samples(tmp_path / name).tolist() == [[0.0, 0.5], [1.0, -2.0]]
+
+
+def test_columns_are_called_what_they_are_for(tmp_path: Path) -> None:
+    path = tmp_path / "three.txt"
+    path.write_text("0 0 0\n1 1 1\n")
+    for given, called in (({}, "values"), ({"quantity": "stress (Pa)"}, "stress (Pa)")):
+        with pytest.raises(ValueError, match="has 3 columns") as caught:
+            read_samples(path, **given)
+        assert str(caught.value).endswith(f"must have two: time (s), {called}")
+
+
 def test_equal_files_make_equal_waves(tmp_path: Path) -> None:
     assert record(tmp_path, TRIANGLE) == record(tmp_path, TRIANGLE)
     assert record(tmp_path, TRIANGLE) != record(tmp_path, "0 0\n1 1\n3 0\n")
@@ -72,7 +98,10 @@ def test_equal_files_make_equal_waves(tmp_path: Path) -> None:
         ("0 0 0\n1 1 1\n", "has 3 columns, must have two"),
         ("0\n1\n", "has 1 columns"),
         ("0 0\n1 1 1\n", "is not two columns of numbers"),
-        ("time velocity\n0 0\n1 1\n", "is not two columns of numbers"),
+        ("time velocity\ns m/s\n0 0\n1 1\n", "is not two columns of numbers"),
+        ("time 0\n0 0\n1 1\n", "is not two columns of numbers"),
+        ("0,0;1.000,5\n1;1\n", "is not two columns of numbers"),
+        ("time velocity\n", "holds no numbers"),
         ("0,0\n1,1\n", "is not two columns of numbers"),
         ("0 0\n1 nan\n", "not finite"),
         ("0 0\ninf 1\n", "not finite"),
