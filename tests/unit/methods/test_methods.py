@@ -124,7 +124,8 @@ def test_a_patch_grows_from_where_its_edge_asks() -> None:
     assert bonds.asking(pulled(39)).tolist() == [39]
     found.answer(bonds, pulled(39))
 
-    assert bonds.zones == [(20, 47)]
+    # by half of its twenty nodes, which is more than three horizons, beyond the two nodes of the spring
+    assert bonds.zones == [(20, 51)]
 
 
 @pytest.mark.parametrize("horizon", [1, 2, 3, 8])
