@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Lu & Wang (2016): everything that is reproduced, table 1 and figure 8 here, the rest in section2.sh, section32.sh and
-# section33.sh. Takes some three minutes.
+# section33.sh. Takes some four minutes.
 #
 #   cases/lu2016/run.sh [RESULTS]      (default: results/lu2016)
 set -euo pipefail

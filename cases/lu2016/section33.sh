@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Lu & Wang (2016), section 3.3: the spalling test (figures 10 to 12, table 2), by five methods and on finer bars too.
-# Two minutes.
+# Three minutes.
 #
 #   cases/lu2016/section33.sh [RESULTS]      (default: results/lu2016)
 set -euo pipefail
