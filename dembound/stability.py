@@ -4,6 +4,7 @@ import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
 from dembound.any_scene import AnyScene
+from dembound.bar.banded import ROUNDING
 from dembound.bar.scene import BarScene
 from dembound.errors import CaseError, RunError
 from dembound.kernels.elastic import contact_forces
@@ -13,9 +14,6 @@ from dembound.threads import threads_for
 TOLERANCE = 1e-3
 """Relative residual at which the eigenvalue counts as found. It is added on top, so the step comes out too small by
 at most 0.05 %, never too large. Lattices need it, their largest eigenvalues lie close."""
-
-ROUNDING = 1e-9
-"""Share by which a bar's step may pass its limit, which rounding can put on either side of a round number."""
 
 LANCZOS_VECTORS = 8
 """Krylov vectors kept: few, as they are the largest arrays of all."""

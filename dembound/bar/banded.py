@@ -3,6 +3,9 @@
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky_banded
 
+ROUNDING = 1e-9
+"""Share by which a step may pass its limit, which rounding can put on either side of a round number."""
+
 BISECTIONS = 60
 """Halvings of the bracket of the largest eigenvalue: more than a float has bits."""
 

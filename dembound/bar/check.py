@@ -81,7 +81,7 @@ def bar_warnings(case: BarCase, time_step: float) -> list[str]:
         for name, wave in case.wave.items()
         if isinstance(wave, Record) and wave.duration() - wave.start > LONG * case.run.duration
     ]
-    if getattr(case.method, "corrected_ends", True):
+    if not case.method.soft_ends:
         return warnings
     return warnings + [
         f"boundary.{side}: stands at a soft end of peridynamics and returns a part of every wave; "

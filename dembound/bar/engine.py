@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from dembound.bar.banded import ROUNDING
 from dembound.bar.scene import BarScene
 from dembound.contacts import Cracks
 from dembound.engine import Engine
@@ -9,11 +10,8 @@ from dembound.errors import RunError
 from dembound.kernels import bar
 from dembound.kernels.tables import BarBonds, Body, Log, Supports
 
-ROUNDING = 1e-9
-"""Share by which a step limit or an energy may be wrong from rounding alone."""
-
 SWING = 1e-6
-"""The same of a kinetic energy, in which a node with a prescribed velocity may swing a little beyond the bound."""
+"""Share by which a node with a prescribed velocity may swing beyond the bound of a stable step."""
 
 
 class BarEngine(Engine):
@@ -69,7 +67,7 @@ class BarEngine(Engine):
             limit = self.scene.stable_step(self.bonds)
             raise RunError(
                 f"the method's bonds at t = {step * self._step:g} s allow a time step of {limit:.6g} s only; "
-                f"take a smaller run.time_step or run.courant"
+                "take a smaller run.time_step or run.courant"
             )
 
     def _is_stable(self) -> bool:

@@ -130,7 +130,7 @@ class BarScene:
 
     @property
     def bytes(self) -> int:
-        """Memory of the state, the bonds and the snapshots' arrays."""
+        """Memory of state (9 numbers a node), masses, springs and room (10), bonds, their stiffness and breaks (3m)."""
         return 8 * self.count * (9 + 10 + 3 * self.case.method.largest_horizon)
 
 

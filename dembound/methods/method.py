@@ -26,6 +26,11 @@ class Method(Table, ABC):
     def carrying_horizon(self) -> int:
         """The horizon that carries waves where nothing is about to break."""
 
+    @property
+    def soft_ends(self) -> bool:
+        """Whether the bar is ever softer near its ends than elsewhere."""
+        return False
+
     @abstractmethod
     def begin(self, rod: Rod) -> Bonds:
         """The bonds it begins with."""

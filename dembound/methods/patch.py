@@ -5,11 +5,11 @@ from typing import Literal
 import numpy as np
 
 from dembound.methods.bonds import Bonds, Rod
-from dembound.methods.method import Method
+from dembound.methods.triggered import Triggered
 from dembound.table import quantity
 
 
-class Patch(Method):
+class Patch(Triggered):
     """Zones of peridynamics that appear where a stretch reaches `trigger` of the critical one, and grow as needed.
 
     Around a zone local springs carry the share of the stress that its bonds leave (complement springs): forces stay in
@@ -17,24 +17,12 @@ class Patch(Method):
     """
 
     type: Literal["patch"]
-    horizon: int = quantity(..., unit="1", help="horizon m in spacings, in the zones", ge=1)
-    trigger: float = quantity(0.9, unit="1", help="share of the critical stretch that makes a zone", gt=0.0, le=1.0)
     reach: int = quantity(4, unit="1", help="horizons that a zone extends beyond what made it", ge=1)
 
     @property
     def name(self) -> str:
         """What the method does at first, for reports."""
         return "finite differences"
-
-    @property
-    def largest_horizon(self) -> int:
-        """The horizon m in the zones."""
-        return self.horizon
-
-    @property
-    def carrying_horizon(self) -> int:
-        """1: outside the zones."""
-        return 1
 
     def begin(self, rod: Rod) -> Bonds:
         """Local springs that ask at the trigger."""

@@ -35,6 +35,11 @@ class Peridynamics(Method):
         """The horizon m."""
         return self.horizon
 
+    @property
+    def soft_ends(self) -> bool:
+        """Where they are not corrected."""
+        return not self.corrected_ends
+
     def begin(self, rod: Rod) -> Bonds:
         """All bonds, and the springs of corrected ends."""
         bonds = Bonds(rod, self.horizon, complement=self.corrected_ends)

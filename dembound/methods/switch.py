@@ -5,22 +5,20 @@ from typing import Literal
 import numpy as np
 
 from dembound.methods.bonds import Bonds, Rod
-from dembound.methods.method import Method
+from dembound.methods.triggered import Triggered
 from dembound.table import quantity
 
 
-class Switch(Method):
+class Switch(Triggered):
     """Finite differences, or peridynamics with m = 1, until the largest stretch reaches `trigger` of the critical one.
 
     From then on peridynamics with horizon m: L's FDM–PD3 and PD1–PD3.
     """
 
     type: Literal["switch"]
-    horizon: int = quantity(..., unit="1", help="horizon m in spacings, after the switch", ge=1)
     before: Literal["finite_difference", "peridynamics"] = quantity(
         "finite_difference", unit="1", help="what serves before: finite differences, or peridynamics with m = 1"
     )
-    trigger: float = quantity(0.9, unit="1", help="share of the critical stretch at which it switches", gt=0.0, le=1.0)
     corrected_ends: bool = quantity(False, unit="1", help="whether local springs repair the bar's soft ends")
 
     @property
@@ -29,14 +27,9 @@ class Switch(Method):
         return "finite differences" if self.before == "finite_difference" else "peridynamics, m = 1"
 
     @property
-    def largest_horizon(self) -> int:
-        """The horizon m after the switch."""
-        return self.horizon
-
-    @property
-    def carrying_horizon(self) -> int:
-        """1: before the switch."""
-        return 1
+    def soft_ends(self) -> bool:
+        """Where they are not corrected."""
+        return not self.corrected_ends
 
     def begin(self, rod: Rod) -> Bonds:
         """Local springs that ask at the trigger; with m = 1 those of the ends are half as stiff."""

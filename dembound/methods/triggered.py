@@ -1,0 +1,21 @@
+"""What methods share that are finite differences until something is about to break."""
+
+from dembound.methods.method import Method
+from dembound.table import quantity
+
+
+class Triggered(Method):
+    """Local springs until a stretch reaches `trigger` of the critical one, peridynamics of some kind from then on."""
+
+    horizon: int = quantity(..., unit="1", help="horizon m of the peridynamics, in spacings", ge=1)
+    trigger: float = quantity(0.9, unit="1", help="share of the critical stretch that brings it in", gt=0.0, le=1.0)
+
+    @property
+    def largest_horizon(self) -> int:
+        """The horizon m."""
+        return self.horizon
+
+    @property
+    def carrying_horizon(self) -> int:
+        """1: local springs carry waves to where something breaks."""
+        return 1
