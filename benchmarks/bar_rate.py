@@ -10,11 +10,10 @@ the best. The last lines compare the time from the blow to just after the first 
 """
 
 import argparse
-import time
-from collections.abc import Callable
 
 import numba
 import numpy as np
+from timing import median_time
 
 from dembound.any_scene import build_scene
 from dembound.bar.fracture import spalls
@@ -81,15 +80,6 @@ def bytes_per_node(horizon: int) -> float:
     if horizon == 0:
         return 8.0 * (2 + 3 + 2 + 1)
     return 8.0 * (1 + horizon * (2 + 1 + 1 + 2 + 2) + 3 + 2 + 2)
-
-
-def median_time(work: Callable[[], object], repeats: int) -> float:
-    times = []
-    for _ in range(repeats):
-        began = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - began)
-    return float(np.median(times))
 
 
 def case_of(method: str, nodes: int, strength: float, courant: float) -> BarCase:

@@ -11,11 +11,11 @@ bandwidth is a ratio measured side by side. Medians are quoted.
 
 import argparse
 import resource
-import time
 from pathlib import Path
 
 import numba
 import numpy as np
+from timing import median_time
 
 from dembound.case import load, with_changes
 from dembound.scene import build
@@ -64,15 +64,6 @@ def flops_per_step(simulation: Simulation) -> float:
         return 29.0 * len(scene.rows.kind) + 15.0 * scene.count
     per_pair = 78.0 if scene.case.material.geometry == "updated" else 68.0
     return per_pair * len(simulation.contacts.arrays.first) + 20.0 * scene.count
-
-
-def median_time(work, repeats: int) -> float:
-    times = []
-    for _ in range(repeats):
-        began = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - began)
-    return float(np.median(times))
 
 
 def main() -> None:

@@ -50,6 +50,34 @@ def _reference_strain(i, j, k, dx, dy, u, palette):
     return nx, ny, rest, stretch, shear
 
 
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+def _updated_strain(i, j, k, dx, dy, was, v, step, palette):
+    """The same where normal and arms follow the motion; was: the shear before the step (s)."""
+    dx += palette[k, U(0)]
+    dy += palette[k, U(1)]
+    distance = np.sqrt(dx * dx + dy * dy)
+    nx = dx / distance
+    ny = dy / distance
+    stretch = distance - palette[k, U(2)]
+    arm_i = 0.5 * distance + palette[k, U(4)]
+    slide = nx * (v[U(1), j] - v[U(1), i]) - ny * (v[U(0), j] - v[U(0), i])
+    shear = was + step * (slide - arm_i * v[U(2), i] - (distance - arm_i) * v[U(2), j])
+    return nx, ny, distance, stretch, shear
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+def _bond_state(Fn, Fs, M, per_area, per_section, limits):
+    """State of an intact bond under its force and moment; per_area 1/A, per_section R/I."""
+    stress = Fn * per_area
+    if stress + abs(M) * per_section >= limits.tension:
+        after = TENSION
+    elif abs(Fs) * per_area >= limits.cohesion - stress * limits.tan_fa:
+        after = SHEAR
+    else:
+        after = INTACT
+    return after
+
+
 @njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
 def push(u, v, step, number, contacts, limits, lost):
     """Fill contacts.force for displacements u (3, n) reached with velocities v (3, n) after a step (s).
@@ -58,7 +86,7 @@ def push(u, v, step, number, contacts, limits, lost):
     what friction and cracks took in this step, J.
     """
     first, second, kind, palette, state, all_shear, all_slip, cracked, force, _, _ = contacts
-    friction, tension, cohesion, tan_fa, geometry = limits
+    friction, geometry = limits.friction, limits.geometry
     b = first.size
     for chunk in prange(CHUNKS):
         rubbed = 0.0
@@ -71,20 +99,11 @@ def push(u, v, step, number, contacts, limits, lost):
             if geometry == REFERENCE or (geometry == BONDED and intact):
                 nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, palette)
                 overlap = palette[k, U(3)] - distance - stretch
-                arm_i = 0.5 * distance + palette[k, U(4)]
-                arm_j = distance - arm_i
             else:
-                dx += palette[k, U(0)]
-                dy += palette[k, U(1)]
-                distance = np.sqrt(dx * dx + dy * dy)
-                nx = dx / distance
-                ny = dy / distance
-                stretch = distance - palette[k, U(2)]
+                nx, ny, distance, stretch, shear = _updated_strain(i, j, k, dx, dy, was, v, step, palette)
                 overlap = palette[k, U(3)] - distance
-                arm_i = 0.5 * distance + palette[k, U(4)]
-                arm_j = distance - arm_i
-                slide = nx * (v[U(1), j] - v[U(1), i]) - ny * (v[U(0), j] - v[U(0), i])
-                shear = was + step * (slide - arm_i * v[U(2), i] - arm_j * v[U(2), j])
+            arm_i = 0.5 * distance + palette[k, U(4)]
+            arm_j = distance - arm_i
             all_shear[c] = shear
             N = palette[k, U(5)] * overlap
             S = palette[k, U(6)] * (shear - all_slip[c])
@@ -104,15 +123,8 @@ def push(u, v, step, number, contacts, limits, lost):
                 Fn = palette[k, U(7)] * stretch
                 Fs = palette[k, U(8)] * shear
                 M = palette[k, U(9)] * turn
-                stress = Fn * palette[k, U(10)]
-                holds = True
-                if stress + abs(M) * palette[k, U(11)] >= tension:
-                    state[c] = TENSION
-                    holds = False
-                elif abs(Fs) * palette[k, U(10)] >= cohesion - stress * tan_fa:
-                    state[c] = SHEAR
-                    holds = False
-                if holds:
+                state[c] = _bond_state(Fn, Fs, M, palette[k, U(10)], palette[k, U(11)], limits)
+                if state[c] == INTACT:
                     pull += Fn
                     S += Fs
                     moment = M
