@@ -25,7 +25,7 @@ CANNOT_WRITE = 5
 
 app = typer.Typer(
     name="dembound",
-    help="Waves in bonded particles, with artificial boundaries that really absorb.",
+    help="Waves in bonded particles, with artificial boundaries that really absorb, and in bars of rock that break.",
     epilog=EXIT_CODES,
     no_args_is_help=True,
     add_completion=False,
