@@ -10,6 +10,10 @@ results=${1:-results/zhou2018}
 figures=$results/figures
 mkdir -p "$figures"
 
+errors() { # RUN REFERENCE: along x, along y and both
+    python3 "$cases/tunnel_errors.py" "$results/$1" "$results/$2"
+}
+
 echo "== No tunnel: free-field, viscous, free and fixed sides; the free-field run moves as its column does"
 places='monitor=[{name="middle",position=[150.0,150.0]},{name="quarter",position=[75.0,150.0]},{name="edge",position=[2.0,150.0]},{name="surface",position=[150.0,299.5]},{name="corner",position=[2.0,299.5]}]'
 runs=()
@@ -30,6 +34,15 @@ dembound plot "$results"/{continuum_homogenised,continuum_z,tunnel,tunnel_a,tunn
     --output "$figures/fig18_tunnel.png"
 dembound compare "$results"/{continuum_homogenised,tunnel}
 dembound compare "$results"/{continuum_z,tunnel,tunnel_a,tunnel_b}
+errors tunnel continuum_homogenised
+for case in tunnel tunnel_a tunnel_b; do errors $case continuum_z; done
+
+echo "== Pattern A with friction: isotropic, c_p = 1000 m/s and c_s = 707.1 m/s"
+isotropic=(--set material.fric=0.5 --output "$results")
+dembound run "$cases/tunnel_a.toml" "${isotropic[@]}" --name tunnel_a_isotropic
+python3 "$cases/tunnel_continuum.py" --name continuum_isotropic --p-wave-speed 1000 --s-wave-speed 707.1 --level 0.5 \
+    --output "$results"
+errors tunnel_a_isotropic continuum_isotropic
 
 echo "== Scattered motion beside models five times as wide and three times as deep"
 wide=(--set 'packing.size=[1500.0,900.0]' --set run.duration=3.3 --set output.snapshots=0 --set output.pictures=false
@@ -37,6 +50,8 @@ wide=(--set 'packing.size=[1500.0,900.0]' --set run.duration=3.3 --set output.sn
     --set 'monitor=[{name="P1",position=[729.5,750.0]},{name="P2",position=[750.0,770.5]}]')
 for case in tunnel tunnel_b tunnel_a; do
     dembound run "$cases/$case.toml" "${wide[@]}" --name "${case}_extended" --output "$results"
-    python3 "$cases/tunnel_errors.py" "$results/$case" "$results/${case}_extended"
+    errors $case ${case}_extended
 done
+dembound run "$cases/tunnel_a.toml" "${wide[@]}" "${isotropic[@]}" --name tunnel_a_isotropic_extended
+errors tunnel_a_isotropic tunnel_a_isotropic_extended
 echo "figures are in $figures"
