@@ -20,10 +20,11 @@ from dembound import __version__
 from dembound.boundaries import OPPOSITE, Viscous, ViscousInput, normal_axis
 from dembound.case import DiskCase
 from dembound.errors import CaseError, RunError
-from dembound.scene import Scene, boundary_medium, build, with_boundaries
+from dembound.matching import Motion, homogenised_beta
+from dembound.scene import Scene, build, with_boundaries
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
-from dembound.strip import AFTER, Motion, axis_of_motion, calibration_pulse, linear_medium, strip_of, whole_of
+from dembound.strip import AFTER, axis_of_motion, calibration_pulse, linear_medium, strip_of, whole_of
 from dembound.waves import Cosine
 
 Method = Literal["impedance", "ratio", "homogenised"]
@@ -175,16 +176,6 @@ def calibrate(
         f"calibration of {side} did not converge in {MOST_PASSES} passes: M_out/M_in = {found.ratio[-1]:.5f} "
         f"at {found.factor} = {found.beta[-1]:.5f}"
     )
-
-
-def homogenised_beta(scene: Scene, side: str, motion: Motion) -> float:
-    """β0 = (c_eff/c)·H/ΣD: the assembly's own wave speed over the nominal one, and the side's true length."""
-    edge = scene.edges[side]
-    index = 0 if motion == "p" else 1
-    own = scene.ground.wave_speeds(edge.axis)[index]
-    medium = boundary_medium(scene.case, scene.ground, edge.axis)
-    nominal = (medium.p_wave_speed, medium.s_wave_speed)[index]
-    return own / nominal / edge.cover
 
 
 def _next_beta(found: Calibration) -> float:

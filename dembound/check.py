@@ -5,20 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from dembound.bar.check import bar_facts, bar_warnings
+from dembound.bar.check import bar_facts
 from dembound.bar.scene import BarScene
-from dembound.boundaries import SIDES, Periodic
-from dembound.boundaries.driven import Driven
 from dembound.case import Case, DiskCase
-from dembound.ground import Ground
+from dembound.disk_warnings import particles_per_wavelength, strong_waves
 from dembound.loads import forces_of
-from dembound.run import foresee, plan
-from dembound.scene import Scene, boundary_medium
+from dembound.run import plan, warnings_before
+from dembound.scene import Scene
 from dembound.simulate import Simulation
 from dembound.summary import Plan, describe_packing, describe_side
-
-FEWEST_PER_WAVELENGTH = 20.0
-"""Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
 
 TRIAL_STEPS, TRIALS = 20, 3
 
@@ -29,21 +24,10 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
     facts = _run_facts(planned)
     scene = planned.scene
     if isinstance(scene, BarScene):
-        return bar_facts(scene, planned.time_step) | facts, bar_warnings(scene.case, planned.time_step)
-    more, warnings = _disk_facts(scene)
-    return facts | more, _precautions(scene.case, scene.ground) + warnings
-
-
-def precautions(case: Case) -> list[str]:
-    """Warnings of what a run will do that was probably not meant.
-
-    Finds what would stop the case, too, as far as that can be found cheaply: raises the errors of `run.plan`.
-    """
-    if isinstance(case, DiskCase):
-        return _precautions(case, foresee(case))
-    planned = plan(case)
-    assert isinstance(planned.scene, BarScene)
-    return bar_warnings(planned.scene.case, planned.time_step)
+        facts = bar_facts(scene, planned.time_step) | facts
+    else:
+        facts |= _disk_facts(scene)
+    return facts, warnings_before(planned)
 
 
 def _run_facts(planned: Plan) -> dict[str, str]:
@@ -59,8 +43,8 @@ def _run_facts(planned: Plan) -> dict[str, str]:
     }
 
 
-def _disk_facts(scene: Scene) -> tuple[dict[str, str], list[str]]:
-    """Facts about a packing, its law and what acts on it, and warnings."""
+def _disk_facts(scene: Scene) -> dict[str, str]:
+    """Facts about a packing, its law and what acts on it."""
     case = scene.case
     facts = {"particles": _particles(scene), "contacts": f"{len(scene.assembly.pairs):,}"}
     facts |= _packing_facts(scene) | _law_facts(scene) | _hole_facts(case) | _static_facts(case)
@@ -71,57 +55,9 @@ def _disk_facts(scene: Scene) -> tuple[dict[str, str], list[str]]:
         x, y = scene.assembly.positions[node]
         facts[f"monitor {name}"] = f"particle {node} at ({x:.3f}, {y:.3f}) m"
     facts |= _tension_facts(scene)
-    warnings = _tension_warnings(scene)
     for name, count in particles_per_wavelength(scene).items():
         facts[f"wave {name}"] = f"{count:.0f} particles per shortest wavelength"
-        if count < FEWEST_PER_WAVELENGTH:
-            warnings.append(
-                f"wave.{name}: has {count:.1f} particles in its shortest wavelength, fewer than "
-                f"{FEWEST_PER_WAVELENGTH:g}; the packing will disperse it"
-            )
-    return facts, warnings
-
-
-def _precautions(case: DiskCase, ground: Ground) -> list[str]:
-    """The same of disks; the ground is the case's own."""
-    if case.static is not None:
-        return []
-    warnings = [
-        f"load.{load.name}: is steady, and without [static] falls on the body at t = 0; viscous sides creep under it"
-        for load in case.load
-        if load.wave is None
-    ]
-    material, pressure = case.material, _pressure(ground)
-    carried = material.law == "linearpbond" and material.locked_in
-    cut = any(not isinstance(case.boundary.get(side), Periodic) for side in SIDES)
-    if carried and cut and material.pb_ten is not None and pressure > material.pb_ten:
-        warnings.append(
-            f"material.locked_in: {pressure / 1e6:.3g} MPa are locked in and balanced by constant forces on the cut "
-            f"sides, above pb_ten = {material.pb_ten / 1e6:.3g} MPa; give [static], a lower confining_stress, or "
-            "locked_in = false"
-        )
-    return warnings
-
-
-def particles_per_wavelength(scene: Scene) -> dict[str, float]:
-    """Shortest wavelength of every wave, at its highest frequency and the scene's slowest speed, in diameters."""
-    speeds = [c for axis in (0, 1) for c in scene.ground.wave_speeds(axis) if np.isfinite(c)]
-    spacing = scene.ground.brick.mean_diameter
-    return {
-        name: min(speeds) / wave.highest_frequency() / spacing if speeds else np.inf
-        for name, wave in scene.case.wave.items()
-    }
-
-
-def _tension_warnings(scene: Scene) -> list[str]:
-    """Waves that would open real contacts, where the elastic law keeps them closed."""
-    if scene.remembers or not _confinement(scene):  # a lattice packed without stress is told in the docs
-        return []
-    return [
-        f"wave.{name}: has a stress ρcv of {stress}; real contacts would open where it pulls, "
-        "the elastic law keeps them closed"
-        for name, stress in _strong_waves(scene).items()
-    ]
+    return facts
 
 
 def _tension_facts(scene: Scene) -> dict[str, str]:
@@ -131,39 +67,8 @@ def _tension_facts(scene: Scene) -> dict[str, str]:
     law = scene.case.material.law
     return {
         f"stress of {name}": f"ρcv = {stress}; where it pulls contacts open, and {law} takes over"
-        for name, stress in _strong_waves(scene).items()
+        for name, stress in strong_waves(scene).items()
     }
-
-
-def _strong_waves(scene: Scene) -> dict[str, str]:
-    """Waves of boundaries whose stress ρcv exceeds the pressure on the contacts; both in words."""
-    pressure = _confinement(scene)
-    if pressure is None:
-        return {}
-    sides = [table for table in scene.case.boundary.values() if isinstance(table, Driven)]
-    driving = {name for table in sides for name in (table.wave_p, table.wave_s)}
-    medium = boundary_medium(scene.case, scene.ground, axis=0)
-    impedance = medium.density * medium.p_wave_speed
-    stresses = {name: impedance * wave.peak() for name, wave in scene.case.wave.items() if name in driving}
-    return {
-        name: f"{stress / 1e6:.3g} MPa, above the confining stress of {pressure / 1e6:.3g} MPa"
-        for name, stress in stresses.items()
-        if stress > pressure
-    }
-
-
-def _confinement(scene: Scene) -> float | None:
-    """Pressure (Pa) that keeps contacts closed at the start of the run; None where the static stage will tell."""
-    static, material = scene.case.static, scene.case.material
-    if static is not None:
-        return None if static.stress is None else 0.0 - 0.5 * (static.stress[0] + static.stress[1])
-    locked_in = material.law == "elastic" or material.locked_in
-    return _pressure(scene.ground) if locked_in else 0.0
-
-
-def _pressure(ground: Ground) -> float:
-    """Locked-in isotropic pressure in Pa."""
-    return 0.0 - 0.5 * ground.moduli.emod * float(ground.brick.stress[0] + ground.brick.stress[1])
 
 
 def _estimate(planned: Plan) -> float:
@@ -214,7 +119,7 @@ def _packing_facts(scene: Scene) -> dict[str, str]:
         "brick": f"{packing['disks_per_brick']:,} disk(s), solid fraction {packing['solid_fraction']:.4f}, "
         f"{packing['coordination']:.3f} contacts per disk",
         "brick equilibrium": f"residual force ratio {packing['residual_ratio']:.1e}, "
-        f"confining stress {_pressure(scene.ground) / 1e6:.3f} MPa",
+        f"packed under {scene.ground.packed_pressure / 1e6:.3f} MPa",
         "homogenised stiffness": f"{stiffness} GPa",
         "wave speeds": ", ".join(speeds) or "no motion is free",
     }
@@ -234,10 +139,23 @@ def _law_facts(scene: Scene) -> dict[str, str]:
         )
         pressed = f" + σ·tan {material.pb_fa:g}°" if material.pb_fa > 0.0 else ""
         bonds = f"bonds {tension} in tension, {shear}{pressed} in shear"
-    return {
+    facts = {
         "law": f"{material.law}{start}",
         "strength": f"{bonds}; contacts slip at {material.fric:g} of their normal force",
     }
+    if scene.ground.moduli.emod > 0.0:
+        facts["tension"] = (
+            f"meets {100.0 * scene.ground.bond_share:.0f} % of the stiffness where nothing presses contacts together: "
+            "they open and leave it to the bonds; confine them (static.stress) or lower material.contact_share"
+        )
+    if material.locked_in is not None:
+        shares = [
+            f"{100.0 * material.locked_in / strength:.3g} % of {key}"
+            for key, strength in (("pb_ten", material.pb_ten), ("pb_coh", material.pb_coh))
+            if strength is not None
+        ]
+        facts["locked-in stress"] = ", ".join([f"{material.locked_in / 1e6:.3g} MPa before the static stage", *shares])
+    return facts
 
 
 def _static_facts(case: DiskCase) -> dict[str, str]:

@@ -8,7 +8,7 @@ from dembound.case.material import Material
 from dembound.ground import Ground
 from dembound.kernels import contacts as kernel
 from dembound.kernels.common import CHUNKS
-from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SHEAR, UPDATED
+from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED
 from dembound.kernels.tables import Contacts, Limits
 from dembound.laws import pair_lines
 from dembound.neighbours import near_pairs, pair_keys
@@ -108,7 +108,7 @@ class ContactList:
         for body, lengths in self._bodies:
             self._periods[body] = [length or 0.0 for length in lengths]
         self.limits = limits_of(material)
-        self.locked_in = material.law == "linearpbond" and material.locked_in
+        self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
         self.searches = self.limits.geometry != REFERENCE
         self.skin = SKIN * ground.brick.mean_diameter
         self.origin = np.zeros((2, len(assembly.radii)))
@@ -145,11 +145,18 @@ class ContactList:
         force = np.empty((3, len(self.assembly.radii)))
         kernel.sum_forces(self.arrays, force)
         if self.seam is not None:
-            force[:, self.seam.node] += self._across_the_seam(self.seam)
+            force[:, self.seam.node] += self.across_the_seam()
         return force
 
-    def _across_the_seam(self, seam: Seam) -> np.ndarray:
+    @property
+    def bodies(self) -> list[slice]:
+        """The particles of each body: the free-field column, if there is one, and the body itself."""
+        return [particles for particles, _ in self._bodies]
+
+    def across_the_seam(self) -> np.ndarray:
         """Forces and moments (3, k) that the seam's nodes get through their twins, from the pairs' last forces."""
+        seam = self.seam
+        assert seam is not None
         ends = self.seam_ends()
         pair, side = ends >> 1, ends & 1
         sign = 1.0 - 2.0 * side
@@ -213,6 +220,27 @@ class ContactList:
         self._palette, self.origin = other._palette, other.origin[:, kept]
         pairs = Pairs(first[left], second[left], other._image[left], old.kind[left])
         self._list(pairs, old.state[left], old.shear[left], old.slip[left], old.cracked[left])
+
+    def copy_column(self, column: "ContactList", displacement: np.ndarray) -> None:
+        """Take the history of each pair's twin in a free-field column that has settled alone, at displacements (3, n).
+
+        Bonds that broke there have broken here before the first step.
+        """
+        assert self.seam is not None
+        self.search(displacement)
+        pairs, twin, count = self.arrays, self.seam.twin, len(self.assembly.radii)
+        first, second = twin[pairs.first], twin[pairs.second]
+        image = self._images(first, second, pairs.palette[pairs.kind, :2])
+        there = column.arrays
+        known = pair_keys(there.first, there.second, column._image, count)
+        order = np.argsort(known)
+        keys = pair_keys(first, second, image, count)
+        at = order[np.minimum(np.searchsorted(known, keys, sorter=order), len(order) - 1)]
+        found = known[at] == keys
+        for ours, theirs in ((pairs.state, there.state), (pairs.shear, there.shear), (pairs.slip, there.slip)):
+            ours[found] = theirs[at[found]]
+        pairs.cracked[(pairs.state == TENSION) | (pairs.state == SHEAR)] = 0
+        self.note_cracks(displacement)
 
     def note_cracks(self, displacement: np.ndarray) -> None:
         """Write down the bonds that broke since the last time; displacement (3, n) is that of now."""
@@ -305,7 +333,7 @@ def plain_contacts(ground: Ground, assembly: Assembly) -> Contacts:
         first=first,
         second=second,
         kind=assembly.kind.astype(np.uint32),
-        palette=_brick_lines(ground, gaps_close=False, locked_in=False),
+        palette=_brick_lines(ground, gaps_close=False, locked_in=0.0),
         state=np.full(len(first), bonded, dtype=np.uint8),
         shear=nothing,
         slip=nothing,
@@ -316,7 +344,7 @@ def plain_contacts(ground: Ground, assembly: Assembly) -> Contacts:
     )
 
 
-def _brick_lines(ground: Ground, *, gaps_close: bool, locked_in: bool) -> np.ndarray:
+def _brick_lines(ground: Ground, *, gaps_close: bool, locked_in: float) -> np.ndarray:
     """Palette lines (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
 
     The words are those of `pair_lines`.

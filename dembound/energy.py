@@ -9,7 +9,15 @@ from dataclasses import astuple, dataclass, fields
 
 import numpy as np
 
+from dembound.errors import RunError
+from dembound.results import brought_in
 from dembound.simulate import Simulation
+
+GAIN = 0.5
+"""Share of what was brought in that a run may gain before it stops; contacts that clap misjudge below 0.01 of it."""
+
+ROUNDING = 1e-9
+"""Share of the energies in a body that is nothing: differences of sums over a million contacts round to less."""
 
 
 @dataclass(frozen=True)
@@ -17,8 +25,9 @@ class Entry:
     """One line of the ledger: time in s, energies in J per metre of thickness.
 
     kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
-    of steady forces; outside, work of boundaries and driven loads; damping, friction, crack, taken by them; handover,
-    what a change of method has added; error, what is stored and taken beyond what came in. Of a bar in J.
+    of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
+    and driven loads; damping, friction, crack, taken by them; handover, what a change of method or law has added;
+    error, what is stored and taken beyond what came in. Of a bar in J.
     """
 
     time: float
@@ -26,6 +35,7 @@ class Entry:
     contact: float
     bond: float
     load: float
+    balance: float
     outside: float
     damping: float
     friction: float
@@ -47,19 +57,34 @@ class Ledger:
         """Advance the simulation by one step and enter the energies at its beginning; returns the step's record."""
         simulation = self.simulation
         time, place, before = simulation.time, simulation.displacement.copy(), simulation.velocity.copy()
+        balancing = 0.0 if simulation.balance is None else simulation.balance.work(place)  # forces may end in the step
         record = simulation.advance(1)
         kinetic = 0.5 * float(np.sum(self._inertia * before * simulation.velocity))
         contact, bond = (now - first for now, first in zip(self._stored(place), self._first, strict=True))
         load = float(np.sum(simulation.load * (place - simulation.datum)))
-        outside, damping, friction, crack, handover = (float(work) for work in simulation.work[1])
-        error = kinetic + contact + bond + damping + friction + crack - load - outside - handover
+        outside, damping, friction, crack, handover, turning = (float(work) for work in simulation.work[1])
+        balance = turning + balancing
+        error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - handover
         taken = (damping, friction, crack, handover)
-        self.entries.append(Entry(time, kinetic, contact, bond, load, outside, *taken, error))
+        self.entries.append(Entry(time, kinetic, contact, bond, load, balance, outside, *taken, error))
+        self._watch()
         return record
+
+    def _watch(self) -> None:
+        """Raise RunError where the run has gained energy from nothing, as it does with a step too large for its law."""
+        first, last = self.entries[0], self.entries[-1]
+        came = brought_in(first.kinetic, np.array([entry.load + entry.outside for entry in self.entries]))
+        gained = last.error - first.error
+        if gained > GAIN * came + ROUNDING * (sum(self._first) + last.kinetic + abs(last.outside)):
+            unit = self.simulation.scene.energy_unit
+            raise RunError(
+                f"the run has gained {gained:.3g} {unit} from nothing until t = {last.time:g} s, when loads and "
+                f"boundaries had brought in {came:.3g} {unit} at most; take a smaller run.safety or run.time_step"
+            )
 
     @property
     def columns(self) -> np.ndarray:
-        """All entries, (k, 11), in the order of `Entry`."""
+        """All entries, (k, 12), in the order of `Entry`."""
         return np.array([astuple(entry) for entry in self.entries]).reshape(-1, len(fields(Entry)))
 
     def _stored(self, displacement: np.ndarray) -> tuple[float, float]:

@@ -7,11 +7,12 @@ from functools import cached_property
 
 import numpy as np
 
+from dembound.balance import Balance
 from dembound.contacts import NO_CRACKS, ContactList, Cracks, plain_contacts
 from dembound.engine import Engine
 from dembound.kernels import bonded, elastic
-from dembound.kernels.contacts import REFERENCE, strain_energy
-from dembound.kernels.tables import Body, Contacts, Limits, Log, Supports, Watch
+from dembound.kernels.contacts import REFERENCE, UPDATED, strain_energy
+from dembound.kernels.tables import Body, Contacts, Followers, Limits, Log, Supports, Watch
 from dembound.scene import Scene
 
 _IDS, _NUMBERS = np.zeros(0, dtype=np.uint32), np.zeros(0)
@@ -35,6 +36,22 @@ UNWATCHED = Watch(
     arms=_NUMBERS,
 )
 """For a scene whose own law is the elastic one."""
+
+
+NO_FOLLOWERS = Followers(
+    opposite=np.zeros(0, dtype=np.int64),
+    start=np.zeros(1, dtype=np.int64),
+    member=np.zeros(0, dtype=np.int64),
+    twin=np.zeros(0, dtype=np.int64),
+    arm=np.zeros((2, 0)),
+    node=np.zeros(0, dtype=np.int64),
+    side=np.zeros((2, 0), dtype=np.int64),
+    force=np.zeros((2, 2, 0)),
+    steady=np.zeros((2, 0)),
+    extra=np.zeros((2, 0)),
+    datum=np.zeros((3, 0)),
+)
+"""For a body whose stress nothing balances."""
 
 
 class Elastic(Engine):
@@ -98,12 +115,21 @@ class Elastic(Engine):
 
 
 class Bonded(Engine):
-    """The contact law with a memory (kernels/bonded.py), on a list of pairs that knows what went before."""
+    """The history-dependent contact law (kernels/bonded.py), on a list of pairs with their history.
+
+    Parameters
+    ----------
+    contacts : the pairs.
+    balance : what balances the stress of a settled body; None for a body that starts as built.
+    """
 
     name = "linearpbond"
 
-    def __init__(self, contacts: ContactList) -> None:
+    def __init__(self, contacts: ContactList, balance: Balance | None = None) -> None:
         self.contacts = contacts
+        self.balance = balance
+        follow = balance is not None and contacts.limits.geometry == UPDATED
+        self._followers = balance.followers if balance is not None and follow else NO_FOLLOWERS
         self._seam_ends: np.ndarray | None = None
 
     def advance(
@@ -115,8 +141,22 @@ class Bonded(Engine):
             self._seam_ends = contacts.seam_ends().astype(np.uint32)
         supports = supports._replace(seam=supports.seam._replace(end=self._seam_ends))
         done, why = bonded.advance(
-            u, spare, v, number, contacts.arrays, contacts.limits, contacts.origin, contacts.skin, body, supports, log
+            u,
+            spare,
+            v,
+            number,
+            contacts.arrays,
+            contacts.limits,
+            contacts.origin,
+            contacts.skin,
+            body,
+            supports,
+            self._followers,
+            self.balance is not None,
+            log,
         )
+        if self.balance is not None and why in (elastic.BROKE, elastic.LIST_ENDS):  # pieces may have parted
+            self.balance.end_on_debris(contacts, u, v, body.step, body.load)
         if why == elastic.LIST_ENDS:
             contacts.search(u)
             self._seam_ends = None

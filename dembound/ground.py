@@ -20,6 +20,9 @@ from dembound.packings.brick import Brick
 GRADIENTS = ("xx", "yy", "xy", "yx")
 """The four unit displacement gradients ∂u_a/∂b, in this order in every homogenised matrix."""
 
+LARGEST_OVERLAP = 0.1
+"""Most locked-in pressure in parts of the contact modulus, as overlaps are of the diameter: the most that is packed."""
+
 AXES = {"x": 0, "y": 1, "rotation": 2}
 
 
@@ -59,6 +62,21 @@ class Ground:
         """Moments of inertia of the disks (n,) kg·m², mR²/2."""
         return 0.5 * self.mass * self.brick.radii**2
 
+    @property
+    def packed_pressure(self) -> float:
+        """Pressure (Pa) that the brick's contacts, at the stiffness they have now, were packed under."""
+        return 0.0 - 0.5 * self.moduli.emod * float(self.brick.stress[0] + self.brick.stress[1])
+
+    @cached_property
+    def bond_share(self) -> float:
+        """Least share of the stiffness along x or y that bonds alone have: what tension meets where contacts open."""
+        if self.moduli.pb_emod == 0.0:
+            return 0.0
+        first, second = self.brick.radii[self.brick.pairs].T
+        bonds = LAWS[self.law](replace(self.moduli, emod=0.0), first, second, np.hypot(*self.brick.vectors.T))
+        alone = homogenise(self.brick, bonds, tuple(component for component in self.held if component == 2))
+        return min(float(alone[axis, axis] / self.material_tensor[axis, axis]) for axis in (0, 1))
+
     @cached_property
     def tensor(self) -> np.ndarray:
         """Homogenised stiffness (4, 4) Pa with the scene's held motions; see `homogenise`."""
@@ -89,7 +107,23 @@ class Ground:
 
 
 def make_ground(brick: Brick, material: Material, held: Iterable[str]) -> Ground:
-    """Give a brick its material, moduli scaled so that the wave speed asked for is met where the case says so."""
+    """Give a brick its material, moduli scaled so that the wave speed asked for is met where the case says so.
+
+    Raises CaseError for a locked-in stress that the packing's contacts cannot carry.
+    """
+    ground = _scaled(brick, material, held)
+    if material.locked_in is not None:
+        most = LARGEST_OVERLAP * ground.moduli.emod
+        if ground.packed_pressure <= 0.0:
+            raise CaseError(["material.locked_in: needs disks that were packed under stress; ask for static.stress"])
+        if material.locked_in > most:
+            allowed = f"at most {most:.3g} Pa, {LARGEST_OVERLAP:g} of the contact modulus"
+            raise CaseError([f"material.locked_in: is {material.locked_in:g} Pa, must be {allowed}"])
+    return ground
+
+
+def _scaled(brick: Brick, material: Material, held: Iterable[str]) -> Ground:
+    """A brick with its material; a case's wave speed scales the moduli where it is that of the packing."""
     ground = Ground(
         brick=brick,
         density=material.density,

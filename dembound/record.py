@@ -12,8 +12,9 @@ Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset of numb
                             position, wanted
     boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2)
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
-                            under a law with a memory; stress (n, 3) if the case asks for it; on a bar stress (n,) and
-                            local damage (n,); attribute time
+                            under a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
+                            and local damage (n,); of a static stage that stalled unbalanced (n, 2), what the forces on
+                            each particle come to; attribute time
     energy/                 time and the columns of `energy.Entry`, (k,) each
     cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
                             displacements, positions count from the start of the run
@@ -116,6 +117,11 @@ class Recorder:
         if self.simulation.scene.case.output.stress and "stress" not in group:
             _write(group, "stress", stress_now(self.simulation), "Pa")
         self._snapshots += 1
+
+    def stalled_snapshot(self, unbalanced: np.ndarray) -> None:
+        """Keep the scene as a static stage left it that stalled, and what each particle lacks, unbalanced (n, 2) N."""
+        self.snapshot()
+        _write(self.file[f"snapshots/{self._snapshots - 1:04d}"], "unbalanced", unbalanced, "N")
 
     def _write_header(self, step_limit: float) -> None:
         scene, case = self.simulation.scene, self.simulation.scene.case

@@ -11,19 +11,21 @@ import numpy as np
 
 from dembound.any_scene import build_scene
 from dembound.bar.scene import BarScene
+from dembound.bar.warnings import bar_warnings
 from dembound.case import Case, DiskCase
-from dembound.errors import CaseError, DemboundError
+from dembound.disk_warnings import disk_warnings
+from dembound.errors import CaseError, DemboundError, RunError
 from dembound.export import write_vtu
-from dembound.ground import Ground
 from dembound.plot.bar import plot_bar
 from dembound.plot.histories import plot_histories
 from dembound.plot.scene import plot_scene
 from dembound.plot.style import save
 from dembound.record import Recorder
+from dembound.run_warnings import run_warnings
 from dembound.scene import Scene, ground_of
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
-from dembound.static import Settled, settle
+from dembound.static import Settled, StalledError, settle
 from dembound.summary import Plan, summarise
 
 MOST_STEPS = 1e11
@@ -35,6 +37,9 @@ ENTRIES = 100
 
 class Progress:
     """Is told how a run goes; this one keeps it to itself."""
+
+    def warned(self, message: str) -> None:
+        """Something was probably not meant; said before the first step or when the record is complete."""
 
     def settling(self, steps: int, ratio: float) -> None:
         """The static stage has done so many steps and come to a force ratio."""
@@ -72,43 +77,53 @@ def _told_of(case: Case) -> Iterator[None]:
         raise
 
 
-def foresee(case: DiskCase) -> Ground:
-    """Find what would stop a case later, as far as it can be found cheaply; returns its brick with its material.
+def foresee(case: Case) -> None:
+    """Find what would stop a case later, as far as it can be found cheaply.
 
-    Packs the brick, which is then cached, and compares a given time step with the stability limit. Raises CaseError
+    Packs a brick, which is then cached, and compares a given time step with the stability limit. Raises CaseError
     and PackingError.
     """
-    if case.run.time_step != "auto":
-        scene = plan(case).scene
-        assert isinstance(scene, Scene)
-        return scene.ground
+    if not isinstance(case, DiskCase) or case.run.time_step != "auto":
+        plan(case)
+        return
     with _told_of(case):
-        ground = ground_of(case)
-        _ = ground.material_tensor
-    return ground
+        _ = ground_of(case).material_tensor
+
+
+def warnings_before(planned: Plan) -> list[str]:
+    """What the run will do that was probably not meant, one line each."""
+    scene = planned.scene
+    if isinstance(scene, BarScene):
+        return bar_warnings(scene.case, planned.time_step)
+    return disk_warnings(scene, planned.time_step)
 
 
 def run_case(case: Case, results: Path, progress: Progress | None = None) -> Path:
     """Run a case and leave ``results/<case name>/``; returns that folder.
 
     Everything is written to ``<case name>.partial`` first and takes its name when the run is complete, so a
-    finished folder is always whole. A run that fails leaves the partial folder with the histories so far; before it has
-    any, as in the static stage, it leaves nothing.
+    finished folder is always whole. A run that fails leaves the partial folder with the histories so far, a static
+    stage that stalls with a snapshot of the state it reached.
+
+    Warnings go to the progress and, all of them, to the summary.
 
     Raises the errors of `plan`, and RunError when the static stage does not settle or the motion grows without bound.
     """
-    planned = plan(case)
+    planned, progress = plan(case), progress or Progress()
     folder, partial = results / case.name, results / f"{case.name}.partial"
     for old in (folder, partial):
         _must_be_replaceable(old)
     if partial.exists():
         shutil.rmtree(partial)
     partial.mkdir(parents=True)
-    began = time.perf_counter()
     with _told_of(case), _gone_if_empty(partial):
-        simulation, settled = _simulate(planned, partial / "run.h5", progress or Progress())
-    wall_time = time.perf_counter() - began
+        warnings = _passed_on(warnings_before(planned), progress)
+        began = time.perf_counter()
+        simulation, settled = _simulate(planned, partial / "run.h5", progress)
+        wall_time = time.perf_counter() - began
     summary = summarise(planned, simulation, settled, partial / "run.h5", wall_time)
+    warnings += _passed_on(run_warnings(planned.scene, summary, partial / "run.h5"), progress)
+    summary["warnings"] = warnings
     (partial / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
     write_vtu(partial / "run.h5", partial / "paraview")
     if case.output.pictures:
@@ -117,6 +132,13 @@ def run_case(case: Case, results: Path, progress: Progress | None = None) -> Pat
         shutil.rmtree(folder)
     partial.rename(folder)
     return folder
+
+
+def _passed_on(warnings: list[str], progress: Progress) -> list[str]:
+    """The same warnings, after the progress has received each."""
+    for warning in warnings:
+        progress.warned(warning)
+    return warnings
 
 
 def _draw(planned: Plan, folder: Path) -> None:
@@ -153,9 +175,7 @@ def _gone_if_empty(folder: Path) -> Iterator[None]:
 def _simulate(planned: Plan, path: Path, progress: Progress) -> tuple[Simulation, Settled | None]:
     """Settle if the case says so, then advance to the end, recording histories, snapshots, energies and the rest."""
     case, steps = planned.scene.case, planned.steps
-    settled = None
-    if isinstance(planned.scene, Scene) and planned.scene.case.static is not None:
-        settled = settle(planned.scene, progress.settling)
+    settled = _settled(planned, path, progress)
     monitors = np.array(list(planned.scene.monitors.values()), dtype=np.int64)
     start = settled.start if settled is not None else None
     simulation = Simulation(planned.scene, planned.time_step, monitors, start=start)
@@ -175,6 +195,19 @@ def _simulate(planned: Plan, path: Path, progress: Progress) -> tuple[Simulation
             if due in entries:
                 keep(simulation, recorder.enter_energy())
     return simulation, settled
+
+
+def _settled(planned: Plan, path: Path, progress: Progress) -> Settled | None:
+    """What the static stage comes to, if there is one; where it stalls, the record keeps the state it reached."""
+    scene = planned.scene
+    if not isinstance(scene, Scene) or scene.case.static is None:
+        return None
+    try:
+        return settle(scene, progress.settling)
+    except StalledError as stalled:
+        with Recorder(path, stalled.simulation, planned.step_limit, 0.0) as recorder:
+            recorder.stalled_snapshot(stalled.unbalanced)
+            raise RunError(f"{stalled}; to see it: dembound plot {path.parent} --field unbalanced") from None
 
 
 def _steps_between_entries(planned: Plan) -> int:

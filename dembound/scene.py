@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from dembound.boundaries import FreeField
+from dembound.boundaries import FreeField, Periodic
 from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
 from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
 from dembound.case import DiskCase
@@ -219,6 +219,24 @@ def _scene(case: DiskCase, ground: Ground, assembly: Assembly, edges: Mapping[st
         monitors=_monitors(case, assembly, seam),
         seam=seam,
     )
+
+
+def column_alone(scene: Scene) -> Scene:
+    """The free-field column beside a body as a scene of its own, under its bottom and top alone.
+
+    Its particles are numbered as in the body's scene; of the loads it has those that act everywhere.
+    """
+    case, brick = scene.case, scene.ground.brick
+    sides = {"left": Periodic(type="periodic"), "right": Periodic(type="periodic")}
+    upright = {side: table for side, table in case.boundary.items() if side not in sides}
+    static = case.static
+    if static is not None:
+        ends = {side: table for side, table in static.boundary.items() if side not in sides}
+        static = static.model_copy(update={"boundary": ends})
+    everywhere = tuple(load for load in case.load if load.position is None and load.region is None)
+    alone = replace(case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=())
+    column = tile(brick, (1, scene.assembly.copies[1]), (True, False))
+    return _scene(alone, scene.ground, column, find_edges(column, (True, False)))
 
 
 def ground_of(case: DiskCase) -> Ground:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.any_scene import AnyScene
+from dembound.balance import Balance
 from dembound.bar.engine import BarEngine
 from dembound.bar.scene import BarScene
 from dembound.boundaries.support import Supports
@@ -14,6 +15,9 @@ from dembound.engine import Engine
 from dembound.engines import Bonded, Elastic
 from dembound.errors import RunError
 from dembound.kernels import tables
+from dembound.kernels.contacts import UPDATED
+from dembound.rotation import turn_as_a_whole, turns_freely
+from dembound.scene import Scene
 from dembound.threads import threads_for
 
 DRIVEN_BYTES = 64e6
@@ -47,19 +51,20 @@ class Simulation:
     time_step : Δt in s; the caller has compared it with the stability limit.
     probes : (p,) particles whose motion `advance` returns at every step.
     start : a body that has settled; whatever pushes its particles is balanced from then on, unless it is `settling`
-        anew. None: as built.
+        anew. None: as built, with nothing balanced.
     damp : local damping coefficient; None: the material's.
-    settling : whether the locked-in stress may relax at the cuts.
+    settling : whether the body is on its way to rest, so that its forces are not balanced.
     load : (3, n) steady forces and moments (N, N·m); None: the scene's own.
 
     Attributes
     ----------
     displacement, velocity : (3, n) m and rad, m/s and rad/s; velocities are half a time step behind.
     datum : (3, n) displacement at the start.
-    load : (3, n) steady forces and moments on all particles (N, N·m) beside those of contacts.
+    load : (3, n) steady forces and moments on all particles (N, N·m) beside those of contacts and what balances them.
+    balance : what balances the forces in a body that has settled; None for one as built or settling.
     steps : steps done.
     laws : name of each law used and the step it began with.
-    work : (2, 5) J, see kernels.tables.Log.
+    work : (2, 6) J, see kernels.tables.Log.
     tracked : (q,) the particles of all edges, in the order of `scene.edges`.
     peaks : (q, 3, 2) smallest and largest velocity of each so far.
     top_speed : (n,) m/s, largest speed of every particle so far; (0,) unless the case asks for it.
@@ -88,59 +93,91 @@ class Simulation:
         self.tracked = np.concatenate(edges) if edges else np.zeros(0, dtype=np.int64)
         self.peaks = np.zeros((len(self.tracked), 3, 2))
         self.top_speed = np.zeros(scene.count if scene.case.output.peaks else 0)
-        self.work = np.zeros((2, 5))
+        self.work = np.zeros((2, 6))
         self._damp = scene.damp if damp is None else damp
         self._fastest = _runaway_speed(scene)
         self._supports = NodeSupports(scene, time_step)
         self._mobility = self._where_unsupported(time_step / scene.mass)
         self._inverse_inertia = self._where_unsupported(time_step / scene.inertia)
         self.contacts: ContactList | None = None
+        self.balance: Balance | None = None
         self.engine: Engine
         self.load = scene.steady_load if load is None else load
+        self._steady = np.zeros((3, 0))  # what the kernels add to the forces of contacts or bonds
         if isinstance(scene, BarScene):
             self.engine = BarEngine(scene, time_step)
-            self._elastic_load = np.zeros((3, 0))
             self.laws = [(self.engine.name, 0)]
             return
         if scene.remembers:
             self.contacts = scene.contact_list() if start is None else start.contacts
-        balanced = start is not None and not settling
-        elastic = Elastic(scene, self.contacts)
-        self._begin(elastic, self.load, balanced=balanced, remembers=bool(start and start.remembers), settling=settling)
+        self._begin(scene, start, settling=settling)
 
-    def _begin(self, elastic: Elastic, load: np.ndarray, *, balanced: bool, remembers: bool, settling: bool) -> None:
-        """Choose the law disks begin with, and the steady load that goes with it."""
+    def apply(self, load: np.ndarray) -> None:
+        """Take other steady forces and moments (3, n) from here on, of a body that is settling."""
+        if self._steady.shape[1] == 0:
+            self._steady = np.zeros_like(load)
+        self._steady += load - self.load
+        self.load = load
+
+    def _begin(self, scene: Scene, start: Start | None, *, settling: bool) -> None:
+        """Choose the law disks begin with, and the steady forces that go with it."""
+        elastic = Elastic(scene, self.contacts)
+        remembers = start is not None and start.remembers
+        steady = self.load
+        if start is not None and not settling:
+            resting = self._resting_force(elastic, remembers)
+            springs = self._supports.springs_at(self.datum)
+            self.balance = Balance(scene, springs - resting - self.load, self.load, self.datum, self._across(scene))
+            steady = springs - elastic.force(self.datum)
+        elif self.contacts is not None and not remembers:
+            # the elastic law does not know the forces of the body as built, as of a locked-in stress
+            self.contacts.adopt(np.zeros_like(self.load))
+            steady = self.load + self.contacts.forces(np.zeros_like(self.load))
         self.engine = elastic
         self.laws = [(elastic.name, 0)]
-        if balanced:
-            springs = self._supports.springs_at(self.datum)
-            self.load = springs - self._resting_force(elastic, self.datum, remembers)
-            self._elastic_load = springs - elastic.force(self.datum)
-        else:
-            at_first = 0.0 if remembers else self._resting_force(elastic, np.zeros_like(load))
-            self.load = load - (0.0 if settling else at_first)
-            self._elastic_load = self.load + at_first  # that law does not feel what is locked in
-        if not self._elastic_load.any():
-            self._elastic_load = np.zeros((3, 0))
-        if remembers or (self.contacts is not None and not elastic.scene.case.material.elastic_start):
+        if steady.any():
+            self._steady = steady.copy()
+        if remembers or (self.contacts is not None and not scene.case.material.elastic_start):
             self.laws = []
             self._hand_over(fresh=not remembers)
 
-    def _resting_force(self, elastic: Elastic, displacement: np.ndarray, remembers: bool = False) -> np.ndarray:
-        """Contact forces (3, n) of the body at rest at displacements (3, n)."""
+    def _resting_force(self, elastic: Elastic, remembers: bool) -> np.ndarray:
+        """Contact forces (3, n) of the body at rest at the datum."""
         if self.contacts is None:
-            return elastic.force(displacement)
+            return elastic.force(self.datum)
         if not remembers:
-            self.contacts.adopt(displacement)
-        return self.contacts.forces(displacement)
+            self.contacts.adopt(self.datum)
+        return self.contacts.forces(self.datum)
+
+    def _across(self, scene: Scene) -> np.ndarray:
+        """Forces and moments (3, n) that come through the seam of a free field, from the pairs' last forces."""
+        force = np.zeros((3, scene.count))
+        if scene.seam is not None and self.contacts is not None:
+            force[:, scene.seam.node] = self.contacts.across_the_seam()
+        return force
 
     def _hand_over(self, fresh: bool = True) -> None:
-        """From here on the law with a memory; fresh: it remembers nothing yet."""
+        """From here on the history-dependent law; fresh: without any history yet."""
         assert self.contacts is not None
+        assert isinstance(self.scene, Scene)
+        before = self._potential() if self.laws else None
+        if fresh and self.contacts.limits.geometry == UPDATED and turns_freely(self.scene):
+            turn_as_a_whole(self.scene, self.displacement, self.velocity, self.datum)
+        if fresh:
+            self.contacts.adopt(self.displacement)
+        self.engine = Bonded(self.contacts, self.balance)
+        if before is not None:
+            self.work[:, 4] += self._potential() - before
         if fresh:
             self.contacts.adopt(self.displacement - self.time_step * self.velocity)  # its first push adds this step
-        self.engine = Bonded(self.contacts)
+        self._steady = self.load + (0.0 if self.balance is None else self.balance.force)
         self.laws.append((self.engine.name, self.steps))
+
+    def _potential(self) -> float:
+        """Energy (J) stored in contacts and bonds less the work of steady and balancing forces since the start."""
+        balancing = 0.0 if self.balance is None else self.balance.work(self.displacement)
+        steady = float(np.sum(self.load * (self.displacement - self.datum)))
+        return sum(self.engine.stored(self.displacement)) - steady - balancing
 
     @property
     def time(self) -> float:
@@ -174,12 +211,11 @@ class Simulation:
 
     def _advance_under_one_law(self, record: np.ndarray, supports: tables.Supports) -> int:
         """As many of these steps as one law, or one list of pairs or bonds, is good for; returns those done."""
-        elastic = not isinstance(self.engine, Bonded)
         body = tables.Body(
             self._mobility,
             self._inverse_inertia,
             self.scene.free,
-            self._elastic_load if elastic else self.load,
+            self._steady,
             self._damp,
             self.time_step,
         )

@@ -15,10 +15,11 @@ from dembound.case.static import Static
 from dembound.contacts import ContactList, Cracks
 from dembound.engines import Bonded
 from dembound.errors import RunError
-from dembound.scene import Scene, boundary_medium
+from dembound.scene import Scene, boundary_medium, column_alone
 from dembound.simulate import Simulation, Start
 from dembound.stability import step_limit
 from dembound.stress import stress_now
+from dembound.tractions import Tractions, mean_stress
 
 LOOK = 100
 """Steps between two looks at the force ratio."""
@@ -26,11 +27,11 @@ LOOK = 100
 PATIENCE = 20_000
 """Steps without a tenth of progress after which a stage counts as stalled."""
 
-RIM = 4.0
-"""Width in mean diameters of the rim that is left out where a mean stress is taken."""
-
 SAFETY = 0.9
 """Share of the stability limit taken as step."""
+
+WORST = 3
+"""Particles that a stalled stage names."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,7 @@ class Settled:
     stress : (3,) mean xx, yy, xy in Pa over the body, tension positive.
     cracks : the bonds that broke on the way.
     before : what the body had come to before it was excavated, if it was; particles are numbered as they were then.
+    column : what the free-field column had come to alone, if there is one.
     """
 
     start: Start
@@ -57,24 +59,42 @@ class Settled:
     stress: np.ndarray
     cracks: Cracks
     before: "Settled | None" = None
+    column: "Settled | None" = None
+
+
+class StalledError(RunError):
+    """A static stage that does not come to rest.
+
+    Attributes: simulation, the state it reached; unbalanced (n, 2), N, what each particle's forces come to then.
+    """
+
+    def __init__(self, message: str, simulation: Simulation, unbalanced: np.ndarray) -> None:
+        super().__init__(message)
+        self.simulation = simulation
+        self.unbalanced = unbalanced
 
 
 def settle(scene: Scene, on_look: Callable[[int, float], None] | None = None) -> Settled:
     """Run a scene's static stage; on_look gets the steps done and the force ratio from time to time.
 
     A scene that is excavated settles before, and then anew from there, under the same loads on the same supports.
+    Beside a free field the column settles first, alone; the body starts from its state, and both settle together: as
+    laws with friction leave more than one state of rest, the body would else come to another one.
 
-    Raises RunError when it stalls, takes more steps than allowed, or the motion grows without bound, saying how far it
-    got.
+    Raises StalledError when it makes no more progress or takes more steps than allowed, saying how far it got, and
+    RunError when the motion grows without bound.
     """
-    if scene.before is None:
+    if scene.before is not None:
+        before = settle(scene.before, on_look)
+        return replace(_settle(scene, _excavate(scene, before.start), on_look), before=before)
+    if scene.seam is None:
         return _settle(scene, None, on_look)
-    before = settle(scene.before, on_look)
-    return replace(_settle(scene, _excavate(scene, before.start), on_look), before=before)
+    column = _settle(column_alone(scene), None, on_look)
+    return replace(_settle(scene, _beside(scene, column.start), on_look), column=column)
 
 
 def _excavate(scene: Scene, before: Start) -> Start:
-    """Where an excavated scene begins to settle: as it stood before, contacts with all they remember."""
+    """Where an excavated scene begins to settle: as it stood before, contacts with all their history."""
     assert scene.kept is not None
     contacts = None
     if before.contacts is not None:
@@ -83,28 +103,45 @@ def _excavate(scene: Scene, before: Start) -> Start:
     return Start(before.displacement[:, scene.kept], contacts, before.remembers)
 
 
+def _beside(scene: Scene, column: Start) -> Start:
+    """Where a body beside its settled column begins to settle: every particle and pair in the state of its twin."""
+    assert scene.seam is not None
+    displacement = column.displacement[:, scene.seam.twin]
+    contacts = None
+    if column.contacts is not None:
+        contacts = scene.contact_list()
+        if column.remembers:
+            contacts.copy_column(column.contacts, displacement)
+    return Start(displacement, contacts, column.remembers)
+
+
 def _settle(scene: Scene, start: Start | None, on_look: Callable[[int, float], None] | None) -> Settled:
     """One stage: from a start, or from the scene as built, to rest."""
     static = scene.case.static
     assert static is not None
     body = _StaticScene(scene, static)
     step = SAFETY * step_limit(body.scene, damp=static.damp)
-    simulation = Simulation(body.scene, step, np.zeros(0), start=start, damp=static.damp, settling=True, load=body.load)
+    load = body.load(np.zeros((3, scene.count)) if start is None else start.displacement)
+    simulation = Simulation(body.scene, step, np.zeros(0), start=start, damp=static.damp, settling=True, load=load)
     contacts = simulation.contacts or scene.contact_list()
     best, best_at = np.inf, 0
     while True:
         simulation.advance(LOOK)
         body.keep_from_turning(simulation)
         forces = _contact_forces(simulation, contacts)
-        ratio = body.force_ratio(forces, contacts)
+        ratio = body.force_ratio(simulation, forces, contacts)
         if on_look is not None:
             on_look(simulation.steps, ratio)
         if ratio <= static.ratio:
-            break
-        if ratio < 0.9 * best:
+            if not body.correct(simulation):
+                break
+            best, best_at = np.inf, simulation.steps
+        elif ratio < 0.9 * best:
             best, best_at = ratio, simulation.steps
         if simulation.steps - best_at >= PATIENCE or simulation.steps >= static.max_steps:
-            raise RunError(_where_it_ended(body, static, simulation, contacts, forces))
+            message = _where_it_ended(body, static, simulation, contacts, forces)
+            raise StalledError(message, simulation, body.unbalanced(simulation, forces).T)
+        body.turn_tractions(simulation)
     unbalanced = np.hypot(*(forces + scene.steady_load)[:2])
     held = body.held
     return Settled(
@@ -122,13 +159,10 @@ def _where_it_ended(
     body: "_StaticScene", static: Static, simulation: Simulation, contacts: ContactList, forces: np.ndarray
 ) -> str:
     """How far a stage came that takes too long, in words, and what to look at; forces (3, n) are those of contacts."""
-    steps, ratio = simulation.steps, body.force_ratio(forces, contacts)
-    lacking = body.unbalanced(forces)
-    worst = int(np.argmax(lacking))
-    x, y = body.scene.assembly.positions[worst] + simulation.displacement[:2, worst]
+    steps, ratio = simulation.steps, body.force_ratio(simulation, forces, contacts)
     facts = (
         f"static.ratio asks for {static.ratio:g}; broken bonds: {len(contacts.take_cracks()):,}; "
-        f"particle {worst} at ({x:.2f}, {y:.2f}) m lacks most, {lacking[worst]:.3g} N"
+        f"{_lacking(body.scene, simulation, body.unbalanced(simulation, forces))}"
     )
     if steps >= static.max_steps:
         return (
@@ -138,6 +172,27 @@ def _where_it_ended(
     return (
         f"the static stage stalls at a force ratio of {ratio:.3g} after {steps:,} steps, {facts}; "
         "is the body held, and can its contacts carry the load?"
+    )
+
+
+def _lacking(scene: Scene, simulation: Simulation, unbalanced: np.ndarray) -> str:
+    """Which particles lack most force, where and along which direction, and how many lack half of it all.
+
+    unbalanced (2, n) N is what the forces on each come to.
+    """
+    size = np.hypot(*unbalanced)
+    order = np.argsort(-size, kind="stable")
+    half = 1 + int(np.searchsorted(np.cumsum(size[order]), 0.5 * size.sum()))
+    places = scene.assembly.positions + simulation.displacement[:2].T
+    worst = [
+        f"particle {i} at ({places[i, 0]:.2f}, {places[i, 1]:.2f}) m lacks ({-unbalanced[0, i]:.3g}, "
+        f"{-unbalanced[1, i]:.3g}) N"
+        for i in order[: min(WORST, len(order))]
+    ]
+    low, high = places[order[:half]].min(axis=0), places[order[:half]].max(axis=0)
+    return (
+        f"{', '.join(worst)}; {half:,} of {scene.count:,} particles lack half of all, between "
+        f"({low[0]:.2f}, {low[1]:.2f}) and ({high[0]:.2f}, {high[1]:.2f}) m"
     )
 
 
@@ -152,7 +207,8 @@ class _StaticScene:
             if side in scene.edges:
                 edge = scene.edges[side]
                 table.support(edge, boundary_medium(case, scene.ground, edge.axis), case.wave, builder)
-        self.load = scene.steady_load + _tractions(scene, static)
+        self._steady = scene.steady_load
+        self._tractions = None if static.stress is None else Tractions(scene, static.stress)
         self.scene = replace(scene, supports=builder.table())
         self.held = np.zeros(scene.count, dtype=bool)
         for edge in scene.edges.values():
@@ -160,12 +216,31 @@ class _StaticScene:
         supports: Supports = self.scene.supports
         self.held[supports.node[supports.prescribed]] = True  # dashpots carry nothing at rest
         self._floats = len(supports) == 0
+        self._alone = not scene.steady_load.any()
         self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.count, axis=1)
         across = (supports.component < 2) & supports.prescribed
         self._moves[supports.component[across], supports.node[across]] = False
 
+    def load(self, displacement: np.ndarray) -> np.ndarray:
+        """All steady forces (3, n) N and N·m at displacements (3, n)."""
+        return self._steady + (0.0 if self._tractions is None else self._tractions.forces(displacement))
+
+    def correct(self, simulation: Simulation) -> bool:
+        """Correct the tractions of a body at rest by what the stress inside lacks; whether it lacked something.
+
+        Beside steady loads, whose stress comes on top of the one asked for, nothing is corrected.
+        """
+        if self._tractions is None or not self._alone:
+            return False
+        return self._tractions.correct(mean_stress(self.scene, stress_now(simulation)))
+
+    def turn_tractions(self, simulation: Simulation) -> None:
+        """Let tractions follow the sides, or what was corrected take effect."""
+        if self._tractions is not None:
+            simulation.apply(self.load(simulation.displacement))
+
     def keep_from_turning(self, simulation: Simulation) -> None:
-        """Stop the motion as a whole of a body that nothing holds: under forces that keep their direction it tips."""
+        """Stop the motion as a whole of a body that nothing holds, which has no force to bring it to rest."""
         if not self._floats:
             return
         mass, velocity = self.scene.mass, simulation.velocity
@@ -178,13 +253,13 @@ class _StaticScene:
         rate = spin / (np.sum(mass * (arm**2).sum(axis=0)) + self.scene.inertia.sum())
         velocity -= rate * np.stack([-arm[1], arm[0], np.ones(self.scene.count)])
 
-    def unbalanced(self, forces: np.ndarray) -> np.ndarray:
-        """Unbalanced force (n,) N along the directions particles can move in, for contact forces (3, n)."""
-        return np.hypot(*np.where(self._moves, (forces + self.load)[:2], 0.0))
+    def unbalanced(self, simulation: Simulation, forces: np.ndarray) -> np.ndarray:
+        """Unbalanced forces (2, n) N along the directions particles can move in, for contact forces (3, n)."""
+        return np.where(self._moves, (forces + simulation.load)[:2], 0.0)
 
-    def force_ratio(self, forces: np.ndarray, contacts: ContactList) -> float:
+    def force_ratio(self, simulation: Simulation, forces: np.ndarray, contacts: ContactList) -> float:
         """Mean unbalanced force over the mean contact force."""
-        unbalanced = self.unbalanced(forces).mean()
+        unbalanced = np.hypot(*self.unbalanced(simulation, forces)).mean()
         pair = np.hypot(*contacts.arrays.force[:, :2].T)
         acting = pair > 0.0
         return float(unbalanced / pair[acting].mean()) if acting.any() else (np.inf if unbalanced > 0.0 else 0.0)
@@ -195,43 +270,3 @@ def _contact_forces(simulation: Simulation, contacts: ContactList) -> np.ndarray
     if isinstance(simulation.engine, Bonded):
         return contacts.last_forces()
     return contacts.forces(simulation.displacement, reference=True)
-
-
-def _tractions(scene: Scene, static: Static) -> np.ndarray:
-    """Forces (3, n) with which the stress asked for pulls at the sides, by the particles' share of the diameters."""
-    force = np.zeros((3, scene.count))
-    if static.stress is None:
-        return force
-    xx, yy, xy = static.stress
-    for side, edge in scene.edges.items():
-        sign = 1.0 if side in ("right", "top") else -1.0
-        pull = np.array([xx, xy] if edge.axis == 0 else [xy, yy]) * sign * edge.length
-        force[:2, edge.nodes] += pull[:, None] * edge.diameters / edge.diameters.sum()
-    loaded = np.unique(np.concatenate([edge.nodes for edge in scene.edges.values()]))
-    return _without_torque(force, scene.assembly.positions, loaded)
-
-
-def _without_torque(force: np.ndarray, positions: np.ndarray, loaded: np.ndarray) -> np.ndarray:
-    """Forces (3, n) made free of torque by small ones on the loaded particles (k,), which uneven sides leave."""
-    arm = positions - positions[loaded].mean(axis=0)
-    torque = np.sum(arm[:, 0] * force[1] - arm[:, 1] * force[0])
-    turn = np.stack([-arm[loaded, 1], arm[loaded, 0]])
-    force[:2, loaded] -= torque / np.sum(turn**2) * turn
-    return force
-
-
-def mean_stress(scene: Scene, stress: np.ndarray) -> np.ndarray:
-    """Mean stress (3,) inside a body, over the area of its particles away from the sides; stress (n, 3) of each."""
-    inside = _inside(scene)
-    return np.average(stress[inside], axis=0, weights=(scene.assembly.radii**2 * scene.share)[inside])
-
-
-def _inside(scene: Scene) -> np.ndarray:
-    """Particles (n,) bool that stand a few diameters away from the sides; all of a small scene."""
-    depth = RIM * scene.ground.brick.mean_diameter
-    inside = np.ones(scene.count, dtype=bool)
-    for axis, low in enumerate(("left", "bottom")):
-        if low in scene.edges:
-            place = scene.assembly.positions[:, axis]
-            inside &= (place > depth) & (place < scene.assembly.size[axis] - depth)
-    return inside if inside.any() else np.ones(scene.count, dtype=bool)

@@ -5,7 +5,6 @@ A strip of the scene's own bricks, just long enough that nothing returns to the 
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
@@ -26,10 +25,9 @@ from dembound.boundaries import (
 from dembound.boundaries.viscous import Dashpots
 from dembound.case import DiskCase
 from dembound.errors import CaseError
+from dembound.matching import Motion
 from dembound.scene import ground_of
 from dembound.waves import Cosine
-
-Motion = Literal["p", "s"]
 
 PULSE = "calibration"
 STRIP = 0.35

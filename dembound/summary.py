@@ -74,7 +74,7 @@ def _asked(scene: Scene) -> list[float] | None:
 def _describe_static(settled: Settled, asked: list[float] | None) -> dict[str, Any]:
     """The static stage: steps, force ratio, forces (N) carried by supports and tractions and left, stress (Pa).
 
-    And the same before an excavation, if there was one.
+    And the same of the free-field column alone, if there is one, and before an excavation, if there was one.
     """
     return {
         "steps": settled.steps,
@@ -84,6 +84,7 @@ def _describe_static(settled: Settled, asked: list[float] | None) -> dict[str, A
         "stress": settled.stress.tolist(),
         "asked": asked,
         "cracks": len(settled.cracks),
+        "column": None if settled.column is None else _describe_static(settled.column, None),
         "before": None if settled.before is None else _describe_static(settled.before, asked),
     }
 

@@ -13,6 +13,9 @@ from dembound.gauges import pull_back_strength
 from dembound.results import open_record
 from dembound.simulate import Simulation
 
+LATER_SPALLS = "spalls after the first do not converge as bar.spacing shrinks: it decides their number and places"
+"""Said where a bar has spalled more than once."""
+
 
 def summarise_bar(scene: BarScene, simulation: Simulation, record: Path) -> dict[str, Any]:
     """What a bar's summary has beside that of every run: plain JSON values, SI units."""
@@ -25,6 +28,7 @@ def summarise_bar(scene: BarScene, simulation: Simulation, record: Path) -> dict
         "bond_updates": engine.bond_updates,
         "courant": simulation.time_step * scene.case.bar.speed / scene.rod.spacing,
         "spalls": [spall.describe() for spall in found],
+        "spalls_note": LATER_SPALLS if len(found) > 1 else None,
         "bar": describe_bar(scene),
         "boundaries": {side: describe_end(scene, side) for side in scene.edges},
         "stress": _largest_stresses(record),

@@ -51,8 +51,8 @@ class Material(Table):
     )
     pb_coh: float | None = quantity(None, unit="Pa", help="cohesion of the bonds; absent: unbreakable in shear", gt=0.0)
     pb_fa: float = quantity(0.0, unit="degrees", help="friction angle of the bonds", ge=0.0, lt=90.0)
-    locked_in: bool = quantity(
-        True, unit="1", help="whether contacts carry the stress the brick was packed under; false: they just touch"
+    locked_in: float | None = quantity(
+        None, unit="Pa", help="pressure that contacts carry before the static stage; absent: they just touch", gt=0.0
     )
     geometry: Literal["updated", "reference"] = quantity(
         "updated",

@@ -48,6 +48,8 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         if tables["packing"]:
             yield from _places_outside(key, tables[key], tables["packing"].size)
     yield from hole_problems(tables, "static" in given)
+    if tables["material"] and tables["material"].locked_in and "static" not in given:
+        yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must come to rest in [static]"
     if tables["static"]:
         yield from static_problems(*(tables[key] for key in ("static", "boundary", "load", "material", "motion")))
     if tables["run"]:

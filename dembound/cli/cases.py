@@ -1,18 +1,15 @@
 """Commands that begin with a case: new, check, run, packing."""
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from dembound.boundaries.support import Edge
 from dembound.case import BAR_STARTER, STARTER
-from dembound.check import check, precautions
+from dembound.check import check
 from dembound.cli.app import (
     PICTURE,
     Cases,
@@ -29,14 +26,13 @@ from dembound.cli.app import (
     use_threads,
 )
 from dembound.cli.outcome import outcome
+from dembound.cli.progress import print_warning, progress_of
 from dembound.errors import CaseError
 from dembound.half_space import write_exact
 from dembound.plot.packing import plot_brick, plot_patterns
 from dembound.plot.style import save
-from dembound.run import Progress as RunProgress
-from dembound.run import run_case
+from dembound.run import foresee, run_case
 from dembound.scene import Scene, build
-from dembound.simulate import Simulation
 
 RIGHT = Side("right")
 
@@ -64,7 +60,7 @@ def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None)
             table.add_row(name, value)
         out.print(table)
         for warning in warnings:
-            err.print(f"warning: {warning}", markup=False)
+            print_warning(case.name, warning)
 
 
 @app.command("run", rich_help_panel="Cases")
@@ -86,12 +82,11 @@ def run(
     names = [case.name for case in loaded]
     if len(set(names)) < len(names):
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
-    for case in loaded:
-        for warning in precautions(case):
-            err.print(f"{case.name}: warning: {warning}", markup=False)
+    for case in loaded[1:]:  # the first is planned at once, before anything is written
+        foresee(case)
     for case in loaded:
         try:
-            with _progress(case.name) as step:
+            with progress_of(case.name) as step:
                 folder = run_case(case, output, step)
         except KeyboardInterrupt:
             partial = output / f"{case.name}.partial"
@@ -151,37 +146,3 @@ def exact(
     folder = output / case.name
     write_exact(case, folder / "run.h5")
     out.print(f"{case.name}: exact histories in {folder}")
-
-
-@contextmanager
-def _progress(name: str) -> Iterator[RunProgress]:
-    """A progress bar with rate and time left on a terminal, nothing elsewhere."""
-    if not err.is_terminal:
-        yield RunProgress()
-        return
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:3.0f} %  {task.fields[rate]}"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=err, transient=True) as bar:
-        yield _Bar(bar, name)
-
-
-class _Bar(RunProgress):
-    """A run's progress as a bar."""
-
-    def __init__(self, bar: Progress, name: str) -> None:
-        self.bar, self.name = bar, name
-        self.task = bar.add_task(name, total=None, rate="")
-
-    def settling(self, steps: int, ratio: float) -> None:
-        """The static stage: no one knows how long it takes."""
-        self.bar.update(self.task, description=f"{self.name}: settling, {steps:,} steps, force ratio {ratio:.1e}")
-
-    def running(self, simulation: Simulation, steps: int) -> None:
-        """The run itself."""
-        speed = self.bar.tasks[0].speed
-        rate = f"{speed * simulation.scene.count / 1e6:.0f} M particle-steps/s" if speed else ""
-        self.bar.update(self.task, description=self.name, completed=simulation.steps, total=steps, rate=rate)

@@ -21,13 +21,15 @@ def outcome(summary: dict[str, Any], case: Case) -> list[str]:
 
 
 def bar_outcome(summary: dict[str, Any]) -> list[str]:
-    """What became of a bar: changes of method, and where and when it spalled."""
+    """What became of a bar: changes of method, and where and when it spalled, and what of that converges."""
     facts = [f"{used['law']} from {used['from'] * 1e3:.4g} ms" for used in summary["laws"][1:]]
     facts += [
         f"spall at {_range(spall['start'])} m, {spall['time'] * 1e3:.4f} ms" for spall in summary["spalls"][:TOLD]
     ]
     if (more := len(summary["spalls"]) - TOLD) > 0:
         facts.append(f"and {more} more, see summary.json")
+    if summary["spalls_note"] is not None:
+        facts.append(summary["spalls_note"])
     if not summary["spalls"] and summary["bar"]["strength"] is not None:
         facts.append("no spall")
     gained = -summary["energy"]["crack"]

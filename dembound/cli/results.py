@@ -52,6 +52,7 @@ class SceneField(StrEnum):
     stress_yy = "stress_yy"
     stress_xy = "stress_xy"
     peak = "peak"
+    unbalanced = "unbalanced"
 
 
 @app.command("plot", rich_help_panel="Results")

@@ -5,7 +5,8 @@ from numba import njit, prange
 
 from dembound.kernels.common import CHUNKS, FASTMATH, U
 from dembound.kernels.contacts import ends_force, moved, push, seam_ends_forces
-from dembound.kernels.elastic import DONE, LIST_ENDS
+from dembound.kernels.elastic import BROKE, DONE, LIST_ENDS
+from dembound.kernels.follower import extra_work, turn_forces
 from dembound.kernels.step import move_particle, move_supported, note_after, note_before, note_top_speeds
 
 
@@ -34,10 +35,11 @@ def _move(u, v, contacts, body, spare, fastest, damped):
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def advance(u, spare, v, number, contacts, limits, origin, skin, body, supports, log):
+def advance(u, spare, v, number, contacts, limits, origin, skin, body, supports, followers, stop, log):
     """Advance by up to supports.drive.shape[0] steps, the first being that of `number`; returns steps done and why.
 
     As elastic.advance; origin (2, n) are the displacements at which all pairs with gaps up to skin (m) were listed.
+    stop : return after a step in which a bond broke, so that balancing forces can end on debris.
     """
     steps = supports.drive.shape[0]
     nodes = supports.nodes
@@ -59,7 +61,8 @@ def advance(u, spare, v, number, contacts, limits, origin, skin, body, supports,
                 done = step
                 why = LIST_ENDS
                 break
-        push(here, v, body.step, number + step, contacts, limits, lost)
+        turned = turn_forces(here, v, followers, body.load, body.step)
+        breaks = push(here, v, body.step, number + step, contacts, limits, lost)
         seam_ends_forces(contacts, supports.seam, across)
         note_before(step, here, v, log.probes, log.record, supports.seam.twin, followed)
         _move(here, v, contacts, body, there, fastest, damped)
@@ -72,11 +75,17 @@ def advance(u, spare, v, number, contacts, limits, origin, skin, body, supports,
         for way in range(2):
             log.work[0, 2 + way] += lost[:, way].sum()
             log.work[1, 2 + way] = log.work[0, 2 + way]
+        log.work[1, 5] = log.work[0, 5] + turned
+        log.work[0, 5] += turned + extra_work(v, followers, body.step)
         most = fastest.max()
         for s in range(nodes.size):
             most = max(most, np.hypot(v[0, nodes[s]], v[1, nodes[s]]))
         travelled += body.step * most
         here, there = there, here
+        if stop and breaks > 0:
+            done = step + 1
+            why = BROKE
+            break
     if done % 2 == 1:
         u[:] = here
     return done, why

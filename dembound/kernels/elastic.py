@@ -20,8 +20,9 @@ from dembound.kernels.common import CHUNKS, FASTMATH, U
 from dembound.kernels.contacts import moved, slack
 from dembound.kernels.step import move_particle, move_supported, note_after, note_before, note_top_speeds
 
-DONE, LAW_ENDS, LIST_ENDS = 0, 1, 2
-"""Why a kernel returned: all steps are done; a contact is about to leave the elastic law; the list of pairs is old."""
+DONE, LAW_ENDS, LIST_ENDS, BROKE = 0, 1, 2, 3
+"""Why a kernel returned: all steps are done; a contact is about to leave the elastic law; the list of pairs is old; a
+bond broke in the last step."""
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")

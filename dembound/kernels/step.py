@@ -94,11 +94,11 @@ def move_supported(step, u, v, spare, across, followed, supports, body, work):
             before = v[U(c), i]
             force = spare[U(c), i]
             total = force + across[s, c] - stiffness[s, c] * u[U(c), i] + drive[s, c]
+            drag = 0.0
+            if body.damp > 0.0 and mobility[s, c] > 0.0:  # without the dashpots', so that it is as strong as the twin's
+                drag = -body.damp * abs(total) * np.sign(before)
             if seam.twin[s] >= 0:
                 total += seam.follow[s, c] * (followed[s, c] + 0.5 * v[U(c), U(seam.twin[s])])
-            drag = 0.0
-            if body.damp > 0.0 and mobility[s, c] > 0.0:
-                drag = -body.damp * abs(total) * np.sign(before)
             w = keep[s, c] * before + mobility[s, c] * (total + drag) + prescribed[s, c] * drive[s, c]
             w = 0.0 if abs(w) <= REST else w
             v[U(c), i] = w

@@ -67,6 +67,30 @@ class Body(NamedTuple):
     step: float
 
 
+class Followers(NamedTuple):
+    """Forces that turn with the sides they act on, of s sides with m members in all and q particles; see follower.py.
+
+    opposite : (s,) the opposite side of each, itself if there is none. start : (s + 1,) members of side k are
+    start[k]:start[k + 1] of the next three; member, twin : (m,) particles, and
+    the ones relative to whose motion they turn, −1 for none; arm : (2, m) m, from the side's mean place at the datum.
+    node : (q,) particles; side : (2, q) the one or two sides each belongs to, −1 for none; force : (2, 2, q) N by side
+    and component; steady : (2, q) N, all steady load before anything has turned; extra : (2, q) N, what turning adds at
+    the moment. datum : (3, n) displacements counted from.
+    """
+
+    opposite: np.ndarray
+    start: np.ndarray
+    member: np.ndarray
+    twin: np.ndarray
+    arm: np.ndarray
+    node: np.ndarray
+    side: np.ndarray
+    force: np.ndarray
+    steady: np.ndarray
+    extra: np.ndarray
+    datum: np.ndarray
+
+
 class Seam(NamedTuple):
     """What free-field columns do to k nodes.
 
@@ -107,8 +131,9 @@ class Log(NamedTuple):
     probes : (p,) particles; record : (steps, p, 6) their displacement and velocity at the start of each step, the
     velocity as the mean of its two half-step values, and of a bar (steps, p, 7), stress last, Pa. tracked : (q,)
     particles; peaks : (q, 3, 2) smallest and largest velocity so far. top_speed : (n,) largest speed so far, m/s, or
-    (0,) where nobody asks. work : (2, 5) J done on the body by supports, taken by damping, friction and cracks, added
-    by a change of method, column by column; row 0 up to the half step reached, row 1 up to the last whole step.
+    (0,) if not asked for. work : (2, 6) J done on the body by supports, taken by damping, friction and cracks, added by
+    a change of method, done by what follower forces add as they turn, column by column; row 0 up to the half step
+    reached, row 1 up to the last whole step.
     """
 
     probes: np.ndarray

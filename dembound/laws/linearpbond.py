@@ -16,7 +16,7 @@ def pair_lines(
     *,
     bonded: bool,
     gaps_close: bool = True,
-    locked_in: bool = True,
+    locked_in: float = 0.0,
 ) -> np.ndarray:
     """Constants (b, 12) of pairs, in the columns that kernels/contacts.py explains.
 
@@ -27,19 +27,19 @@ def pair_lines(
     vectors : (b, 2) m, from i to j at the start.
     bonded : whether the pairs have bonds.
     gaps_close : whether pairs with a gap have a contact that pushes once it closes; the elastic law knows none.
-    locked_in : whether overlaps push from the start; otherwise overlapping disks just touch.
+    locked_in : part of the overlaps that pushes from the start; with 0 overlapping disks just touch.
     """
     distance = np.hypot(*vectors.T)
     pair = springs(moduli, radius_i, radius_j)
     closed = touching(radius_i, radius_j, distance)
     acts = closed | gaps_close
-    sum_of_radii = np.maximum(radius_i + radius_j, np.where(closed, distance, 0.0))
+    overlap = np.maximum(radius_i + radius_j - distance, 0.0)
     has_bond = float(bonded)
     return np.column_stack(
         [
             vectors,
             distance,
-            sum_of_radii if locked_in else np.where(closed, distance, sum_of_radii),
+            np.where(closed, distance + locked_in * overlap, radius_i + radius_j),
             (radius_i - radius_j) / 2.0,
             np.where(acts, pair.contact_normal, 0.0),
             np.where(acts, pair.contact_shear, 0.0),

@@ -11,14 +11,15 @@ from dembound.results import energy_of, is_bar, open_record
 
 COLUMNS = {
     "outside": "in: boundaries and driven loads",
-    "load": "in: steady loads, and what balances locked-in stress",
+    "load": "in: steady loads",
+    "balance": "in: forces that balance the settled stress",
     "kinetic": "kinetic",
     "contact": "stored in contacts",
     "bond": "stored in bonds",
     "damping": "taken by local damping",
     "friction": "taken by friction",
     "crack": "taken by cracks",
-    "handover": "in: added by a change of method",
+    "handover": "in: added by a change of law",
 }
 """Columns of the ledger and what the legend calls them."""
 
@@ -27,10 +28,11 @@ BAR_COLUMNS = COLUMNS | {
     "contact": "stored in local springs",
     "bond": "stored in peridynamic bonds",
     "damping": "taken by attenuation",
+    "handover": "in: added by a change of method",
 }
 """The same of a bar."""
 
-HUES = (*COLOURS, "#8C510A", "#999999")
+HUES = (*COLOURS, "#8C510A", "#999999", "#5E3C99")
 """A colour for each of them."""
 
 NEGLIGIBLE = 1e-6

@@ -12,7 +12,7 @@ from dembound.plot.disks import Window
 from dembound.plot.style import UNITS
 from dembound.results import COMPONENTS, cracks_until, laws_in_words, laws_of, snapshot_of
 
-FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak"]
+FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced"]
 
 STRESSES = ("stress_xx", "stress_yy", "stress_xy")
 """In the order of the columns of a stress in a record."""
@@ -81,7 +81,10 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
     groups = list(snapshot_of(file, -1).parent.values())
     dataset = "stress" if name in STRESSES else name
     if dataset not in groups[0]:
-        raise CaseError([f"{file.filename}: holds no stress; runs with output.stress = true do"])
+        having = "static stages that stalled" if name == "unbalanced" else "runs with output.stress = true"
+        raise CaseError(
+            [f"{file.filename}: holds no {dataset.replace('unbalanced', 'unbalanced forces')}; {having} do"]
+        )
     largest = np.array([np.abs(group[dataset][:]).max(axis=0) for group in groups])
     column, words, unit = _column(name, component, largest.max(axis=0))
     if snapshot is not None:
@@ -109,6 +112,8 @@ def _column(name: str, component: str | None, largest: np.ndarray) -> tuple[int,
         return STRESSES.index(name), f"stress {name[-2:]}", "Pa"
     column = int(np.argmax(largest[:2])) if component is None else COMPONENTS.index(component)
     way = "of rotation" if column == 2 else f"along {COMPONENTS[column]}"
+    if name == "unbalanced":
+        return column, f"unbalanced force {way}", "N"
     return column, f"{name} {way}", UNITS[name][column]
 
 

@@ -17,6 +17,9 @@ import tomli_w
 from dembound import __version__, cli
 from dembound.case import BarCase, load
 from dembound.cli.outcome import bar_outcome, disk_outcome
+from dembound.cli.progress import Lines, progress_of
+from dembound.run import plan
+from dembound.simulate import Simulation
 
 
 @dataclass
@@ -135,7 +138,7 @@ def test_check_prints_facts_and_warnings_and_writes_nothing(dembound, written, t
     assert answer.code == 0
     assert "particles" in answer.out
     assert "right side" in answer.out
-    assert "warning: wave.pulse: has " in answer.err
+    assert "bar: warning: wave.pulse: has " in answer.err
     assert files(tmp_path) == before
 
 
@@ -198,10 +201,11 @@ def test_a_spall_of_one_node_has_one_place() -> None:
     summary = {
         "laws": [{"law": "peridynamics, m = 3", "from": 0.0}],
         "spalls": [{"start": place, "time": 4.393e-4} for place in places],
+        "spalls_note": "they multiply",
         "bar": {"strength": 1e7},
         "energy": {"crack": 0.0, "outside": 1.0, "relative_error": 0.0},
     }
-    assert bar_outcome(summary) == ["spall at 0.906–0.909 m, 0.4393 ms", "spall at 1 m, 0.4393 ms"]
+    assert bar_outcome(summary) == ["spall at 0.906–0.909 m, 0.4393 ms", "spall at 1 m, 0.4393 ms", "they multiply"]
 
 
 @pytest.mark.parametrize(("count", "told", "last"), [(3, 3, "spall at"), (4, 4, "and 1 more"), (12, 4, "and 9 more")])
@@ -209,6 +213,7 @@ def test_of_many_spalls_the_first_are_told(count: int, told: int, last: str) -> 
     summary = {
         "laws": [{"law": "finite differences", "from": 0.0}],
         "spalls": [{"start": [0.1 * n, 0.1 * n], "time": 1e-3} for n in range(count)],
+        "spalls_note": None,
         "bar": {"strength": 1e7},
         "energy": {"crack": 0.0, "outside": 1.0, "relative_error": 0.0},
     }
@@ -226,12 +231,70 @@ def test_a_mistake_in_the_last_case_keeps_the_first_from_running(dembound, writt
     assert not (tmp_path / "results").exists()
 
 
-def test_what_was_probably_not_meant_is_warned_of(dembound, written) -> None:
+def test_what_was_probably_not_meant_is_warned_of(dembound, written, tmp_path) -> None:
     weight = {"load": [{"name": "weight", "acceleration": [9.81, 0.0]}]}
     answer = dembound("run", written(changes=weight))
 
     assert answer.code == 0
     assert answer.err.startswith("bar: warning: load.weight: is steady, and without [static] falls on the body")
+    found = json.loads((tmp_path / "results" / "bar" / "summary.json").read_text())["warnings"]
+    assert answer.err.splitlines() == [f"bar: warning: {warning}" for warning in found]
+
+
+@dataclass
+class Clock:
+    """A clock that is set by hand."""
+
+    time: float
+
+    def __call__(self) -> float:
+        return self.time
+
+
+def test_off_a_terminal_a_run_says_every_ten_seconds_how_far_it_is(bar, capsys) -> None:
+    planned = plan(bar())
+    simulation = Simulation(planned.scene, planned.time_step, np.zeros(0, dtype=np.int64))
+    clock = Clock(100.0)
+    lines = Lines("bar", clock)
+    lines.warned("wave.pulse: is odd")
+    for now, steps in ((109.9, 10), (112.0, 10), (121.9, 5)):
+        clock.time = now
+        simulation.advance(steps)
+        lines.running(simulation, 1234)
+    clock.time = 122.0
+    lines.running(simulation, 1234)
+
+    # 20 steps of 40 disks in 12 s, then 5 in 10 s
+    assert capsys.readouterr().err.splitlines() == [
+        "bar: warning: wave.pulse: is odd",
+        f"bar: 20 of 1,234 steps, {20 * planned.time_step:.4g} s simulated, 6.67e-05 M particle-steps/s",
+        f"bar: 25 of 1,234 steps, {25 * planned.time_step:.4g} s simulated, 2e-05 M particle-steps/s",
+    ]
+
+
+def test_off_a_terminal_the_static_stage_says_so_too(capsys) -> None:
+    clock = Clock(0.0)
+    lines = Lines("bar", clock)
+    for now, steps in ((9.0, 100), (10.0, 1200), (11.0, 1300), (21.0, 2400)):
+        clock.time = now
+        lines.settling(steps, 1e-3 / now)
+
+    assert capsys.readouterr().err.splitlines() == [
+        "bar: settling for 10 s, 1,200 steps, force ratio 1.0e-04",
+        "bar: settling for 21 s, 2,400 steps, force ratio 4.8e-05",
+    ]
+
+
+def test_on_a_terminal_warnings_stand_above_the_bar(bar, monkeypatch, capsys) -> None:
+    planned = plan(bar())
+    simulation = Simulation(planned.scene, planned.time_step, np.zeros(0, dtype=np.int64))
+    monkeypatch.setattr(cli.progress.err, "_force_terminal", True)
+    with progress_of("bar") as shown:
+        shown.settling(100, 1e-3)
+        shown.warned("wave.pulse: is odd")
+        shown.running(simulation, 10)
+
+    assert "bar: warning: wave.pulse: is odd\n" in capsys.readouterr().err
 
 
 def test_differences_are_told_with_what_they_are_parts_of(dembound, written, monkeypatch) -> None:

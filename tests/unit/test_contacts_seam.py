@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from dembound.contacts import ContactList
-from dembound.kernels.contacts import INTACT, TENSION
-from dembound.scene import Scene, build
+from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION
+from dembound.scene import Scene, build, column_alone
 
 FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
 RANDOM = {"size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
@@ -144,6 +144,91 @@ def test_what_comes_across_the_seam_is_what_the_twins_feel_there(scene) -> None:
 
 def test_without_a_column_there_are_no_ends(scene) -> None:
     assert len(scene(boundary={}).contact_list().seam_ends()) == 0
+
+
+def twins_keys(contacts: ContactList) -> list[tuple[int, ...]]:
+    """Of each pair (i, j, periods) of its twin in the column, as `plain_near` has them."""
+    pairs, places, twin = contacts.arrays, contacts.assembly.positions, contacts.seam.twin
+    first, second = twin[pairs.first], twin[pairs.second]
+    beyond = pairs.palette[pairs.kind, :2] - (places[second] - places[first])
+    images = np.rint(beyond[:, 0] / contacts.seam.width)
+    return [
+        tuple(int(number) for number in min((i, j, image), (j, i, -image)))
+        for i, j, image in zip(first, second, images, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("packing", PACKINGS)
+def test_every_pair_takes_the_history_of_its_twin_in_the_column(scene, packing: str) -> None:
+    ground, rng = scene(packing), np.random.default_rng(2)
+    column, contacts = column_alone(ground).contact_list(), ground.contact_list()
+    alone = shaken(column, 0.0 if packing.startswith("A") else 0.2)
+    column.search(alone)
+    pairs = column.arrays
+    bonded = pairs.state == INTACT
+    pairs.state[bonded] = rng.choice([INTACT, TENSION, SHEAR], np.count_nonzero(bonded))
+    pairs.shear[:], pairs.slip[:] = rng.uniform(-1.0, 1.0, (2, len(pairs.state)))
+    together = alone[:, ground.seam.twin]
+    contacts.copy_column(column, together)
+
+    history = list(zip(pairs.state.tolist(), pairs.shear.tolist(), pairs.slip.tolist(), strict=True))
+    expected = dict(zip(listed(column, ground.seam.width), history, strict=True))
+    assert len(expected) == len(history)
+    ours, keys = contacts.arrays, twins_keys(contacts)
+    found = list(zip(ours.state.tolist(), ours.shear.tolist(), ours.slip.tolist(), strict=True))
+    assert [expected[key] for key in keys] == found
+    assert np.array_equal(contacts.origin, together[:2])
+    # pairs of column and body, and in the column some across its period
+    in_column = ours.first < ground.seam.count
+    assert 0 < np.count_nonzero(in_column) < len(found)
+    assert {key for key, inside in zip(keys, in_column, strict=True) if inside} == set(expected)
+    assert any(key[2] for key in expected)
+    if not packing.startswith("A"):  # and some that were found since
+        assert np.count_nonzero(ours.state[in_column] == NONE) > 0
+        assert np.count_nonzero(ours.state[~in_column] == NONE) > 0
+
+
+def test_what_broke_in_the_column_is_noted_as_broken_before_the_first_step(scene) -> None:
+    ground = scene("B")
+    column, contacts = column_alone(ground).contact_list(), ground.contact_list()
+    pairs = column.arrays
+    pairs.state[np.flatnonzero(pairs.state == INTACT)[:6]] = [TENSION, SHEAR, SHEAR] * 2
+    column.arrays.cracked[:6] = 5
+    still = np.zeros((3, ground.count))
+    contacts.copy_column(column, still)
+    ours, cracks = contacts.arrays, contacts.take_cracks()
+    broken = np.flatnonzero((ours.state == TENSION) | (ours.state == SHEAR))
+
+    # each of the column, and its twins in the body; two bricks side by side have those within a brick twice
+    assert len(cracks) == len(broken) > 2 * 6
+    assert sorted(map(tuple, cracks.pair.tolist())) == sorted(
+        zip(ours.first[broken].tolist(), ours.second[broken].tolist(), strict=True)
+    )
+    assert set(cracks.step) == {0}
+    assert np.count_nonzero(cracks.shear) == np.count_nonzero(ours.state == SHEAR)
+    assert (ours.cracked == -1).all()
+    assert len(contacts.take_cracks()) == 0
+
+
+def test_what_the_column_does_not_list_keeps_its_own_state(scene) -> None:
+    ground = scene("B")
+    column, contacts = column_alone(ground).contact_list(), ground.contact_list()
+    column.arrays.state[:] = SHEAR
+    column.arrays.shear[:] = 1.0
+    # a pair of the column alone is struck off its list, so that neither it nor any twin of it is known there
+    struck = listed(column, ground.seam.width)[7]
+    kept = [key != struck for key in listed(column, ground.seam.width)]
+    column.arrays = column.arrays._replace(
+        **{name: getattr(column.arrays, name)[kept] for name in ("first", "second", "state", "shear", "slip")}
+    )
+    column._image = column._image[kept]
+    contacts.copy_column(column, np.zeros((3, ground.count)))
+
+    same = np.array([key == struck for key in twins_keys(contacts)])
+    assert same.any()
+    assert not (contacts.arrays.state[same] == SHEAR).any()
+    assert not contacts.arrays.shear[same].any()
+    assert (contacts.arrays.shear[~same] == 1.0).all()
 
 
 LATTICE = {"pattern": "A", "size": [2.0, 1.0], "radius": 0.25}

@@ -11,7 +11,8 @@ from dembound.scene import Scene, build
 STEP = 1e-4
 FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
 DENSE = {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
-REMEMBERS = {"material.law": "linearpbond", "material.fric": 0.5}
+REMEMBERS = {"material.law": "linearpbond", "material.fric": 0.5, "material.locked_in": 10e6, "static": {}}
+"""Contacts that the locked-in stress keeps closed."""
 
 
 @pytest.fixture
@@ -33,7 +34,7 @@ def advance(
     arrays = Body(STEP / body.mass, STEP / body.inertia, np.ones(3), load, 0.0, STEP)
     nobody, nothing = np.zeros(0, dtype=np.int64), np.zeros((0, 3))
     supports = Supports(nobody, *[nothing] * 5, drive=np.zeros((steps, 0, 3)), seam=body.seam_table(nobody))
-    log = Log(nobody, np.empty((steps, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 4)))
+    log = Log(nobody, np.empty((steps, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 6)))
     return engine.advance(u, np.empty_like(u), v, 0, arrays, supports, log)
 
 

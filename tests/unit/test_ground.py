@@ -133,3 +133,67 @@ def test_a_material_that_resists_no_shear_is_refused(dense: Brick) -> None:
     for brick in (lattice(), dense):
         with pytest.raises(CaseError, match="give bonds or friction"):
             _ = ground(brick, contact_share=1.0).tensor
+
+
+def test_bonds_of_a_lattice_have_their_share_of_its_stiffness() -> None:
+    # along the rows contacts and bonds act side by side, whatever friction and shear springs there are
+    for changes in ({}, {"fric": 0.5, "kratio": 2.0, "pb_kratio": 3.0}, {"pb_rmul": 0.5}):
+        assert ground(lattice(), contact_share=0.3, **changes).bond_share == pytest.approx(0.7, rel=SOLVE)
+    assert ground(lattice(), contact_share=1.0, fric=0.5).bond_share == 0.0
+    assert ground(lattice(), contact_share=0.0).bond_share == pytest.approx(1.0, rel=SOLVE)
+
+
+def test_of_a_random_brick_the_smaller_share_along_x_or_y_counts(dense: Brick) -> None:
+    whole = ground(dense, contact_share=0.4, fric=0.5)
+    density_only = {key: value for key, value in MATERIAL.items() if key == "density"}
+    bonds = Material(**density_only, emod=0.0, pb_emod=whole.moduli.pb_emod, fric=0.5)
+    alone = make_ground(dense, bonds, ()).tensor
+    shares = [alone[axis, axis] / whole.tensor[axis, axis] for axis in (0, 1)]
+
+    assert whole.bond_share == pytest.approx(min(shares), rel=SOLVE)
+    assert max(shares) - min(shares) > 1e-4
+    # not the bonds' 0.6: a brick without contacts relaxes otherwise
+    assert abs(whole.bond_share - 0.6) > 1e-3
+    # a material's own, whatever translation the scene holds
+    assert ground(dense, ("y",), contact_share=0.4, fric=0.5).bond_share == whole.bond_share
+    assert ground(dense, ("rotation",), contact_share=0.4, fric=0.5).bond_share != whole.bond_share
+
+
+@pytest.mark.parametrize("match", ["lattice", "assembly"])
+def test_a_brick_was_packed_under_the_pressure_of_its_overlaps(dense: Brick, match: str) -> None:
+    made = ground(dense, match=match)
+    length = np.hypot(*dense.vectors.T)
+    push = made.moduli.emod * np.maximum(-dense.gaps, 0.0)
+
+    # mean of both normal stresses Σ f l / A; sums of some 300 terms
+    assert made.packed_pressure == pytest.approx(0.5 * np.sum(push * length) / 30.0, rel=1e-12)
+    assert made.packed_pressure == pytest.approx(0.008 * made.moduli.emod, rel=0.05)
+    assert ground(lattice()).packed_pressure == 0.0
+
+
+def test_disks_that_only_touch_cannot_be_locked_in() -> None:
+    with pytest.raises(CaseError, match=r"material\.locked_in: needs disks that were packed under stress"):
+        ground(lattice(), law="linearpbond", locked_in=1e6)
+
+
+def test_no_more_is_locked_in_than_a_tenth_of_the_contact_modulus(dense: Brick) -> None:
+    # E_c = ρc²/2
+    most = 0.1 * 0.5 * K
+    made = ground(dense, law="linearpbond", locked_in=most * (1.0 - 1e-12))
+    assert made.moduli.emod == 0.5 * K
+    with pytest.raises(
+        CaseError, match=r"material\.locked_in: is 1\.2501e\+08 Pa, must be at most 1\.25e\+08 Pa, 0\.1"
+    ):
+        ground(dense, law="linearpbond", locked_in=most * 1.0001)
+    # of the modulus after scaling
+    matched = ground(dense, match="assembly").moduli.emod
+    assert abs(matched / (0.5 * K) - 1.0) > 0.01
+    limit = 0.1 * matched
+    ground(dense, law="linearpbond", match="assembly", locked_in=limit * (1.0 - 1e-9))
+    with pytest.raises(CaseError, match="must be at most"):
+        ground(dense, law="linearpbond", match="assembly", locked_in=limit * (1.0 + 1e-9))
+
+
+def test_without_contacts_nothing_can_be_locked_in(dense: Brick) -> None:
+    with pytest.raises(CaseError, match="needs disks that were packed under stress"):
+        ground(dense, law="linearpbond", contact_share=0.0, locked_in=1e5)

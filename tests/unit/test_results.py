@@ -98,17 +98,34 @@ def ledger(path, **columns):
 
 @pytest.mark.parametrize(
     ("outside", "load", "relative"),
-    [([0.0, 4.0], [0.0, -2.0], [0.0, 0.25]), ([0.0, 1.0], [0.0, -5.0], [0.0, 0.2]), ([0.0, 0.0], [0.0, 0.0], [0, 0])],
+    [
+        ([0.0, 4.0, 1.0], [0.0, -2.0, 0.0], [0.0, 0.5, 0.5]),  # 2 J together at most
+        ([0.0, 1.0, -9.0], [0.0, 4.0, 0.0], [0.0, 0.2, 0.2]),  # what went out again does not count
+        ([0.0, 0.0, -9.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+    ],
 )
 def test_the_error_of_the_ledger_is_measured_by_the_most_that_came_in(tmp_path, outside, load, relative):
-    columns = {"time": [0.0, 1.0], "outside": outside, "load": load, "error": [0.0, 1.0]}
+    still, error = [0.0, 7.0, 7.0], [0.0, 1.0, 1.0]
+    columns = {"time": [0.0, 1.0, 2.0], "outside": outside, "load": load, "kinetic": still, "error": error}
     with open_record(ledger(tmp_path / "run.h5", **columns)) as file:
         found = energy_of(file)
     assert found.pop("relative_error").tolist() == relative
     assert {name: values.tolist() for name, values in found.items()} == columns
 
 
-@pytest.mark.parametrize("columns", [{}, {"time": [], "outside": [], "load": [], "error": []}])
+def test_the_energy_a_run_begins_with_came_in(tmp_path):
+    columns = {
+        "time": [0.0, 1.0],
+        "outside": [0.0, 1.0],
+        "load": [0.0, 0.0],
+        "kinetic": [3.0, 5.0],
+        "error": [0.0, 1.0],
+    }
+    with open_record(ledger(tmp_path / "run.h5", **columns)) as file:
+        assert energy_of(file)["relative_error"].tolist() == [0.0, 0.25]
+
+
+@pytest.mark.parametrize("columns", [{}, {"time": [], "outside": [], "load": [], "kinetic": [], "error": []}])
 def test_a_ledger_without_entries_is_refused(tmp_path, columns):
     path = ledger(tmp_path / "run.h5", **columns)
     with open_record(path) as file, pytest.raises(CaseError, match=r"run\.h5: has no entries in its energy ledger"):

@@ -8,7 +8,8 @@ import pytest
 
 from dembound.case import Case
 from dembound.errors import CaseError, RunError
-from dembound.run import Progress, plan, run_case
+from dembound.plot.scene import plot_scene
+from dembound.run import Progress, foresee, plan, run_case
 from dembound.simulate import Simulation
 
 GRIP = {"type": "velocity", "wave_p": "pulse"}
@@ -100,7 +101,7 @@ def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> Non
             "duration",
         ),
         *("wall_time", "threads", "particle_steps_per_second", "memory_bytes", "packing", "boundaries", "monitors"),
-        *("laws", "static", "cracks", "energy", "reduced"),
+        *("laws", "static", "cracks", "energy", "reduced", "warnings"),
     }
     assert (found["name"], found["particles"], found["contacts"]) == ("bar", 40, 2 * 19 + 20)
     assert found["duration"] == pytest.approx(found["steps"] * found["time_step"], rel=1e-15)
@@ -155,6 +156,10 @@ class Heard(Progress):
     def __init__(self) -> None:
         self.static: list[tuple[int, float]] = []
         self.blocks: list[tuple[int, int]] = []
+        self.warnings: list[tuple[str, int]] = []
+
+    def warned(self, message: str) -> None:
+        self.warnings.append((message.split(":")[0], len(self.blocks)))
 
     def settling(self, steps: int, ratio: float) -> None:
         self.static.append((steps, ratio))
@@ -173,6 +178,32 @@ def test_progress_is_told_after_every_block(bar, tmp_path) -> None:
     assert done == sorted(done)
     assert done[-1] == total > 256
     assert np.diff([0, *done]).max() <= 256
+
+
+def test_warnings_are_told_before_and_after_the_run_and_kept(bar, tmp_path) -> None:
+    heard = Heard()
+    burst = {"type": "sine_burst", "amplitude": 0.5, "frequency": 100.0, "cycles": 4}
+    folder = run_case(bar({"wave.pulse": burst, "run.duration": 0.03}), tmp_path, heard)
+
+    # four cycles of 10 m, for which disks of 0.5 m are coarse; the run sees three
+    (short, before), (moving, after) = heard.warnings
+    assert (short, before) == ("wave.pulse", 0)
+    assert (moving, after) == ("monitor.middle", len(heard.blocks))
+    assert [warning.split(":")[0] for warning in summary(folder)["warnings"]] == [short, moving]
+    assert summary(run_case(bar({"run.duration": 0.4, "wave.pulse.period": 0.07}), tmp_path))["warnings"] == []
+
+
+def test_what_would_stop_a_case_is_foreseen(bar, spalling) -> None:
+    for stopped, said in (
+        (bar({"run.time_step": 5e-3}), "run.time_step"),
+        (spalling({"run.courant": 2.0}), "run.courant"),
+        (bar({"material": {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0}}), "material"),
+    ):
+        with pytest.raises(CaseError, match=said) as caught:
+            foresee(stopped)
+        assert caught.value.source == stopped.name
+    foresee(bar())
+    foresee(spalling())
 
 
 def test_energies_are_entered_a_hundred_times_or_as_often_as_asked(bar, tmp_path) -> None:
@@ -259,9 +290,15 @@ def test_a_static_stage_that_fails_does_not_stand_in_the_way_of_the_next_run(bar
     with pytest.raises(RunError, match="static stage") as caught:
         run_case(bar({**HANGING, "static.ratio": 1e-12, "static.max_steps": 1}), tmp_path)
     assert caught.value.source == "bar"
-    assert not list(tmp_path.iterdir())
+    assert str(caught.value).endswith(f"; to see it: dembound plot {tmp_path / 'bar.partial'} --field unbalanced")
+    # the state it reached is kept to be looked at
+    with h5py.File(tmp_path / "bar.partial" / "run.h5") as file:
+        assert not file.attrs["complete"]
+        (snapshot,) = file["snapshots"].values()
+        assert snapshot["unbalanced"].shape == (len(file["particles/radius"]), 2)
+        assert np.abs(snapshot["unbalanced"][:]).max() > 0.0
+    plot_scene(tmp_path / "bar.partial" / "run.h5", field="unbalanced")
 
-    (tmp_path / "bar.partial").mkdir()
     run_case(bar(HANGING), tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["bar"]
 

@@ -6,7 +6,7 @@ import pytest
 from dembound.case import Case
 from dembound.errors import CaseError
 from dembound.kernels.elastic import seam_forces
-from dembound.scene import Scene, build, with_boundaries
+from dembound.scene import Scene, build, column_alone, with_boundaries
 
 FREE_FIELD = {"type": "free_field"}
 BASE = {"type": "viscous_input", "wave_s": "pulse"}
@@ -191,3 +191,112 @@ def test_a_hole_may_reach_a_side_without_a_free_field(ground) -> None:
     scene = build(ground(boundary={"right": FREE_FIELD, "bottom": BASE}, hole=[niche]))
 
     assert len(scene.edges["left"].nodes) == 4
+
+
+EVERYWHERE = [
+    {"name": "weight", "acceleration": [0.5, -9.81]},
+    {"name": "shaking", "acceleration": [1.0, 0.0], "wave": "pulse"},
+]
+"""Loads of body and column alike."""
+
+HERE = [
+    {"name": "foot", "force": [0.0, -1e6], "region": [0.0, 0.0, 2.0, 2.0]},
+    {"name": "tap", "force": [1e6, 0.0], "position": [1.0, 1.0], "wave": "pulse"},
+    {"name": "lift", "acceleration": [0.0, 1.0], "region": [0.0, 0.0, 2.0, 2.0]},
+]
+"""Loads of some particles of the body."""
+
+STAGE = {"stress": [-1e6, -1e6, 0.0], "boundary": {"left": {"type": "fixed"}, "bottom": {"type": "roller"}}}
+NICHE = {"name": "niche", "type": "circle", "centre": [2.0, 1.5], "radius": 0.4}
+
+
+@pytest.fixture(params=["A", "A, half cells below", "B", "C"])
+def beside(ground, request) -> tuple[Scene, Scene]:
+    """Ground with loads, a static stage and a hole, and its column alone."""
+    pattern, half = request.param[0], "half" in request.param
+    boundary = {
+        "left": FREE_FIELD,
+        "right": FREE_FIELD,
+        "bottom": {**BASE, "half_mass": half},
+        "top": {"type": "viscous"},
+    }
+    monitor = [{"name": "wall", "position": [0.1, 1.2]}]
+    case = ground(pattern, boundary=boundary, monitor=monitor, load=EVERYWHERE + HERE, static=STAGE, hole=[NICHE])
+    scene = build(case)
+    return scene, column_alone(scene)
+
+
+def test_a_column_alone_is_that_beside_the_body_particle_by_particle(beside: tuple[Scene, Scene]) -> None:
+    scene, column = beside
+    count = scene.seam.count
+    shift = scene.positions[:count] - column.positions
+
+    assert column.count == count < scene.count
+    # one shift for all, rounded as places of 10 m are
+    np.testing.assert_allclose(shift, np.broadcast_to(shift[0], shift.shape), rtol=0.0, atol=1e-14)
+    assert abs(shift[0, 1]) < 1e-14
+    assert np.array_equal(column.assembly.radii, scene.assembly.radii[:count])
+    assert np.array_equal(column.assembly.brick_particle, scene.assembly.brick_particle[:count])
+    assert np.array_equal(column.mass, scene.mass[:count])
+    assert np.array_equal(column.inertia, scene.inertia[:count])
+    assert column.size[0] == scene.seam.width
+    assert column.seam is None
+    assert column.ground is scene.ground
+    assert not column.monitors
+
+
+def test_a_column_alone_has_the_contacts_of_that_beside_the_body(beside: tuple[Scene, Scene]) -> None:
+    scene, column = beside
+    count = scene.seam.count
+    inside = scene.assembly.pairs.max(axis=1) < count
+    rows = [(each.rows.start[: count + 1], each.rows.neighbour, each.rows.kind) for each in (scene, column)]
+    ends = rows[0][0][-1]
+
+    assert np.array_equal(column.assembly.pairs, scene.assembly.pairs[inside])
+    assert np.array_equal(column.assembly.kind, scene.assembly.kind[inside])
+    assert np.array_equal(rows[1][0], rows[0][0])
+    assert np.array_equal(rows[1][1], rows[0][1][:ends])
+    assert np.array_equal(rows[1][2], rows[0][2][:ends])
+    assert np.array_equal(column.rows.palette, scene.rows.palette)
+    assert column.contact_list().periods == (scene.seam.width, None)
+
+
+def test_a_column_alone_has_the_supports_and_the_loads_that_it_has_beside_the_body(beside: tuple[Scene, Scene]) -> None:
+    scene, column = beside
+    count = scene.seam.count
+    theirs, ours = scene.supports, column.supports
+    below = theirs.node < count
+
+    for name in ("node", "component", "damping", "stiffness", "prescribed"):
+        assert np.array_equal(getattr(ours, name), getattr(theirs, name)[below])
+    assert not ours.follow.any()
+    times = np.linspace(0.0, 0.01, 7)
+    assert np.array_equal(ours.sample(times, 0.001), theirs.sample(times, 0.001)[:, below])
+    assert ours.sample(times, 0.001).any()
+    assert np.array_equal(column.steady_load, scene.steady_load[:, :count])
+    assert column.steady_load[0].any()
+    assert [load.name for load in column.case.load] == ["weight", "shaking"]
+
+
+def test_a_column_alone_stands_between_bottom_and_top(beside: tuple[Scene, Scene]) -> None:
+    scene, column = beside
+    count = scene.seam.count
+
+    assert list(column.edges) == ["bottom", "top"]
+    for side, edge in column.edges.items():
+        nodes = scene.edges[side].nodes
+        assert np.array_equal(edge.nodes, nodes[nodes < count])
+        assert edge.length == scene.seam.width
+    assert list(column.case.static.boundary) == ["bottom"]
+    assert column.case.static.boundary["bottom"].type == "roller"
+    assert {side: table.type for side, table in column.case.boundary.items()} == {
+        "left": "periodic",
+        "right": "periodic",
+        "bottom": "viscous_input",
+        "top": "viscous",
+    }
+    assert column.case.hole == ()
+
+
+def test_of_no_static_stage_a_column_has_none_either(ground) -> None:
+    assert column_alone(build(ground("B"))).case.static is None

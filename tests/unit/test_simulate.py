@@ -212,6 +212,8 @@ def test_local_damping_is_the_materials_unless_told_otherwise(bar) -> None:
 PACKED = {
     "packing": {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]},
     "material.law": "linearpbond",
+    "material.locked_in": 10e6,
+    "static": {},
     "motion.held": [],
     "boundary": {},
     "wave": {},
@@ -219,10 +221,16 @@ PACKED = {
 }
 
 
+def at_rest(scene: Scene) -> Start:
+    """A body as built, to be taken as settled."""
+    return Start(np.zeros((3, scene.count)), scene.contact_list(), remembers=False)
+
+
 def test_what_is_locked_in_is_balanced_unless_the_body_shall_settle(bar) -> None:
     scene = build(bar(PACKED))
     step, _ = choose_step(scene)
-    calm, settling = Simulation(scene, step, NOBODY), Simulation(scene, step, NOBODY, settling=True)
+    calm = Simulation(scene, step, NOBODY, start=at_rest(scene))
+    settling = Simulation(scene, step, NOBODY, settling=True)
     for simulation in (calm, settling):
         simulation.advance(20)
 
@@ -260,7 +268,7 @@ def test_a_body_that_settles_anew_is_pushed_by_all_its_contacts(bar, remembers: 
 @pytest.mark.parametrize("elastic_start", [True, False])
 def test_the_law_with_a_memory_takes_over_where_it_must(bar, elastic_start: bool) -> None:
     scene = build(bar({**PACKED, "material.elastic_start": elastic_start}))
-    simulation = Simulation(scene, choose_step(scene)[0], NOBODY)
+    simulation = Simulation(scene, choose_step(scene)[0], NOBODY, start=at_rest(scene))
     assert simulation.laws == ([("elastic", 0)] if elastic_start else [("linearpbond", 0)])
     simulation.advance(5)
     assert len(simulation.laws) == 1
@@ -279,7 +287,7 @@ def test_across_a_seam_both_laws_move_a_body_alike(bar) -> None:
     moves = []
     for elastic in (True, False):
         scene = build(with_changes(case, {"material.elastic_start": elastic}))
-        simulation = Simulation(scene, choose_step(scene)[0], NOBODY)
+        simulation = Simulation(scene, choose_step(scene)[0], NOBODY, start=at_rest(scene))
         simulation.velocity[:] = 1e-4 * np.random.default_rng(3).uniform(-1.0, 1.0, (3, scene.count))
         if not elastic:
             simulation.contacts.adopt(-simulation.time_step * simulation.velocity)  # its first push adds this step

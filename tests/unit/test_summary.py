@@ -106,7 +106,7 @@ def test_the_static_stage_is_told(bar, tmp_path) -> None:
     case = bar({"load": [weight], "static": {"ratio": 1e-6, "boundary": {"left": {"type": "fixed"}}}})
     found = summary_of(case, tmp_path / "run.h5", 10, 1)["static"]
 
-    assert set(found) == {"steps", "ratio", "carried", "left", "stress", "asked", "cracks", "before"}
+    assert set(found) == {"steps", "ratio", "carried", "left", "stress", "asked", "cracks", "before", "column"}
     assert found["before"] is None
     assert found["ratio"] <= 1e-6
     assert found["left"] < 1e-4 * found["carried"]

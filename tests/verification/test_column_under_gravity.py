@@ -17,8 +17,8 @@ DENSITY, GRAVITY = 2500.0, 9.81
 RATIO = 1e-7
 LAWS = {
     "elastic": {},
-    "just touching": {"law": "linearpbond", "fric": 0.5, "locked_in": False},
-    "locked in": {"law": "linearpbond", "fric": 0.5},
+    "just touching": {"law": "linearpbond", "fric": 0.5},
+    "locked in": {"law": "linearpbond", "fric": 0.5, "locked_in": 10e6},
 }
 
 

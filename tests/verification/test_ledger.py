@@ -50,12 +50,12 @@ def test_elastic_books_close(lab, damp):
 def test_opening_contacts_leave_a_trace(lab):
     """A contact that opens or closes within a step misjudges its work by at most ½k(Δu_n)² once.
 
-    With strains v/c per step and disk that is (cΔt/D · v/c)²: some 1e-7 of the energy of the disks concerned, times
-    their few openings.
+    With strains v/c per step and disk that is (cΔt/D · v/c)²: some 1e-7 of the energy of the disks concerned, each
+    time. Contacts that nothing presses together open and close at most every other step, 200 times.
     """
     ledger = ledger_of(lab, {"law": "linearpbond", "fric": 0.5, "geometry": "reference"})
     assert ledger.entries[-1].friction > 0.0
-    assert error(ledger) < 1e-5
+    assert error(ledger) < 200 * 2e-7
 
 
 def test_breaking_bonds_leave_more(lab):

@@ -88,7 +88,7 @@ def check_books(impact: Impact) -> None:
 
 def test_a_sliding_impact(lab):
     fric = 0.1
-    impact = Impact(lab, fric, kratio=2.0)
+    impact = Impact(lab, fric, kratio=2.0, elastic_start=False)
     normal, tangential, turning = impact.impulses
     # what is along the turned normal and tangent is read along the first ones, and arms shrink by the overlap, which
     # is far less than the turn

@@ -21,8 +21,8 @@ SIDES = {
 def waiting(lab, pattern, material, changes):
     """A scene whose wave comes only after the test."""
     wave = {"type": "cosine", "amplitude": 0.5, "period": 0.05, "start": 100.0}
-    case = lab.case(pattern, (20.0, 20.0), held=(), material=material, boundary=SIDES, wave=wave)
-    return build(with_changes(case, changes))
+    case = lab.case(pattern, (20.0, 20.0), held=(), boundary=SIDES, wave=wave)
+    return build(with_changes(case, {**{f"material.{key}": value for key, value in material.items()}, **changes}))
 
 
 @pytest.mark.parametrize("material", [{}, {"law": "linearpbond", "fric": 0.5}], ids=["elastic", "linearpbond"])
@@ -38,20 +38,18 @@ def test_nothing_moves_after_gravity(lab, pattern, material):
     assert np.abs(simulation.velocity).max() < 1e-9 * 0.5
 
 
-@pytest.mark.parametrize("pattern", ["A", "B", "C"])
+@pytest.mark.parametrize("pattern", ["B", "C"])
 def test_nothing_moves_with_locked_in_stress_alone(lab, pattern):
-    """Without a static stage the cuts' unbalanced forces are balanced from the start."""
-    scene = waiting(lab, pattern, {"law": "linearpbond", "fric": 0.5, "elastic_start": False}, {})
-    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0))
-    assert pattern == "A" or np.abs(simulation.load).max() > 0.0
+    scene = waiting(lab, pattern, {"law": "linearpbond", "fric": 0.5, "locked_in": 5e6}, {"static": {}})
+    settled = settle(scene)
+    assert np.abs(settled.start.displacement).max() > 0.0
+    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0), start=settled.start)
     simulation.run(500)
-    assert np.abs(simulation.velocity).max() == 0.0
+    assert np.abs(simulation.velocity).max() < 1e-9 * 0.5
 
 
 def test_the_stress_asked_for_is_there(lab):
-    wanted = np.array([-2e6, -5e6, 0.5e6])
+    wanted = np.array([-8e6, -3e6, 1e6])
     scene = waiting(lab, "B", {"law": "linearpbond", "fric": 0.5}, {"static": {"stress": wanted.tolist()}})
-    # at worst a rim one disk wide carries nothing and the rest so much more; and 800 particles inside, each contact
-    # force scattering by its own size, know the mean pressure to 1/√(2.2·800) = 2.4 %
-    rim = 2.0 * 0.5 / 20.0
-    assert np.all(np.abs(settle(scene).stress - wanted) < rim * np.abs(wanted) + 0.024 * 3.5e6)
+    # tractions are corrected until it is within half a per cent of the largest
+    assert np.all(np.abs(settle(scene).stress - wanted) < 5e-3 * 8e6)

@@ -3,16 +3,14 @@
 import numpy as np
 import pytest
 
-from dembound.bar.check import bar_facts, bar_warnings, cells_of_waves, method_in_words
-from dembound.check import check, precautions
+from dembound.bar.check import bar_facts, cells_of_waves, method_in_words
+from dembound.bar.warnings import bar_warnings
+from dembound.check import check
 from dembound.exact.dispersion import cells_per_wavelength, courant_limit
 from dembound.run import plan
 
 PULSE = 5.36 / 4e-4
 """Where the spectrum of the even triangle of 0.4 ms has faded, Hz: 5.36 over its length."""
-
-LONG = {"wave.hit.rise": 1e-2, "wave.hit.fall": 1e-2}
-"""That triangle drawn out to waves far longer than the bar."""
 
 
 def facts_of(case) -> dict[str, str]:
@@ -85,11 +83,9 @@ def test_cells_needed_are_those_of_the_horizon_that_carries_waves(spalling, meth
 def test_waves_count_where_they_load_the_bar_or_enter_it(spalling) -> None:
     short = {"type": "triangle", "amplitude": 1.0, "rise": 1e-6, "fall": 1e-6}
     entrance = {"type": "viscous_input", "wave_p": "in"}
-    ends = {"boundary.left": entrance, "method.corrected_ends": True}
-    case = spalling({**LONG, **ends, "wave.in": short, "wave.spare": short})
+    case = spalling({"boundary.left": entrance, "wave.in": short, "wave.spare": short})
 
     assert set(cells_of_waves(case, 2e-5)) == {"hit", "in"}
-    assert [warning.split(":")[0] for warning in bar_warnings(case, 2e-5)] == ["wave.in"]
 
 
 def test_cells_needed_at_the_limit_of_a_short_bar(spalling) -> None:
@@ -98,73 +94,11 @@ def test_cells_needed_at_the_limit_of_a_short_bar(spalling) -> None:
     assert cells_of_waves(spalling(), step)["hit"][1] == cells_per_wavelength(3, courant_limit(3), 0.01)
 
 
-@pytest.mark.parametrize(("share", "warned"), [(0.99, True), (1.01, False)])
-def test_waves_too_short_for_the_nodes_are_warned_of(spalling, share: float, warned: bool) -> None:
-    _, needed = cells_of_waves(spalling(), 0.8 * 2.5e-5)["hit"]
-    half = 0.5 * 5.363 * share * needed * 2.5e-5  # 5.363 is what 5.36 comes to for an even triangle
-    case = spalling({"wave.hit.rise": half, "wave.hit.fall": half, "run.courant": 0.8})
-
-    warnings = bar_warnings(case, 0.8 * 2.5e-5)
-    assert precautions(case) == warnings
-    assert [warning.split(":")[0] for warning in warnings] == warned * ["wave.hit"]
-    if warned:
-        assert f"fewer than the {needed:.3g}" in warnings[0]
-        assert warnings[0].endswith("take a smaller bar.spacing or method.horizon")
-
-
-def test_only_a_horizon_can_be_made_smaller(spalling) -> None:
-    for method in (
-        {"type": "finite_difference"},
-        {"type": "peridynamics", "horizon": 1},
-        {"type": "switch", "horizon": 3},
-        {"type": "patch", "horizon": 3},
-    ):
-        case = spalling({"method": method, "wave.hit.rise": 1e-6, "wave.hit.fall": 1e-6})
-        (warning,) = bar_warnings(case, 1e-6)
-        assert warning.endswith("take a smaller bar.spacing")
-
-
 def test_a_wave_that_has_no_highest_frequency_is_never_long_enough(spalling) -> None:
     step = {"type": "constant", "amplitude": 1.0}
     found, needed = cells_of_waves(spalling({"wave.hit": step}), 2e-5)["hit"]
 
     assert found == 0.0 < needed < np.inf
-
-
-@pytest.mark.parametrize(
-    ("method", "warned"),
-    [
-        ({"type": "finite_difference"}, False),
-        ({"type": "patch", "horizon": 3}, False),
-        ({"type": "peridynamics", "horizon": 3}, True),
-        ({"type": "peridynamics", "horizon": 3, "corrected_ends": True}, False),
-        ({"type": "switch", "horizon": 3}, True),
-        ({"type": "switch", "horizon": 3, "corrected_ends": True}, False),
-    ],
-    ids=str,
-)
-def test_dashpots_at_soft_ends_are_warned_of(spalling, method: dict, warned: bool) -> None:
-    ends = {"left": {"type": "viscous_input", "wave_p": "hit"}, "right": {"type": "viscous"}}
-    case = spalling({"method": method, "boundary": ends, **LONG})
-
-    warnings = bar_warnings(case, 2e-5)
-    assert [warning.split(":")[0] for warning in warnings] == warned * ["boundary.left", "boundary.right"]
-    assert all(warning.endswith("give method.corrected_ends = true") for warning in warnings)
-    # without dashpots nothing has to be absorbed
-    ends = {"left": {"type": "fixed"}, "right": {"type": "free"}}
-    assert bar_warnings(spalling({"method": method, "boundary": ends, "load": []}), 2e-5) == []
-
-
-@pytest.mark.parametrize(("unit", "warned"), [(1.0, False), (1e6, True)])
-def test_a_record_in_microseconds_is_warned_of(spalling, tmp_path, unit: float, warned: bool) -> None:
-    # of a millisecond, sampled often enough that what its spectrum holds is long beside the nodes
-    time = np.linspace(0.0, 1e-3, 101)
-    path = tmp_path / "blow.txt"
-    np.savetxt(path, np.column_stack([unit * time, 1.0 - np.cos(2e3 * np.pi * time)]))
-    case = spalling({"wave.hit": {"type": "file", "path": str(path), "start": 1e4}})
-
-    said = "wave.hit: its 1000 s are longer than the run of 0.0015 s; are its file's times in s?"
-    assert [warning for warning in bar_warnings(case, 2.5e-5) if "times" in warning] == warned * [said]
 
 
 def test_check_tells_of_the_run_and_the_bar(spalling) -> None:

@@ -7,9 +7,10 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.bar.fracture import spalls
+from dembound.bar import summary
+from dembound.bar.fracture import Spall, spalls
 from dembound.bar.scene import build_bar
-from dembound.bar.summary import describe_bar, describe_end, summarise_bar
+from dembound.bar.summary import LATER_SPALLS, describe_bar, describe_end, summarise_bar
 from dembound.peaks import first_fall
 from dembound.record import Recorder
 from dembound.run import plan
@@ -94,6 +95,15 @@ def test_spalls_and_cracks_are_those_of_the_bonds(run) -> None:
     # tension comes once crest and tail, 0.4 m apart, have met at the far end
     assert expected[0].time > 1e-3
     assert found["cracks"] == {"tension": len(simulation.engine.bonds.breaks(0)[0]), "shear": 0}
+
+
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_spalls_after_the_first_are_not_to_be_relied_on(run, monkeypatch, count: int) -> None:
+    planned, simulation, path = run()
+    monkeypatch.setattr(summary, "spalls", lambda *_: count * [Spall(1e-3, (0.9, 0.9), (0.9, 0.9))])
+    found = summarise_bar(planned.scene, simulation, path)["spalls_note"]
+
+    assert found == (LATER_SPALLS if count > 1 else None)
 
 
 def test_largest_stresses_are_those_a_gauge_has_felt(run) -> None:

@@ -16,7 +16,7 @@ FULL: dict[str, Any] = {
     "title": "full",
     "packing": {"pattern": "A", "size": [10.0, 5.0], "radius": 0.25},
     "material": {"density": 2500.0, "p_wave_speed": 1e3, "kratio": 1.0, "damp": 0.1, "law": "linearpbond"}
-    | {"pb_ten": 1e6, "pb_coh": 2e6, "pb_fa": 30.0, "locked_in": False, "geometry": "reference", "elastic_start": True},
+    | {"pb_ten": 1e6, "pb_coh": 2e6, "pb_fa": 30.0, "locked_in": 1e6, "geometry": "reference", "elastic_start": True},
     "motion": {"held": ["y"]},
     "boundary": {"left": {"type": "viscous_input", "wave_p": "w", "beta_p": 1.0}, "right": {"type": "fixed"}},
     "static": {"stress": [0.0, 0.0, 1.0], "ratio": 1e-4, "damp": 0.5, "max_steps": 10}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from dembound.kernels import tables
-from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SHEAR, TENSION
+from dembound.kernels.contacts import BONDED, CLOSING, INTACT, NONE, REFERENCE, SHEAR, TENSION
 
 Forces = Callable[[np.ndarray, np.ndarray], np.ndarray]
 State = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -26,7 +26,7 @@ class Stepped:
 
     inertia (3, n) mass, mass, moment of inertia; load (3, n) or (3, 0); of k supported nodes damping, stiffness,
     prescribed (k, 3) and push (steps, k, 3), the drive, which prescribed components take as their velocity.
-    work (2, 4) is that of tables.Log, as far as the step knows it: by supports and by damping.
+    work (2, 6) is that of tables.Log, as far as the step knows it: by supports and by damping.
     """
 
     inertia: np.ndarray
@@ -39,7 +39,7 @@ class Stepped:
     step: float
     free: np.ndarray = field(default_factory=lambda: np.ones(3))
     damp: float = 0.0
-    work: np.ndarray = field(default_factory=lambda: np.zeros((2, 4)))
+    work: np.ndarray = field(default_factory=lambda: np.zeros((2, 6)))
 
     @property
     def count(self) -> int:
@@ -107,7 +107,7 @@ class Stepped:
         )
         everyone = np.arange(self.count)
         record, peaks = np.empty((len(self.push), self.count, 6)), np.zeros((self.count, 3, 2))
-        top_speed, work = np.zeros(self.count), np.zeros((2, 4))
+        top_speed, work = np.zeros(self.count), np.zeros((2, 6))
         return body, supports, tables.Log(everyone, record, everyone, peaks, top_speed, work)
 
 
@@ -186,6 +186,8 @@ class PlainPairs:
         push, rub = k_n * (touch - rest - stretch), k_s * (shear - p.slip[c])
         if limits.geometry != REFERENCE or touch < rest:
             push = max(push, 0.0)
+            if touch - rest - stretch + step * opening <= 0.0:
+                push *= CLOSING
             if abs(rub) > limits.friction * push:
                 rub_before, slip_before = k_s * (before - p.slip[c]), p.slip[c]
                 rub = np.sign(rub) * limits.friction * push

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from dembound.engines import NO_FOLLOWERS
 from dembound.kernels.bonded import advance
 from dembound.kernels.contacts import BONDED, INTACT, SHEAR, TENSION, UPDATED, moved
-from dembound.kernels.elastic import DONE, LIST_ENDS
-from dembound.kernels.tables import Contacts, Limits, Log
+from dembound.kernels.elastic import BROKE, DONE, LIST_ENDS
+from dembound.kernels.tables import Contacts, Followers, Limits, Log
 
 PARTICLES, PAIRS = 25, 60
 STEP = 0.1
@@ -22,12 +23,22 @@ def start() -> tuple[np.ndarray, np.ndarray]:
 
 
 def run_kernel(
-    pairs: Contacts, limits: Limits, model, u: np.ndarray, v: np.ndarray, *, number: int = 0, skin: float = FAR
+    pairs: Contacts,
+    limits: Limits,
+    model,
+    u: np.ndarray,
+    v: np.ndarray,
+    *,
+    number: int = 0,
+    skin: float = FAR,
+    stop: bool = False,
+    followers: Followers = NO_FOLLOWERS,
 ) -> tuple[int, int, Log]:
     """Advance u and v in place; steps done, why it stopped, and the log of all particles."""
     body, supports, log = model.bundles()
     origin = np.zeros((2, PARTICLES))
-    done, why = advance(u, np.empty_like(u), v, number, pairs, limits, origin, skin, body, supports, log)
+    spare = np.empty_like(u)
+    done, why = advance(u, spare, v, number, pairs, limits, origin, skin, body, supports, followers, stop, log)
     return done, why, log
 
 
@@ -62,7 +73,7 @@ def test_steps_are_those_of_a_plain_leapfrog(
     assert np.array_equal(pairs.cracked, law.arrays.cracked)
     close(pairs.slip, law.arrays.slip)
     close(log.work[:, :2], model.work[:, :2])
-    close(log.work[:, 2:], [law.lost, law.lost])
+    close(log.work[:, 2:4], [law.lost, law.lost])
     # bonds held and broke either way, the first not in the first step
     assert {INTACT, TENSION, SHEAR} <= set(pairs.state)
     assert pairs.cracked.max() > 100
@@ -80,6 +91,77 @@ def test_a_run_may_be_cut_anywhere(stepped, random_pairs) -> None:
 
     for one, other in zip(*results, strict=True):
         assert np.array_equal(one, other)
+
+
+def test_a_run_may_stop_after_each_step_that_breaks_bonds(stepped, random_pairs) -> None:
+    whole, (u, v), steps = random_pairs(PARTICLES, PAIRS), start(), 30
+    model = stepped(PARTICLES, steps, STEP, damp=0.3)
+    assert run_kernel(whole, WEAK, model, u, v, number=100)[:2] == (steps, DONE)
+
+    parts, (there, speed) = random_pairs(PARTICLES, PAIRS), start()
+    reached, reasons = [0], []
+    while reached[-1] < steps:
+        rest = replace(model, push=model.push[reached[-1] :])
+        done, why, _ = run_kernel(parts, WEAK, rest, there, speed, number=100 + reached[-1], stop=True)
+        reached.append(reached[-1] + done)
+        reasons.append(why)
+
+    # each break ends the step of its number
+    broke = np.unique(whole.cracked[whole.cracked >= 0] - 100 + 1).tolist()
+    assert len(broke) > 3
+    assert [step for step, why in zip(reached[1:], reasons, strict=True) if why == BROKE] == broke
+    assert reasons.count(BROKE) + (broke[-1] < steps) == len(reasons)
+    for one, other in ((u, there), (v, speed), *zip(whole, parts, strict=True)):
+        assert np.array_equal(one, other)
+
+
+def test_the_work_of_what_turning_adds_has_its_own_column(stepped, random_pairs, plain) -> None:
+    # of three particles that nothing supports, pushed along x and with it turned by how the first two turn
+    steps, nodes = 15, np.array([0, 8, 9])
+    model, pairs = stepped(PARTICLES, steps, STEP, damp=0.3), random_pairs(PARTICLES, PAIRS)
+    assert not np.isin(nodes, model.nodes).any()
+    side, arm = nodes[:2], np.array([[-0.5, 0.5], [0.3, -0.3]])
+    force = np.array([[0.3, 0.2, -0.4], [0.1, -0.2, 0.0]])
+    followers = NO_FOLLOWERS._replace(
+        opposite=np.array([0]),
+        start=np.array([0, 2]),
+        member=side,
+        twin=np.array([-1, -1]),
+        arm=arm,
+        node=nodes,
+        side=np.array([[0, 0, 0], [-1, -1, -1]]),
+        force=np.stack([force, np.zeros((2, 3))]),
+        steady=model.load[:2, nodes].copy(),
+        extra=np.zeros((2, 3)),
+        datum=np.zeros((3, PARTICLES)),
+    )
+
+    def added(u: np.ndarray) -> np.ndarray:
+        """What turning adds (3, n) at displacements (3, n): both arms turn as the line between the two does."""
+        before, now = arm[:, 1] - arm[:, 0], arm[:, 1] - arm[:, 0] + u[:2, side[1]] - u[:2, side[0]]
+        turn = np.arctan2(now[1], now[0]) - np.arctan2(before[1], before[0])
+        total = np.zeros_like(u)
+        total[0, nodes] = np.cos(turn) * force[0] - np.sin(turn) * force[1] - force[0]
+        total[1, nodes] = np.sin(turn) * force[0] + np.cos(turn) * force[1] - force[1]
+        return total
+
+    law, forces = law_of(plain, pairs, WEAK)
+    u, v = start()
+    states = model.leapfrog(lambda u, v: forces(u, v) + added(u), u, v)
+    step = replace(model, load=model.load.copy())
+    done, why, log = run_kernel(pairs, WEAK, step, u, v, followers=followers)
+
+    assert (done, why) == (steps, DONE)
+    close(u, states[-1][0])
+    close(v, states[-1][1])
+    each = [(added(then) * before, added(then) * after) for then, before, after in states[:-1]]
+    halves = 0.5 * STEP * np.array([[np.sum(part) for part in parts] for parts in each])
+    close(log.work[:, 5], [halves.sum(), halves.sum() - halves[-1, 1]])
+    assert np.abs(halves).max() > 1e-4
+    # steady loads do no work that is entered, turned or not
+    close(log.work[:, 2:4], [law.lost, law.lost])
+    close(log.work[:, :2], model.work[:, :2])
+    assert not log.work[:, 4].any()
 
 
 def test_no_step_begins_with_a_list_that_is_too_old(stepped, random_pairs, plain) -> None:

@@ -8,6 +8,7 @@ import pytest
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import (
     BONDED,
+    CLOSING,
     INTACT,
     NONE,
     REFERENCE,
@@ -116,6 +117,70 @@ def test_a_contact_pushes_while_disks_overlap_and_never_pulls(one_pair) -> None:
         pushed(pair, UNBREAKABLE, two(x), two())
         # k_n = 4; the first disk, on the left, is pushed to the left
         close(pair.force[0], [force, 0.0, 0.0, 0.0])
+
+
+def test_the_first_push_after_being_open_is_larger(one_pair) -> None:
+    pair, was = one_pair(), 0.0
+    factors = []
+    # from just touching; then deeper, shallower, open, closed by as much, and over a further touch closed again
+    for x in (-0.1, -0.2, -0.1, 0.05, -0.1, -0.15, 0.0, -0.1):
+        pushed(pair, UNBREAKABLE, two(x), two((x - was) / STEP))
+        factors.append(-pair.force[0, 0] / (4.0 * max(-x, 1e-3)))
+        was = x
+
+    # displacements of 0.1 m are rounded against a distance of 2 m
+    np.testing.assert_allclose(factors, [CLOSING, 1.0, 1.0, 0.0, CLOSING, 1.0, 0.0, CLOSING], rtol=1e-14)
+    assert CLOSING > 1.0
+
+
+def test_only_contacts_with_a_gap_at_the_start_close_in_the_geometry_of_the_start(one_pair) -> None:
+    limits = UNBREAKABLE._replace(geometry=REFERENCE)
+    forces = []
+    for overlap in (0.0, 0.02, -0.02):
+        pair = one_pair(overlap=overlap)
+        # it was 0.05 m further apart than at the start
+        pushed(pair, limits, two(-0.1), two(-0.15 / STEP))
+        forces.append(-pair.force[0, 0])
+
+    # rounding as above
+    np.testing.assert_allclose(forces, [4.0 * 0.1, 4.0 * 0.12, CLOSING * 4.0 * 0.08], rtol=1e-14)
+
+
+@pytest.mark.parametrize("geometry", [UPDATED, BONDED])
+def test_a_contact_that_closes_rubs_with_what_it_pushes_with(one_pair, geometry: int) -> None:
+    pair = one_pair()
+    # N = CLOSING · 4 · 0.1; k_s · 0.3 would be far beyond half of it
+    pushed(pair, UNBREAKABLE._replace(geometry=geometry), two(-0.1, turn=0.3), two(-0.15 / STEP, turn=0.3 / STEP))
+
+    close(abs(pair.force[0, 1]), 0.5 * CLOSING * 0.4)
+    # the arm of the second disk is 0.95, and its surface moves against the first's
+    close(pair.slip[0], pair.shear[0] + 0.5 * CLOSING * 0.4 / 2.0)
+
+
+@GEOMETRIES
+def test_a_push_returns_how_many_bonds_it_breaks(random_pairs, geometry: int) -> None:
+    pairs, limits = random_pairs(PARTICLES, PAIRS), WEAK._replace(geometry=geometry)
+    breaks = [
+        push(u, v, STEP, number, pairs, limits, np.empty((CHUNKS, 2))) for number, (u, v) in enumerate(motion(20))
+    ]
+
+    assert breaks == [np.count_nonzero(pairs.cracked == number) for number in range(20)]
+    assert max(breaks) > 1
+    assert min(breaks) == 0
+
+
+@pytest.mark.parametrize("size", [1e-12, 1e-9, 1e-3])
+def test_tiny_overlaps_of_large_distances_push_to_the_last_digit(one_pair, size: float) -> None:
+    # a pair 0.5 m apart along (0.6, 0.8), far from where it stood; |d| of that is exact, and so is the touch
+    pair = one_pair()
+    pair.palette[0, :4] = [0.3, 0.4, 0.5, 0.5]
+    u = np.array([[0.0, -0.6 * size], [0.0, -0.8 * size], [0.0, 0.0]])
+    pushed(pair, UNBREAKABLE, u, two())
+    stored, _ = strain_energy(u, pair, UPDATED)
+
+    # d − d_0 would be wrong by 1e-16/1e-12; some ten operations, each rounded
+    assert np.hypot(*pair.force[0, :2]) == pytest.approx(4.0 * size, rel=3e-15)
+    assert stored == pytest.approx(0.5 * 4.0 * size**2, rel=6e-15)
 
 
 def test_a_contact_slides_at_the_friction_force_and_rubs_off_its_work(one_pair) -> None:

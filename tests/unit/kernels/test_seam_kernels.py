@@ -103,7 +103,7 @@ class Following:
             self.nodes, self.inertia / STEP, keep, mobility, self.stiffness, np.zeros((3, 3)), self.drive[None], seam
         )
         body = tables.Body(np.zeros(7), np.zeros(7), np.ones(3), np.zeros((3, 0)), 0.0, STEP)
-        log = tables.Log(nobody, np.zeros((1, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 4)))
+        log = tables.Log(nobody, np.zeros((1, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 6)))
         return supports, body, log
 
     def expected(self) -> tuple[np.ndarray, np.ndarray]:

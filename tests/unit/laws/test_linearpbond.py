@@ -11,25 +11,26 @@ VECTORS = np.array([[0.3, 0.4], [0.0, -0.6], [0.65, 0.0]])
 """An overlap of 0.1 m, disks that touch, and a gap of 0.05 m."""
 
 
-def lines(**words: bool) -> np.ndarray:
+def lines(**words: float) -> np.ndarray:
     return pair_lines(MODULI, *RADII, VECTORS, **{"bonded": True, **words})
 
 
 def test_the_columns_are_those_of_the_law() -> None:
     # R̄ = 0.5 · 0.2, A = 2 R̄, J = 2 R̄³/3; k̄_n = 3e9/0.6 per area
     area, moment, per_area = 0.2, 2e-3 / 3.0, 5e9
-    expected = [0.3, 0.4, 0.5, 0.6, -0.1, 6e9, 3e9]
+    expected = [0.3, 0.4, 0.5, 0.5, -0.1, 6e9, 3e9]
     expected += [per_area * area, per_area * area / 3.0, per_area * moment, 1.0 / area, 0.1 / moment]
 
     np.testing.assert_allclose(lines()[0], expected, rtol=1e-14)
 
 
-def test_contacts_push_below_the_sum_of_radii() -> None:
-    np.testing.assert_allclose(lines()[:, 3], 0.6, rtol=1e-15)
+def test_overlapping_disks_just_touch() -> None:
+    np.testing.assert_allclose(lines()[:, 3], [0.5, 0.6, 0.6], rtol=1e-15)
 
 
-def test_without_locked_in_stress_overlapping_disks_just_touch() -> None:
-    np.testing.assert_allclose(lines(locked_in=False)[:, 3], [0.5, 0.6, 0.6], rtol=1e-15)
+@pytest.mark.parametrize("part", [0.25, 1.0, 3.0])
+def test_of_a_locked_in_stress_overlaps_push_by_their_part(part: float) -> None:
+    np.testing.assert_allclose(lines(locked_in=part)[:, 3], [0.5 + part * 0.1, 0.6, 0.6], rtol=1e-15)
 
 
 def test_disks_that_touch_but_for_rounding_touch() -> None:

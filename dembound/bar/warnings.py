@@ -1,0 +1,130 @@
+"""What a run of a bar will do that was probably not meant, as far as it is known before."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dembound.bar.check import PERCENT, cells_of_waves
+from dembound.boundaries import OPPOSITE, Free, Velocity
+from dembound.boundaries.driven import Driven
+from dembound.boundaries.viscous import Dashpots
+from dembound.case import BarCase
+from dembound.magnitudes import grip_stress, stress_warnings, time_warnings
+
+MOMENTS = 500
+"""Moments, and places beside the free end, at which tension is looked for."""
+
+
+def bar_warnings(case: BarCase, time_step: float) -> list[str]:
+    """All of them, one line each; time_step in s."""
+    times = list(time_warnings(case, time_step, case.bar.length / case.bar.speed))
+    return [
+        *_too_few_cells(case, time_step),
+        *(times or ends_too_soon(case)),  # waves of odd times may spoil the latter
+        *_dashpots_at_soft_ends(case),
+        *stress_beside_strength(case),
+    ]
+
+
+def _too_few_cells(case: BarCase, time_step: float) -> Iterator[str]:
+    """Waves too short for the nodes."""
+    finer = "" if case.method.carrying_horizon == 1 else " or method.horizon"
+    for name, (cells, needed) in cells_of_waves(case, time_step).items():
+        if cells < needed:
+            yield (
+                f"wave.{name}: has {cells:.3g} cells in its shortest wavelength, fewer than the {needed:.3g} that keep "
+                f"the error of its speed under {PERCENT}; take a smaller bar.spacing{finer}"
+            )
+
+
+def _dashpots_at_soft_ends(case: BarCase) -> Iterator[str]:
+    """Dashpots at ends too soft for them."""
+    for side, table in case.boundary.items():
+        if case.method.soft_ends and isinstance(table, Dashpots):
+            yield (
+                f"boundary.{side}: stands at a soft end of peridynamics and returns a part of every wave; "
+                "give method.corrected_ends = true"
+            )
+
+
+def stress_beside_strength(case: BarCase) -> Iterator[str]:
+    """Loads and waves whose stress is a tiny part of the strength, or far beyond it."""
+    bar = case.bar
+    strength = bar.breaking_stretch * bar.modulus
+    if np.isinf(strength):
+        return
+    stresses = {
+        f"load.{load.name}": ("its pressure", abs(load.pressure) * case.wave[load.wave].peak()) for load in case.load
+    }
+    for table in case.boundary.values():
+        if not isinstance(table, Driven) or table.wave_p is None:
+            continue
+        wave = case.wave[table.wave_p]
+        if isinstance(table, Velocity):
+            found = grip_stress(wave, bar.density, bar.speed, bar.length, case.run.duration, strength)
+        else:
+            found = "its stress ρcv", bar.density * bar.speed * wave.peak()
+        stresses[f"wave.{table.wave_p}"] = found
+    key = "bar.strength" if bar.critical_stretch is None else "bar.critical_stretch"
+    yield from stress_warnings(stresses, strength, key)
+
+
+def ends_too_soon(case: BarCase) -> Iterator[str]:
+    """A run that is over before the wave is back from the free end, where the bar could spall."""
+    far = OPPOSITE.get(case.loaded)
+    if far is None or not isinstance(case.boundary.get(far, Free(type="free")), Free):
+        return
+    if np.isinf(case.bar.breaking_stretch):
+        return
+    duration, there = case.run.duration, case.bar.length / case.bar.speed
+    crest, broken = _crest_and_break(case)
+    if broken is not None and duration < there + broken:
+        yield (
+            f"run.duration: is {duration:g} s, too short for a spall: the wave is not back from the free {far} "
+            f"end with a tension of the strength before {there + broken:.4g} s"
+        )
+    elif broken is None and crest is not None and duration < there + crest:
+        yield (
+            f"run.duration: is {duration:g} s, too short for any tension: the wave's crest is not at the free {far} "
+            f"end, which returns it as tension, before {there + crest:.4g} s"
+        )
+
+
+def _crest_and_break(case: BarCase) -> tuple[float | None, float | None]:
+    """When the crest of the pressure is at the loaded end, and when the bar breaks beside the other, less L/c; s.
+
+    Beside a free end pressures p(t) on the other make the tension p(s − y/c) − p(s + y/c) at a distance y, s the time
+    since the front has come there. Each is None where it does not happen: no pressure, too little of it, or so much
+    tension at first that the bar breaks on the way there.
+    """
+    bar = case.bar
+    strength = bar.breaking_stretch * bar.modulus
+    waves = [case.wave[name] for name in _waves_of(case)]
+    last = max(wave.duration() if np.isfinite(wave.duration()) else wave.peak_time() for wave in waves)
+    since = np.linspace(0.0, last, MOMENTS)
+    way = np.linspace(0.0, min(last, bar.length / bar.speed), MOMENTS)
+    pressure = _pressure(case, since)
+    if not pressure.max() > 0.0 or -pressure.min() >= strength:
+        return None, None
+    tension = _pressure(case, since[:, None] - way) - _pressure(case, since[:, None] + way)
+    reached = tension.max(axis=1) >= strength
+    return float(since[pressure.argmax()]), float(since[reached.argmax()]) if reached.any() else None
+
+
+def _waves_of(case: BarCase) -> list[str]:
+    """Names of the waves at the one end that is loaded or driven."""
+    driven = [table.wave_p for table in case.boundary.values() if isinstance(table, Driven) and table.wave_p]
+    return [load.wave for load in case.load] + driven
+
+
+def _pressure(case: BarCase, time: np.ndarray) -> np.ndarray:
+    """Pressure (Pa), of the shape of times (s), of the wave that sets out from the loaded end."""
+    table = case.boundary.get(case.loaded)
+    share = 1.0 / (1.0 + table.beta_p) if isinstance(table, Dashpots) else 1.0  # the dashpot takes the rest
+    pressure = np.zeros_like(time)
+    for load in case.load:
+        pressure += share * load.pressure * case.wave[load.wave].velocity(time)
+    if isinstance(table, Driven) and table.wave_p:
+        inwards = 1.0 if case.loaded == "left" else -1.0
+        pressure += inwards * case.bar.density * case.bar.speed * case.wave[table.wave_p].velocity(time)
+    return pressure

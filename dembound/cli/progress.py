@@ -1,0 +1,96 @@
+"""How a run goes, on stderr: a bar on a terminal, a line every ten seconds elsewhere; and its warnings."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+from rich.progress import Progress as RichProgress
+
+from dembound.cli.app import err
+from dembound.run import Progress
+from dembound.simulate import Simulation
+
+INTERVAL = 10.0
+"""Seconds from one line to the next."""
+
+
+@contextmanager
+def progress_of(name: str) -> Iterator[Progress]:
+    """The progress of the case of that name."""
+    if not err.is_terminal:
+        yield Lines(name)
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:3.0f} %  {task.fields[rate]}"),
+        TimeRemainingColumn(),
+    )
+    with RichProgress(*columns, console=err, transient=True) as bar:
+        yield Bar(bar, name)
+
+
+def print_warning(name: str, message: str) -> None:
+    """Print a warning about the case of that name to stderr."""
+    err.print(f"{name}: warning: {message}", markup=False)
+
+
+class Lines(Progress):
+    """A run's progress as plain lines.
+
+    Parameters
+    ----------
+    name : of the case.
+    now : clock in s.
+    """
+
+    def __init__(self, name: str, now: Callable[[], float] = time.monotonic) -> None:
+        self.name, self.now = name, now
+        self.began = self.said = now()
+        self.steps = 0
+        """Steps of the run at the last line."""
+
+    def warned(self, message: str) -> None:
+        """A line of its own, at once."""
+        print_warning(self.name, message)
+
+    def settling(self, steps: int, ratio: float) -> None:
+        """The static stage: its time, steps and force ratio."""
+        if self.now() - self.said >= INTERVAL:
+            self.said = self.now()
+            took = self.said - self.began
+            err.print(f"{self.name}: settling for {took:.0f} s, {steps:,} steps, force ratio {ratio:.1e}", markup=False)
+
+    def running(self, simulation: Simulation, steps: int) -> None:
+        """The run itself: steps done and in all, simulated time, and particle-steps a second since the last line."""
+        if (since := self.now() - self.said) >= INTERVAL:
+            rate = (simulation.steps - self.steps) * simulation.scene.count / since / 1e6
+            self.said, self.steps = self.said + since, simulation.steps
+            err.print(
+                f"{self.name}: {simulation.steps:,} of {steps:,} steps, {simulation.time:.4g} s simulated, "
+                f"{rate:.3g} M particle-steps/s",
+                markup=False,
+            )
+
+
+class Bar(Progress):
+    """A run's progress as a bar, with rate and time left."""
+
+    def __init__(self, bar: RichProgress, name: str) -> None:
+        self.bar, self.name = bar, name
+        self.task = bar.add_task(name, total=None, rate="")
+
+    def warned(self, message: str) -> None:
+        """A line of its own, above the bar."""
+        print_warning(self.name, message)
+
+    def settling(self, steps: int, ratio: float) -> None:
+        """The static stage: no one knows how long it takes."""
+        self.bar.update(self.task, description=f"{self.name}: settling, {steps:,} steps, force ratio {ratio:.1e}")
+
+    def running(self, simulation: Simulation, steps: int) -> None:
+        """The run itself."""
+        speed = self.bar.tasks[0].speed
+        rate = f"{speed * simulation.scene.count / 1e6:.0f} M particle-steps/s" if speed else ""
+        self.bar.update(self.task, description=self.name, completed=simulation.steps, total=steps, rate=rate)

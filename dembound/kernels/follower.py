@@ -1,0 +1,103 @@
+"""Forces that turn with the side they act on, by the mean rotation of this side and the opposite one.
+
+Forces on opposite sides so stay opposite: a body that bends, whose ends turn against each other, is not pushed away.
+
+What balances the stress of a settled body at its sides is part of that stress, so it turns with the body. Were its
+direction fixed, a body under pressure p that nothing holds would tip over: forces ±pH on the two ends of a body W wide
+make a moment pHW·θ once it has turned by θ, which grows at the rate √(12|σ_xx + σ_yy|/(ρ(W² + H²))).
+"""
+
+import numpy as np
+from numba import njit
+
+from dembound.kernels.common import FASTMATH, U
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def side_rotation(side, u, followers):
+    """Angle (rad) by which a side has turned since the datum, relative to its twins where it has any.
+
+    The rotation that fits the members' places best by least squares: tan θ = Σ a × r / Σ a · r, with a a member's arm
+    from their mean place at the datum and r that of now.
+    """
+    member, twin, arm, datum = followers.member, followers.twin, followers.arm, followers.datum
+    first, last = followers.start[side], followers.start[side + 1]
+    mean_x = 0.0
+    mean_y = 0.0
+    for m in range(first, last):
+        i = member[m]
+        mean_x += u[0, i] - datum[0, i]
+        mean_y += u[1, i] - datum[1, i]
+        if twin[m] >= 0:
+            mean_x -= u[0, twin[m]] - datum[0, twin[m]]
+            mean_y -= u[1, twin[m]] - datum[1, twin[m]]
+    mean_x /= last - first
+    mean_y /= last - first
+    cross = 0.0
+    along = 0.0
+    for m in range(first, last):
+        i = member[m]
+        x = u[0, i] - datum[0, i] - mean_x
+        y = u[1, i] - datum[1, i] - mean_y
+        if twin[m] >= 0:
+            x -= u[0, twin[m]] - datum[0, twin[m]]
+            y -= u[1, twin[m]] - datum[1, twin[m]]
+        cross += arm[0, m] * y - arm[1, m] * x
+        along += arm[0, m] * (arm[0, m] + x) + arm[1, m] * (arm[1, m] + y)
+    return np.arctan2(cross, along)
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def side_rotations(u, followers):
+    """Angles (s,) rad by which forces on each side turn: the mean of its own rotation and that of the opposite side."""
+    opposite = followers.opposite
+    angles = np.empty(opposite.size)
+    for k in range(opposite.size):
+        angles[k] = side_rotation(k, u, followers)
+    means = np.empty_like(angles)
+    for k in range(opposite.size):
+        means[k] = 0.5 * (angles[k] + angles[opposite[k]])
+    return means
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def turn_forces(u, v, followers, load, step):
+    """Turn the forces with their sides at displacements u (3, n), in load (3, n); returns half their step's work (J).
+
+    That is the work of what turning adds, by velocities v (3, n) of half a step ago.
+    """
+    node, side, force, steady, extra = followers[-6:-1]
+    angles = side_rotations(u, followers)
+    cosine = np.empty(angles.size)
+    sine = np.empty(angles.size)
+    for k in range(angles.size):
+        angle = angles[k]
+        cosine[k] = -2.0 * np.sin(0.5 * angle) ** 2  # cos θ − 1
+        sine[k] = np.sin(angle)
+    half = 0.0
+    for q in range(node.size):
+        i = U(node[q])
+        fx = 0.0
+        fy = 0.0
+        for s in range(2):
+            k = side[s, q]
+            if k >= 0:
+                fx += cosine[k] * force[s, 0, q] - sine[k] * force[s, 1, q]
+                fy += sine[k] * force[s, 0, q] + cosine[k] * force[s, 1, q]
+        load[U(0), i] = steady[0, q] + fx
+        load[U(1), i] = steady[1, q] + fy
+        extra[0, q] = fx
+        extra[1, q] = fy
+        half += fx * v[U(0), i] + fy * v[U(1), i]
+    return 0.5 * step * half
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def extra_work(v, followers, step):
+    """Work (J) of what turning adds in half a step at velocities v (3, n)."""
+    node, extra = followers.node, followers.extra
+    half = 0.0
+    for q in range(node.size):
+        i = U(node[q])
+        half += extra[0, q] * v[U(0), i] + extra[1, q] * v[U(1), i]
+    return 0.5 * step * half

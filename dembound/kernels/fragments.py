@@ -1,0 +1,44 @@
+"""Which particles are joined to which, through bonds and contacts that push."""
+
+import numpy as np
+from numba import njit
+
+from dembound.kernels.common import FASTMATH, U
+from dembound.kernels.contacts import INTACT
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+def _root(parent, i):
+    """The particle that stands for i's piece; ways to it are halved as they are walked."""
+    while parent[i] != i:
+        parent[i] = parent[parent[i]]
+        i = parent[i]
+    return i
+
+
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+def outside_largest(contacts, begin, end):
+    """Particles begin to end that are not in the largest piece of theirs, (end − begin,) bool.
+
+    Pieces hold together by intact bonds and by contacts that pushed when pairs last pushed. Of equally large ones the
+    one with the first particle counts.
+    """
+    first, second, state, force = contacts.first, contacts.second, contacts.state, contacts.force
+    parent = np.arange(end)
+    for c in range(first.size):
+        i = np.int64(first[c])
+        j = np.int64(second[c])
+        if i < begin or i >= end or j < begin or j >= end:
+            continue
+        if state[c] == INTACT or force[c, U(0)] != 0.0 or force[c, U(1)] != 0.0:
+            i = _root(parent, i)
+            j = _root(parent, j)
+            parent[max(i, j)] = min(i, j)
+    size = np.zeros(end, dtype=np.int64)
+    for i in range(begin, end):
+        size[_root(parent, i)] += 1
+    largest = np.argmax(size)
+    outside = np.empty(end - begin, dtype=np.bool_)
+    for i in range(begin, end):
+        outside[i - begin] = _root(parent, i) != largest
+    return outside

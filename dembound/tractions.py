@@ -1,0 +1,97 @@
+"""The stress that a static stage is asked for, as tractions on the sides of the body."""
+
+import numpy as np
+
+from dembound.balance import mean_rotations
+from dembound.contacts import limits_of
+from dembound.kernels.contacts import UPDATED
+from dembound.scene import Scene
+
+RIM = 4.0
+"""Width in mean diameters of the rim that is left out where a mean stress is taken."""
+
+CLOSE = 5e-3
+"""Error of the mean stress, in parts of its largest component, at which it counts as that asked for."""
+
+CORRECTIONS = 5
+"""Most times that tractions are corrected; each leaves a few per cent of the error before."""
+
+
+class Tractions:
+    """Forces on the sides of a body under a mean stress, corrected until its inside has that stress.
+
+    The skin of a cut packing lacks bonds and carries less than its share, so that tractions σ·n alone make the inside
+    carry some per cent more.
+
+    Parameters
+    ----------
+    scene : the body.
+    stress : (3,) xx, yy, xy in Pa asked for, tension positive.
+    """
+
+    def __init__(self, scene: Scene, stress: tuple[float, float, float]) -> None:
+        self.scene = scene
+        self.asked = np.array(stress)
+        self.applied = self.asked.copy()
+        self._left = CORRECTIONS if _is_wide(scene) else 0
+        self._follow = limits_of(scene.case.material).geometry == UPDATED
+
+    def forces(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces (3, n) N at displacements (3, n), by the particles' share of their side's diameters.
+
+        Where the law follows the motion they turn with their side. Small forces along the sides free them of torque,
+        which uneven and strained sides leave.
+        """
+        moved = displacement if self._follow else np.zeros_like(displacement)
+        force = np.zeros_like(displacement)
+        xx, yy, xy = self.applied
+        rotations = mean_rotations(self.scene, moved)
+        for side, edge in self.scene.edges.items():
+            angle = rotations.get(side, 0.0)
+            turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+            sign = 1.0 if side in ("right", "top") else -1.0
+            pull = turn @ np.array([xx, xy] if edge.axis == 0 else [xy, yy]) * sign * edge.length
+            force[:2, edge.nodes] += pull[:, None] * edge.diameters / edge.diameters.sum()
+        loaded = np.unique(np.concatenate([edge.nodes for edge in self.scene.edges.values()]))
+        return _without_torque(force, self.scene.assembly.positions + moved[:2].T, loaded)
+
+    def correct(self, stress: np.ndarray) -> bool:
+        """Add what the mean stress (3,) Pa inside lacks to the tractions; whether there was something to add."""
+        lacking = self.asked - stress
+        if self._left == 0 or np.abs(lacking).max() <= CLOSE * np.abs(self.asked).max():
+            return False
+        self._left -= 1
+        self.applied += lacking
+        return True
+
+
+def mean_stress(scene: Scene, stress: np.ndarray) -> np.ndarray:
+    """Mean stress (3,) inside a body, over the area of its particles away from the sides; stress (n, 3) of each."""
+    inside = _inside(scene)
+    return np.average(stress[inside], axis=0, weights=(scene.assembly.radii**2 * scene.share)[inside])
+
+
+def _is_wide(scene: Scene) -> bool:
+    """Whether half a body's width and height lie within its rim: the mean over less is that of a few particles."""
+    width = [scene.assembly.size[axis] for axis, low in enumerate(("left", "bottom")) if low in scene.edges]
+    return all(length >= 4.0 * RIM * scene.ground.brick.mean_diameter for length in width)
+
+
+def _inside(scene: Scene) -> np.ndarray:
+    """Particles (n,) bool that stand within the rim along the sides; all of a small scene."""
+    depth = RIM * scene.ground.brick.mean_diameter
+    inside = np.ones(scene.count, dtype=bool)
+    for axis, low in enumerate(("left", "bottom")):
+        if low in scene.edges:
+            place = scene.assembly.positions[:, axis]
+            inside &= (place > depth) & (place < scene.assembly.size[axis] - depth)
+    return inside if inside.any() else np.ones(scene.count, dtype=bool)
+
+
+def _without_torque(force: np.ndarray, positions: np.ndarray, loaded: np.ndarray) -> np.ndarray:
+    """Forces (3, n) made free of torque by small ones on the loaded particles (k,); positions (n, 2) m."""
+    arm = positions - positions[loaded].mean(axis=0)
+    torque = np.sum(arm[:, 0] * force[1] - arm[:, 1] * force[0])
+    turn = np.stack([-arm[loaded, 1], arm[loaded, 0]])
+    force[:2, loaded] -= torque / np.sum(turn**2) * turn
+    return force

@@ -1,0 +1,209 @@
+"""What a run of a bar will do that was probably not meant."""
+
+import numpy as np
+import pytest
+
+from dembound.bar.check import cells_of_waves
+from dembound.bar.warnings import bar_warnings, ends_too_soon, stress_beside_strength
+from dembound.exact.bar import triangle_spall
+
+UNBROKEN = {"bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}}
+
+EXACT = {"method": {"type": "finite_difference"}}
+"""At ν = 1 waves of any length run at their speed."""
+
+LONG = {"wave.hit.rise": 1e-2, "wave.hit.fall": 1e-2, "run.duration": 2e-2}
+"""The blow drawn out to waves far longer than the bar."""
+
+
+def of_key(key: str, warnings: list[str]) -> list[str]:
+    return [warning for warning in warnings if warning.startswith(f"{key}:")]
+
+
+def test_a_bar_that_spalls_is_not_warned_of(spalling) -> None:
+    assert bar_warnings(spalling(EXACT), 2.5e-5) == []
+
+
+@pytest.mark.parametrize(("share", "warned"), [(0.99, True), (1.01, False)])
+def test_waves_too_short_for_the_nodes_are_warned_of(spalling, share: float, warned: bool) -> None:
+    _, needed = cells_of_waves(spalling(), 0.8 * 2.5e-5)["hit"]
+    half = 0.5 * 5.363 * share * needed * 2.5e-5  # 5.363 is what 5.36 comes to for an even triangle
+    case = spalling({**UNBROKEN, "wave.hit.rise": half, "wave.hit.fall": half, "run.courant": 0.8})
+
+    warnings = bar_warnings(case, 0.8 * 2.5e-5)
+    assert [warning.split(":")[0] for warning in warnings] == warned * ["wave.hit"]
+    if warned:
+        assert f"fewer than the {needed:.3g}" in warnings[0]
+        assert warnings[0].endswith("take a smaller bar.spacing or method.horizon")
+
+
+def test_only_waves_in_use_can_be_too_short(spalling) -> None:
+    short = {"type": "triangle", "amplitude": 1.0, "rise": 1e-6, "fall": 1e-6}
+    entrance = {"type": "viscous_input", "wave_p": "in"}
+    ends = {"boundary.left": entrance, "method.corrected_ends": True}
+    case = spalling({**LONG, **ends, "wave.in": short, "wave.spare": short})
+
+    warnings = bar_warnings(case, 2e-5)
+    assert len([warning for warning in warnings if "cells" in warning]) == 1
+    assert {warning.split(":")[0] for warning in warnings} == {"wave.in"}
+
+
+def test_only_a_horizon_can_be_made_smaller(spalling) -> None:
+    for method in (
+        {"type": "finite_difference"},
+        {"type": "peridynamics", "horizon": 1},
+        {"type": "switch", "horizon": 3},
+        {"type": "patch", "horizon": 3},
+    ):
+        case = spalling({"method": method, "wave.hit.rise": 1e-6, "wave.hit.fall": 1e-6})
+        (warning,) = [each for each in bar_warnings(case, 1e-7) if "cells" in each]
+        assert warning.endswith("take a smaller bar.spacing")
+
+
+@pytest.mark.parametrize(
+    ("method", "warned"),
+    [
+        ({"type": "finite_difference"}, False),
+        ({"type": "patch", "horizon": 3}, False),
+        ({"type": "peridynamics", "horizon": 3}, True),
+        ({"type": "peridynamics", "horizon": 3, "corrected_ends": True}, False),
+        ({"type": "switch", "horizon": 3}, True),
+        ({"type": "switch", "horizon": 3, "corrected_ends": True}, False),
+    ],
+    ids=str,
+)
+def test_dashpots_at_soft_ends_are_warned_of(spalling, method: dict, warned: bool) -> None:
+    ends = {"left": {"type": "viscous_input", "wave_p": "hit"}, "right": {"type": "viscous"}}
+    case = spalling({**UNBROKEN, "method": method, "boundary": ends, **LONG})
+
+    warnings = bar_warnings(case, 2e-5)
+    assert [warning.split(":")[0] for warning in warnings] == warned * ["boundary.left", "boundary.right"]
+    assert all(warning.endswith("give method.corrected_ends = true") for warning in warnings)
+    # without dashpots nothing has to be absorbed
+    ends = {"left": {"type": "fixed"}, "right": {"type": "free"}}
+    assert bar_warnings(spalling({"method": method, "boundary": ends, "load": []}), 2e-5) == []
+
+
+@pytest.mark.parametrize(("unit", "warned"), [(1.0, False), (1e6, True)])
+def test_a_record_in_microseconds_is_warned_of(spalling, tmp_path, unit: float, warned: bool) -> None:
+    # of a millisecond; 1.4 ms of its first 10 s are in the run, in which it rises to sin²(0.01π) of its peak
+    time = np.linspace(0.0, 1e-3, 101)
+    path = tmp_path / "blow.txt"
+    np.savetxt(path, np.column_stack([unit * time, 1.0 - np.cos(2e3 * np.pi * time)]))
+    case = spalling({**UNBROKEN, **EXACT, "wave.hit": {"type": "file", "path": str(path), "start": 1e-4}})
+
+    said = (
+        "wave.hit: reaches 1.4e-05 % of its peak, which comes at 500 s, within the run of 0.0015 s; "
+        "are all times in s and lengths in m?"
+    )
+    assert bar_warnings(case, 2.5e-5) == warned * [said]
+
+
+def test_a_wave_is_compared_with_the_way_along_the_bar(spalling) -> None:
+    # 1 m at 1000 m/s; a period of 0.11 s
+    slow = {"wave.hit.rise": 0.1, "wave.hit.fall": 0.01, "run.duration": 0.2}
+    said = "wave.hit: has a period of 0.11 s, 110 times its way through the scene, 0.001 s"
+    assert [warning[: len(said)] for warning in bar_warnings(spalling(slow), 2.5e-5)] == [said]
+
+
+@pytest.mark.parametrize(("pressure", "said"), [(808.0, None), (-792.0, "792 Pa, 0.0099 % of")])
+def test_a_weak_load_beside_the_strength(spalling, pressure: float, said: str | None) -> None:
+    load = {"name": "blow", "pressure": pressure, "wave": "hit"}
+    expected = [] if said is None else [f"load.blow: its pressure is {said} bar.strength, 8e+06 Pa: Pa and MPa?"]
+    assert of_key("load.blow", bar_warnings(spalling({"load": [load]}), 2.5e-5)) == expected
+
+
+@pytest.mark.parametrize(("pressure", "warned"), [(7.92e9, False), (8.08e9, True)])
+def test_a_load_far_beyond_the_strength(spalling, pressure: float, warned: bool) -> None:
+    load = {"name": "blow", "pressure": pressure, "wave": "hit"}
+    said = "load.blow: its pressure is 8.08e+09 Pa, 1,010 times bar.strength, 8e+06 Pa: Pa and MPa?"
+    assert bar_warnings(spalling({**EXACT, "load": [load]}), 2.5e-5) == warned * [said]
+
+
+def test_waves_at_ends_beside_the_strength(spalling) -> None:
+    # ρc = 2.5e6 Pa·s/m and a critical stretch of 0.0032, which is 8 MPa
+    bar = {**UNBROKEN["bar"], "critical_stretch": 0.0032}
+    for velocity, weak in ((3.3e-4, False), (3.1e-4, True)):
+        for kind in ("viscous_input", "velocity"):
+            ends = {"boundary.left": {"type": kind, "wave_p": "hit"}, "wave.hit.amplitude": velocity}
+            found = list(stress_beside_strength(spalling({"bar": bar, "load": [], **ends})))
+            said = "wave.hit: its stress ρcv is 775 Pa, 0.0097 % of bar.critical_stretch, 8e+06 Pa: Pa and MPa?"
+            assert found == weak * [said]
+
+
+def test_a_bar_that_cannot_break_has_no_strength_to_compare_with(spalling) -> None:
+    load = {"name": "blow", "pressure": 1e-9, "wave": "hit"}
+    assert bar_warnings(spalling({**UNBROKEN, **EXACT, "load": [load], "run.duration": 1e-3}), 2.5e-5) == []
+
+
+def ends_at(duration: float, changes: dict | None = None):
+    return {"run.duration": duration, **(changes or {})}
+
+
+def test_a_run_that_ends_before_the_bar_can_spall(spalling) -> None:
+    # even legs of 0.2 ms: the strength is met 0.5 c t_f σ_t/p before the end, 1/15 m
+    _, spalled = triangle_spall(1.0, 1000.0, 2e-4, 2e-4, 12e6, 8e6)
+
+    # moments of it are 0.4 ms/500 apart
+    assert list(ends_too_soon(spalling(ends_at(spalled + 1e-6)))) == []
+    (warning,) = ends_too_soon(spalling(ends_at(spalled - 1e-6)))
+    assert warning.startswith(
+        "run.duration: is 0.00126567 s, too short for a spall: the wave is not back from the free right end with a "
+        "tension of the strength before 0.00126"
+    )
+    assert float(warning.split()[-2]) == pytest.approx(spalled, abs=1e-6)
+
+
+def test_the_time_of_a_spall_counts_from_the_start_of_the_wave_and_from_either_end(spalling) -> None:
+    _, spalled = triangle_spall(1.0, 1000.0, 2e-4, 2e-4, 12e6, 8e6)
+    load = {"name": "hit", "pressure": 12e6, "nodes": 3, "wave": "hit", "side": "right"}
+    driven = {"load": [], "boundary.right": {"type": "viscous_input", "wave_p": "hit"}, "wave.hit.amplitude": -4.8}
+    for changes in ({"load": [load]}, driven):
+        (warning,) = ends_too_soon(spalling({**changes, "wave.hit.start": 1e-3, "run.duration": 2.2e-3}))
+        assert "from the free left end" in warning
+        assert float(warning.split()[-2]) == pytest.approx(1e-3 + spalled, abs=4e-6)  # moments of 1.4 ms
+        assert not list(ends_too_soon(spalling({**changes, "wave.hit.start": 1e-3, "run.duration": 2.3e-3})))
+
+
+@pytest.mark.parametrize(("duration", "warned"), [(1.19e-3, True), (1.21e-3, False)])
+def test_a_wave_too_weak_to_spall_is_back_when_its_crest_is(spalling, duration: float, warned: bool) -> None:
+    load = {"name": "hit", "pressure": 7e6, "wave": "hit"}
+    said = (
+        "run.duration: is 0.00119 s, too short for any tension: the wave's crest is not at the free right end, which "
+        "returns it as tension, before 0.0012 s"
+    )
+    assert list(ends_too_soon(spalling(ends_at(duration, {"load": [load]})))) == warned * [said]
+
+
+def test_a_dashpot_takes_half_of_a_load(spalling) -> None:
+    # what is left of 12 MPa is less than the strength, of 24 MPa 12
+    _, spalled = triangle_spall(1.0, 1000.0, 2e-4, 2e-4, 12e6, 8e6)
+    end = {"boundary.left": {"type": "viscous"}}
+    (weak,) = ends_too_soon(spalling(ends_at(1e-3, end)))
+    load = {"name": "hit", "pressure": 24e6, "wave": "hit"}
+    (strong,) = ends_too_soon(spalling(ends_at(1e-3, {**end, "load": [load]})))
+
+    assert weak.endswith("before 0.0012 s")
+    assert float(strong.split()[-2]) == pytest.approx(spalled, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        UNBROKEN,
+        {"boundary.right": {"type": "viscous"}},
+        {"boundary.right": {"type": "fixed"}},
+        {"load": []},
+        {"load": [{"name": side, "pressure": 12e6, "wave": "hit", "side": side} for side in ("left", "right")]},
+        {"load": [{"name": "pull", "pressure": -12e6, "wave": "hit"}]},  # which breaks it on the way
+    ],
+    ids=str,
+)
+def test_there_is_nothing_to_wait_for(spalling, changes: dict) -> None:
+    assert list(ends_too_soon(spalling(ends_at(1e-4, changes)))) == []
+
+
+def test_a_pressure_that_stays_makes_no_tension_but_a_crest(spalling) -> None:
+    stays = {"wave.hit": {"type": "constant", "amplitude": 1.0, "rise": 2e-4}}
+    (warning,) = ends_too_soon(spalling(ends_at(1e-3, stays)))
+    assert warning.endswith("before 0.0012 s")

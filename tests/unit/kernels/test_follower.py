@@ -1,0 +1,190 @@
+"""Forces that turn with their sides, against rotations that are fitted and applied plainly."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from dembound.kernels.follower import extra_work, side_rotation, side_rotations, turn_forces
+from dembound.kernels.tables import Followers
+
+PARTICLES = 24
+SIDES = {0: np.array([7, 8, 9, 10, 11]), 1: np.array([12, 13, 14, 15]), 2: np.array([11, 16, 12])}
+"""Two that are opposite and one without an opposite side; particles 11 and 12 stand at corners."""
+OPPOSITE = np.array([1, 0, 2])
+NODE = np.array([7, 9, 11, 12, 15, 16, 20])
+SIDE = np.array([[0, 0, 0, 1, 1, 2, 2], [-1, -1, 2, 2, -1, -1, -1]])
+"""Of the particles with forces; the last one belongs to a side without being its member."""
+STEP = 0.1
+
+
+def turn(angle: float) -> np.ndarray:
+    """Rotation matrix (2, 2)."""
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+@pytest.fixture
+def followers() -> Callable[..., tuple[Followers, np.ndarray]]:
+    """Makes followers at random places, and these places (2, n) at the datum; twinned: members have twins 0 to 4."""
+
+    def make(*, twinned: bool = False) -> tuple[Followers, np.ndarray]:
+        rng = np.random.default_rng(1)
+        # whole 1024ths, of which sums and differences are exact
+        places = rng.integers(-1024, 1024, (2, PARTICLES)) / 1024.0
+        datum = rng.integers(-1024, 1024, (3, PARTICLES)) / 1024.0
+        members = np.concatenate(list(SIDES.values()))
+        arms = [places[:, nodes] - places[:, nodes].mean(axis=1, keepdims=True) for nodes in SIDES.values()]
+        force = rng.uniform(-1.0, 1.0, (2, 2, len(NODE)))
+        force[1, :, SIDE[1] < 0] = 0.0
+        table = Followers(
+            opposite=OPPOSITE,
+            start=np.cumsum([0, *(len(nodes) for nodes in SIDES.values())]),
+            member=members,
+            twin=members % 5 if twinned else np.full(len(members), -1),
+            arm=np.concatenate(arms, axis=1),
+            node=NODE,
+            side=SIDE,
+            force=force,
+            steady=rng.uniform(-1.0, 1.0, (2, len(NODE))),
+            extra=np.full((2, len(NODE)), np.nan),
+            datum=datum,
+        )
+        return table, places
+
+    return make
+
+
+def shaken(seed: int = 7) -> np.ndarray:
+    """Random motions (3, n), whole 1024ths."""
+    return np.random.default_rng(seed).integers(-200, 200, (3, PARTICLES)) / 1024.0
+
+
+def turned(places: np.ndarray, angle: float) -> np.ndarray:
+    """Displacements (3, n) of a turn about a point outside."""
+    centre = np.array([[3.0], [-2.0]])
+    return np.vstack([(turn(angle) - np.eye(2)) @ (places - centre), np.zeros(PARTICLES)])
+
+
+def fitted(places: np.ndarray, moved: np.ndarray) -> float:
+    """The rotation that is nearest to the motion of some places (2, m), by the polar decomposition of Σ r ⊗ a."""
+    a, r = (x - x.mean(axis=1, keepdims=True) for x in (places, places + moved))
+    left, _, right = np.linalg.svd(r @ a.T)
+    rotation = left @ np.diag([1.0, np.linalg.det(left @ right)]) @ right
+    return float(np.arctan2(rotation[1, 0], rotation[0, 0]))
+
+
+@pytest.mark.parametrize("twinned", [False, True])
+@pytest.mark.parametrize("angle", [1e-7, -0.3, 2.0, -2.5])
+def test_a_side_that_turns_as_one_has_turned_by_just_that(followers, angle: float, twinned: bool) -> None:
+    table, places = followers(twinned=twinned)
+    u = table.datum + turned(places, angle)
+    if twinned:  # all members have moved, beside the turn, by as much as their twins
+        u[:, :5] = table.datum[:, :5] + shaken()[:, :5]
+        for i, twin in zip(table.member, table.twin, strict=True):
+            u[:, i] = (table.datum + turned(places, angle))[:, i] + (u - table.datum)[:, twin]
+    for side in SIDES:
+        # some ten sums of numbers up to 10, over arms of size 1
+        assert side_rotation(side, u, table) == pytest.approx(angle, rel=0.0, abs=1e-14)
+
+
+def test_a_side_that_only_moves_has_not_turned(followers) -> None:
+    table, _ = followers()
+    u = table.datum + np.array([[0.375], [-1.25], [0.5]])
+
+    assert [side_rotation(side, u, table) for side in SIDES] == [0.0, 0.0, 0.0]
+
+
+def test_a_side_that_moves_as_its_twins_do_has_not_turned(followers) -> None:
+    table, _ = followers(twinned=True)
+    for side, nodes in SIDES.items():
+        u = table.datum + shaken()
+        twin = table.twin[table.start[side] : table.start[side + 1]]
+        u[:, nodes] = (table.datum[:, nodes] - table.datum[:, twin]) + u[:, twin]
+        assert side_rotation(side, u, table) == 0.0
+        # one that moves otherwise has
+        u[1, nodes[0]] += 0.25
+        assert abs(side_rotation(side, u, table)) > 1e-3
+
+
+@pytest.mark.parametrize("twinned", [False, True])
+def test_of_a_side_that_bends_the_rotation_is_the_nearest_one(followers, twinned: bool) -> None:
+    table, places = followers(twinned=twinned)
+    moved = 3.0 * shaken()
+    for side, nodes in SIDES.items():
+        members = slice(table.start[side], table.start[side + 1])
+        relative = moved[:2, nodes] - (moved[:2, table.twin[members]] if twinned else 0.0)
+        # as above
+        assert side_rotation(side, table.datum + moved, table) == pytest.approx(
+            fitted(places[:, nodes], relative), rel=0.0, abs=1e-14
+        )
+
+
+def test_forces_turn_by_the_mean_of_both_opposite_sides(followers) -> None:
+    table, _ = followers()
+    u = table.datum + 3.0 * shaken()
+    own = [side_rotation(side, u, table) for side in SIDES]
+    middle = 0.5 * (own[0] + own[1])
+
+    assert abs(own[0] - own[1]) > 0.1
+    assert side_rotations(u, table).tolist() == [middle, middle, own[2]]
+
+
+def test_the_load_is_what_was_steady_with_its_forces_turned(followers) -> None:
+    table, places = followers()
+    u, v = table.datum + 3.0 * shaken(), shaken(3)
+    load = np.full((3, PARTICLES), 7.0)
+    half = turn_forces(u, v, table, load, STEP)
+    angles = np.array([fitted(places[:, nodes], (u - table.datum)[:2, nodes]) for nodes in SIDES.values()])
+    angles[:2] = angles[:2].mean()
+
+    expected, work = np.full((3, PARTICLES), 7.0), 0.0
+    for q, node in enumerate(NODE):
+        without = table.steady[:, q] - table.force[:, :, q].sum(axis=0)
+        now = sum(turn(angles[k]) @ table.force[s, :, q] for s, k in enumerate(SIDE[:, q]) if k >= 0)
+        expected[:2, node] = without + now
+        added = now - table.force[:, :, q].sum(axis=0)
+        work += 0.5 * STEP * added @ v[:2, node]
+        # angles as above; forces of size 1
+        np.testing.assert_allclose(table.extra[:, q], added, rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(load, expected, rtol=0.0, atol=1e-14)
+    assert half == pytest.approx(work, rel=0.0, abs=1e-15)
+    assert abs(half) > 1e-3
+    # the corners' two sides have not turned alike
+    assert abs(angles[0] - angles[2]) > 0.1
+
+
+def test_what_a_small_turn_adds_along_a_force_keeps_its_digits(followers) -> None:
+    table, places = followers()
+    angle = 1e-5
+    turn_forces(table.datum + turned(places, angle), shaken(), table, np.zeros((3, PARTICLES)), STEP)
+
+    one_side = SIDE[1] < 0
+    force = table.force[0][:, one_side]
+    along = np.sum(table.extra[:, one_side] * force, axis=0)
+    # −½θ² F²; of the products θ F_x F_y, which cancel, rounding leaves some ε θ, far less than the ε of a cosine
+    rounding = 10.0 * np.finfo(float).eps * angle
+    expected = -2.0 * np.sin(0.5 * angle) ** 2 * np.sum(force**2, axis=0)
+    np.testing.assert_allclose(along, expected, rtol=0.0, atol=rounding)
+    assert np.abs(expected).min() > 1e3 * rounding
+
+
+def test_where_nothing_has_moved_nothing_changes(followers) -> None:
+    table, _ = followers()
+    load = np.random.default_rng(4).uniform(-1.0, 1.0, (3, PARTICLES))
+    before = load.copy()
+    before[:2, NODE] = table.steady
+
+    assert turn_forces(table.datum.copy(), shaken(), table, load, STEP) == 0.0
+    assert np.array_equal(load, before)
+    assert not table.extra.any()
+
+
+def test_the_work_of_half_a_step_is_that_of_what_turning_adds(followers) -> None:
+    table, _ = followers()
+    table.extra[:] = np.random.default_rng(6).uniform(-1.0, 1.0, table.extra.shape)
+    v = shaken()
+
+    # fourteen products of size 0.1
+    expected = 0.5 * STEP * np.sum(table.extra * v[:2, NODE])
+    assert extra_work(v, table, STEP) == pytest.approx(expected, rel=0.0, abs=1e-16)
+    assert abs(expected) > 1e-3
