@@ -53,13 +53,13 @@ class Packing(Table):
 
 
 class DensePacking(Packing):
-    """A random dense packing in a periodic brick, under a locked-in isotropic stress."""
+    """A random dense packing in a periodic brick, packed under an isotropic pressure."""
 
     radius_ratio: float = quantity(unit="1", help="largest over smallest radius", ge=1.0, le=4.0)
     brick: Extent = quantity(unit="m", help="width and height of the periodic brick")
     seed: int = quantity(0, unit="1", help="seed of the random start", ge=0)
     confining_stress: float | None = quantity(
-        None, unit="Pa", help="locked-in isotropic pressure; absent: 0.8 % of the contact modulus", gt=0.0
+        None, unit="Pa", help="isotropic pressure it is packed under; absent: 0.8 % of the contact modulus", gt=0.0
     )
     bond_gap: float = quantity(0.0, unit="m", help="gaps up to this are contacts too", ge=0.0)
 

@@ -108,6 +108,53 @@ def test_the_law_is_told_with_its_strength(bar, material, law, strength) -> None
     assert ("once it begins" in facts["estimated time"]) == ("elastic until" in law)
 
 
+@pytest.mark.parametrize(
+    ("material", "share"),
+    [
+        ({}, "50"),
+        ({"contact_share": 0.3, "fric": 0.5}, "70"),
+        ({"contact_share": 1.0, "fric": 0.5}, "0"),
+        ({"contact_share": 0.0}, None),  # no contact opens
+        ({"law": "elastic"}, None),  # nor under that law
+    ],
+)
+def test_tension_meets_the_bonds_share_of_the_stiffness(bar, material: dict, share: str | None) -> None:
+    facts, _ = check(bar({f"material.{key}": value for key, value in {"law": "linearpbond", **material}.items()}))
+
+    if share is None:
+        assert "tension" not in facts
+    else:
+        assert facts["tension"].startswith(f"meets {share} % of the stiffness where")
+
+
+PACKED = {
+    "packing": {"pattern": "B", "size": [4.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]},
+    "monitor": [],
+    "static": {},
+    "material.law": "linearpbond",
+}
+
+
+@pytest.mark.parametrize(
+    ("material", "stress"),
+    [
+        ({"locked_in": 2.5e6}, "2.5 MPa before the static stage"),
+        ({"locked_in": 2.5e6, "pb_ten": 4e6}, "2.5 MPa before the static stage, 62.5 % of pb_ten"),
+        (
+            {"locked_in": 2.5e6, "pb_ten": 4e6, "pb_coh": 1e7},
+            "2.5 MPa before the static stage, 62.5 % of pb_ten, 25 % of pb_coh",
+        ),
+        ({"locked_in": 2.5e6, "pb_coh": 2e6}, "2.5 MPa before the static stage, 125 % of pb_coh"),
+        ({"pb_ten": 4e6}, None),
+    ],
+)
+def test_a_locked_in_stress_stands_beside_the_strength(bar, material: dict, stress: str | None) -> None:
+    static = {} if "locked_in" in material else {"static": {"stress": [-1e6, -1e6, 0.0]}}
+    facts, _ = check(bar({**PACKED, **static, **{f"material.{key}": value for key, value in material.items()}}))
+
+    assert facts.get("locked-in stress") == stress
+
+
 def test_loads_and_the_static_stage_are_told(bar) -> None:
     weight = {"name": "weight", "acceleration": [10.0, 0.0]}
     tap = {"name": "tap", "force": [1e6, 0.0], "region": [0.0, 0.0, 1.0, 1.0], "wave": "pulse"}

@@ -6,10 +6,10 @@ import pytest
 from dembound import static as module
 from dembound.errors import CaseError, RunError
 from dembound.kernels.contacts import TENSION
-from dembound.scene import Scene, build
+from dembound.scene import Scene, build, column_alone
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
-from dembound.static import settle
+from dembound.static import StalledError, settle
 from dembound.stress import particle_stress
 from dembound.tractions import CLOSE, mean_stress
 
@@ -296,3 +296,119 @@ def test_what_is_carried_is_the_base_s_and_not_the_dashpots(bar) -> None:
     # two disks of the body and one of the column stand on the base, each under three more
     assert settled.carried == pytest.approx(4.0 * MASS * G, rel=1e-6)
     assert settled.left < 1e-7 * settled.carried
+
+
+def test_beside_a_free_field_the_column_settles_first_and_alone(bar) -> None:
+    ground = packed_ground(bar, None, **NICHE)
+    looks: list[tuple[int, float]] = []
+    settled = settle(ground, lambda steps, ratio: looks.append((steps, ratio)))
+    alone = settle(column_alone(ground))
+
+    assert settled.column is not None
+    assert np.array_equal(settled.column.start.displacement, alone.start.displacement)
+    assert (settled.column.steps, settled.column.ratio) == (alone.steps, alone.ratio)
+    assert looks.index((alone.steps, alone.ratio)) == alone.steps // module.LOOK - 1
+    assert len(looks) == (alone.steps + settled.steps) // module.LOOK
+    assert settled.column.column is None
+    assert settled.before is None
+
+
+def test_without_a_free_field_there_is_no_column(bar) -> None:
+    assert settle(scene(bar, **STANDING)).column is None
+
+
+def test_a_body_begins_to_settle_where_its_column_rests(bar) -> None:
+    # without the niche body and column are the same ground, and only the sides' cut packing makes a difference
+    boundary = {side: {"type": "free_field"} for side in ("left", "right")}
+    settled = settle(scene(bar, **{**STANDING, "boundary": boundary}, **TOUGH))
+
+    assert settled.column is not None
+    # a lattice has none: it stays where it began, with the column's ratio
+    assert settled.steps == module.LOOK < settled.column.steps
+    column = settled.column.start.displacement[1]
+    # 1e-8 of the contact forces, four disks high, as above
+    np.testing.assert_allclose(
+        settled.start.displacement[1, 4:], np.repeat(column, 2), rtol=0.0, atol=1e-6 * np.abs(column).max()
+    )
+
+
+def test_with_an_excavation_the_column_is_that_of_before(bar) -> None:
+    boundary = {side: {"type": "free_field"} for side in ("left", "right")}
+    shaft = {"name": "shaft", "type": "rectangle", "corners": [1.0, 1.0, 2.0, 3.0], "stage": "after"}
+    settled = settle(scene(bar, **{**STANDING, "packing.size": [3.0, 4.0], "boundary": boundary, "hole": [shaft]}))
+
+    assert settled.column is None
+    assert settled.before is not None
+    assert settled.before.column is not None
+
+
+LOOSE = {
+    "packing.size": [2.0, 2.5],
+    "material.law": "linearpbond",
+    "material.contact_share": 1.0,
+    "material.fric": 0.5,
+    "material.elastic_start": False,
+}
+"""Four disks by five, which only touch."""
+
+PULLS = {(1.75, 0.75): 3.0, (1.75, 1.25): 2.5, (1.75, 1.75): 4.0, (1.75, 2.25): 2.0, (0.25, 1.25): -2.5}
+"""Forces (N) along x on some of them, which part from the rest; half of all is that of the largest two."""
+
+
+def test_a_stalled_stage_names_who_lacks_most_and_how_many_lack_half(bar) -> None:
+    loads = [
+        {"name": f"pull{number}", "force": [force, 0.0], "position": list(place)}
+        for number, (place, force) in enumerate(PULLS.items())
+    ]
+    static = {"ratio": 1e-8, "max_steps": module.LOOK, "boundary": {"bottom": FIXED}}
+    body = scene(bar, load=loads, static=static, **LOOSE)
+    with pytest.raises(StalledError) as caught:
+        settle(body)
+    node = {place: int(np.argmin(np.hypot(*(body.positions - place).T))) for place in PULLS}
+
+    unbalanced = np.zeros((body.count, 2))
+    for place, force in PULLS.items():
+        unbalanced[node[place], 0] = force
+    assert np.array_equal(caught.value.unbalanced, unbalanced)
+    assert caught.value.simulation.steps == module.LOOK
+    assert caught.value.simulation.displacement[0, node[1.75, 1.75]] > 0.0
+    # of two that are equally bad the first is named; they have moved by far less than a centimetre
+    first, second = sorted((node[1.75, 1.25], node[0.25, 1.25]))
+    third = f"particle {first} at ({body.positions[first, 0]:.2f}, 1.25) m lacks ({-unbalanced[first, 0]:.3g}, -0) N"
+    assert (
+        f"broken bonds: 0; particle {node[1.75, 1.75]} at (1.75, 1.75) m lacks (-4, -0) N, "
+        f"particle {node[1.75, 0.75]} at (1.75, 0.75) m lacks (-3, -0) N, {third}; "
+        "2 of 20 particles lack half of all, between (1.75, 0.75) and (1.75, 1.75) m; allow more"
+    ) in str(caught.value)
+    assert f"particle {second} at" not in str(caught.value)
+
+
+def test_held_particles_lack_nothing(bar) -> None:
+    # what pulls at a fixed disk is carried; a roller carries what is across it
+    loads = [
+        {"name": "carried", "force": [7.0, 8.0], "position": [0.25, 0.25]},
+        {"name": "felt", "force": [5.0, 6.0], "position": [1.75, 2.25]},
+    ]
+    static = {"ratio": 1e-8, "max_steps": module.LOOK, "boundary": {"bottom": FIXED, "right": {"type": "roller"}}}
+    body = scene(bar, load=loads, static=static, **LOOSE)
+    with pytest.raises(StalledError, match="; 1 of 20 particles lack half of all") as caught:
+        settle(body)
+
+    assert sorted(map(tuple, caught.value.unbalanced.tolist())) == [(0.0, 0.0)] * 19 + [(0.0, 6.0)]
+
+
+def test_what_a_stage_lacks_is_what_its_contacts_and_loads_come_to(bar) -> None:
+    static = {"ratio": 1e-8, "max_steps": module.LOOK, "boundary": {"bottom": FIXED}}
+    tough = {"material.law": "linearpbond", "material.elastic_start": False, "material.fric": 0.5}
+    body = scene(bar, **{**STANDING, **tough, "static": static})
+    with pytest.raises(StalledError) as caught:
+        settle(body)
+    pairs, total = caught.value.simulation.contacts.arrays, body.steady_load.copy()
+    for i, j, (fx, fy, *_) in zip(pairs.first, pairs.second, pairs.force, strict=True):
+        total[:2, i] += [fx, fy]
+        total[:2, j] -= [fx, fy]
+    total[:, body.edges["bottom"].nodes] = 0.0
+
+    # a few forces of the weight of eight
+    np.testing.assert_allclose(caught.value.unbalanced, total[:2].T, rtol=0.0, atol=1e-14 * 8.0 * MASS * G)
+    assert np.abs(total).max() > 1e-3 * MASS * G
