@@ -118,9 +118,10 @@ class Recorder:
             _write(group, "stress", stress_now(self.simulation), "Pa")
         self._snapshots += 1
 
-    def stalled_snapshot(self, unbalanced: np.ndarray) -> None:
-        """Keep the scene as a static stage left it that stalled, and what each particle lacks, unbalanced (n, 2) N."""
+    def stalled_snapshot(self, unbalanced: np.ndarray, cracks: Cracks) -> None:
+        """Keep the scene as a stalled static stage left it, unbalanced forces (n, 2) N and cracks with it."""
         self.snapshot()
+        self._append_cracks(cracks, self.simulation.time_step)
         _write(self.file[f"snapshots/{self._snapshots - 1:04d}"], "unbalanced", unbalanced, "N")
 
     def _write_header(self, step_limit: float) -> None:

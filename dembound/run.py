@@ -206,7 +206,7 @@ def _settled(planned: Plan, path: Path, progress: Progress) -> Settled | None:
         return settle(scene, progress.settling)
     except StalledError as stalled:
         with Recorder(path, stalled.simulation, planned.step_limit, 0.0) as recorder:
-            recorder.stalled_snapshot(stalled.unbalanced)
+            recorder.stalled_snapshot(stalled.unbalanced, stalled.cracks)
             raise RunError(f"{stalled}; to see it: dembound plot {path.parent} --field unbalanced") from None
 
 

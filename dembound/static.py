@@ -65,13 +65,15 @@ class Settled:
 class StalledError(RunError):
     """A static stage that does not come to rest.
 
-    Attributes: simulation, the state it reached; unbalanced (n, 2), N, what each particle's forces come to then.
+    Attributes: simulation, the state it reached; unbalanced (n, 2), N, what each particle's forces come to then;
+    cracks, the bonds that broke on the way.
     """
 
-    def __init__(self, message: str, simulation: Simulation, unbalanced: np.ndarray) -> None:
+    def __init__(self, message: str, simulation: Simulation, unbalanced: np.ndarray, cracks: Cracks) -> None:
         super().__init__(message)
         self.simulation = simulation
         self.unbalanced = unbalanced
+        self.cracks = cracks
 
 
 def settle(scene: Scene, on_look: Callable[[int, float], None] | None = None) -> Settled:
@@ -139,8 +141,9 @@ def _settle(scene: Scene, start: Start | None, on_look: Callable[[int, float], N
         elif ratio < 0.9 * best:
             best, best_at = ratio, simulation.steps
         if simulation.steps - best_at >= PATIENCE or simulation.steps >= static.max_steps:
-            message = _where_it_ended(body, static, simulation, contacts, forces)
-            raise StalledError(message, simulation, body.unbalanced(simulation, forces).T)
+            lacking, cracks = body.unbalanced(simulation, forces), contacts.take_cracks()
+            message = _where_it_ended(static, simulation, ratio, lacking, cracks)
+            raise StalledError(message, simulation, lacking.T, cracks)
         body.turn_tractions(simulation)
     unbalanced = np.hypot(*(forces + scene.steady_load)[:2])
     held = body.held
@@ -156,14 +159,11 @@ def _settle(scene: Scene, start: Start | None, on_look: Callable[[int, float], N
 
 
 def _where_it_ended(
-    body: "_StaticScene", static: Static, simulation: Simulation, contacts: ContactList, forces: np.ndarray
+    static: Static, simulation: Simulation, ratio: float, unbalanced: np.ndarray, cracks: Cracks
 ) -> str:
-    """How far a stage came that takes too long, in words, and what to look at; forces (3, n) are those of contacts."""
-    steps, ratio = simulation.steps, body.force_ratio(simulation, forces, contacts)
-    facts = (
-        f"static.ratio asks for {static.ratio:g}; broken bonds: {len(contacts.take_cracks()):,}; "
-        f"{_lacking(body.scene, simulation, body.unbalanced(simulation, forces))}"
-    )
+    """How far a stage came that takes too long, in words, and what to look at; unbalanced (2, n) N as `_lacking`."""
+    steps = simulation.steps
+    facts = f"static.ratio asks for {static.ratio:g}; broken bonds: {len(cracks):,}; {_lacking(simulation, unbalanced)}"
     if steps >= static.max_steps:
         return (
             f"the static stage came to a force ratio of {ratio:.3g} in {steps:,} steps, {facts}; "
@@ -175,15 +175,15 @@ def _where_it_ended(
     )
 
 
-def _lacking(scene: Scene, simulation: Simulation, unbalanced: np.ndarray) -> str:
+def _lacking(simulation: Simulation, unbalanced: np.ndarray) -> str:
     """Which particles lack most force, where and along which direction, and how many lack half of it all.
 
     unbalanced (2, n) N is what the forces on each come to.
     """
-    size = np.hypot(*unbalanced)
+    scene, size = simulation.scene, np.hypot(*unbalanced)
     order = np.argsort(-size, kind="stable")
     half = 1 + int(np.searchsorted(np.cumsum(size[order]), 0.5 * size.sum()))
-    places = scene.assembly.positions + simulation.displacement[:2].T
+    places = scene.positions + simulation.displacement[:2].T
     worst = [
         f"particle {i} at ({places[i, 0]:.2f}, {places[i, 1]:.2f}) m lacks ({-unbalanced[0, i]:.3g}, "
         f"{-unbalanced[1, i]:.3g}) N"

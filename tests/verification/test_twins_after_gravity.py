@@ -1,7 +1,7 @@
 """A body beside its free-field column starts from the column's state, and without a hole of its own moves as it does.
 
-Friction leaves more than one state of rest under gravity. Settled side by side from the packing, body and column came to
-different ones, and the body then left its twins by 1.9 % of the peak.
+Friction leaves more than one state of rest under gravity. Settled side by side from the packing, body and column came
+to different ones, and the body then left its twins by 1.9 % of the peak.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ LAWS = {
 
 
 def twins_apart(lab, pattern: str, material: dict) -> float:
-    """Largest difference of velocity between a particle and its twin over the largest velocity, until the wave is back."""
+    """Largest difference of velocity between a particle and its twin over the largest velocity, in 0.12 s."""
     wave = {"type": "cosine", "amplitude": 0.5, "period": 0.05}
     scene = lab.scene(
         pattern,
