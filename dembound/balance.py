@@ -127,7 +127,6 @@ def _side_numbers(scene: Scene, sides: dict[str, np.ndarray]) -> tuple[np.ndarra
     number = np.full((2, len(node)), -1)
     for k, nodes in enumerate(pushed.values()):
         at = np.searchsorted(node, nodes)
-        second = number[0, at] >= 0
-        number[0, at[~second]] = k
-        number[1, at[second]] = k
+        row = (number[:, at] >= 0).sum(axis=0)
+        number[row[row < 2], at[row < 2]] = k  # of a very narrow body a particle may have a third side, left out
     return node, number

@@ -58,7 +58,13 @@ class Ledger:
         simulation = self.simulation
         time, place, before = simulation.time, simulation.displacement.copy(), simulation.velocity.copy()
         balancing = 0.0 if simulation.balance is None else simulation.balance.work(place)  # forces may end in the step
+        laws = len(simulation.laws)
         record = simulation.advance(1)
+        if len(simulation.laws) > laws and simulation.switch_velocity is not None:
+            # the law changed before the step: it began where the new law took over, maybe turned as a whole
+            place = simulation.displacement - simulation.time_step * simulation.velocity
+            before = simulation.switch_velocity
+            balancing = 0.0 if simulation.balance is None else simulation.balance.work(place)
         kinetic = 0.5 * float(np.sum(self._inertia * before * simulation.velocity))
         contact, bond = (now - first for now, first in zip(self._stored(place), self._first, strict=True))
         load = float(np.sum(simulation.load * (place - simulation.datum)))

@@ -121,6 +121,10 @@ class Bonded(Engine):
     ----------
     contacts : the pairs.
     balance : what balances the stress of a settled body; None for a body that starts as built.
+
+    Attributes
+    ----------
+    followers : forces that turn with their sides, where the law follows the motion.
     """
 
     name = "linearpbond"
@@ -129,7 +133,7 @@ class Bonded(Engine):
         self.contacts = contacts
         self.balance = balance
         follow = balance is not None and contacts.limits.geometry == UPDATED
-        self._followers = balance.followers if balance is not None and follow else NO_FOLLOWERS
+        self.followers = balance.followers if balance is not None and follow else NO_FOLLOWERS
         self._seam_ends: np.ndarray | None = None
 
     def advance(
@@ -151,7 +155,7 @@ class Bonded(Engine):
             contacts.skin,
             body,
             supports,
-            self._followers,
+            self.followers,
             self.balance is not None,
             log,
         )

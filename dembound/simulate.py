@@ -12,10 +12,11 @@ from dembound.bar.scene import BarScene
 from dembound.boundaries.support import Supports
 from dembound.contacts import ContactList, Cracks
 from dembound.engine import Engine
-from dembound.engines import Bonded, Elastic
+from dembound.engines import NO_FOLLOWERS, Bonded, Elastic
 from dembound.errors import RunError
 from dembound.kernels import tables
 from dembound.kernels.contacts import UPDATED
+from dembound.kernels.follower import turn_forces
 from dembound.rotation import turn_as_a_whole, turns_freely
 from dembound.scene import Scene
 from dembound.threads import threads_for
@@ -62,6 +63,8 @@ class Simulation:
     datum : (3, n) displacement at the start.
     load : (3, n) steady forces and moments on all particles (N, N·m) beside those of contacts and what balances them.
     balance : what balances the forces in a body that has settled; None for one as built or settling.
+    switch_velocity : (3, n) velocity with which the history-dependent law began, half a step before it did; None under
+        the elastic one.
     steps : steps done.
     laws : name of each law used and the step it began with.
     work : (2, 6) J, see kernels.tables.Log.
@@ -101,6 +104,7 @@ class Simulation:
         self._inverse_inertia = self._where_unsupported(time_step / scene.inertia)
         self.contacts: ContactList | None = None
         self.balance: Balance | None = None
+        self.switch_velocity: np.ndarray | None = None
         self.engine: Engine
         self.load = scene.steady_load if load is None else load
         self._steady = np.zeros((3, 0))  # what the kernels add to the forces of contacts or bonds
@@ -171,6 +175,11 @@ class Simulation:
         if fresh:
             self.contacts.adopt(self.displacement - self.time_step * self.velocity)  # its first push adds this step
         self._steady = self.load + (0.0 if self.balance is None else self.balance.force)
+        if before is not None and self.engine.followers is not NO_FOLLOWERS:
+            # the step to come counts the work of turning from half a step ago, when forces did not turn yet
+            steady, step = self._steady.copy(), self.time_step
+            self.work[:, 4] -= turn_forces(self.displacement, self.velocity, self.engine.followers, steady, step)
+        self.switch_velocity = self.velocity.copy()
         self.laws.append((self.engine.name, self.steps))
 
     def _potential(self) -> float:

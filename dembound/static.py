@@ -185,8 +185,8 @@ def _lacking(simulation: Simulation, unbalanced: np.ndarray) -> str:
     half = 1 + int(np.searchsorted(np.cumsum(size[order]), 0.5 * size.sum()))
     places = scene.positions + simulation.displacement[:2].T
     worst = [
-        f"particle {i} at ({places[i, 0]:.2f}, {places[i, 1]:.2f}) m lacks ({-unbalanced[0, i]:.3g}, "
-        f"{-unbalanced[1, i]:.3g}) N"
+        f"particle {i} at ({places[i, 0]:.2f}, {places[i, 1]:.2f}) m lacks ({0.0 - unbalanced[0, i]:.3g}, "
+        f"{0.0 - unbalanced[1, i]:.3g}) N"
         for i in order[: min(WORST, len(order))]
     ]
     low, high = places[order[:half]].min(axis=0), places[order[:half]].max(axis=0)

@@ -39,8 +39,8 @@ class Tractions:
     def forces(self, displacement: np.ndarray) -> np.ndarray:
         """Forces (3, n) N at displacements (3, n), by the particles' share of their side's diameters.
 
-        Where the law follows the motion they turn with their side. Small forces along the sides free them of torque,
-        which uneven and strained sides leave.
+        Where the law follows the motion they turn with their side. Small forces about the middle free them of the
+        torque that uneven and strained sides leave.
         """
         moved = displacement if self._follow else np.zeros_like(displacement)
         force = np.zeros_like(displacement)
@@ -58,7 +58,8 @@ class Tractions:
     def correct(self, stress: np.ndarray) -> bool:
         """Add what the mean stress (3,) Pa inside lacks to the tractions; whether there was something to add."""
         lacking = self.asked - stress
-        if self._left == 0 or np.abs(lacking).max() <= CLOSE * np.abs(self.asked).max():
+        largest = np.abs(self.asked).max()
+        if self._left == 0 or largest == 0.0 or np.abs(lacking).max() <= CLOSE * largest:
             return False
         self._left -= 1
         self.applied += lacking

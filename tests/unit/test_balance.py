@@ -189,6 +189,7 @@ def test_forces_end_on_what_has_broken_away_and_there_alone(scene) -> None:
     assert np.array_equal(load[:, rest], turned[:, rest])
     # what is taken off has been added: three sums of size 1
     np.testing.assert_allclose(load[:, debris], steady[:, debris], rtol=0.0, atol=1e-15)
+    assert not balance.followers.extra[:, np.isin(balance.followers.node, debris)].any()
 
     # and they stay ended however the sides turn
     turn_forces(2.0 * u, v, balance.followers, load, STEP)
@@ -260,6 +261,12 @@ def test_what_keeps_coming_through_a_seam_is_taken_off(scene) -> None:
     expected = np.sum(balance.force * (u - balance.followers.datum)) - lost
     # some 400 terms of size 1
     assert balance.work(u) == pytest.approx(expected, rel=0.0, abs=1e-12)
+    # what has ended does not end again
+    ended_load, ended_force, work = load.copy(), balance.force.copy(), balance.work(u)
+    balance.end_on_debris(contacts, 2.0 * u, v, STEP, load)
+    assert np.array_equal(load, ended_load)
+    assert np.array_equal(balance.force, ended_force)
+    assert balance.work(u) == work
     # what comes through turns no more with the body
     turn_forces(u, v, balance.followers, load, STEP)
     np.testing.assert_allclose(load[:, ended], (steady - across)[:, ended], rtol=0.0, atol=1e-15)

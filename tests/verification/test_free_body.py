@@ -137,7 +137,7 @@ def test_forces_that_follow_the_sides_do_not_tip_a_body(lab, stress, follow):
     scene = lab.scene("B", (width, height), held=(), material=LAWS["updated"], static={"stress": stress})
     simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0), start=settle(scene).start)
     if not follow:
-        simulation.engine._followers = NO_FOLLOWERS
+        simulation.engine.followers = NO_FOLLOWERS
     kick(simulation, spin=1.0)
     spin = np.sqrt(
         2.0 * KICK / (np.sum(scene.mass * ((scene.positions - scene.positions.mean(axis=0)) ** 2).sum(axis=1)))

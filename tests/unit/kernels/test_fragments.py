@@ -52,10 +52,10 @@ def test_without_a_bond_only_contacts_that_push_do(joined, state: int) -> None:
 
 
 def test_of_equally_large_pieces_that_with_the_first_particle_counts(joined) -> None:
-    # 1-4, 0-3 and 2-5: the largest has two particles
-    contacts = joined([(4, 1), (3, 0), (2, 5)], [INTACT] * 3)
-    assert outside(contacts, 0, 6) == [1, 2, 4, 5]
-    assert outside(contacts, 1, 6) == [2, 3, 5]
+    # 1-3, 0-5 and 2-4: that with the first particle has the last one, too
+    contacts = joined([(3, 1), (5, 0), (2, 4)], [INTACT] * 3)
+    assert outside(contacts, 0, 6) == [1, 2, 3, 4]
+    assert outside(contacts, 1, 6) == [2, 4, 5]
 
 
 def test_the_first_of_particles_that_nothing_joins_counts(joined) -> None:
