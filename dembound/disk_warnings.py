@@ -19,7 +19,7 @@ FEWEST_PER_WAVELENGTH = 20.0
 REFLECTED = 0.02
 """Share of a wave that a side with factors nobody has chosen may reflect.
 
-Homogenised and calibrated β differ by some per cent on random edges, which is half of that in the reflection.
+Homogenised and calibrated β differ by 0.5 % at most, 2 % in bars of 20 disks, which is half of that in the reflection.
 """
 
 LARGEST_PULL = 3.5
