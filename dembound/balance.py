@@ -3,12 +3,14 @@
 Under the law that follows the motion they turn with the side they act on, and they end on debris.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
-from dembound.boundaries import OPPOSITE, FreeField
+from dembound.boundaries import OPPOSITE, FreeField, Periodic
 from dembound.contacts import ContactList
-from dembound.kernels.follower import side_rotations
-from dembound.kernels.fragments import outside_largest
+from dembound.kernels.follower import GONE, side_rotations
+from dembound.kernels.fragments import pieces
 from dembound.kernels.tables import Followers
 from dembound.scene import Scene
 
@@ -36,40 +38,86 @@ class Balance:
     ) -> None:
         self.force = force
         self.followers = _followers(scene, force, steady, datum, across)
-        self._datum, self._across = datum, across
+        self._scene, self._datum, self._across = scene, datum, across
         self._of_ended = 0.0
         self._ended = np.zeros(scene.count, dtype=np.bool_)
+        self._broken_before = np.zeros(scene.count, dtype=np.int64)
+        self._torn = np.zeros(scene.count, dtype=np.bool_)
 
     def work(self, displacement: np.ndarray) -> float:
         """Work (J) done up to displacements (3, n), without what turning has added, which the kernels count."""
         return self._of_ended + float(np.sum(self.force * (displacement - self._datum)))
 
+    def watch(self, contacts: ContactList) -> None:
+        """Count from here on which bonds break; those that are broken already have made no debris."""
+        self._broken_before = contacts.broken_bonds()
+
     def end_on_debris(
         self, contacts: ContactList, displacement: np.ndarray, velocity: np.ndarray, step: float, load: np.ndarray
     ) -> None:
-        """End the forces on particles that neither bonds nor closed contacts join to their body's largest piece.
+        """End the forces on pieces that have broken off, and let the rest of the body bear what they came to.
 
-        displacement (3, n) and velocity (3, n) are those after a step (s). load (3, n), all steady forces, loses what
-        ends; what keeps coming through a seam is taken off by its constant part.
+        A piece has broken off where neither bonds nor closed contacts join it to the largest one and a bond of it has
+        broken since the start: ground that was loose then stays confined. displacement (3, n) and velocity (3, n) are
+        those after a step (s). load (3, n), all steady forces, loses what ends; what keeps coming through a seam is
+        taken off by its constant part.
         """
+        self._torn |= contacts.broken_bonds() > self._broken_before  # every break is looked at, so none is missed
         loose = np.zeros(len(self._ended), dtype=np.bool_)
         for body in contacts.bodies:
-            loose[body] = outside_largest(contacts.arrays, body.start, body.stop)
+            piece = pieces(contacts.arrays, body.start, body.stop)
+            largest = np.argmax(np.bincount(piece))
+            loose[body] = (piece != largest) & np.isin(piece, piece[self._torn[body]])
         loose &= ~self._ended
         if not loose.any():
             return
         self._ended |= loose
         change = np.where(loose, -self._across - self.force, 0.0)
-        # the force of the last step acted until half a step before the displacements of now
-        self._of_ended -= float(np.sum(change * (displacement - 0.5 * step * velocity - self._datum)))
-        self.force += change
-        load += change
         followers = self.followers
         turned = loose[followers.node]
         load[:2, followers.node[turned]] -= followers.extra[:, turned]
         followers.force[..., turned] = 0.0
         followers.extra[:, turned] = 0.0
-        followers.steady[:, turned] += change[:2, followers.node[turned]]
+        self._leave_sides()
+        for body in contacts.bodies:
+            change[:, body] += self._borne_by_the_rest(change, body)
+        # the force of the last step acted until half a step before the displacements of now
+        self._of_ended -= float(np.sum(change * (displacement - 0.5 * step * velocity - self._datum)))
+        self.force += change
+        load += change
+        share = _shares(followers.side)
+        followers.force[...] += np.where(turned, 0.0, share[:, None, :] * change[:2, followers.node])
+        followers.steady[...] += change[:2, followers.node]
+
+    def _leave_sides(self) -> None:
+        """Let the rotation of each side be that of what is left of it."""
+        followers = self.followers
+        followers.twin[self._ended[followers.member]] = GONE
+        for first, last in pairwise(followers.start):
+            left = first + np.flatnonzero(followers.twin[first:last] != GONE)
+            if len(left):
+                followers.arm[:, left] -= followers.arm[:, left].mean(axis=1, keepdims=True)
+
+    def _borne_by_the_rest(self, change: np.ndarray, body: slice) -> np.ndarray:
+        """Forces (3, m) on the sides of what is left of a body that make up for what has ended in it, torque included.
+
+        change (3, n) N and N·m is what has come to the forces by ending. The ground beyond would take it over; without
+        that the body would be pushed away by what is left.
+        """
+        borne = np.zeros((3, body.stop - body.start))
+        node = self.followers.node
+        node = node[(node >= body.start) & (node < body.stop) & ~self._ended[node]]
+        if len(node) < 2:
+            return borne
+        places = self._scene.assembly.positions.T + self._datum[:2]
+        middle = places[:, node].mean(axis=1, keepdims=True)
+        arm, lost = places - middle, change[:, body]
+        x, y = arm[:, body]
+        torque = np.sum(x * lost[1] - y * lost[0]) + lost[2].sum()
+        turn = np.stack([-arm[1, node], arm[0, node]])
+        at = node - body.start
+        borne[:2, at] = -lost[:2].sum(axis=1)[:, None] / len(node) - torque / np.sum(turn**2) * turn
+        return borne
 
 
 def mean_rotations(scene: Scene, moved: np.ndarray) -> dict[str, float]:
@@ -80,7 +128,9 @@ def mean_rotations(scene: Scene, moved: np.ndarray) -> dict[str, float]:
 
 
 def _body_sides(scene: Scene) -> dict[str, np.ndarray]:
-    """The particles of each side, without those of a free-field column, which cannot turn."""
+    """The particles of each side of a body that can turn: not of a free-field column, nor of what is periodic."""
+    if any(isinstance(table, Periodic) for table in scene.case.boundary.values()):
+        return {}
     first = 0 if scene.seam is None else scene.seam.count
     sides = {side: edge.nodes[edge.nodes >= first] for side, edge in scene.edges.items()}
     return {side: nodes for side, nodes in sides.items() if len(nodes) > 1}
@@ -93,7 +143,6 @@ def _followers(scene: Scene, force: np.ndarray, steady: np.ndarray, datum: np.nd
     arms = [places[:, nodes] - places[:, nodes].mean(axis=1, keepdims=True) for nodes in sides.values()]
     members = np.concatenate([np.zeros(0, np.int64), *sides.values()])
     node, side = _side_numbers(scene, sides)
-    share = (side >= 0) / (side >= 0).sum(axis=0)
     names = list(sides)
     return Followers(
         opposite=np.array(
@@ -101,15 +150,20 @@ def _followers(scene: Scene, force: np.ndarray, steady: np.ndarray, datum: np.nd
         ),
         start=np.cumsum([0, *(len(nodes) for nodes in sides.values())]),
         member=members,
-        twin=np.full(len(members), -1) if scene.seam is None else scene.seam.twin[members],
+        twin=np.full(len(members), -1) if scene.seam is None else scene.seam.twin[members].copy(),
         arm=np.concatenate([np.zeros((2, 0)), *arms], axis=1),
         node=node,
         side=side,
-        force=share[:, None, :] * (force + across)[:2, node],
-        steady=(steady + force)[:2, node],
+        force=np.ascontiguousarray(_shares(side)[:, None, :] * (force + across)[:2, node]),
+        steady=np.ascontiguousarray((steady + force)[:2, node]),
         extra=np.zeros((2, len(node))),
         datum=datum,
     )
+
+
+def _shares(side: np.ndarray) -> np.ndarray:
+    """Share (2, q) of a particle's force that turns with each of its sides, by their numbers (2, q)."""
+    return (side >= 0) / (side >= 0).sum(axis=0)
 
 
 def _side_numbers(scene: Scene, sides: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

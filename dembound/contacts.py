@@ -276,6 +276,13 @@ class ContactList:
         turned = (self.arrays.first[pair] != owner) | (self._image[pair] != image).any(axis=1)
         return 2 * pair + turned
 
+    def broken_bonds(self) -> np.ndarray:
+        """Number (n,) of broken bonds of every particle among the listed pairs."""
+        pairs = self.arrays
+        broken = (pairs.state == TENSION) | (pairs.state == SHEAR)
+        ends = np.concatenate([pairs.first[broken], pairs.second[broken]])
+        return np.bincount(ends, minlength=len(self.assembly.radii))
+
     def coordination(self) -> np.ndarray:
         """Number (n,) of intact bonds and pushing contacts of every particle, from the pairs' last forces."""
         pairs = self.arrays

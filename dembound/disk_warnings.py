@@ -168,7 +168,7 @@ def _default_factors(scene: Scene) -> Iterator[str]:
             )
             yield (
                 f"boundary.{side}: reflects {waves} waves with the default {factors}; "
-                f"run: dembound calibrate CASE --boundary {side} --wave {' or '.join(wrong)}"
+                f"run: {' and '.join(f'dembound calibrate CASE --boundary {side} --wave {motion}' for motion in wrong)}"
             )
 
 

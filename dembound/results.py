@@ -86,23 +86,18 @@ def laws_of(file: h5py.File) -> list[tuple[str, float]]:
 def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
     """The energy ledger of an open record: its columns (k,) by name, time in s and energies in J per metre (a bar: J).
 
-    One more column, relative_error, is the error in parts of the most that loads and boundaries together have brought
-    in at any time, with the kinetic energy at the start. What balances the stress of a settled body does not count, nor
-    does what boundaries take: in a run that gains energy from nothing both grow with it.
+    One more column, relative_error, is the error in parts of what the run was given: the kinetic energy at the start
+    and the most that boundaries and steady loads have each brought in at any time. What balances the stress of a
+    settled body does not count, nor does what boundaries take: in a run that gains energy from nothing both grow.
 
     Raises CaseError when there is no entry.
     """
     columns = {name: dataset[:] for name, dataset in file.get("energy", {}).items()}
     if not columns or len(columns["time"]) == 0:
         raise CaseError([f"{file.filename}: has no entries in its energy ledger"])
-    scale = brought_in(columns["kinetic"][0], columns["outside"] + columns["load"])
+    scale = float(columns["kinetic"][0] + max(columns["outside"].max(), 0.0) + max(columns["load"].max(), 0.0))
     columns["relative_error"] = columns["error"] / scale if scale > 0.0 else np.zeros_like(columns["error"])
     return columns
-
-
-def brought_in(kinetic: float, came: np.ndarray) -> float:
-    """The most energy (J) that a run was given at any time: kinetic at its start, and what has come (k,) in since."""
-    return float(kinetic + max(came.max(), 0.0))
 
 
 def record_names(paths: Sequence[Path]) -> list[str]:

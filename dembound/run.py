@@ -22,7 +22,7 @@ from dembound.plot.scene import plot_scene
 from dembound.plot.style import save
 from dembound.record import Recorder
 from dembound.run_warnings import run_warnings
-from dembound.scene import Scene, ground_of
+from dembound.scene import Scene, build
 from dembound.simulate import Simulation
 from dembound.stability import choose_step
 from dembound.static import Settled, StalledError, settle
@@ -36,7 +36,7 @@ ENTRIES = 100
 
 
 class Progress:
-    """Is told how a run goes; this one keeps it to itself."""
+    """Receives progress and warnings of a run; the default ignores them."""
 
     def warned(self, message: str) -> None:
         """Something was probably not meant; said before the first step or when the record is complete."""
@@ -80,14 +80,15 @@ def _told_of(case: Case) -> Iterator[None]:
 def foresee(case: Case) -> None:
     """Find what would stop a case later, as far as it can be found cheaply.
 
-    Packs a brick, which is then cached, and compares a given time step with the stability limit. Raises CaseError
-    and PackingError.
+    Builds the scene, whose brick is then cached, and compares a given time step with the stability limit. Raises
+    CaseError and PackingError.
     """
     if not isinstance(case, DiskCase) or case.run.time_step != "auto":
         plan(case)
         return
     with _told_of(case):
-        _ = ground_of(case).material_tensor
+        scene = build(case)
+        _ = scene.steady_load, scene.ground.material_tensor
 
 
 def warnings_before(planned: Plan) -> list[str]:

@@ -33,9 +33,10 @@ FASTEST = 1e100
 
 @dataclass(frozen=True)
 class Start:
-    """A body at rest to start from: displacements (3, n) since it was built, its pairs, and whether they remember.
+    """A body at rest to start from: displacement (3, n) since it was built, its contacts, whether they have a history.
 
-    contacts is None, and remembers false, where the scene's law has no memory.
+    The simulation that starts from it goes on with its contacts, so it is good for one. contacts is None, and remembers
+    false, where the scene's law has no history.
     """
 
     displacement: np.ndarray
@@ -141,7 +142,9 @@ class Simulation:
         self.laws = [(elastic.name, 0)]
         if steady.any():
             self._steady = steady.copy()
-        if remembers or (self.contacts is not None and not scene.case.material.elastic_start):
+        # a locked-in stress also comes through the seam of a free field, of which the elastic law would not know
+        through = scene.seam is not None and scene.case.material.locked_in is not None and not settling
+        if remembers or (self.contacts is not None and (through or not scene.case.material.elastic_start)):
             self.laws = []
             self._hand_over(fresh=not remembers)
 
@@ -170,6 +173,8 @@ class Simulation:
         if fresh:
             self.contacts.adopt(self.displacement)
         self.engine = Bonded(self.contacts, self.balance)
+        if self.balance is not None:
+            self.balance.watch(self.contacts)
         if before is not None:
             self.work[:, 4] += self._potential() - before
         if fresh:

@@ -45,8 +45,9 @@ class Settled:
     ratio : mean unbalanced over mean contact force at the end.
     carried : N, mean force with which supports and tractions held the particles they act on.
     left : N, mean unbalanced force on all other particles, which F_0 balances too.
-    stress : (3,) mean xx, yy, xy in Pa over the body, tension positive.
+    stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive.
     cracks : the bonds that broke on the way.
+    tractions : (3,) Pa, the stress that the tractions were made of in the end; None without a stress asked for.
     before : what the body had come to before it was excavated, if it was; particles are numbered as they were then.
     column : what the free-field column had come to alone, if there is one.
     """
@@ -58,6 +59,7 @@ class Settled:
     left: float
     stress: np.ndarray
     cracks: Cracks
+    tractions: np.ndarray | None = None
     before: "Settled | None" = None
     column: "Settled | None" = None
 
@@ -87,12 +89,18 @@ def settle(scene: Scene, on_look: Callable[[int, float], None] | None = None) ->
     RunError when the motion grows without bound.
     """
     if scene.before is not None:
-        before = settle(scene.before, on_look)
-        return replace(_settle(scene, _excavate(scene, before.start), on_look), before=before)
+        before = _settle_built(scene.before, on_look, "before the excavation the static stage")
+        excavated = _settle(scene, _excavate(scene, before.start), on_look, tractions=before.tractions)
+        return replace(excavated, before=before)
+    return _settle_built(scene, on_look, "the static stage")
+
+
+def _settle_built(scene: Scene, on_look: Callable[[int, float], None] | None, name: str) -> Settled:
+    """The stage of a body as built, after that of its free-field column; name : what messages call it."""
     if scene.seam is None:
-        return _settle(scene, None, on_look)
-    column = _settle(column_alone(scene), None, on_look)
-    return replace(_settle(scene, _beside(scene, column.start), on_look), column=column)
+        return _settle(scene, None, on_look, name)
+    column = _settle(column_alone(scene), None, on_look, f"{name} of the free-field column alone")
+    return replace(_settle(scene, _beside(scene, column.start), on_look, name), column=column)
 
 
 def _excavate(scene: Scene, before: Start) -> Start:
@@ -117,11 +125,17 @@ def _beside(scene: Scene, column: Start) -> Start:
     return Start(displacement, contacts, column.remembers)
 
 
-def _settle(scene: Scene, start: Start | None, on_look: Callable[[int, float], None] | None) -> Settled:
-    """One stage: from a start, or from the scene as built, to rest."""
+def _settle(
+    scene: Scene,
+    start: Start | None,
+    on_look: Callable[[int, float], None] | None,
+    name: str = "the static stage",
+    tractions: np.ndarray | None = None,
+) -> Settled:
+    """One stage: from a start, or from the scene as built, to rest; tractions (3,) Pa, if they have been corrected."""
     static = scene.case.static
     assert static is not None
-    body = _StaticScene(scene, static)
+    body = _StaticScene(scene, static, tractions)
     step = SAFETY * step_limit(body.scene, damp=static.damp)
     load = body.load(np.zeros((3, scene.count)) if start is None else start.displacement)
     simulation = Simulation(body.scene, step, np.zeros(0), start=start, damp=static.damp, settling=True, load=load)
@@ -142,7 +156,7 @@ def _settle(scene: Scene, start: Start | None, on_look: Callable[[int, float], N
             best, best_at = ratio, simulation.steps
         if simulation.steps - best_at >= PATIENCE or simulation.steps >= static.max_steps:
             lacking, cracks = body.unbalanced(simulation, forces), contacts.take_cracks()
-            message = _where_it_ended(static, simulation, ratio, lacking, cracks)
+            message = f"{name} {_where_it_ended(static, simulation, ratio, lacking, cracks)}"
             raise StalledError(message, simulation, lacking.T, cracks)
         body.turn_tractions(simulation)
     unbalanced = np.hypot(*(forces + scene.steady_load)[:2])
@@ -155,6 +169,7 @@ def _settle(scene: Scene, start: Start | None, on_look: Callable[[int, float], N
         left=float(unbalanced[~held].mean()) if not held.all() else 0.0,
         stress=mean_stress(scene, stress_now(simulation)),
         cracks=contacts.take_cracks(),
+        tractions=body.applied,
     )
 
 
@@ -165,12 +180,9 @@ def _where_it_ended(
     steps = simulation.steps
     facts = f"static.ratio asks for {static.ratio:g}; broken bonds: {len(cracks):,}; {_lacking(simulation, unbalanced)}"
     if steps >= static.max_steps:
-        return (
-            f"the static stage came to a force ratio of {ratio:.3g} in {steps:,} steps, {facts}; "
-            "allow more with static.max_steps"
-        )
+        return f"came to a force ratio of {ratio:.3g} in {steps:,} steps, {facts}; allow more with static.max_steps"
     return (
-        f"the static stage stalls at a force ratio of {ratio:.3g} after {steps:,} steps, {facts}; "
+        f"stalls at a force ratio of {ratio:.3g} after {steps:,} steps, {facts}; "
         "is the body held, and can its contacts carry the load?"
     )
 
@@ -199,7 +211,7 @@ def _lacking(simulation: Simulation, unbalanced: np.ndarray) -> str:
 class _StaticScene:
     """A scene under its static supports and tractions."""
 
-    def __init__(self, scene: Scene, static: Static) -> None:
+    def __init__(self, scene: Scene, static: Static, tractions: np.ndarray | None) -> None:
         case = scene.case
         builder = SupportBuilder(held=scene.ground.held)
         free_field = {side: table for side, table in case.boundary.items() if isinstance(table, FreeField)}
@@ -208,7 +220,7 @@ class _StaticScene:
                 edge = scene.edges[side]
                 table.support(edge, boundary_medium(case, scene.ground, edge.axis), case.wave, builder)
         self._steady = scene.steady_load
-        self._tractions = None if static.stress is None else Tractions(scene, static.stress)
+        self._tractions = None if static.stress is None else Tractions(scene, static.stress, tractions)
         self.scene = replace(scene, supports=builder.table())
         self.held = np.zeros(scene.count, dtype=bool)
         for edge in scene.edges.values():
@@ -216,7 +228,8 @@ class _StaticScene:
         supports: Supports = self.scene.supports
         self.held[supports.node[supports.prescribed]] = True  # dashpots carry nothing at rest
         self._floats = len(supports) == 0
-        self._alone = not scene.steady_load.any()
+        held = bool((scene.free[:2] == 0.0).any())
+        self._by_tractions_alone = self._floats and not held and not scene.steady_load.any()
         self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.count, axis=1)
         across = (supports.component < 2) & supports.prescribed
         self._moves[supports.component[across], supports.node[across]] = False
@@ -225,12 +238,18 @@ class _StaticScene:
         """All steady forces (3, n) N and N·m at displacements (3, n)."""
         return self._steady + (0.0 if self._tractions is None else self._tractions.forces(displacement))
 
+    @property
+    def applied(self) -> np.ndarray | None:
+        """The stress (3,) Pa that the tractions are made of, if one was asked for."""
+        return None if self._tractions is None else self._tractions.applied
+
     def correct(self, simulation: Simulation) -> bool:
         """Correct the tractions of a body at rest by what the stress inside lacks; whether it lacked something.
 
-        Beside steady loads, whose stress comes on top of the one asked for, nothing is corrected.
+        Beside steady loads, whose stress comes on top of the one asked for, and beside supports, which bear a part of
+        it, nothing is corrected.
         """
-        if self._tractions is None or not self._alone:
+        if self._tractions is None or not self._by_tractions_alone:
             return False
         return self._tractions.correct(mean_stress(self.scene, stress_now(simulation)))
 

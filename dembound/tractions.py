@@ -27,13 +27,18 @@ class Tractions:
     ----------
     scene : the body.
     stress : (3,) xx, yy, xy in Pa asked for, tension positive.
+    applied : (3,) Pa, tractions found before an excavation, which the stress around it has not changed; None: as asked.
+
+    Attributes
+    ----------
+    applied : (3,) Pa, the stress that the tractions are made of.
     """
 
-    def __init__(self, scene: Scene, stress: tuple[float, float, float]) -> None:
+    def __init__(self, scene: Scene, stress: tuple[float, float, float], applied: np.ndarray | None = None) -> None:
         self.scene = scene
         self.asked = np.array(stress)
-        self.applied = self.asked.copy()
-        self._left = CORRECTIONS if _is_wide(scene) else 0
+        self.applied = self.asked.copy() if applied is None else applied.copy()
+        self._left = CORRECTIONS if applied is None and _is_wide(scene) else 0
         self._follow = limits_of(scene.case.material).geometry == UPDATED
 
     def forces(self, displacement: np.ndarray) -> np.ndarray:
@@ -67,13 +72,21 @@ class Tractions:
 
 
 def mean_stress(scene: Scene, stress: np.ndarray) -> np.ndarray:
-    """Mean stress (3,) inside a body, over the area of its particles away from the sides; stress (n, 3) of each."""
+    """Mean stress (3,) inside a body, away from its sides and with its holes, which bear none; stress (n, 3) of each.
+
+    Over the particles' areas, where there is a hole over the whole rectangle within the rim.
+    """
     inside = _inside(scene)
-    return np.average(stress[inside], axis=0, weights=(scene.assembly.radii**2 * scene.share)[inside])
+    area = (scene.assembly.radii**2 * scene.share)[inside]
+    mean = np.average(stress[inside], axis=0, weights=area)
+    if not scene.case.hole or inside.all():
+        return mean
+    whole = np.prod(scene.assembly.size - 2.0 * RIM * scene.ground.brick.mean_diameter)
+    return mean * min(1.0, np.pi * float(area.sum()) / scene.ground.brick.solid_fraction / whole)
 
 
 def _is_wide(scene: Scene) -> bool:
-    """Whether half a body's width and height lie within its rim: the mean over less is that of a few particles."""
+    """Whether half a body's width and height are left inside the rim: the mean over less is that of a few particles."""
     width = [scene.assembly.size[axis] for axis, low in enumerate(("left", "bottom")) if low in scene.edges]
     return all(length >= 4.0 * RIM * scene.ground.brick.mean_diameter for length in width)
 
@@ -94,5 +107,6 @@ def _without_torque(force: np.ndarray, positions: np.ndarray, loaded: np.ndarray
     arm = positions - positions[loaded].mean(axis=0)
     torque = np.sum(arm[:, 0] * force[1] - arm[:, 1] * force[0])
     turn = np.stack([-arm[loaded, 1], arm[loaded, 0]])
-    force[:2, loaded] -= torque / np.sum(turn**2) * turn
+    if (size := np.sum(turn**2)) > 0.0:  # a single disk has no arm
+        force[:2, loaded] -= torque / size * turn
     return force

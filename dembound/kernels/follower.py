@@ -12,6 +12,9 @@ from numba import njit
 
 from dembound.kernels.common import FASTMATH, U
 
+GONE = -2
+"""Stands for the twin of a member that has broken off its side."""
+
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
 def side_rotation(side, u, followers):
@@ -24,18 +27,24 @@ def side_rotation(side, u, followers):
     first, last = followers.start[side], followers.start[side + 1]
     mean_x = 0.0
     mean_y = 0.0
+    count = 0
     for m in range(first, last):
+        if twin[m] == GONE:
+            continue
         i = member[m]
+        count += 1
         mean_x += u[0, i] - datum[0, i]
         mean_y += u[1, i] - datum[1, i]
         if twin[m] >= 0:
             mean_x -= u[0, twin[m]] - datum[0, twin[m]]
             mean_y -= u[1, twin[m]] - datum[1, twin[m]]
-    mean_x /= last - first
-    mean_y /= last - first
+    mean_x /= max(count, 1)
+    mean_y /= max(count, 1)
     cross = 0.0
     along = 0.0
     for m in range(first, last):
+        if twin[m] == GONE:
+            continue
         i = member[m]
         x = u[0, i] - datum[0, i] - mean_x
         y = u[1, i] - datum[1, i] - mean_y
@@ -66,7 +75,8 @@ def turn_forces(u, v, followers, load, step):
 
     That is the work of what turning adds, by velocities v (3, n) of half a step ago.
     """
-    node, side, force, steady, extra = followers[-6:-1]
+    node, side, force = followers.node, followers.side, followers.force
+    steady, extra = followers.steady, followers.extra
     angles = side_rotations(u, followers)
     cosine = np.empty(angles.size)
     sine = np.empty(angles.size)

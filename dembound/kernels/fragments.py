@@ -17,11 +17,10 @@ def _root(parent, i):
 
 
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def outside_largest(contacts, begin, end):
-    """Particles begin to end that are not in the largest piece of theirs, (end − begin,) bool.
+def pieces(contacts, begin, end):
+    """Piece of each of the particles begin to end, (end − begin,): the number of its first one, counted from begin.
 
-    Pieces hold together by intact bonds and by contacts that pushed when pairs last pushed. Of equally large ones the
-    one with the first particle counts.
+    Pieces hold together by intact bonds and by contacts that pushed when pairs last pushed.
     """
     first, second, state, force = contacts.first, contacts.second, contacts.state, contacts.force
     parent = np.arange(end)
@@ -34,11 +33,7 @@ def outside_largest(contacts, begin, end):
             i = _root(parent, i)
             j = _root(parent, j)
             parent[max(i, j)] = min(i, j)
-    size = np.zeros(end, dtype=np.int64)
+    piece = np.empty(end - begin, dtype=np.int64)
     for i in range(begin, end):
-        size[_root(parent, i)] += 1
-    largest = np.argmax(size)
-    outside = np.empty(end - begin, dtype=np.bool_)
-    for i in range(begin, end):
-        outside[i - begin] = _root(parent, i) != largest
-    return outside
+        piece[i - begin] = _root(parent, i) - begin
+    return piece

@@ -79,7 +79,7 @@ def move_supported(step, u, v, spare, across, followed, supports, body, work):
     """Move the supported nodes by a step, once all other particles have; spare holds the new displacements.
 
     For these nodes it holds their contact forces and steady loads before. across (k, 3) are the forces through seams,
-    which are the outside's work; followed (k, 3) half the velocity of the nodes' twins before the step. work (2, 4) is
+    which are the outside's work; followed (k, 3) half the velocity of the nodes' twins before the step. work (2, 6) is
     advanced.
     """
     nodes, inertia, keep, mobility, stiffness, prescribed, drives, seam = supports

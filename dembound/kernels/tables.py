@@ -71,8 +71,8 @@ class Followers(NamedTuple):
     """Forces that turn with the sides they act on, of s sides with m members in all and q particles; see follower.py.
 
     opposite : (s,) the opposite side of each, itself if there is none. start : (s + 1,) members of side k are
-    start[k]:start[k + 1] of the next three; member, twin : (m,) particles, and
-    the ones relative to whose motion they turn, −1 for none; arm : (2, m) m, from the side's mean place at the datum.
+    start[k]:start[k + 1] of the next three; member, twin : (m,) particles, and the ones relative to whose motion they
+    turn, −1 for none, GONE for a member that has broken off; arm : (2, m) m, from the side's mean place at the datum.
     node : (q,) particles; side : (2, q) the one or two sides each belongs to, −1 for none; force : (2, 2, q) N by side
     and component; steady : (2, q) N, all steady load before anything has turned; extra : (2, q) N, what turning adds at
     the moment. datum : (3, n) displacements counted from.

@@ -171,7 +171,7 @@ def test_factors_that_nobody_has_chosen_are_warned_of(bar) -> None:
     assert found == (
         f"boundary.right: reflects {100 * shares['p']:.2g} % of P and {100 * shares['s']:.2g} % of S waves with the "
         f"default beta_p = 1 (the packing has {matched['p']:.3g}) and beta_s = 1 (the packing has {matched['s']:.3g}); "
-        "run: dembound calibrate CASE --boundary right --wave p or s"
+        "run: dembound calibrate CASE --boundary right --wave p and dembound calibrate CASE --boundary right --wave s"
     )
     assert min(shares.values()) > 0.02
 

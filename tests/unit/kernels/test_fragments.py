@@ -6,8 +6,15 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION
-from dembound.kernels.fragments import outside_largest
+from dembound.kernels.fragments import pieces
 from dembound.kernels.tables import Contacts
+
+
+def outside_largest(contacts: Contacts, begin: int, end: int) -> np.ndarray:
+    """Particles begin to end that are not in the largest piece of theirs, (end − begin,) bool."""
+    piece = pieces(contacts, begin, end)
+    return piece != np.argmax(np.bincount(piece))
+
 
 APART = (TENSION, SHEAR, NONE)
 
