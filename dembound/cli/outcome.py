@@ -48,8 +48,8 @@ def disk_outcome(summary: dict[str, Any], *, remembers: bool) -> list[str]:
     facts = []
     if (static := summary["static"]) is not None:
         if (before := static["before"]) is not None:
-            facts.append(f"settled in {_stage(before)}")
-        facts.append(f"{'settled' if before is None else 'after the excavation'} in {_stage(static)}")
+            facts += _settled(before, "settled")
+        facts += _settled(static, "settled" if before is None else "after the excavation")
     if remembers:
         facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
         tension, shear = summary["cracks"]["tension"], summary["cracks"]["shear"]
@@ -63,6 +63,12 @@ def disk_outcome(summary: dict[str, Any], *, remembers: bool) -> list[str]:
 def _range(ends: Sequence[float]) -> str:
     """Ends of a range as "0.906–0.909", a single place as it is."""
     return "–".join(f"{end:.4g}" for end in sorted(set(ends)))
+
+
+def _settled(static: dict[str, Any], words: str) -> list[str]:
+    """How a static stage went, after that of its free-field column if there is one."""
+    column = [] if static["column"] is None else [f"column settled in {_stage(static['column'])}"]
+    return [*column, f"{words} in {_stage(static)}"]
 
 
 def _stage(static: dict[str, Any]) -> str:

@@ -173,7 +173,7 @@ def test_a_run_ends_by_telling_what_happened(dembound, written, tmp_path) -> Non
 def test_only_what_applies_is_told() -> None:
     elastic = {"static": None, "laws": [{"law": "elastic", "from": 0.0}]}
     quiet = {"cracks": {"tension": 0, "shear": 0}, "energy": {"relative_error": 0.0}}
-    settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0, "before": None, "asked": None}
+    settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0, "before": None, "asked": None, "column": None}
     stage = "settled in 3,100 steps to a force ratio of 9.8e-06"
 
     assert disk_outcome(elastic, remembers=False) == []
@@ -193,6 +193,11 @@ def test_only_what_applies_is_told() -> None:
     assert disk_outcome(elastic | excavated, remembers=False) == [
         stage,
         "after the excavation in 900 steps to a force ratio of 9.8e-06",
+    ]
+    beside = {"static": settled | {"steps": 100, "column": settled}}
+    assert disk_outcome(elastic | beside, remembers=False) == [
+        f"column {stage}",
+        "settled in 100 steps to a force ratio of 9.8e-06",
     ]
 
 
