@@ -48,8 +48,8 @@ class Balance:
         """Work (J) done up to displacements (3, n), without what turning has added, which the kernels count."""
         return self._of_ended + float(np.sum(self.force * (displacement - self._datum)))
 
-    def watch(self, contacts: ContactList) -> None:
-        """Count from here on which bonds break; those that are broken already have made no debris."""
+    def count_breaks_from(self, contacts: ContactList) -> None:
+        """Take the bonds that are broken by now as no sign of debris."""
         self._broken_before = contacts.broken_bonds()
 
     def end_on_debris(

@@ -174,7 +174,7 @@ class Simulation:
             self.contacts.adopt(self.displacement)
         self.engine = Bonded(self.contacts, self.balance)
         if self.balance is not None:
-            self.balance.watch(self.contacts)
+            self.balance.count_breaks_from(self.contacts)
         if before is not None:
             self.work[:, 4] += self._potential() - before
         if fresh:

@@ -16,6 +16,17 @@ GONE = -2
 """Stands for the twin of a member that has broken off its side."""
 
 
+@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+def _moved(i, twin, u, datum):
+    """Displacement of particle i since the datum, less that of its twin if it has one."""
+    x = u[0, i] - datum[0, i]
+    y = u[1, i] - datum[1, i]
+    if twin >= 0:
+        x -= u[0, twin] - datum[0, twin]
+        y -= u[1, twin] - datum[1, twin]
+    return x, y
+
+
 @njit(cache=True, fastmath=FASTMATH, error_model="numpy")
 def side_rotation(side, u, followers):
     """Angle (rad) by which a side has turned since the datum, relative to its twins where it has any.
@@ -29,15 +40,11 @@ def side_rotation(side, u, followers):
     mean_y = 0.0
     count = 0
     for m in range(first, last):
-        if twin[m] == GONE:
-            continue
-        i = member[m]
-        count += 1
-        mean_x += u[0, i] - datum[0, i]
-        mean_y += u[1, i] - datum[1, i]
-        if twin[m] >= 0:
-            mean_x -= u[0, twin[m]] - datum[0, twin[m]]
-            mean_y -= u[1, twin[m]] - datum[1, twin[m]]
+        if twin[m] != GONE:
+            x, y = _moved(member[m], twin[m], u, datum)
+            mean_x += x
+            mean_y += y
+            count += 1
     mean_x /= max(count, 1)
     mean_y /= max(count, 1)
     cross = 0.0
@@ -45,12 +52,9 @@ def side_rotation(side, u, followers):
     for m in range(first, last):
         if twin[m] == GONE:
             continue
-        i = member[m]
-        x = u[0, i] - datum[0, i] - mean_x
-        y = u[1, i] - datum[1, i] - mean_y
-        if twin[m] >= 0:
-            x -= u[0, twin[m]] - datum[0, twin[m]]
-            y -= u[1, twin[m]] - datum[1, twin[m]]
+        x, y = _moved(member[m], twin[m], u, datum)
+        x -= mean_x
+        y -= mean_y
         cross += arm[0, m] * y - arm[1, m] * x
         along += arm[0, m] * (arm[0, m] + x) + arm[1, m] * (arm[1, m] + y)
     return np.arctan2(cross, along)
