@@ -15,11 +15,12 @@ import numba
 import numpy as np
 from timing import median_time
 
-from dembound.any_scene import build_scene
 from dembound.bar.fracture import spalls
-from dembound.case import BarCase, loads
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
+from dembound.bar.scene import build_bar
+from dembound.bar.stability import choose_step
+from dembound.case.bar import BarCase
+from dembound.kinds import loads
+from dembound.motion.simulation import Simulation
 
 METHODS = {
     "finite_difference": 'type = "finite_difference"',
@@ -98,7 +99,7 @@ def fastest_copy() -> float:
 
 def stepping(name: str, nodes: int, repeats: int, stream: float) -> None:
     case = case_of(METHODS[name], nodes, strength=1e12, courant=0.9)
-    scene = build_scene(case)
+    scene = build_bar(case)
     simulation = Simulation(scene, choose_step(scene)[0], np.array(list(scene.monitors.values())))
     steps = max(256, STEPS * 1000 // nodes)
     simulation.advance(steps)
@@ -113,21 +114,21 @@ def stepping(name: str, nodes: int, repeats: int, stream: float) -> None:
 
 
 def spalling(name: str, nodes: int, courant: float, repeats: int) -> None:
-    scene = build_scene(case_of(SPALLING[name], nodes, strength=10e6, courant=courant))
+    scene = build_bar(case_of(SPALLING[name], nodes, strength=10e6, courant=courant))
     time_step = choose_step(scene)[0]
     steps = int(np.ceil(scene.case.run.duration / time_step))
 
     def run() -> Simulation:
-        simulation = Simulation(scene, time_step, np.zeros(0, dtype=np.int64))
+        simulation = Simulation(scene, time_step)
         simulation.run(steps)
         return simulation
 
-    engine = run().engine
-    first = spalls(engine.bonds, scene.positions[:, 0], time_step)[0]
+    (bar,) = run().system.parts
+    first = spalls(bar.bonds, scene.positions[:, 0], time_step)[0]
     taken = median_time(run, repeats)
     low, high = first.start
     print(
-        f"{name:22s} | {nodes:9,} | {courant:7g} | {taken * 1e3:8.2f} | {engine.bond_updates / 1e6:20.2f} | "
+        f"{name:22s} | {nodes:9,} | {courant:7g} | {taken * 1e3:8.2f} | {bar.bond_updates / 1e6:20.2f} | "
         f"{low:.4f}–{high:.4f} m, {first.time * 1e3:.4f} ms"
     )
 

@@ -17,10 +17,10 @@ import numba
 import numpy as np
 from timing import median_time
 
-from dembound.case import load, with_changes
-from dembound.scene import build
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import choose_step
+from dembound.kinds import load, with_changes
+from dembound.motion.simulation import Simulation
 
 CASE = Path(__file__).parents[1] / "cases" / "zhou2018" / "long_bar_b.toml"
 
@@ -39,6 +39,16 @@ LAWS = {
 """What is timed -> keys of the material beside the law's name and its start."""
 
 
+def ends(scene: DiskScene) -> int:
+    """Contact ends of a scene's elastic law."""
+    return sum(len(rows.kind) for rows in scene.rows)
+
+
+def listed(simulation: Simulation) -> int:
+    """Pairs with a memory; none under the elastic law."""
+    return sum(len(contacts.arrays.first) for contacts in simulation.system.contacts.values())
+
+
 def bytes_per_step(simulation: Simulation) -> float:
     """Least memory traffic of one step in bytes: every array once, palette excluded (it stays in cache).
 
@@ -47,10 +57,10 @@ def bytes_per_step(simulation: Simulation) -> float:
     (particles and line 12, state 1, slip 8), its shear read and written (16), its force written, fetched for writing
     and read again (96), its two ends named (8), and u, v and the steady load read once more (72 per particle).
     """
-    scene = simulation.scene
-    if simulation.contacts is None:
-        return 140.0 * scene.count + 8.0 * len(scene.rows.kind)
-    return 212.0 * scene.count + 141.0 * len(simulation.contacts.arrays.first)
+    count, pairs = simulation.scene.count, listed(simulation)
+    if pairs == 0:
+        return 140.0 * count + 8.0 * ends(simulation.scene)
+    return 212.0 * count + 141.0 * pairs
 
 
 def flops_per_step(simulation: Simulation) -> float:
@@ -60,10 +70,11 @@ def flops_per_step(simulation: Simulation) -> float:
     geometry, its two ends included, and 20 per particle.
     """
     scene = simulation.scene
-    if simulation.contacts is None:
-        return 29.0 * len(scene.rows.kind) + 15.0 * scene.count
+    pairs = listed(simulation)
+    if pairs == 0:
+        return 29.0 * ends(scene) + 15.0 * scene.count
     per_pair = 91.0 if scene.case.material.geometry == "updated" else 75.0
-    return per_pair * len(simulation.contacts.arrays.first) + 20.0 * scene.count
+    return per_pair * pairs + 20.0 * scene.count
 
 
 def main() -> None:
@@ -86,17 +97,15 @@ def measure(law: str, keys: dict, options: argparse.Namespace) -> None:
         changes |= {"material.law": "linearpbond", "material.elastic_start": False}
     scene = build(with_changes(load(options.case), changes))
     time_step, _ = choose_step(scene)
-    simulation = Simulation(scene, time_step, np.zeros(0, dtype=np.int64))
-    simulation.velocity[:] = np.random.default_rng(0).normal(0.0, 1e-3, simulation.velocity.shape)
+    simulation = Simulation(scene, time_step)
+    simulation.state.velocity[:] = np.random.default_rng(0).normal(0.0, 1e-3, simulation.state.velocity.shape)
     simulation.advance(2)
     traffic, flops = bytes_per_step(simulation), flops_per_step(simulation)
     source = np.ones(int(traffic / 24))
     target = np.zeros_like(source)
     copy(source, target)
 
-    print(
-        f"{options.case.stem}, {law}: {scene.count:,} particles, {len(scene.rows.kind) / scene.count:.2f} contacts each"
-    )
+    print(f"{options.case.stem}, {law}: {scene.count:,} particles, {ends(scene) / scene.count:.2f} contacts each")
     print(f"per particle-step: {traffic / scene.count:.0f} bytes, {flops / scene.count:.0f} flops")
     print(f"scene arrays: {scene.bytes / scene.count:.0f} bytes per particle")
     print("threads | million particle-steps/s | Gflop/s | GB/s moved | GB/s of a copy | share of bandwidth")

@@ -1,19 +1,11 @@
 """What a case would come to, without running it."""
 
 import time
-from typing import Any
 
-import numpy as np
-
-from dembound.bar.check import bar_facts
-from dembound.bar.scene import BarScene
-from dembound.case import Case, DiskCase
-from dembound.disk_warnings import particles_per_wavelength, strong_waves
-from dembound.loads import forces_of
+from dembound.case import Case
+from dembound.motion.kind import Plan
+from dembound.motion.simulation import Simulation
 from dembound.run import plan, warnings_before
-from dembound.scene import Scene
-from dembound.simulate import Simulation
-from dembound.summary import Plan, describe_packing, describe_side
 
 TRIAL_STEPS, TRIALS = 20, 3
 
@@ -21,13 +13,8 @@ TRIAL_STEPS, TRIALS = 20, 3
 def check(case: Case) -> tuple[dict[str, str], list[str]]:
     """Facts about the run a case describes, ready to print, and warnings. Runs a few steps to estimate the time."""
     planned = plan(case)
-    facts = _run_facts(planned)
-    scene = planned.scene
-    if isinstance(scene, BarScene):
-        facts = bar_facts(scene, planned.time_step) | facts
-    else:
-        facts |= _disk_facts(scene)
-    return facts, warnings_before(planned)
+    own = planned.kind.facts(planned.scene, planned.time_step)
+    return _run_facts(planned) | own, warnings_before(planned)
 
 
 def _run_facts(planned: Plan) -> dict[str, str]:
@@ -39,41 +26,13 @@ def _run_facts(planned: Plan) -> dict[str, str]:
         "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s",
         "memory": f"{scene.bytes / 1e6:.3g} MB",
         "estimated time": f"about {_estimate(planned):.2g} s with {scene.threads} thread(s)"
-        f"{_not_estimated(scene.case)}",
-    }
-
-
-def _disk_facts(scene: Scene) -> dict[str, str]:
-    """Facts about a packing, its law and what acts on it."""
-    case = scene.case
-    facts = {"particles": _particles(scene), "contacts": f"{len(scene.assembly.pairs):,}"}
-    facts |= _packing_facts(scene) | _law_facts(scene) | _hole_facts(case) | _static_facts(case)
-    for side in scene.edges:
-        facts[f"{side} side"] = _side_fact(scene, side)
-    facts |= _load_facts(scene)
-    for name, node in scene.monitors.items():
-        x, y = scene.assembly.positions[node]
-        facts[f"monitor {name}"] = f"particle {node} at ({x:.3f}, {y:.3f}) m"
-    facts |= _tension_facts(scene)
-    for name, count in particles_per_wavelength(scene).items():
-        facts[f"wave {name}"] = f"{count:.0f} particles per shortest wavelength"
-    return facts
-
-
-def _tension_facts(scene: Scene) -> dict[str, str]:
-    """Waves that would open contacts, where the elastic law then hands over."""
-    if not (scene.remembers and scene.case.material.elastic_start):
-        return {}
-    law = scene.case.material.law
-    return {
-        f"stress of {name}": f"ρcv = {stress}; where it pulls contacts open, and {law} takes over"
-        for name, stress in strong_waves(scene).items()
+        f"{planned.kind.not_estimated(scene.case)}",
     }
 
 
 def _estimate(planned: Plan) -> float:
     """Seconds the run will take, from the quickest of a few short trials."""
-    simulation = Simulation(planned.scene, planned.time_step, np.zeros(0, dtype=np.int64))
+    simulation = Simulation(planned.scene, planned.time_step)
     simulation.advance(TRIAL_STEPS)  # compiles, and wakes the threads
     trials = []
     for _ in range(TRIALS):
@@ -81,128 +40,3 @@ def _estimate(planned: Plan) -> float:
         simulation.advance(TRIAL_STEPS)
         trials.append(time.perf_counter() - began)
     return min(trials) / TRIAL_STEPS * planned.steps
-
-
-def _not_estimated(case: Case) -> str:
-    """What the trials did not come to."""
-    if not isinstance(case, DiskCase):
-        return ""
-    later = ["the static stage"] * (case.static is not None)
-    if case.material.law != "elastic" and case.material.elastic_start:
-        later.append(f"what {case.material.law} takes longer once it begins")
-    return f", without {' and '.join(later)}" if later else ""
-
-
-def _particles(scene: Scene) -> str:
-    """How many there are, and were."""
-    loose = scene.assembly.loose
-    before = f", {scene.before.count:,} before the excavation" if scene.before is not None else ""
-    severed = f"; {loose:,} severed {'disk' if loose == 1 else 'disks'} left out" if loose else ""
-    return f"{scene.count:,}{before}{severed}"
-
-
-def _hole_facts(case: DiskCase) -> dict[str, str]:
-    """Shape of every hole, and when it is made."""
-    stages = {"before": "there from the start", "after": "excavated once the body has settled"}
-    return {f"hole {hole.name}": f"{hole.type}, {stages[hole.stage]}" for hole in case.hole}
-
-
-def _packing_facts(scene: Scene) -> dict[str, str]:
-    packing = describe_packing(scene)
-    speeds = [
-        f"{name} = {packing[key]:.1f} m/s"
-        for name, key in (("c_p", "p_wave_speed"), ("c_s", "s_wave_speed"))
-        if packing[key] is not None
-    ]
-    stiffness = ", ".join(f"{name} {packing[name] / 1e9:.4f}" for name in ("C11", "C22", "C12", "C66"))
-    return {
-        "brick": f"{packing['disks_per_brick']:,} disk(s), solid fraction {packing['solid_fraction']:.4f}, "
-        f"{packing['coordination']:.3f} contacts per disk",
-        "brick equilibrium": f"residual force ratio {packing['residual_ratio']:.1e}, "
-        f"packed under {scene.ground.packed_pressure / 1e6:.3f} MPa",
-        "homogenised stiffness": f"{stiffness} GPa",
-        "wave speeds": ", ".join(speeds) or "no motion is free",
-    }
-
-
-def _law_facts(scene: Scene) -> dict[str, str]:
-    """The law, and where contacts and bonds give way."""
-    material = scene.case.material
-    if not scene.remembers:
-        return {"law": "elastic: contacts neither open nor slip, bonds do not break"}
-    start = ", elastic until a contact opens, slips or closes or a bond yields" if material.elastic_start else ""
-    bonds = "no bonds"
-    if scene.ground.moduli.pb_emod > 0.0:
-        tension, shear = (
-            "unbreakable" if strength is None else f"{strength / 1e6:.3g} MPa"
-            for strength in (material.pb_ten, material.pb_coh)
-        )
-        pressed = f" + σ·tan {material.pb_fa:g}°" if material.pb_fa > 0.0 else ""
-        bonds = f"bonds {tension} in tension, {shear}{pressed} in shear"
-    facts = {
-        "law": f"{material.law}{start}",
-        "strength": f"{bonds}; contacts slip at {material.fric:g} of their normal force",
-    }
-    if scene.ground.moduli.emod > 0.0:
-        facts["tension"] = (
-            f"meets {100.0 * scene.ground.bond_share:.0f} % of the stiffness where nothing presses contacts together: "
-            "they open and leave it to the bonds; confine them (static.stress) or lower material.contact_share"
-        )
-    if material.locked_in is not None:
-        shares = [
-            f"{100.0 * material.locked_in / strength:.3g} % of {key}"
-            for key, strength in (("pb_ten", material.pb_ten), ("pb_coh", material.pb_coh))
-            if strength is not None
-        ]
-        facts["locked-in stress"] = ", ".join([f"{material.locked_in / 1e6:.3g} MPa before the static stage", *shares])
-    return facts
-
-
-def _static_facts(case: DiskCase) -> dict[str, str]:
-    """What acts during the static stage, and what holds."""
-    static = case.static
-    if static is None:
-        return {}
-    acting = [load.name for load in case.load if load.wave is None]
-    if static.stress is not None:
-        acting.append("σ_xx, σ_yy, σ_xy = {:.3g}, {:.3g}, {:.3g} MPa".format(*(s / 1e6 for s in static.stress)))
-    if case.material.law != "elastic" and case.material.locked_in:
-        acting.append("the locked-in stress")
-    sides = ", ".join(f"{side} {table.type}" for side, table in static.boundary.items()) or "all free"
-    return {
-        "static stage": f"under {' and '.join(acting)}, to a force ratio of {static.ratio:g}",
-        "static sides": sides,
-    }
-
-
-def _load_facts(scene: Scene) -> dict[str, str]:
-    """Particles each load acts on, its whole force, and its time factor."""
-    facts = {}
-    for load in scene.case.load:
-        nodes, forces = forces_of(load, scene.assembly, scene.mass)
-        fx, fy = forces.sum(axis=0)
-        factor = "steady" if load.wave is None else f"times wave {load.wave}"
-        facts[f"load {load.name}"] = f"({fx:.4g}, {fy:.4g}) N/m on {len(nodes):,} particle(s), {factor}"
-    return facts
-
-
-def _side_fact(scene: Scene, side: str) -> str:
-    facts = describe_side(scene, side)
-    factors = "".join(f", {factor} = {facts[factor]:g}" for factor in ("beta_p", "beta_s") if factor in facts)
-    half = ", half mass" if facts.get("half_mass") else ""
-    return (
-        f"{facts['type']}{factors}{half}{_springs_in_words(facts)}; {facts['particles']} particles, "
-        f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['cover']:.4f}"
-    )
-
-
-def _springs_in_words(side: dict[str, Any]) -> str:
-    """The springs of a described side, if it has any."""
-    if "alpha_n" not in side:
-        return ""
-    nearest, farthest = side["distance_min"], side["distance_max"]
-    reach = f"{nearest:.4g}" + (f"…{farthest:.4g}" if farthest > nearest else "")
-    return (
-        f"; springs α_n = {side['alpha_n']:g}, α_s = {side['alpha_s']:g}, "
-        f"G = {side['shear_modulus'] / 1e9:.4g} GPa, L = {reach} m"
-    )

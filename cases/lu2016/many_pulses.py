@@ -15,10 +15,10 @@ import numpy as np
 from records import MILLI, case_of, expected_spall, markdown, name_of
 
 from dembound.bar.fracture import spalls
-from dembound.case import BarCase
-from dembound.case.writer import with_changes
+from dembound.case.bar import BarCase
+from dembound.kinds import with_changes
+from dembound.motion.simulation import Simulation
 from dembound.run import plan
-from dembound.simulate import Simulation
 
 PRESSURES, RISES = np.linspace(20e6, 40e6, 9), (0.02e-3, 0.03e-3, 0.05e-3, 0.08e-3)
 """Crests in Pa and rises in s."""
@@ -32,9 +32,9 @@ SHARE = 1.05
 def spall(case: BarCase) -> np.ndarray:
     """Place (m) and time (s) of the first spall; nan where there is none in due time."""
     planned = plan(case)
-    simulation = Simulation(planned.scene, planned.time_step, np.zeros(0))
+    simulation = Simulation(planned.scene, planned.time_step)
     simulation.run(round(SHARE * expected_spall(case)[1] / planned.time_step))
-    found = spalls(simulation.engine.bonds, planned.scene.positions[:, 0], planned.time_step)
+    found = spalls(simulation.system.parts[0].bonds, planned.scene.positions[:, 0], planned.time_step)
     return np.array([np.mean(found[0].start), found[0].time]) if found else np.full(2, np.nan)
 
 

@@ -9,12 +9,13 @@ import h5py
 import numpy as np
 from matplotlib.axes import Axes
 
-from dembound.case import BarCase, loads
+from dembound.case.bar import BarCase
 from dembound.exact import triangle_spall
+from dembound.kinds import loads
 from dembound.laws.peridynamic import CRACKED
+from dembound.motion.simulation import Simulation
 from dembound.plot.style import COLOURS, REFERENCE
 from dembound.run import plan
-from dembound.simulate import Simulation
 
 MILLI, MEGA = 1e-3, 1e6
 
@@ -58,9 +59,9 @@ def damage_at_first_spall(run: Path) -> tuple[np.ndarray, np.ndarray]:
     """Places (n,) m and local damage (n,) in the step of the first spall, which no snapshot meets: it is run anew."""
     planned = plan(case_of(run))
     step = round(first_spall(run)["time"] / planned.time_step)
-    simulation = Simulation(planned.scene, planned.time_step, np.zeros(0))
+    simulation = Simulation(planned.scene, planned.time_step)
     simulation.run(step + 1)
-    return planned.scene.positions[:, 0], simulation.engine.bonds.damage(step)
+    return planned.scene.positions[:, 0], simulation.system.parts[0].bonds.damage(step)
 
 
 def draw_damage(panel: Axes, runs: Sequence[tuple[str, Path]]) -> None:

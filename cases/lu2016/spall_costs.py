@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 from records import MILLI, case_of, expected_spall, first_spall, in_millimetres, markdown, name_of
 
-from dembound.case import BarCase
+from dembound.case.bar import BarCase
+from dembound.motion.simulation import Simulation
 from dembound.run import plan
-from dembound.simulate import Simulation
 
 PRINTED = {"PD3": ("0.478", "2.00 (1)"), "PD1–PD3": ("0.466", "0.95 (0.475)"), "FDM–PD3": ("0.464", "0.53 (0.265)")}
 """t_F in ms and the time of computation in s, with its ratio to the first."""
@@ -39,7 +39,7 @@ def costs(runs: dict[Path, BarCase], repeats: int) -> dict[Path, tuple[int, floa
         began = time.perf_counter()
         simulation.run(steps[run])
         times[run].append(time.perf_counter() - began)
-        updates[run] = simulation.engine.bond_updates
+        updates[run] = simulation.system.parts[0].bond_updates
     return {run: (updates[run], statistics.median(times[run][1:])) for run in runs}  # the first loads what is compiled
 
 

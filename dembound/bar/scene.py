@@ -1,137 +1,28 @@
-"""A bar as a scene: the arrays a case with a ``[bar]`` becomes."""
+"""From a case with a ``[bar]`` to its scene: place the nodes, support and load them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from dembound.bar.banded import is_stable, largest_stable_step
+from dembound.bar.body import BarBody
+from dembound.bar.part import BarPart
 from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
-from dembound.case import BarCase
-from dembound.kernels import tables
-from dembound.methods.bonds import Bonds, Rod
+from dembound.case.bar import BarCase
+from dembound.methods.bonds import Rod
+from dembound.motion.part import System
 
 HELD = (1, 2)
 """A bar moves along x alone."""
 
 
 @dataclass(frozen=True)
-class BarScene:
-    """A bar of n nodes, all SI; its displacements and velocities fill the first row of the (3, n) state arrays.
+class BarScene(BarBody):
+    """A case of a bar turned into arrays."""
 
-    Attributes
-    ----------
-    case : where it came from.
-    rod : nodes, section and stiffness.
-    positions : (n, 2) m, with y = 0.
-    edges : the two ends, left and right; what a node stands for there, its "diameter", is the section.
-    supports : the table of what pushes from outside, loads included.
-    monitors : name -> node.
-    kind, energy_unit, record_width, block : see scene.Scene; stress is the seventh column, and blocks are long, as
-        steps are short.
-    """
-
-    case: BarCase
-    rod: Rod
-    positions: np.ndarray
-    edges: Mapping[str, Edge]
-    supports: Supports
-    monitors: Mapping[str, int]
-
-    kind = "bar"
-    energy_unit = "J"
-    record_width = 7
-    block = 2048
-    threads = 1
-    damp = 0.0
-    seam = None
-    remembers = False
-
-    @property
-    def attributes(self) -> dict[str, Any]:
-        """What a record's header has beside that of every run.
-
-        Density in kg/m³, section in m², wave speed in m/s, attenuation in 1/m, which end is loaded, and what the left
-        and the right one are.
-        """
-        bar = self.case.bar
-        return {
-            "density": bar.density,
-            "section": self.rod.section,
-            "wave_speed": bar.speed,
-            "attenuation": bar.attenuation,
-            "loaded": self.case.loaded,
-            "ends": [self.case.boundary[side].type if side in self.case.boundary else "free" for side in self.edges],
-        }
-
-    @property
-    def columns(self) -> dict[str, tuple[np.ndarray, str]]:
-        """What a record keeps of every node, by name: values (n, …) and unit."""
-        return {"position": (self.positions, "m"), "volume": (self.rod.volumes, "m³")}
-
-    @property
-    def places(self) -> dict[str, tuple[float, float]]:
-        """Where monitors were wanted, m."""
-        return {monitor.name: (monitor.position, 0.0) for monitor in self.case.monitor}
-
-    @property
-    def count(self) -> int:
-        """Number of nodes n."""
-        return self.rod.count
-
-    @property
-    def size(self) -> np.ndarray:
-        """(2,) length and height of the scene, m; the latter is 0."""
-        return np.array([self.case.bar.length, 0.0])
-
-    @cached_property
-    def mass(self) -> np.ndarray:
-        """(n,) kg; half at the ends."""
-        return self.case.bar.density * self.rod.volumes
-
-    @cached_property
-    def inertia(self) -> np.ndarray:
-        """(n,) kg·m² of thin slices as long as the spacing; they do not turn."""
-        return self.mass * self.rod.spacing**2 / 12.0
-
-    @property
-    def free(self) -> np.ndarray:
-        """(3,) 1 for a component that moves: x alone."""
-        return np.array([1.0, 0.0, 0.0])
-
-    @property
-    def steady_load(self) -> np.ndarray:
-        """(3, n) N: nothing, every load of a bar follows a wave."""
-        return np.zeros((3, self.count))
-
-    def seam_table(self, nodes: np.ndarray) -> tables.Seam:
-        """No free-field column does anything to nodes (k,)."""
-        k, empty = len(nodes), np.zeros(0, dtype=np.uint32)
-        return tables.Seam(np.full(k, -1), np.zeros((k, 3)), np.zeros(k + 1, dtype=np.uint32), empty, empty, empty)
-
-    def step_limit(self) -> float:
-        """Largest time step (s) that is stable at every stage of the case's method."""
-        return min(self.stable_step(bonds) for bonds in self.case.method.stages(self.rod))
-
-    def stable_step(self, bonds: Bonds) -> float:
-        """Largest stable time step (s) with these bonds."""
-        return largest_stable_step(bonds.stiffness(), self.mass, self._held)
-
-    def is_stable(self, bonds: Bonds, step: float) -> bool:
-        """Whether a time step (s) is stable with these bonds; quicker than `stable_step`."""
-        return is_stable(step, bonds.stiffness(), self.mass, self._held)
-
-    @cached_property
-    def _held(self) -> np.ndarray:
-        """Nodes (h,) whose velocity is prescribed."""
-        return self.supports.node[self.supports.prescribed & (self.supports.component == 0)]
-
-    @property
-    def bytes(self) -> int:
-        """Memory of state (9 numbers a node), masses, springs and room (10), bonds, their stiffness and breaks (3m)."""
-        return 8 * self.count * (9 + 10 + 3 * self.case.method.largest_horizon)
+    def system(self, time_step: float) -> System:
+        """The bar at rest as its method begins, to be stepped by time_step (s)."""
+        return System([BarPart(self, time_step)], [], self.steady_load)
 
 
 def build_bar(case: BarCase) -> BarScene:

@@ -1,32 +1,31 @@
 """A bar's run in numbers, for scripts."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
-from dembound.bar.engine import BarEngine
 from dembound.bar.fracture import spalls
+from dembound.bar.part import BarPart
 from dembound.bar.scene import BarScene
 from dembound.boundaries.viscous import Dashpots
-from dembound.gauges import pull_back_strength
-from dembound.results import open_record
-from dembound.simulate import Simulation
+from dembound.gauge.estimates import pull_back_strength
+from dembound.motion.trackers import Run
+from dembound.results.reader import open_record
 
 LATER_SPALLS = "spalls after the first do not converge as bar.spacing shrinks: it decides their number and places"
 """Said where a bar has spalled more than once."""
 
 
-def summarise_bar(scene: BarScene, simulation: Simulation, record: Path) -> dict[str, Any]:
+def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
     """What a bar's summary has beside that of every run: plain JSON values, SI units."""
-    engine = simulation.engine
-    assert isinstance(engine, BarEngine)
-    found = spalls(engine.bonds, scene.positions[:, 0], simulation.time_step)
+    bar = part_of(run)
+    found = spalls(bar.bonds, scene.positions[:, 0], run.time_step)
     return {
         "nodes": scene.count,
         "method": scene.case.method.model_dump(),
-        "bond_updates": engine.bond_updates,
-        "courant": simulation.time_step * scene.case.bar.speed / scene.rod.spacing,
+        "bond_updates": bar.bond_updates,
+        "courant": run.time_step * scene.case.bar.speed / scene.rod.spacing,
         "spalls": [spall.describe() for spall in found],
         "spalls_note": LATER_SPALLS if len(found) > 1 else None,
         "bar": describe_bar(scene),
@@ -34,6 +33,12 @@ def summarise_bar(scene: BarScene, simulation: Simulation, record: Path) -> dict
         "stress": _largest_stresses(record),
         "pull_back_strength": _pull_backs(scene, record) if found else {},
     }
+
+
+def part_of(run: Run) -> BarPart:
+    """The one part of a bar's run."""
+    (bar,) = run.system.parts
+    return cast(BarPart, bar)
 
 
 def describe_bar(scene: BarScene) -> dict[str, float | None]:

@@ -1,15 +1,24 @@
 """What a run of a bar will do that was probably not meant, as far as it is known before."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
 
+import h5py
 import numpy as np
 
-from dembound.bar.check import PERCENT, cells_of_waves
+from dembound.bar.facts import PERCENT, cells_of_waves
+from dembound.bar.scene import BarScene
 from dembound.boundaries import OPPOSITE, Free, Velocity
 from dembound.boundaries.driven import Driven
 from dembound.boundaries.viscous import Dashpots
-from dembound.case import BarCase
-from dembound.magnitudes import grip_stress, stress_warnings, time_warnings
+from dembound.case.bar import BarCase
+from dembound.case.magnitudes import grip_stress, stress_warnings, time_warnings
+from dembound.results.reader import open_record
+from dembound.results.warnings import still_moving
+
+NOTHING = 0.05
+"""Share of the strength that a tension must reach: what rings behind a pulse comes to some per cent of it."""
 
 MOMENTS = 500
 """Moments, and places beside the free end, at which tension is looked for."""
@@ -128,3 +137,50 @@ def _pressure(case: BarCase, time: np.ndarray) -> np.ndarray:
         inwards = 1.0 if case.loaded == "left" else -1.0
         pressure += inwards * case.bar.density * case.bar.speed * case.wave[table.wave_p].velocity(time)
     return pressure
+
+
+def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path) -> list[str]:
+    """What a run of a bar has shown that was probably not meant, one line each, from its summary and record."""
+    cuts = np.array([spall["end"] for spall in summary["spalls"]]).reshape(-1, 2).mean(axis=1)
+    pieces = np.searchsorted(np.sort(cuts), scene.positions[:, 0])
+    with open_record(record) as file:
+        return [
+            *still_moving(scene, summary["duration"], file, pieces),
+            *_torn_by_the_load(scene.case, summary),
+            *_no_tension(scene.case, file),
+        ]
+
+
+def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:
+    """A first spall where a load acts, before any wave can be back there."""
+    if not summary["spalls"]:
+        return
+    first, bar, horizon = summary["spalls"][0], case.bar, case.method.largest_horizon
+    near = horizon * bar.length / bar.cells
+    for load in case.load:
+        start = case.wave[load.wave].start
+        distance = first["start"][0] if load.side == "left" else bar.length - first["start"][1]
+        if distance < near and first["time"] < start + 2.0 * bar.length / bar.speed:
+            cure = f"give load.{load.name}.nodes = {horizon}" if load.nodes < horizon else "take a smaller bar.spacing"
+            yield (
+                f"load.{load.name}: the load itself tore the bar, at {first['time']:.4g} s and {distance:g} m from the "
+                f"loaded end, before any wave was back there; {cure}"
+            )
+
+
+def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
+    """A bar with a strength that no recorded tension comes near.
+
+    Silent where a warning before the run has said so.
+    """
+    strength = case.bar.breaking_stretch * case.bar.modulus
+    foreseen = [*stress_beside_strength(case), *ends_too_soon(case)]
+    if np.isinf(strength) or len(file["cracks/time"]) > 0 or foreseen:
+        return
+    groups = [*file["histories"].values(), *file["snapshots"].values()]
+    tension = max(0.0, *(float(np.max(group["stress"][:])) for group in groups))
+    if tension < NOTHING * strength:
+        yield (
+            f"bar: the largest tension reached is {tension:.3g} Pa, {100.0 * tension / strength:.2g} % of the "
+            f"strength, {strength:g} Pa; nothing can break"
+        )

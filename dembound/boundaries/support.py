@@ -103,6 +103,12 @@ class Supports:
     def __len__(self) -> int:
         return len(self.node)
 
+    def springs_at(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces (3, n) N that take the springs' zero to displacements (3, n)."""
+        force = np.zeros_like(displacement)
+        force[self.component, self.node] = self.stiffness * displacement[self.component, self.node]
+        return force
+
     def sample(self, times: np.ndarray, half_step: float) -> np.ndarray:
         """All that drives every row at each time, (steps, r): forces at `times`, prescribed velocities half a step on.
 

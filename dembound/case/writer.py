@@ -2,7 +2,7 @@
 
 import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -11,13 +11,14 @@ import tomli_w
 
 from dembound.case.model import Case
 from dembound.case.reader import loads
+from dembound.case.schema import Schema
 from dembound.case.sentences import unknown
 from dembound.errors import CaseError
 from dembound.waves import Record
 
 
-def with_changes(case: Case, changes: Mapping[str, Any]) -> Case:
-    """The case with some keys changed, checked as if it had been read from a file.
+def with_changes(case: Case, changes: Mapping[str, Any], schemas: Sequence[Schema]) -> Case:
+    """The case with some keys changed, checked as if it had been read from a file of one of the schemas' kinds.
 
     Parameters
     ----------
@@ -33,7 +34,7 @@ def with_changes(case: Case, changes: Mapping[str, Any]) -> Case:
     CaseError
         If a key leads nowhere or the changed case is not valid.
     """
-    return loads(_changed(case.text, changes), case.folder, case.name)
+    return loads(_changed(case.text, changes), schemas, case.folder, case.name)
 
 
 def to_toml(case: Case, folder: Path | None = None) -> str:

@@ -13,9 +13,12 @@ from rich.console import Console
 
 from dembound import __version__
 from dembound.boundaries import SIDES
-from dembound.case import Case, DiskCase, load, with_changes
+from dembound.case import Case
+from dembound.case.disks import DiskCase
+from dembound.case.model import as_kind
 from dembound.errors import CaseError, DemboundError
-from dembound.results import require_folder
+from dembound.kinds import load, with_changes
+from dembound.results.reader import require_folder
 
 EXIT_CODES = """
 Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration or view failed; 4 a packing
@@ -89,10 +92,7 @@ def load_case(path: Path, changes: list[str] | None, name: str | None = None) ->
 
 def load_disks(path: Path, changes: list[str] | None, name: str | None = None) -> DiskCase:
     """The same for commands that know disks only."""
-    case = load_case(path, changes, name)
-    if not isinstance(case, DiskCase):
-        raise CaseError([f"{path}: is the case of a bar, this command is for disks"])
-    return case
+    return as_kind(load_case(path, changes, name), DiskCase, "is the case of a bar, this command is for disks")
 
 
 def _setting(text: str) -> tuple[str, Any]:

@@ -8,11 +8,12 @@ from typing import Annotated
 
 import typer
 
-from dembound.calibrate import Calibration, calibrate
-from dembound.case import to_toml, with_changes
+from dembound.case import to_toml
 from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, out, use_threads
+from dembound.kinds import with_changes
 from dembound.plot.convergence import plot_convergence
 from dembound.plot.style import save
+from dembound.studies.calibration import Calibration, calibrate
 
 OneCase = Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")]
 

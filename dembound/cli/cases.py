@@ -1,14 +1,17 @@
 """Commands that begin with a case: new, check, run, packing."""
 
 import json
+import time
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.table import Table
 
+from dembound import IMPORT_BEGAN
 from dembound.boundaries.support import Edge
-from dembound.case import BAR_STARTER, STARTER
+from dembound.case.bar import STARTER as BAR_STARTER
+from dembound.case.disks import STARTER
 from dembound.check import check
 from dembound.cli.app import (
     PICTURE,
@@ -25,16 +28,19 @@ from dembound.cli.app import (
     out,
     use_threads,
 )
-from dembound.cli.outcome import outcome
 from dembound.cli.progress import print_warning, progress_of
+from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
-from dembound.half_space import write_exact
+from dembound.kinds import kind_of
 from dembound.plot.packing import plot_brick, plot_patterns
 from dembound.plot.style import save
-from dembound.run import foresee, run_case
-from dembound.scene import Scene, build
+from dembound.run import preflight, run_case
+from dembound.studies.half_space import write_exact
 
 RIGHT = Side("right")
+
+IMPORT_SECONDS = time.perf_counter() - IMPORT_BEGAN
+"""What the command line took to be imported, but for the rest of its own modules."""
 
 
 @app.command("new", rich_help_panel="Cases")
@@ -83,17 +89,19 @@ def run(
     if len(set(names)) < len(names):
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
     for case in loaded[1:]:  # the first is planned at once, before anything is written
-        foresee(case)
+        preflight(case)
+    spent = {"import": IMPORT_SECONDS}
     for case in loaded:
         try:
             with progress_of(case.name) as step:
-                folder = run_case(case, output, step)
+                folder = run_case(case, output, step, spent)
         except KeyboardInterrupt:
             partial = output / f"{case.name}.partial"
             kept = f"histories so far are in {partial}" if (partial / "run.h5").is_file() else "the run had not begun"
             err.print(f"{case.name}: stopped; {kept}")
             raise
-        facts = outcome(json.loads((folder / "summary.json").read_text()), case)
+        spent = {}  # the first case has borne it
+        facts = kind_of(case).outcome(json.loads((folder / "summary.json").read_text()))
         if facts:
             out.print(f"{case.name}: {'; '.join(facts)}")
         out.print(f"{case.name}: results in {folder}")
@@ -124,7 +132,7 @@ def packing(
     out.print(f"wrote {output}")
 
 
-def _edge_of(scene: Scene, side: str) -> Edge:
+def _edge_of(scene: DiskScene, side: str) -> Edge:
     """A side that exists; a periodic one has no particles of its own."""
     if side not in scene.edges:
         raise CaseError([f"--side: is {side}, which is periodic in {scene.case.name}; here: {', '.join(scene.edges)}"])

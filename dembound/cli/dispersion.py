@@ -9,11 +9,11 @@ import typer
 from rich.table import Table
 
 from dembound.cli.app import PICTURE, Settings, app, load_case, out, writable
-from dembound.dispersion import lattices, lattices_of, measure, write_table
 from dembound.errors import CaseError
 from dembound.exact.dispersion import Lattice, Speed, cells_per_wavelength, courant_limit
 from dembound.plot.dispersion import Points, name, plot_dispersion
 from dembound.plot.style import save
+from dembound.studies.dispersion import lattices, lattices_of, measure, write_table
 
 HORIZONS, SPACINGS, TIME_STEPS = (1, 2, 3, 4, 8), (0.005,), (1e-6,)
 """Spacing and step as in L figs 5 and 7."""

@@ -8,8 +8,8 @@ from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as RichProgress
 
 from dembound.cli.app import err
+from dembound.motion.trackers import Run
 from dembound.run import Progress
-from dembound.simulate import Simulation
 
 INTERVAL = 10.0
 """Seconds from one line to the next."""
@@ -62,13 +62,13 @@ class Lines(Progress):
             took = self.said - self.began
             err.print(f"{self.name}: settling for {took:.0f} s, {steps:,} steps, force ratio {ratio:.1e}", markup=False)
 
-    def running(self, simulation: Simulation, steps: int) -> None:
+    def running(self, run: Run, steps: int) -> None:
         """The run itself: steps done and in all, simulated time, and particle-steps a second since the last line."""
         if (since := self.now() - self.said) >= INTERVAL:
-            rate = (simulation.steps - self.steps) * simulation.scene.count / since / 1e6
-            self.said, self.steps = self.said + since, simulation.steps
+            rate = (run.state.step - self.steps) * run.scene.count / since / 1e6
+            self.said, self.steps = self.said + since, run.state.step
             err.print(
-                f"{self.name}: {simulation.steps:,} of {steps:,} steps, {simulation.time:.4g} s simulated, "
+                f"{self.name}: {run.state.step:,} of {steps:,} steps, {run.time:.4g} s simulated, "
                 f"{rate:.3g} M particle-steps/s",
                 markup=False,
             )
@@ -89,8 +89,8 @@ class Bar(Progress):
         """The static stage: no one knows how long it takes."""
         self.bar.update(self.task, description=f"{self.name}: settling, {steps:,} steps, force ratio {ratio:.1e}")
 
-    def running(self, simulation: Simulation, steps: int) -> None:
+    def running(self, run: Run, steps: int) -> None:
         """The run itself."""
         speed = self.bar.tasks[0].speed
-        rate = f"{speed * simulation.scene.count / 1e6:.0f} M particle-steps/s" if speed else ""
-        self.bar.update(self.task, description=self.name, completed=simulation.steps, total=steps, rate=rate)
+        rate = f"{speed * run.scene.count / 1e6:.0f} M particle-steps/s" if speed else ""
+        self.bar.update(self.task, description=self.name, completed=run.state.step, total=steps, rate=rate)

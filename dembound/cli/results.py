@@ -9,21 +9,19 @@ import typer
 from rich.table import Column, Table
 
 from dembound.cli.app import PICTURE, Side, app, out, png
-from dembound.compare import compare
 from dembound.errors import CaseError
+from dembound.kinds import kind_of_record
 from dembound.packings.cache import cache_folder, clear
-from dembound.plot.bar import plot_bar_field
 from dembound.plot.boundary import plot_boundary
 from dembound.plot.convergence import plot_convergence
 from dembound.plot.energy import plot_energy
 from dembound.plot.histories import plot_histories
-from dembound.plot.scene import plot_scene
 from dembound.plot.style import save
-from dembound.results import is_bar, open_record
-from dembound.view import view
+from dembound.results.compare import compare
+from dembound.results.view import view
 
-BARS, DISKS, CALIBRATIONS = "runs of bars", "runs of disks", "calibrations"
-"""Kinds of results, none of which makes a picture together with another."""
+CALIBRATIONS = "calibrations"
+"""What results are called that are of no run."""
 
 
 class Field(StrEnum):
@@ -94,10 +92,8 @@ def plot(
         raise CaseError(["--snapshot: goes with --field"])
     if kind == CALIBRATIONS:
         figure = plot_convergence(files)
-    elif field is not None and kind == BARS:
-        figure = plot_bar_field(files[0], field.value, snapshot)
     elif field is not None:
-        figure = plot_scene(files[0], snapshot, field.value)  # type: ignore[arg-type]  # says itself what disks have
+        figure = kind_of_record(files[0]).field_picture(files[0], field.value, snapshot)
     elif energy:
         figure = plot_energy(files[0])
     elif boundary is not None:
@@ -118,10 +114,7 @@ def _common_kind(files: Sequence[Path]) -> str:
 
 def _kind(file: Path) -> str:
     """Of what a result is."""
-    if file.name == "calibration.h5":
-        return CALIBRATIONS
-    with open_record(file) as record:
-        return BARS if is_bar(record) else DISKS
+    return CALIBRATIONS if file.name == "calibration.h5" else f"runs of {kind_of_record(file).plural}"
 
 
 def _one_picture(pictures: Mapping[str, object], choices: Mapping[str, object], kind: str) -> None:

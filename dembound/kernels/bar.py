@@ -12,14 +12,12 @@ springs are `plain`: one stencil with constants moves them.
 import numpy as np
 from numba import njit
 
-from dembound.kernels.common import FASTMATH, REST, U
-from dembound.kernels.step import move_supported, note_after, note_before, note_top_speeds
-
-DONE, ASKED = 0, 1
-"""Why the kernel returned: all steps are done; a spring has come to where the method has to answer."""
+from dembound.kernels.common import DONE, FAST, FASTMATH, REST, TRIGGERED, U
+from dembound.kernels.law import is_law
+from dembound.kernels.tables import BarBonds
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def _plain_reached(u, a, b, limit):
     """How many of the springs that hold nodes a to b − 1 are as long as their limit (m)."""
     reached = 0
@@ -28,7 +26,7 @@ def _plain_reached(u, a, b, limit):
     return reached
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def _move_plain(u, v, a, b, stiffness, step, spare):
     """One step of nodes a to b − 1 between springs that are all alike; stiffness: Δt k/m."""
     one = U(1)
@@ -39,7 +37,7 @@ def _move_plain(u, v, a, b, stiffness, step, spare):
         spare[i] = u[i] + step * w
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def _move_plain_dragged(u, v, a, b, stiffness, keep, step, spare, mean):
     """`_move_plain` under attenuation; mean (n,) gets the means of the velocities half a step before and after."""
     one = U(1)
@@ -51,26 +49,26 @@ def _move_plain_dragged(u, v, a, b, stiffness, keep, step, spare, mean):
         spare[i] = u[i] + step * w
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def _spring_forces(u, a, b, spring, limit, room, force):
+@njit(**FAST)
+def _spring_forces(u, a, b, spring, limit, space, force):
     """Fill the forces (N) of local springs on nodes a to b − 1; returns how many springs are at their limit."""
     one, last = U(1), u.size - 1
     reached = 0
     for k in range(U(max(a - 1, 0)), U(min(b, last))):
         e = u[k + one] - u[k]
         reached += (e >= limit[k]) & (spring[k] > 0.0)
-        room[k + one] = spring[k] * e
+        space[k + one] = spring[k] * e
     if a == 0:
-        room[0] = 0.0
+        space[0] = 0.0
     if b > last:
-        room[b] = 0.0
+        space[b] = 0.0
     for i in range(U(a), U(b)):
-        force[i] = room[i + one] - room[i]
+        force[i] = space[i + one] - space[i]
     return reached
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def _add_bond_forces(u, a, b, p, bond, limit, room, force):
+@njit(**FAST)
+def _add_bond_forces(u, a, b, p, bond, limit, space, force):
     """Add the forces (N) of the bonds of one length among nodes a to b − 1; returns how many are at their limit."""
     m, row = U(bond.shape[0]), U(p - 1)
     p = U(p)
@@ -78,32 +76,32 @@ def _add_bond_forces(u, a, b, p, bond, limit, room, force):
     for i in range(U(a), U(b) - p):
         e = u[i + p] - u[i]
         reached += (e >= limit) & (bond[row, i] > 0.0)
-        room[i + m] = bond[row, i] * e
+        space[i + m] = bond[row, i] * e
     for i in range(p):  # no bonds begin before the first node or reach beyond the last
-        room[U(a) + m - p + i] = 0.0
-        room[U(b) + m - p + i] = 0.0
+        space[U(a) + m - p + i] = 0.0
+        space[U(b) + m - p + i] = 0.0
     for i in range(U(a), U(b)):
-        force[i] += room[i + m] - room[i + (m - p)]
+        force[i] += space[i + m] - space[i + (m - p)]
     return reached
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def forces(u, mixed, spring, spring_limit, bond, bond_limit, room, force):
+@njit(**FAST)
+def forces(u, mixed, spring, spring_limit, bond, bond_limit, space, force):
     """Fill force (n,) N for the nodes that are not plain; returns how many springs and bonds are at their limit."""
     reached = 0
     for r in range(mixed.shape[0]):
         a, b = mixed[r, 0], mixed[r, 1]
         if mixed[r, 3]:
-            reached += _spring_forces(u, a, b, spring, spring_limit, room, force)
+            reached += _spring_forces(u, a, b, spring, spring_limit, space, force)
         else:
             for i in range(U(a), U(b)):
                 force[i] = 0.0
         for p in range(1, min(mixed[r, 2], b - a - 1) + 1):
-            reached += _add_bond_forces(u, a, b, p, bond, bond_limit[p - 1], room, force)
+            reached += _add_bond_forces(u, a, b, p, bond, bond_limit[p - 1], space, force)
     return reached
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def _plain_ask(u, plain, limit):
     """Whether a spring that holds a plain node has reached its limit (m)."""
     reached = 0
@@ -112,7 +110,7 @@ def _plain_ask(u, plain, limit):
     return reached > 0
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def _asks(u, bonds):
     """Whether one of the other springs has reached a limit where the method decides."""
     for k in range(bonds.spring.size):
@@ -121,7 +119,7 @@ def _asks(u, bonds):
     return False
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def break_at_limit(number, u, v, step, bonds):
     """Break for good all that has reached its limit (L eq. 6), in step `number`; returns the energy (J) that took.
 
@@ -145,7 +143,7 @@ def break_at_limit(number, u, v, step, bonds):
     return lost
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def plane_force(k, u, spring, bond):
     """Force (N, tension positive) through plane k, between nodes k and k + 1: of all that crosses it."""
     total = spring[k] * (u[k + 1] - u[k])
@@ -156,7 +154,7 @@ def plane_force(k, u, spring, bond):
     return total
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def node_stress(i, u, spring, bond, section):
     """Stress (Pa, tension positive) at node i: the mean of the planes on both sides, at an end that of its one."""
     total = 0.0
@@ -170,14 +168,14 @@ def node_stress(i, u, spring, bond, section):
     return total / (planes * section)
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def stresses(u, bonds, stress):
     """Fill stress (n,) Pa of all nodes, see `node_stress`."""
     for i in range(u.size):
         stress[i] = node_stress(i, u, bonds.spring, bonds.bond, bonds.section)
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def stored(u, bonds):
     """Strain energy (J) in springs and in bonds at displacements u (n,) m."""
     springs = 0.0
@@ -190,7 +188,7 @@ def stored(u, bonds):
     return springs, peridynamic
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def _move_mixed(u, v, a, b, mobility, keep, step, spare, mean):
     """One step of nodes a to b − 1 with their forces in spare (n,), which gets their new displacements."""
     for i in range(U(a), U(b)):
@@ -201,7 +199,7 @@ def _move_mixed(u, v, a, b, mobility, keep, step, spare, mean):
         spare[i] = u[i] + step * w
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def _move_unsupported(u, v, plain, stiffness, mixed, mobility, keep, step, spare, mean, nodes, dragged):
     """One step of all nodes but the supported ones (k,)."""
     for r in range(plain.shape[0]):
@@ -230,7 +228,7 @@ def _drag_work(mean, v, drag):
     return whole, 0.5 * late
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def _note_drag(v, mean, before, nodes, drag, step, work):
     """Enter what attenuation took in the books; for supported nodes their table entered it as the outside's work."""
     for s in range(nodes.size):
@@ -244,55 +242,56 @@ def _note_drag(v, mean, before, nodes, drag, step, work):
     work[0, 1] += step * whole
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def advance(u, spare, v, number, bonds, body, keep, drag, supports, log):
-    """Advance by up to supports.drive.shape[0] steps; returns the steps done and why it stopped.
+@njit(**FAST)
+def check(bonds, u, spare, v):
+    """Whether a spring has come to where the method decides; leaves the forces in spare.
 
-    u, spare, v : (3, n) displacement now, room for the next one, velocity half a step ago, of which only the first row
-    moves; u holds the result. number : the first step's. bonds : see tables.BarBonds. keep : part of its velocity
-    that attenuation leaves a node in a step, drag : (n,) N·s/m of its dashpots, or (0,) for none. body, supports, log :
-    see tables.py; log.record is 7 wide here, stress (Pa) last.
+    bonds : see tables.BarBonds; of u, spare and v, which have three rows, a bar uses the first.
     """
-    # taken out of their bundles once: within the loop each look into one would cost as much as forty nodes
-    nodes, twin = supports.nodes, supports.seam.twin
-    probes, record, tracked, peaks, work = log.probes, log.record, log.tracked, log.peaks, log.work
-    plain, mixed, limit, room = bonds.plain, bonds.mixed, bonds.plain_limit, bonds.room
-    spring, spring_limit, bond, bond_limit = bonds.spring, bonds.spring_limit, bonds.bond, bonds.bond_limit
-    steps = supports.drive.shape[0]
-    across = np.zeros((nodes.size, 3))
-    followed = np.zeros((nodes.size, 3))
-    before = np.empty(nodes.size)
-    mean = np.zeros(u.shape[1])
-    dragged = drag.size > 0
-    mobility = (0.5 * (1.0 + keep)) * body.mobility
-    stiffness = (0.5 * (1.0 + keep)) * bonds.plain_mobility * bonds.plain_stiffness
-    done = steps
-    why = DONE
-    here, there = u, spare
-    w = v[0]
-    for step in range(steps):
-        x, y = here[0], there[0]
-        reached = forces(x, mixed, spring, spring_limit, bond, bond_limit, room, y)
-        if (limit < np.inf and _plain_ask(x, plain, limit)) or (reached > 0 and _asks(x, bonds)):
-            done, why = step, ASKED
-            break
-        if reached > 0:
-            work[0, 3] += break_at_limit(number + step, x, w, body.step, bonds)
-            work[1, 3] = work[0, 3]
-            forces(x, mixed, spring, spring_limit, bond, bond_limit, room, y)
-        note_before(step, here, v, probes, record, twin, followed)
-        for q in range(probes.size):
-            record[step, q, 6] = node_stress(probes[q], x, spring, bond, bonds.section)
-        for s in range(nodes.size):
-            before[s] = w[nodes[s]]
-        _move_unsupported(x, w, plain, stiffness, mixed, mobility, keep, body.step, y, mean, nodes, dragged)
-        move_supported(step, here, v, there, across, followed, supports, body, work)
-        if dragged:
-            _note_drag(w, mean, before, nodes, drag, body.step, work)
-        note_after(step, v, probes, record, tracked, peaks)
-        if log.top_speed.size > 0:
-            note_top_speeds(v, log.top_speed)
-        here, there = there, here
-    if done % 2 == 1:
-        u[:] = here
-    return done, why
+    x = u[0]
+    bonds.reached[0] = forces(
+        x, bonds.mixed, bonds.spring, bonds.spring_limit, bonds.bond, bonds.bond_limit, bonds.space, spare[0]
+    )
+    if bonds.plain_limit < np.inf and _plain_ask(x, bonds.plain, bonds.plain_limit):
+        return TRIGGERED
+    return TRIGGERED if bonds.reached[0] > 0 and _asks(x, bonds) else DONE
+
+
+@njit(**FAST)
+def push(bonds, u, spare, v, number, step, work):
+    """Break what has reached its limit, and leave the forces of the rest in spare."""
+    if bonds.reached[0] > 0:
+        work[0, 3] += break_at_limit(number, u[0], v[0], step, bonds)
+        work[1, 3] = work[0, 3]
+        forces(u[0], bonds.mixed, bonds.spring, bonds.spring_limit, bonds.bond, bonds.bond_limit, bonds.space, spare[0])
+    return 0
+
+
+@njit(**FAST)
+def note(bonds, index, u, log):
+    """Write down the stress (Pa) at the probes, in the seventh column."""
+    for q in range(log.probes.size):
+        log.record[index, q, 6] = node_stress(log.probes[q], u[0], bonds.spring, bonds.bond, bonds.section)
+
+
+@njit(**FAST)
+def move(bonds, u, spare, v, body, nodes):
+    """One step of all nodes but the supported ones."""
+    w, before = v[0], bonds.before
+    for s in range(nodes.size):
+        before[s] = w[nodes[s]]
+    dragged = bonds.drag.size > 0
+    _move_unsupported(
+        u[0], w, bonds.plain, bonds.plain_push, bonds.mixed, bonds.mobility, bonds.keep, body.step, spare[0],
+        bonds.mean, nodes, dragged,
+    )  # fmt: skip
+
+
+@njit(**FAST)
+def finish(bonds, v, body, nodes, work):
+    """Enter what attenuation took."""
+    if bonds.drag.size > 0:
+        _note_drag(v[0], bonds.mean, bonds.before, nodes, bonds.drag, body.step, work)
+
+
+is_law(BarBonds, check=check, push=push, note=note, move=move, finish=finish)

@@ -1,28 +1,61 @@
-"""The step of central differences under the contact law with a memory: pairs push first, then particles move."""
+"""The history-dependent law in the loop: pairs push first, then particles move by what their contact ends come to."""
 
 import numpy as np
 from numba import njit, prange
 
-from dembound.kernels.common import CHUNKS, FASTMATH, U
-from dembound.kernels.contacts import ends_force, moved, push, seam_ends_forces
-from dembound.kernels.elastic import BROKE, DONE, LIST_ENDS
-from dembound.kernels.follower import extra_work, turn_forces
-from dembound.kernels.step import move_particle, move_supported, note_after, note_before, note_top_speeds
+from dembound.kernels.common import CHUNKS, DONE, FAST, LIST_ENDS, PARALLEL, U, column_sum, largest
+from dembound.kernels.contacts import ends_force, moved, note_places
+from dembound.kernels.contacts import push as push_pairs
+from dembound.kernels.law import is_law, is_tie
+from dembound.kernels.step import move_particle, note_damping
+from dembound.kernels.tables import Bonded, SeamEnds
 
 
-@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
+def begin(bonded):
+    """Measure how far particles have moved anew before the first step."""
+    bonded.way[0] = 0.0
+    bonded.way[1] = 0.0
+
+
+@njit(**FAST)
+def check(bonded, u, spare, v):
+    """Whether a pair may have come into reach that is not listed."""
+    way = bonded.way
+    if 2.0 * way[0] < way[1]:
+        return DONE
+    way[0] = 0.0
+    way[1] = bonded.skin - 2.0 * moved(u, bonded.contacts.begin, bonded.origin)
+    return LIST_ENDS if way[1] < 0.0 else DONE
+
+
+@njit(**FAST)
+def push(bonded, u, spare, v, number, step, work):
+    """Let all pairs push; returns the bonds that broke, if the loop is to stop at them."""
+    lost = bonded.lost
+    breaks = push_pairs(u, v, step, number, bonded.contacts, bonded.limits, lost)
+    if breaks > 0:
+        note_places(u, number, bonded.contacts)
+    for way in range(2):
+        work[0, 2 + way] += column_sum(lost, way)
+        work[1, 2 + way] = work[0, 2 + way]
+    return breaks if bonded.stops else 0
+
+
+@njit(**PARALLEL)
 def _move(u, v, contacts, body, spare, fastest, damped):
-    """One step of all particles, see `move_particle`.
+    """One step of the contacts' particles, see `move_particle`.
 
     fastest (chunks,) gets their speeds, damped (chunks, 2) the work of local damping.
     """
     force, start, end = contacts.force, contacts.start, contacts.end
-    n = u.shape[1]
+    begin = contacts.begin
+    n = start.size - 1 - begin
     for chunk in prange(CHUNKS):
         most = 0.0
         whole = 0.0
         half = 0.0
-        for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
+        for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
             fx, fy, moment = ends_force(i, force, start, end)
             taken, up_to = move_particle(i, fx, fy, moment, u, v, body, spare)
@@ -34,58 +67,34 @@ def _move(u, v, contacts, body, spare, fastest, damped):
         damped[chunk, 1] = half
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def advance(u, spare, v, number, contacts, limits, origin, skin, body, supports, followers, stop, log):
-    """Advance by up to supports.drive.shape[0] steps, the first being that of `number`; returns steps done and why.
+@njit(**FAST)
+def move(bonded, u, spare, v, body, nodes):
+    """One step of all particles, see law.move."""
+    _move(u, v, bonded.contacts, body, spare, bonded.fastest, bonded.damped)
 
-    As elastic.advance; origin (2, n) are the displacements at which all pairs with gaps up to skin (m) were listed.
-    stop : return after a step in which a bond broke, so that balancing forces can end on debris.
-    """
-    steps = supports.drive.shape[0]
-    nodes = supports.nodes
-    across = np.empty((nodes.size, 3))
-    followed = np.empty((nodes.size, 3))
-    fastest = np.zeros(CHUNKS)
-    damped = np.zeros((CHUNKS, 2))
-    lost = np.zeros((CHUNKS, 2))
-    travelled = 0.0
-    room = 0.0
-    here, there = u, spare
-    done = steps
-    why = DONE
-    for step in range(steps):
-        if 2.0 * travelled >= room:
-            room = skin - 2.0 * moved(here, origin)
-            travelled = 0.0
-            if room < 0.0:
-                done = step
-                why = LIST_ENDS
-                break
-        turned = turn_forces(here, v, followers, body.load, body.step)
-        breaks = push(here, v, body.step, number + step, contacts, limits, lost)
-        seam_ends_forces(contacts, supports.seam, across)
-        note_before(step, here, v, log.probes, log.record, supports.seam.twin, followed)
-        _move(here, v, contacts, body, there, fastest, damped)
-        move_supported(step, here, v, there, across, followed, supports, body, log.work)
-        note_after(step, v, log.probes, log.record, log.tracked, log.peaks)
-        if log.top_speed.size > 0:
-            note_top_speeds(v, log.top_speed)
-        log.work[1, 1] += damped[:, 1].sum()
-        log.work[0, 1] += damped[:, 0].sum()
-        for way in range(2):
-            log.work[0, 2 + way] += lost[:, way].sum()
-            log.work[1, 2 + way] = log.work[0, 2 + way]
-        log.work[1, 5] = log.work[0, 5] + turned
-        log.work[0, 5] += turned + extra_work(v, followers, body.step)
-        most = fastest.max()
-        for s in range(nodes.size):
-            most = max(most, np.hypot(v[0, nodes[s]], v[1, nodes[s]]))
-        travelled += body.step * most
-        here, there = there, here
-        if stop and breaks > 0:
-            done = step + 1
-            why = BROKE
-            break
-    if done % 2 == 1:
-        u[:] = here
-    return done, why
+
+@njit(**FAST)
+def finish(bonded, v, body, nodes, work):
+    """Enter what local damping took, and how far particles have travelled."""
+    note_damping(bonded.damped, work)
+    most = largest(bonded.fastest)
+    begin = bonded.contacts.begin
+    for s in range(nodes.size):
+        i = nodes[s]
+        if begin <= i < begin + bonded.origin.shape[1]:
+            most = max(most, np.hypot(v[0, i], v[1, i]))
+    bonded.way[0] += body.step * most
+
+
+@njit(**FAST)
+def seam_ends_forces(seam, u, force):
+    """Add to force (k, 3) of the supported nodes what their twins have across the seam, as pairs last pushed."""
+    for s in range(seam.start.size - 1):
+        fx, fy, moment = ends_force(U(s), seam.force, seam.start, seam.end)
+        force[s, 0] += fx
+        force[s, 1] += fy
+        force[s, 2] += moment
+
+
+is_law(Bonded, begin=begin, check=check, push=push, move=move, finish=finish)
+is_tie(SeamEnds, across=seam_ends_forces)

@@ -1,4 +1,4 @@
-"""Contacts with a memory: PFC2D's linear contact (no tension, Coulomb friction) with a parallel bond that breaks.
+"""Contacts with a history: PFC2D's linear contact (no tension, Coulomb friction) with a parallel bond that breaks.
 
 A pair's motion is three numbers: the distance of the centres, the tangential displacement `shear` of the two surfaces
 (counted along the path, as the tangent turns with the pair) and the relative rotation. The bond answers all three from
@@ -16,7 +16,7 @@ stiffnesses and the bond's. Force (4,) of a pair: x and y on i (the opposite on 
 import numpy as np
 from numba import njit, prange
 
-from dembound.kernels.common import CHUNKS, FASTMATH, U
+from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum, largest
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
 """States of a pair: without bond, bonded, bond broken in tension, in shear."""
@@ -39,7 +39,7 @@ TURN = 0.01
 """Angle by which a pair may turn before the law of small displacements, which errs by half its square, has to go."""
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+@njit(**FAST, inline="always")
 def _pair(c, u, first, second, kind, palette):
     """Particles of a pair, its palette line, and the displacements of j relative to i."""
     i = U(first[c])
@@ -48,7 +48,7 @@ def _pair(c, u, first, second, kind, palette):
     return i, j, k, u[U(0), j] - u[U(0), i], u[U(1), j] - u[U(1), i]
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+@njit(**FAST, inline="always")
 def _reference_strain(i, j, k, dx, dy, u, palette):
     """Normal and tangent at the start, distance, stretch, shear of a pair for small displacements."""
     rest = palette[k, U(2)]
@@ -60,7 +60,7 @@ def _reference_strain(i, j, k, dx, dy, u, palette):
     return nx, ny, rest, stretch, shear
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+@njit(**FAST, inline="always")
 def _updated_stretch(k, dx, dy, palette):
     """Normal and distance of a pair whose vector has changed by dx, dy, and its stretch.
 
@@ -74,7 +74,7 @@ def _updated_stretch(k, dx, dy, palette):
     return (x + dx) / distance, (y + dy) / distance, distance, stretch
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+@njit(**FAST, inline="always")
 def _updated_strain(i, j, k, dx, dy, was, v, step, palette):
     """The same where normal and arms follow the motion; was: the shear before the step (s)."""
     nx, ny, distance, stretch = _updated_stretch(k, dx, dy, palette)
@@ -84,7 +84,7 @@ def _updated_strain(i, j, k, dx, dy, was, v, step, palette):
     return nx, ny, distance, stretch, shear
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+@njit(**FAST, inline="always")
 def _bond_state(Fn, Fs, M, per_area, per_section, limits):
     """State of an intact bond under its force and moment; per_area 1/A, per_section R/I."""
     stress = Fn * per_area
@@ -97,14 +97,14 @@ def _bond_state(Fn, Fs, M, per_area, per_section, limits):
     return after
 
 
-@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**PARALLEL)
 def push(u, v, step, number, contacts, limits, lost):
     """Fill contacts.force for displacements u (3, n) reached with velocities v (3, n) after a step (s).
 
     Slides contacts and breaks bonds that have come to their limits; number is that of the step. lost (chunks, 2) gets
     what friction and cracks took in this step, J. Returns the number of bonds that broke.
     """
-    first, second, kind, palette, state, all_shear, all_slip, cracked, force, _, _ = contacts
+    _, first, second, kind, palette, state, all_shear, all_slip, cracked, _, force, _, _ = contacts
     friction, geometry = limits.friction, limits.geometry
     b = first.size
     breaks = 0
@@ -166,13 +166,23 @@ def push(u, v, step, number, contacts, limits, lost):
     return breaks
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
-def ends_force(i, force, start, end):
-    """Force (x, y) and moment on particle i: its row of contact ends, summed in order."""
+@njit(**FAST)
+def note_places(u, number, contacts):
+    """Write down where the bonds are at displacements u (3, n) that broke in step `number`."""
+    first, second, cracked, place = contacts.first, contacts.second, contacts.cracked, contacts.place
+    for c in range(cracked.size):
+        if cracked[c] == number:
+            for axis in range(2):
+                place[c, axis] = 0.5 * (u[axis, first[c]] + u[axis, second[c]])
+
+
+@njit(**FAST, inline="always")
+def ends_force(row, force, start, end):
+    """Force (x, y) and moment on the particle of a row of contact ends, summed in order."""
     fx = 0.0
     fy = 0.0
     moment = 0.0
-    for e in range(start[i], start[i + U(1)]):
+    for e in range(start[row], start[row + U(1)]):
         c = U(end[e]) >> U(1)
         side = U(end[e]) & U(1)
         sign = 1.0 - 2.0 * np.float64(side)
@@ -182,27 +192,22 @@ def ends_force(i, force, start, end):
     return fx, fy, moment
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def seam_ends_forces(contacts, seam, across):
-    """Fill across (k, 3) with what the nodes' twins feel across the seam, from the pairs' last forces."""
-    for s in range(seam.twin.size):
-        across[s, 0], across[s, 1], across[s, 2] = ends_force(U(s), contacts.force, seam.start, seam.end)
-
-
-@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**PARALLEL)
 def sum_forces(contacts, total):
-    """Fill total (3, n) with the forces and moments that the pairs' last forces come to."""
-    n = total.shape[1]
+    """Fill total (3, n) of the contacts' particles with the forces and moments that their last forces come to."""
+    force, start, end = contacts.force, contacts.start, contacts.end
+    begin = contacts.begin
+    n = start.size - 1 - begin
     for chunk in prange(CHUNKS):
-        for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
+        for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
-            total[U(0), i], total[U(1), i], total[U(2), i] = ends_force(i, contacts.force, contacts.start, contacts.end)
+            total[U(0), i], total[U(1), i], total[U(2), i] = ends_force(i, force, start, end)
 
 
-@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**PARALLEL)
 def adopt(u, contacts):
     """Set the pairs' tangential displacements to those of small displacements u (3, n): no closed contact has slid."""
-    first, second, kind, palette, _, shear, slip, _, _, _, _ = contacts
+    _, first, second, kind, palette, _, shear, slip, _, _, _, _, _ = contacts
     for p in prange(first.size):
         c = U(p)
         i, j, k, dx, dy = _pair(c, u, first, second, kind, palette)
@@ -211,20 +216,21 @@ def adopt(u, contacts):
         slip[c] = sheared if palette[k, U(3)] - palette[k, U(2)] < stretch else 0.0
 
 
-@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
-def moved(u, origin):
-    """Largest displacement (m) since the displacements origin (2, n)."""
-    n = u.shape[1]
-    most = np.zeros(CHUNKS)
+@njit(**PARALLEL)
+def moved(u, begin, origin):
+    """Largest displacement (m) of the n particles from `begin` on since the displacements origin (2, n)."""
+    n = origin.shape[1]
+    most = np.empty(CHUNKS)
     for chunk in prange(CHUNKS):
         square = 0.0
         for i in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
-            square = max(square, (u[0, i] - origin[0, i]) ** 2 + (u[1, i] - origin[1, i]) ** 2)
+            x, y = u[0, begin + i] - origin[0, i], u[1, begin + i] - origin[1, i]
+            square = max(square, x**2 + y**2)
         most[chunk] = square
-    return np.sqrt(most.max())
+    return np.sqrt(largest(most))
 
 
-@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**PARALLEL)
 def slack(u, contacts, limits):
     """How far (m) two surfaces may move against each other before a pair leaves the elastic law; negative: it has.
 
@@ -232,10 +238,10 @@ def slack(u, contacts, limits):
     motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation all change by no more than the
     surfaces move, which bounds each condition from below.
     """
-    first, second, kind, palette, state, _, _, _, _, _, _ = contacts
+    _, first, second, kind, palette, state, _, _, _, _, _, _, _ = contacts
     friction, tension, cohesion, tan_fa, geometry = limits
     b = first.size
-    least = np.full(CHUNKS, np.inf)
+    least = np.empty(CHUNKS)
     for chunk in prange(CHUNKS):
         room = np.inf
         for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
@@ -264,19 +270,19 @@ def slack(u, contacts, limits):
                 room = min(room, (tension - stress - turned) / (2.0 * normal))
                 strength = cohesion - stress * tan_fa - sheared * abs(shear)
                 room = min(room, strength / (sheared + normal * tan_fa))
-        least[chunk] = room
-    return least.min()
+        least[chunk] = -room
+    return -largest(least)
 
 
-@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**PARALLEL)
 def strain_energy(u, contacts, geometry):
     """Energy (J) stored in contacts and in bonds at displacements u (3, n), with the tangential ones of the last push.
 
     With the geometry REFERENCE shear and slip are not read.
     """
-    first, second, kind, palette, state, all_shear, slip, _, _, _, _ = contacts
+    _, first, second, kind, palette, state, all_shear, slip, _, _, _, _, _ = contacts
     b = first.size
-    stored = np.zeros((CHUNKS, 2))
+    stored = np.empty((CHUNKS, 2))
     for chunk in prange(CHUNKS):
         in_contacts = 0.0
         in_bonds = 0.0
@@ -304,4 +310,4 @@ def strain_energy(u, contacts, geometry):
                 in_bonds += 0.5 * palette[k, U(9)] * turn * turn
         stored[chunk, 0] = in_contacts
         stored[chunk, 1] = in_bonds
-    return stored[:, 0].sum(), stored[:, 1].sum()
+    return column_sum(stored, 0), column_sum(stored, 1)

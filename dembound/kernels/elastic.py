@@ -16,16 +16,14 @@ so that N = √k_n n·Δu, S = √k_s (t·Δu − l_iθ_i − l_jθ_j), and the 
 import numpy as np
 from numba import njit, prange
 
-from dembound.kernels.common import CHUNKS, FASTMATH, U
+from dembound.kernels.common import CHUNKS, DONE, FAST, LAW_ENDS, LIST_ENDS, PARALLEL, U, largest
 from dembound.kernels.contacts import moved, slack
-from dembound.kernels.step import move_particle, move_supported, note_after, note_before, note_top_speeds
-
-DONE, LAW_ENDS, LIST_ENDS, BROKE = 0, 1, 2, 3
-"""Why a kernel returned: all steps are done; a contact is about to leave the elastic law; the list of pairs is old; a
-bond broke in the last step."""
+from dembound.kernels.law import is_law, is_tie
+from dembound.kernels.step import move_particle, note_damping
+from dembound.kernels.tables import Links, Seam, WatchedLinks
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+@njit(**FAST, inline="always")
 def _row_force(row, i, u, start, neighbour, kind, palette):
     """Force (x, y) and moment on particle i from a row of contacts (Z eqs 7-9; PFC2D linear parallel bond)."""
     x = u[U(0), i]
@@ -53,43 +51,43 @@ def _row_force(row, i, u, start, neighbour, kind, palette):
     return fx, fy, moment
 
 
-@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**PARALLEL)
 def contact_forces(u, rows, force):
-    """Fill force (3, n) with the contact forces and moments (N, N·m) of displacements and rotations u (3, n)."""
-    start, neighbour, kind, palette = rows
-    n = u.shape[1]
+    """Fill force (3, n) of the rows' particles with contact forces and moments (N, N·m) at displacements u (3, n)."""
+    begin, start, neighbour, kind, palette = rows
+    n = start.size - 1 - begin
     for chunk in prange(CHUNKS):
-        for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
+        for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
             force[U(0), i], force[U(1), i], force[U(2), i] = _row_force(i, i, u, start, neighbour, kind, palette)
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def seam_forces(u, rows, seam, across):
-    """Fill across (k, 3) with what the nodes' twins feel across the seam."""
-    for s in range(seam.twin.size):
-        across[s, :] = 0.0
-        if seam.start[s + 1] > seam.start[s]:
-            row, i = U(s), U(seam.twin[s])
-            across[s, 0], across[s, 1], across[s, 2] = _row_force(
-                row, i, u, seam.start, seam.neighbour, seam.kind, rows.palette
-            )
+@njit(**FAST)
+def seam_forces(seam, u, force):
+    """Add to force (k, 3) of the supported nodes what their twins have across the seam."""
+    twin, start, neighbour, kind, palette = seam
+    for s in range(twin.size):
+        if start[s + 1] > start[s]:
+            fx, fy, moment = _row_force(U(s), U(twin[s]), u, start, neighbour, kind, palette)
+            force[s, 0] += fx
+            force[s, 1] += fy
+            force[s, 2] += moment
 
 
-@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**PARALLEL)
 def _move(u, v, rows, body, spare, fastest, arms, damped):
-    """One step of all particles, see `move_particle`.
+    """One step of the rows' particles, see `move_particle`.
 
     fastest (chunks,) gets surface speeds if there are arms, damped (chunks, 2) the work of local damping.
     """
-    start, neighbour, kind, palette = rows
-    n = u.shape[1]
+    begin, start, neighbour, kind, palette = rows
+    n = start.size - 1 - begin
     watched = arms.size > 0
     for chunk in prange(CHUNKS):
         most = 0.0
         whole = 0.0
         half = 0.0
-        for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
+        for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
             fx, fy, moment = _row_force(i, i, u, start, neighbour, kind, palette)
             taken, up_to = move_particle(i, fx, fy, moment, u, v, body, spare)
@@ -102,51 +100,62 @@ def _move(u, v, rows, body, spare, fastest, arms, damped):
         damped[chunk, 1] = half
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def advance(u, spare, v, rows, body, supports, log, watch):
-    """Advance by up to supports.drive.shape[0] steps; returns the steps done and why it stopped.
+@njit(**FAST)
+def move(links, u, spare, v, body, nodes):
+    """One step of all particles, see law.move."""
+    _move(u, v, links.rows, body, spare, links.fastest, links.fastest[:0], links.damped)
 
-    u, spare, v : (3, n) displacement now, room for the next one, velocity half a step ago; u holds the result. The
-    other bundles are explained in tables.py. A watch with arms lets no step begin in which the contact law would
-    answer otherwise: it measures how far every pair is from that, and again when surfaces have travelled half of it.
+
+@njit(**FAST)
+def finish(links, v, body, nodes, work):
+    """Enter what local damping took."""
+    if body.damp > 0.0:
+        note_damping(links.damped, work)
+
+
+@njit(**FAST)
+def begin_watch(watched):
+    """Measure the contacts anew before the first step."""
+    watched.way[0] = 0.0
+    watched.way[1] = 0.0
+
+
+@njit(**FAST)
+def check_watch(watched, u, spare, v):
+    """Whether the step would take a contact out of the elastic law, or a pair into reach that is not listed.
+
+    How far every pair is from that is measured again when surfaces have travelled half of it.
     """
-    steps = supports.drive.shape[0]
-    nodes = supports.nodes
-    across = np.empty((nodes.size, 3))
-    followed = np.empty((nodes.size, 3))
-    fastest = np.zeros(CHUNKS)
-    damped = np.zeros((CHUNKS, 2))
-    watched = watch.arms.size > 0
-    travelled = 0.0
-    room = 0.0
-    here, there = u, spare
-    done = steps
-    why = DONE
-    for step in range(steps):
-        if watched and 2.0 * travelled >= room:
-            listed = watch.skin - 2.0 * moved(here, watch.origin)
-            room = min(slack(here, watch.contacts, watch.limits), listed)
-            travelled = 0.0
-            if room < 0.0:
-                done = step
-                why = LIST_ENDS if listed < 0.0 else LAW_ENDS
-                break
-        seam_forces(here, rows, supports.seam, across)
-        note_before(step, here, v, log.probes, log.record, supports.seam.twin, followed)
-        _move(here, v, rows, body, there, fastest, watch.arms, damped)
-        move_supported(step, here, v, there, across, followed, supports, body, log.work)
-        note_after(step, v, log.probes, log.record, log.tracked, log.peaks)
-        if log.top_speed.size > 0:
-            note_top_speeds(v, log.top_speed)
-        if body.damp > 0.0:
-            log.work[1, 1] += damped[:, 1].sum()
-            log.work[0, 1] += damped[:, 0].sum()
-        if watched:
-            most = fastest.max()
-            for s in range(nodes.size):
-                most = max(most, np.hypot(v[0, nodes[s]], v[1, nodes[s]]) + watch.arms[nodes[s]] * abs(v[2, nodes[s]]))
-            travelled += body.step * most
-        here, there = there, here
-    if done % 2 == 1:
-        u[:] = here
-    return done, why
+    links, contacts, limits, origin, skin, _, way = watched
+    if 2.0 * way[0] < way[1]:
+        return DONE
+    listed = skin - 2.0 * moved(u, links.rows.begin, origin)
+    way[0] = 0.0
+    way[1] = min(slack(u, contacts, limits), listed)
+    if way[1] >= 0.0:
+        return DONE
+    return LIST_ENDS if listed < 0.0 else LAW_ENDS
+
+
+@njit(**FAST)
+def move_watched(watched, u, spare, v, body, nodes):
+    """One step of all particles, measuring how fast surfaces are."""
+    links = watched.links
+    _move(u, v, links.rows, body, spare, links.fastest, watched.arms, links.damped)
+
+
+@njit(**FAST)
+def finish_watched(watched, v, body, nodes, work):
+    """Enter what local damping took, and how far surfaces have travelled."""
+    finish(watched.links, v, body, nodes, work)
+    most = largest(watched.links.fastest)
+    for s in range(nodes.size):
+        i = nodes[s]
+        if watched.links.rows.begin <= i < watched.arms.size:
+            most = max(most, np.hypot(v[0, i], v[1, i]) + watched.arms[i] * abs(v[2, i]))
+    watched.way[0] += body.step * most
+
+
+is_law(Links, move=move, finish=finish)
+is_law(WatchedLinks, begin=begin_watch, check=check_watch, move=move_watched, finish=finish_watched)
+is_tie(Seam, across=seam_forces)

@@ -10,13 +10,15 @@ make a moment pHW·θ once it has turned by θ, which grows at the rate √(12|�
 import numpy as np
 from numba import njit
 
-from dembound.kernels.common import FASTMATH, U
+from dembound.kernels.common import FAST, MAKES, U
+from dembound.kernels.law import is_turning
+from dembound.kernels.tables import Followers
 
 GONE = -2
 """Stands for the twin of a member that has broken off its side."""
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+@njit(**FAST, inline="always")
 def _moved(i, twin, u, datum):
     """Displacement of particle i since the datum, less that of its twin if it has one."""
     x = u[0, i] - datum[0, i]
@@ -27,7 +29,7 @@ def _moved(i, twin, u, datum):
     return x, y
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**MAKES)
 def side_rotation(side, u, followers):
     """Angle (rad) by which a side has turned since the datum, relative to its twins where it has any.
 
@@ -60,7 +62,7 @@ def side_rotation(side, u, followers):
     return np.arctan2(cross, along)
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**MAKES)
 def side_rotations(u, followers):
     """Angles (s,) rad by which forces on each side turn: the mean of its own rotation and that of the opposite side."""
     opposite = followers.opposite
@@ -73,8 +75,8 @@ def side_rotations(u, followers):
     return means
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def turn_forces(u, v, followers, load, step):
+@njit(**MAKES)
+def turn_forces(followers, u, v, load, step):
     """Turn the forces with their sides at displacements u (3, n), in load (3, n); returns half their step's work (J).
 
     That is the work of what turning adds, by velocities v (3, n) of half a step ago.
@@ -106,8 +108,8 @@ def turn_forces(u, v, followers, load, step):
     return 0.5 * step * half
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
-def extra_work(v, followers, step):
+@njit(**MAKES)
+def extra_work(followers, v, step):
     """Work (J) of what turning adds in half a step at velocities v (3, n)."""
     node, extra = followers.node, followers.extra
     half = 0.0
@@ -115,3 +117,6 @@ def extra_work(v, followers, step):
         i = U(node[q])
         half += extra[0, q] * v[U(0), i] + extra[1, q] * v[U(1), i]
     return 0.5 * step * half
+
+
+is_turning(Followers, turn=turn_forces, turning_work=extra_work)

@@ -3,11 +3,11 @@
 import numpy as np
 from numba import njit
 
-from dembound.kernels.common import FASTMATH, U
+from dembound.kernels.common import FAST, MAKES, U
 from dembound.kernels.contacts import INTACT
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+@njit(**FAST, inline="always")
 def _root(parent, i):
     """The particle that stands for i's piece; ways to it are halved as they are walked."""
     while parent[i] != i:
@@ -16,7 +16,7 @@ def _root(parent, i):
     return i
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**MAKES)
 def pieces(contacts, begin, end):
     """Piece of each of the particles begin to end, (end − begin,): the number of its first one, counted from begin.
 

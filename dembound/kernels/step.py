@@ -3,10 +3,10 @@
 import numpy as np
 from numba import njit, prange
 
-from dembound.kernels.common import CHUNKS, FASTMATH, REST, U
+from dembound.kernels.common import CHUNKS, FAST, PARALLEL, REST, U, column_sum
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+@njit(**FAST, inline="always")
 def kick(v, f, b, damp):
     """Half-step velocity after a force f, local damping included (Cundall: −damp·|F|·sign(v))."""
     if damp > 0.0:
@@ -15,7 +15,7 @@ def kick(v, f, b, damp):
     return 0.0 if abs(w) <= REST else w  # what is not a number stays so, and is seen
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+@njit(**FAST, inline="always")
 def damping_work(v, w, f, b, damp, step):
     """Work (J) that local damping takes in a step from v to w under a force f: whole, and up to the whole step."""
     taken = damp * abs(f) * np.sign(v) * step
@@ -24,7 +24,7 @@ def damping_work(v, w, f, b, damp, step):
     return 0.5 * taken * (v + w), 0.5 * taken * v
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy", inline="always")
+@njit(**FAST, inline="always")
 def move_particle(i, fx, fy, moment, u, v, body, spare):
     """Move particle i by a step under its contact forces, to which steady loads come; spare takes its displacement.
 
@@ -62,7 +62,22 @@ def move_particle(i, fx, fy, moment, u, v, body, spare):
     return whole, half
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
+def copy(source, target):
+    """Copy an array (3, n) to another one; assigning it would compile numba's error messages, too, for seconds."""
+    for c in range(source.shape[0]):
+        for i in range(source.shape[1]):
+            target[c, i] = source[c, i]
+
+
+@njit(**FAST)
+def note_damping(damped, work):
+    """Enter in work (2, 6) what local damping took of particles that are not supported, damped (chunks, 2) J."""
+    work[1, 1] += column_sum(damped, 1)
+    work[0, 1] += column_sum(damped, 0)
+
+
+@njit(**FAST)
 def note_before(step, u, v, probes, record, twin, followed):
     """Write down the probes' displacement and half of their velocity before a step, and half that of twins followed."""
     for p in range(probes.size):
@@ -74,7 +89,7 @@ def note_before(step, u, v, probes, record, twin, followed):
             followed[s, c] = 0.5 * v[c, twin[s]] if twin[s] >= 0 else 0.0
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def move_supported(step, u, v, spare, across, followed, supports, body, work):
     """Move the supported nodes by a step, once all other particles have; spare holds the new displacements.
 
@@ -82,7 +97,7 @@ def move_supported(step, u, v, spare, across, followed, supports, body, work):
     which are the outside's work; followed (k, 3) half the velocity of the nodes' twins before the step. work (2, 6) is
     advanced.
     """
-    nodes, inertia, keep, mobility, stiffness, prescribed, drives, seam = supports
+    nodes, inertia, keep, mobility, stiffness, prescribed, drives, twin, follow = supports
     drive = drives[step]
     done = 0.0
     half = 0.0
@@ -97,8 +112,8 @@ def move_supported(step, u, v, spare, across, followed, supports, body, work):
             drag = 0.0
             if body.damp > 0.0 and mobility[s, c] > 0.0:  # without the dashpots', so that it is as strong as the twin's
                 drag = -body.damp * abs(total) * np.sign(before)
-            if seam.twin[s] >= 0:
-                total += seam.follow[s, c] * (followed[s, c] + 0.5 * v[U(c), U(seam.twin[s])])
+            if twin[s] >= 0:
+                total += follow[s, c] * (followed[s, c] + 0.5 * v[U(c), U(twin[s])])
             w = keep[s, c] * before + mobility[s, c] * (total + drag) + prescribed[s, c] * drive[s, c]
             w = 0.0 if abs(w) <= REST else w
             v[U(c), i] = w
@@ -114,7 +129,7 @@ def move_supported(step, u, v, spare, across, followed, supports, body, work):
     work[0, 1] += body.step * damped
 
 
-@njit(cache=True, parallel=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**PARALLEL)
 def note_top_speeds(v, top_speed):
     """Raise top_speed (n,) to the speeds of velocities v (3, n)."""
     n = top_speed.size
@@ -126,7 +141,7 @@ def note_top_speeds(v, top_speed):
             top_speed[i] = max(top_speed[i], np.sqrt(vx * vx + vy * vy))
 
 
-@njit(cache=True, fastmath=FASTMATH, error_model="numpy")
+@njit(**FAST)
 def note_after(step, v, probes, record, tracked, peaks):
     """Write down what is only known after a step."""
     for p in range(probes.size):

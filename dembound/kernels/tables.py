@@ -6,10 +6,13 @@ import numpy as np
 
 
 class Rows(NamedTuple):
-    """Contacts of the elastic law, one row per particle.
+    """Contacts of the elastic law, one row per particle, of the particles from number `begin` on.
 
-    Row i is start[i]:start[i + 1] of neighbour (e,) and kind (e,), the latter a line of palette (p, 6); see elastic.py.
+    Row i, that of particle i, is start[i]:start[i + 1] of neighbour (e,) and kind (e,), the latter a line of palette
+    (p, 6); see elastic.py. start ends with the last particle's row, and the rows before `begin` are empty.
     """
+
+    begin: int
 
     start: np.ndarray
     neighbour: np.ndarray
@@ -18,13 +21,16 @@ class Rows(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Contacts with a memory, each listed once; see contacts.py for the columns of palette and force.
+    """Contacts with a history, each listed once; see contacts.py for the columns of palette and force.
 
     first, second, kind : (b,) uint32 particles and line of palette (p, 12).
     state : (b,) uint8, see contacts.py; shear, slip : (b,) m, the tangential displacement since the start and the part
-    of it that slid; cracked : (b,) int64, step in which the bond broke, else −1; force : (b, 4).
-    start, end : rows of contact ends per particle, end (e,) uint32 = 2·contact + (0 first, 1 second).
+    of it that slid; cracked : (b,) int64, step in which the bond broke, else −1; place : (b, 2) m, mean displacement of
+    the two disks in that step; force : (b, 4). start, end : rows of contact ends, one per particle, those before number
+    `begin` empty, end (e,) uint32 = 2·contact + (0 first, 1 second).
     """
+
+    begin: int
 
     first: np.ndarray
     second: np.ndarray
@@ -34,6 +40,7 @@ class Contacts(NamedTuple):
     shear: np.ndarray
     slip: np.ndarray
     cracked: np.ndarray
+    place: np.ndarray
     force: np.ndarray
     start: np.ndarray
     end: np.ndarray
@@ -92,26 +99,36 @@ class Followers(NamedTuple):
 
 
 class Seam(NamedTuple):
-    """What free-field columns do to k nodes.
+    """What a free-field column under the elastic law does to k supported nodes across its seam.
 
-    twin : (k,) the particle each follows, −1 for none; follow : (k, 3) N·s/m, dashpots' share of its velocity.
-    start : (k + 1,) rows of what its twin feels across the seam: twins' neighbours (e,) and lines of the elastic
-    law's palette, kind (e,); end : (e,) the same as contact ends, see Contacts, filled for the law with a memory.
+    twin : (k,) the particle of the column at each one's place, −1 for none; start : (k + 1,) rows of what that one has
+    across the seam: its neighbours there (e,) and lines of palette (p, 6), kind (e,).
     """
 
     twin: np.ndarray
-    follow: np.ndarray
     start: np.ndarray
     neighbour: np.ndarray
     kind: np.ndarray
+    palette: np.ndarray
+
+
+class SeamEnds(NamedTuple):
+    """The same of a column under the history-dependent law: start (k + 1,) rows of its contact ends, end (e,).
+
+    force : (b, 4) of its contacts, see Contacts.
+    """
+
+    start: np.ndarray
     end: np.ndarray
+    force: np.ndarray
 
 
 class Supports(NamedTuple):
     """The support table on k nodes, all components: v⁺ = keep·v + mobility·(F − K u + drive) + prescribed·drive.
 
-    nodes (k,), twins of others first; inertia (k, 3) m/Δt; keep, mobility, stiffness, prescribed (k, 3);
-    drive (steps, k, 3) in N, or m/s where prescribed. A centred dashpot C has keep = (m/Δt − C/2)/(m/Δt + C/2) and
+    nodes (k,), ascending; inertia (k, 3) m/Δt; keep, mobility, stiffness, prescribed (k, 3); drive (steps, k, 3) in N,
+    or m/s where prescribed. twin (k,) : a node before it in the order, whose velocity dashpots follow (k, 3) N·s/m
+    follow, −1 for none. A centred dashpot C has keep = (m/Δt − C/2)/(m/Δt + C/2) and
     mobility 1/(m/Δt + C/2); a prescribed component has keep = mobility = 0 and prescribed = 1.
     """
 
@@ -122,7 +139,8 @@ class Supports(NamedTuple):
     stiffness: np.ndarray
     prescribed: np.ndarray
     drive: np.ndarray
-    seam: Seam
+    twin: np.ndarray
+    follow: np.ndarray
 
 
 class Log(NamedTuple):
@@ -144,18 +162,49 @@ class Log(NamedTuple):
     work: np.ndarray
 
 
-class Watch(NamedTuple):
-    """What tells whether the elastic law still holds; arms of length 0: nobody asks.
+class Links(NamedTuple):
+    """The elastic law on the particles that rows are of; fastest (chunks,), damped (chunks, 2) : work space."""
+
+    rows: Rows
+    fastest: np.ndarray
+    damped: np.ndarray
+
+
+class WatchedLinks(NamedTuple):
+    """The elastic law, on watch for contacts that would leave it.
 
     contacts, limits : the pairs and where they give way; origin : (2, n) displacements at which the list of pairs was
-    made; skin : m, the gap up to which it holds pairs; arms : (n,) m, longest arm of a particle's contacts.
+    made, of the n particles of the rows; skin : m, the gap up to which it holds pairs; arms : (begin + n,) m, longest
+    arm of a particle's contacts; way : (2,) m, how far surfaces have travelled since the contacts were measured, and
+    how far they may.
+    """
+
+    links: Links
+    contacts: Contacts
+    limits: Limits
+    origin: np.ndarray
+    skin: float
+    arms: np.ndarray
+    way: np.ndarray
+
+
+class Bonded(NamedTuple):
+    """The history-dependent law on the n particles that contacts are of.
+
+    limits : where contacts give way; origin : (2, n) displacements at which all pairs with gaps up to skin (m) were
+    listed; stops : return after a step in which a bond broke; way : (2,) m, how far particles have travelled since
+    that was measured, and how far they may; fastest (chunks,), damped, lost (chunks, 2) : work space.
     """
 
     contacts: Contacts
     limits: Limits
     origin: np.ndarray
     skin: float
-    arms: np.ndarray
+    stops: bool
+    way: np.ndarray
+    fastest: np.ndarray
+    damped: np.ndarray
+    lost: np.ndarray
 
 
 class BarBonds(NamedTuple):
@@ -165,9 +214,11 @@ class BarBonds(NamedTuple):
     elongation at which each breaks, or where it asks (n − 1,) leaves that to the method; bond : (m, n) N/m, row p − 1
     those between nodes i and i + p; bond_limit : (m,) m, the elongation at which they break. spring_broken (n − 1,),
     bond_broken (m, n) : step in which each broke, −1 for not. plain : (r, 2) ranges of nodes between springs that are
-    all alike, of plain_stiffness N/m and plain_limit m, which all ask, the nodes having plain_mobility Δt/m; mixed :
+    all alike and all ask, at plain_limit m; plain_push 1/s : Δt k/m of them, less what attenuation takes; mixed :
     (q, 4) the ranges of all others, with the number of bond lengths there, 0 or m, and whether springs hold them.
-    section : m²; room : (n + m + 1,) for loops to work in.
+    section : m². mobility : (n,) Δt/m, less what attenuation takes, 0 for supported nodes; keep : part of its velocity
+    that attenuation leaves a node in a step; drag : (n,) N·s/m of its dashpots, or (0,) for none. space (n + m + 1,),
+    mean (n,), before (k,), reached (1,) : work space.
     """
 
     spring: np.ndarray
@@ -178,9 +229,14 @@ class BarBonds(NamedTuple):
     spring_broken: np.ndarray
     bond_broken: np.ndarray
     plain: np.ndarray
-    plain_stiffness: float
+    plain_push: float
     plain_limit: float
-    plain_mobility: float
     mixed: np.ndarray
     section: float
-    room: np.ndarray
+    mobility: np.ndarray
+    keep: float
+    drag: np.ndarray
+    space: np.ndarray
+    mean: np.ndarray
+    before: np.ndarray
+    reached: np.ndarray

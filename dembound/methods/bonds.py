@@ -5,6 +5,7 @@ of the stress that bonds carry across it; a local spring there carries the rest,
 local springs: forces come in pairs, and rest and uniform strain feel no seam.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,6 +13,9 @@ import numpy as np
 
 from dembound.kernels.tables import BarBonds
 from dembound.laws.peridynamic import Family, damage, families, micromodulus
+
+_EVOLVING = ("spring", "bond", "spring_broken", "bond_broken", "spring_limit", "asks")
+"""The arrays of bonds that change."""
 
 TINY = 1e-12
 """Coverage is compared within this, its rounding."""
@@ -169,9 +173,30 @@ class Bonds:
         order = np.argsort(steps, kind="stable")
         return steps[order], pairs[order]
 
-    def arrays(self, supported: np.ndarray, plain_mobility: float) -> BarBonds:
-        """All of it for the kernels; supported (k,) are nodes that the support table moves, plain_mobility Δt/m."""
+    def memory(self) -> dict[str, np.ndarray]:
+        """All that evolves in it, by name."""
+        kept = {name: getattr(self, name) for name in _EVOLVING}
+        return kept | {"zones": np.array(self.zones, dtype=np.int64).reshape(-1, 2)}
+
+    def recall(self, memory: Mapping[str, np.ndarray]) -> None:
+        """Take over what `memory` has returned of the same bar."""
+        for name in _EVOLVING:
+            getattr(self, name)[...] = memory[name]
+        self.zones = [(int(first), int(last)) for first, last in memory["zones"]]
+
+    def arrays(self, supported: np.ndarray, density: float, step: float, drag_rate: float = 0.0) -> BarBonds:
+        """All of it for the kernels.
+
+        supported (k,) are nodes that the support table moves; density kg/m³; step Δt in s; drag_rate 1/s of dashpots
+        that attenuate, see case.bar.bar.Bar.
+        """
         plain, mixed = self._ranges(supported)
+        part = 0.5 * drag_rate * step
+        keep = (1.0 - part) / (1.0 + part)
+        mass = density * self.rod.volumes
+        mobility = step / mass
+        mobility[supported] = 0.0
+        whole = step / (density * self.rod.section * self.rod.spacing)
         return BarBonds(
             spring=self.spring,
             spring_limit=self.spring_limit,
@@ -181,12 +206,17 @@ class Bonds:
             spring_broken=self.spring_broken,
             bond_broken=self.bond_broken,
             plain=plain,
-            plain_stiffness=self.rod.spring,
+            plain_push=(0.5 * (1.0 + keep)) * whole * self.rod.spring,
             plain_limit=self.ask_at * self._elongation,
-            plain_mobility=plain_mobility,
             mixed=mixed,
             section=self.rod.section,
-            room=np.zeros(self.rod.count + self.horizon + 1),
+            mobility=(0.5 * (1.0 + keep)) * mobility,
+            keep=keep,
+            drag=drag_rate * mass if drag_rate > 0.0 else np.zeros(0),
+            space=np.zeros(self.rod.count + self.horizon + 1),
+            mean=np.zeros(self.rod.count),
+            before=np.empty(len(supported)),
+            reached=np.zeros(1, dtype=np.int64),
         )
 
     def _ranges(self, supported: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

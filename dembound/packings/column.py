@@ -49,6 +49,12 @@ class Seam:
         """Number (k,) of each node's contacts."""
         return self.start[1:].astype(np.int64) - self.start[:-1].astype(np.int64)
 
+    def pairs(self, brick: Brick) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """First and second particle (e,) of the column and vectors (e, 2) m of the contacts that nodes have there."""
+        owner = np.repeat(self.twin[self.node], self.many)
+        vectors = brick.vectors[self.kind % len(brick.pairs)] * np.where(self.second, -1.0, 1.0)[:, None]
+        return owner, self.near, vectors
+
 
 def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[Assembly, Seam]:
     """A body and its free-field column in one assembly, the column first and to the left, and the seam between them.

@@ -37,6 +37,19 @@ class Assembly:
     extent: np.ndarray
     loose: int = 0
 
+    def part(self, disks: slice) -> "Assembly":
+        """A range of the disks as an assembly of its own; no contact leads out of it."""
+        chosen = (self.pairs[:, 0] >= disks.start) & (self.pairs[:, 0] < disks.stop)
+        return replace(
+            self,
+            positions=self.positions[disks],
+            radii=self.radii[disks],
+            brick_particle=self.brick_particle[disks],
+            pairs=self.pairs[chosen] - np.int32(disks.start),
+            kind=self.kind[chosen],
+            loose=0,
+        )
+
     def without(self, removed: np.ndarray) -> tuple["Assembly", np.ndarray]:
         """What is left without some disks, removed (n,) bool, and without those that this severs from the body.
 

@@ -25,7 +25,7 @@ from dembound.plot.style import (
     styled,
     time_unit,
 )
-from dembound.results import cracks_until, laws_of, open_record, snapshot_of
+from dembound.results.reader import cracks_until, laws_of, open_record, snapshot_of
 
 MILLI, MEGA = 1e-3, 1e6
 

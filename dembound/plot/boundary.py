@@ -9,8 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
-from dembound.plot.style import UNITS, new_figure, outside_legend, point_style, styled
-from dembound.results import COMPONENTS, is_bar, open_record, record_names
+from dembound.plot.style import new_figure, outside_legend, point_style, styled
+from dembound.results.histories import UNITS
+from dembound.results.reader import COMPONENTS, is_line, open_record, record_names
 
 # A uniform side must look uniform: axes are not magnified beyond ± this part of the middle value.
 LEAST_SPAN = 0.1
@@ -68,7 +69,7 @@ def read_side(path: Path, side: str) -> Side:
     Raises CaseError when the file cannot be read, is that of a bar, or has no such side.
     """
     with open_record(path) as file:
-        if is_bar(file):
+        if is_line(file.attrs["size"]):
             raise CaseError([f"{path}: is a bar, each end of which is one node; monitors there show its motion"])
         sides = file.get("boundaries", {})
         if side not in sides:

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from dembound.errors import CaseError
 from dembound.plot.style import REFERENCE, new_figure, outside_legend, point_style, styled
-from dembound.results import open_record, record_names
+from dembound.results.reader import open_record, record_names
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
 from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled, time_unit
-from dembound.results import energy_of, is_bar, open_record
+from dembound.results.reader import energy_of, is_line, open_record
 
 COLUMNS = {
     "outside": "in: boundaries and driven loads",
@@ -53,7 +53,7 @@ def plot_energy(run: Path) -> Figure:
     Raises CaseError when the file cannot be read or has no ledger.
     """
     with open_record(run) as file:
-        name, columns, bar = str(file.attrs["name"]), energy_of(file), is_bar(file)
+        name, columns, bar = str(file.attrs["name"]), energy_of(file), is_line(file.attrs["size"])
     unit = time_unit(columns["time"][-1])
     time = columns["time"] / unit.seconds
     figure = new_figure(9.0, 6.0)

@@ -9,8 +9,8 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.plot.disks import Window
-from dembound.plot.style import UNITS
-from dembound.results import COMPONENTS, cracks_until, laws_in_words, laws_of, snapshot_of
+from dembound.results.histories import UNITS
+from dembound.results.reader import COMPONENTS, cracks_until, laws_in_words, laws_of, snapshot_of
 
 FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced"]
 

@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from dembound.gauges import near_free_end
+from dembound.gauge.estimates import near_free_end
+from dembound.gauge.readings import Gauge
+from dembound.gauge.spalling import Findings, Strength
 from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled
-from dembound.readings import Gauge
-from dembound.spalling import Findings, Strength
 
 MPA = 1e6
 """Pascals in a megapascal."""

@@ -1,39 +1,22 @@
 """Motion and stress of the monitors against time (Z figs 3, 7, 8, 14, 16; L figs 6, 7)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-import h5py
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
-from dembound.plot.style import UNITS, line_style, new_figure, outside_legend, styled, time_unit
-from dembound.results import COMPONENTS, is_bar, open_record, place_in_words, record_names
+from dembound.plot.style import line_style, new_figure, outside_legend, styled, time_unit
+from dembound.results.histories import UNITS, History, Quantity, read_histories
+from dembound.results.reader import COMPONENTS, record_names
 
-Quantity = Literal["velocity", "displacement", "stress"]
 Component = Literal["x", "y", "rotation"]
-
-SCALES = {"velocity": 1.0, "displacement": 1.0, "stress": 1e6}
-"""SI units in the units shown."""
 
 SENSES = {"velocity": "", "displacement": "", "stress": ", tension positive"}
 """What a positive value means, where the axis does not tell."""
-
-
-@dataclass(frozen=True)
-class History:
-    """What one monitor felt in one run.
-
-    time (k,) s; values in `UNITS`, of a motion (k, 3), of a stress along x (k, 1); place asked for, in words.
-    """
-
-    time: np.ndarray
-    values: np.ndarray
-    place: str
 
 
 @styled
@@ -79,25 +62,6 @@ def plot_histories(
     figure.suptitle(f"{quantity.capitalize()} {direction} at the monitors", fontsize=11)
     outside_legend(figure, panels, columns=3)
     return figure
-
-
-def read_histories(path: Path, quantity: Quantity) -> dict[str, History]:
-    """The histories of a run by monitor name; empty for a run without monitors.
-
-    Raises CaseError when the file cannot be read or holds no stress that is asked for.
-    """
-    with open_record(path) as file:
-        groups = dict(file.get("histories", {}).items())
-        if any(quantity not in group for group in groups.values()):
-            raise CaseError([f"{path}: holds no {quantity} of its monitors; runs of bars do"])
-        return {name: _read(group, quantity, along_bar=is_bar(file)) for name, group in groups.items()}
-
-
-def _read(group: h5py.Group, quantity: Quantity, *, along_bar: bool) -> History:
-    """A monitor's history."""
-    time, values = group["time"][:], group[quantity][:]
-    columns = values.reshape(len(time), -1) / SCALES[quantity]
-    return History(time, columns, place_in_words(group.attrs["wanted"], along_bar=along_bar))
 
 
 def _tell_places(panel: Axes, monitor: str, places: Sequence[str]) -> None:

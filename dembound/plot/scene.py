@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator, NullLocator, ScalarFormatter
 from dembound.plot.disks import Window, draw_field
 from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
 from dembound.plot.style import new_figure, outside_legend, styled
-from dembound.results import open_record
+from dembound.results.reader import open_record
 
 LONG = 6.0
 """A scene this many times as long as wide gets a second panel, which shows a part of it closely."""

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.font_manager import get_font_names
 
-from dembound.results import replacing
+from dembound.results.reader import replacing
 
 # Okabe & Ito: told apart with every kind of colour vision; yellow is left out, too faint for lines on white
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -28,9 +28,6 @@ UNSIGNED_MAP = "viridis"
 
 # DejaVu comes with matplotlib; the others supply Chinese characters in titles wherever one is installed
 FONTS = ("DejaVu Sans", "Noto Sans CJK SC", "Microsoft YaHei", "PingFang SC", "SimHei", "WenQuanYi Zen Hei")
-
-UNITS = {"velocity": ("m/s", "m/s", "rad/s"), "displacement": ("m", "m", "rad"), "stress": ("MPa",)}
-"""Units of x, y and rotation; the stress is along x."""
 
 SHORT = 0.1
 """A picture of less than so many seconds tells times in milliseconds."""

@@ -1,6 +1,6 @@
 """Small cases and a small recorded run that many tests start from."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,10 +8,14 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.case import STARTER, Case, loads, with_changes
-from dembound.record import Recorder
+from dembound.case import Case
+from dembound.case.disks import STARTER
+from dembound.kinds import loads, with_changes
+from dembound.motion.energy import Ledger
+from dembound.motion.kind import Plan
+from dembound.motion.simulation import Simulation
+from dembound.results.recorder import Histories, Recorder, Snapshots
 from dembound.run import plan
-from dembound.simulate import Simulation
 
 CASE = """
 [packing]
@@ -49,13 +53,17 @@ duration = 0.01
 def record(path: Path, name: str, snapshots: int) -> Path:
     """Run the case, 20 × 5 disks in P and S motion, under a name; the snapshots are evenly spaced."""
     planned = plan(loads(CASE, Path(), name))
-    monitors = np.array(list(planned.scene.monitors.values()), dtype=np.int64)
-    simulation = Simulation(planned.scene, planned.time_step, monitors)
-    with Recorder(path, simulation, planned.step_limit, 0.0) as recorder:
-        recorder.append(simulation.advance(planned.steps // 2))
-        for _ in range(snapshots):
-            recorder.snapshot()
-            recorder.append(simulation.advance(planned.steps // 4))
+    half, quarter = planned.steps // 2, planned.steps // 4
+    return recorded(path, planned, half + snapshots * quarter, [half + k * quarter for k in range(snapshots)])
+
+
+def recorded(path: Path, planned: Plan, steps: int, shots: Sequence[int], entries: Sequence[int] = ()) -> Path:
+    """Record so many steps of a plan, with snapshots at some steps and entries of the ledger, of which two or more."""
+    simulation = Simulation(planned.scene, planned.time_step, list(planned.scene.monitors.values()))
+    ledger = Ledger(simulation, entries[1] - entries[0]) if len(entries) > 0 else None
+    with Recorder(path, simulation, planned.step_limit, ledger=ledger) as recorder:
+        simulation.track(Histories(recorder), Snapshots(recorder, shots), *([ledger] if ledger else []))
+        simulation.run(steps)
     return path
 
 
@@ -101,14 +109,9 @@ BRITTLE = {
 def cracked_run(tmp_path_factory) -> Path:
     """The record of a run called ``cracked`` whose bonds break, with two snapshots and two entries of the ledger."""
     planned = plan(with_changes(loads(CASE, Path(), "cracked"), BRITTLE))
-    simulation = Simulation(planned.scene, planned.time_step, np.array(list(planned.scene.monitors.values())))
+    half = 1 + planned.steps // 2
     path = tmp_path_factory.mktemp("cracked") / "run.h5"
-    with Recorder(path, simulation, planned.step_limit, 0.0) as recorder:
-        for _ in range(2):
-            recorder.append(recorder.enter_energy())
-            recorder.append(simulation.advance(planned.steps // 2))
-            recorder.snapshot()
-    return path
+    return recorded(path, planned, 2 * half, [half, 2 * half], range(0, 2 * half, half))
 
 
 SPALLING = """
@@ -145,14 +148,9 @@ courant = 1.0
 def spalled_run(tmp_path_factory) -> Path:
     """The record of that bar, called ``spalled``, with twelve snapshots and twelve entries of the ledger."""
     planned = plan(loads(SPALLING, Path(), "spalled"))
-    simulation = Simulation(planned.scene, planned.time_step, np.array(list(planned.scene.monitors.values())))
+    part = planned.steps // 12
     path = tmp_path_factory.mktemp("spalled") / "run.h5"
-    with Recorder(path, simulation, planned.step_limit, 0.0) as recorder:
-        for _ in range(12):
-            recorder.append(recorder.enter_energy())
-            recorder.append(simulation.advance(planned.steps // 12 - 1))
-            recorder.snapshot()
-    return path
+    return recorded(path, planned, 12 * part, range(part, 13 * part, part), range(0, 12 * part, part))
 
 
 @pytest.fixture

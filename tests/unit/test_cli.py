@@ -15,11 +15,11 @@ import pytest
 import tomli_w
 
 from dembound import __version__, cli
-from dembound.case import BarCase, load
-from dembound.cli.outcome import bar_outcome, disk_outcome
+from dembound.case.bar import BarCase
 from dembound.cli.progress import Lines, progress_of
+from dembound.kinds import load
+from dembound.motion.simulation import Simulation
 from dembound.run import plan
-from dembound.simulate import Simulation
 
 
 @dataclass
@@ -170,64 +170,6 @@ def test_a_run_ends_by_telling_what_happened(dembound, written, tmp_path) -> Non
     assert energy == f"energy closes to {100.0 * found['energy']['relative_error']:.2g} %"
 
 
-def test_only_what_applies_is_told() -> None:
-    elastic = {"static": None, "laws": [{"law": "elastic", "from": 0.0}]}
-    quiet = {"cracks": {"tension": 0, "shear": 0}, "energy": {"relative_error": 0.0}}
-    settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0, "before": None, "asked": None, "column": None}
-    stage = "settled in 3,100 steps to a force ratio of 9.8e-06"
-
-    assert disk_outcome(elastic, remembers=False) == []
-    assert disk_outcome(elastic | {"static": settled}, remembers=False) == [stage]
-    assert disk_outcome(elastic | quiet, remembers=True) == ["elastic law all through"]
-    broken = {"cracks": {"tension": 1200, "shear": 30}, "static": settled | {"cracks": 1100}}
-    assert disk_outcome(elastic | quiet | broken, remembers=True) == [
-        f"{stage}, breaking 1,100 bonds",
-        "elastic law all through",
-        "1,230 bonds broke (1,200 tension, 30 shear)",
-    ]
-    pressed = {"static": settled | {"asked": [-1e6, -2e6, 0.0], "stress": [-0.5e6, -2e6, 1e-3]}}
-    assert disk_outcome(elastic | pressed, remembers=False) == [
-        f"{stage} and a stress of (-0.5, -2, 0) where (-1, -2, 0) MPa was asked for"
-    ]
-    excavated = {"static": settled | {"steps": 900, "before": settled}}
-    assert disk_outcome(elastic | excavated, remembers=False) == [
-        stage,
-        "after the excavation in 900 steps to a force ratio of 9.8e-06",
-    ]
-    beside = {"static": settled | {"steps": 100, "column": settled}}
-    assert disk_outcome(elastic | beside, remembers=False) == [
-        f"column {stage}",
-        "settled in 100 steps to a force ratio of 9.8e-06",
-    ]
-
-
-def test_a_spall_of_one_node_has_one_place() -> None:
-    places = [[0.906, 0.909], [1.0, 1.0]]
-    summary = {
-        "laws": [{"law": "peridynamics, m = 3", "from": 0.0}],
-        "spalls": [{"start": place, "time": 4.393e-4} for place in places],
-        "spalls_note": "they multiply",
-        "bar": {"strength": 1e7},
-        "energy": {"crack": 0.0, "outside": 1.0, "relative_error": 0.0},
-    }
-    assert bar_outcome(summary) == ["spall at 0.906–0.909 m, 0.4393 ms", "spall at 1 m, 0.4393 ms", "they multiply"]
-
-
-@pytest.mark.parametrize(("count", "told", "last"), [(3, 3, "spall at"), (4, 4, "and 1 more"), (12, 4, "and 9 more")])
-def test_of_many_spalls_the_first_are_told(count: int, told: int, last: str) -> None:
-    summary = {
-        "laws": [{"law": "finite differences", "from": 0.0}],
-        "spalls": [{"start": [0.1 * n, 0.1 * n], "time": 1e-3} for n in range(count)],
-        "spalls_note": None,
-        "bar": {"strength": 1e7},
-        "energy": {"crack": 0.0, "outside": 1.0, "relative_error": 0.0},
-    }
-    facts = bar_outcome(summary)
-    assert facts[:3] == [f"spall at {place} m, 1.0000 ms" for place in ("0", "0.1", "0.2")]
-    assert len(facts) == told
-    assert facts[-1].startswith(last)
-
-
 def test_a_mistake_in_the_last_case_keeps_the_first_from_running(dembound, written, tmp_path) -> None:
     good, bad = written("good"), written("bad")
     bad.write_text(bad.read_text().replace("density", "densitty"))
@@ -258,7 +200,7 @@ class Clock:
 
 def test_off_a_terminal_a_run_says_every_ten_seconds_how_far_it_is(bar, capsys) -> None:
     planned = plan(bar())
-    simulation = Simulation(planned.scene, planned.time_step, np.zeros(0, dtype=np.int64))
+    simulation = Simulation(planned.scene, planned.time_step)
     clock = Clock(100.0)
     lines = Lines("bar", clock)
     lines.warned("wave.pulse: is odd")
@@ -292,7 +234,7 @@ def test_off_a_terminal_the_static_stage_says_so_too(capsys) -> None:
 
 def test_on_a_terminal_warnings_stand_above_the_bar(bar, monkeypatch, capsys) -> None:
     planned = plan(bar())
-    simulation = Simulation(planned.scene, planned.time_step, np.zeros(0, dtype=np.int64))
+    simulation = Simulation(planned.scene, planned.time_step)
     monkeypatch.setattr(cli.progress.err, "_force_terminal", True)
     with progress_of("bar") as shown:
         shown.settling(100, 1e-3)

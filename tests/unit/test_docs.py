@@ -1,4 +1,4 @@
-"""The reference of the case file names every key there is."""
+"""The references name every key of a case file there is, and all that a run spends time on."""
 
 from pathlib import Path
 from typing import get_args
@@ -7,23 +7,24 @@ import pytest
 
 from dembound import errors
 from dembound.boundaries import BarEndTable, BoundaryTable
-from dembound.case import load
-from dembound.case.bar import Bar
-from dembound.case.bar_load import BarLoad
-from dembound.case.bar_monitor import BarMonitor
-from dembound.case.bar_run import BarRun
-from dembound.case.load import Load
-from dembound.case.material import Material
-from dembound.case.monitor import Monitor
-from dembound.case.motion import Motion
+from dembound.case.bar.bar import Bar
+from dembound.case.bar.load import BarLoad
+from dembound.case.bar.monitor import BarMonitor
+from dembound.case.bar.run import BarRun
+from dembound.case.disks.load import Load
+from dembound.case.disks.material import Material
+from dembound.case.disks.monitor import Monitor
+from dembound.case.disks.motion import Motion
+from dembound.case.disks.static import Static, StaticSide
 from dembound.case.output import Output
 from dembound.case.run import Run
-from dembound.case.static import Static, StaticSide
 from dembound.cli.app import EXIT_CODES
 from dembound.exact import cells_per_wavelength, courant_limit
 from dembound.holes import HoleTable
+from dembound.kinds import load
 from dembound.methods import MethodTable
 from dembound.packings import PackingTable
+from dembound.run import SECTIONS
 from dembound.waves import WaveTable
 
 ROOT = Path(__file__).parents[2]
@@ -91,3 +92,9 @@ def test_spacings_per_wavelength_are_those_that_are_computed():
             cells_per_wavelength(horizon, courant, of=of) for courant in (0.5, 0.9 * limit) for of in ("phase", "group")
         ]
         assert row[1:] == [f"{limit:.3f}", *(f"{cells:.1f}" for cells in needed)]
+
+
+def test_all_that_a_run_spends_time_on_stands_in_the_reference():
+    text = (ROOT / "docs" / "results.md").read_text()
+    (line,) = (line for line in text.splitlines() if line.startswith("| `seconds` |"))
+    assert not [section for section in SECTIONS if f"`{section}`" not in line]

@@ -1,6 +1,7 @@
 """One case from tables to a folder of results."""
 
 import json
+import time
 
 import h5py
 import numpy as np
@@ -8,9 +9,9 @@ import pytest
 
 from dembound.case import Case
 from dembound.errors import CaseError, RunError
+from dembound.motion.trackers import Run
 from dembound.plot.scene import plot_scene
-from dembound.run import Progress, foresee, plan, run_case
-from dembound.simulate import Simulation
+from dembound.run import SECTIONS, Progress, plan, preflight, run_case
 
 GRIP = {"type": "velocity", "wave_p": "pulse"}
 BLOW_UP = {"boundary.left": GRIP, "wave.pulse.amplitude": 1e305}
@@ -100,12 +101,22 @@ def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> Non
             "steps",
             "duration",
         ),
-        *("wall_time", "threads", "particle_steps_per_second", "memory_bytes", "packing", "boundaries", "monitors"),
+        *(
+            "wall_time",
+            "seconds",
+            "has_history",
+            "threads",
+            "particle_steps_per_second",
+            "memory_bytes",
+            "packing",
+            "boundaries",
+            "monitors",
+        ),
         *("laws", "static", "cracks", "energy", "reduced", "warnings"),
     }
     assert (found["name"], found["particles"], found["contacts"]) == ("bar", 40, 2 * 19 + 20)
     assert found["duration"] == pytest.approx(found["steps"] * found["time_step"], rel=1e-15)
-    assert found["particle_steps_per_second"] == pytest.approx(40 * found["steps"] / found["wall_time"])
+    assert found["particle_steps_per_second"] == pytest.approx(40 * found["steps"] / found["seconds"]["step"])
     # by hand: ρc_p² shared by contact and bond; rounding and a solve with one unknown
     assert found["packing"]["C11"] == pytest.approx(2.5e9, rel=1e-12)
     assert found["packing"]["C66"] == pytest.approx(0.625e9, rel=1e-12)
@@ -117,6 +128,31 @@ def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> Non
     # the books close to rounding: some 80 steps of sums over 40 particles of 1.1e-16 each
     assert found["energy"]["relative_error"] < 1e-12
     assert found["energy"]["outside"] != 0.0
+
+
+def test_the_summary_tells_what_the_time_was_spent_on(bar, tmp_path) -> None:
+    began = time.perf_counter()
+    folder = run_case(bar({**HANGING, "output.pictures": True}), tmp_path, seconds={"import": 1000.0})
+    took = time.perf_counter() - began
+    found = summary(folder)
+
+    assert tuple(found["seconds"]) == SECTIONS
+    assert found["wall_time"] == pytest.approx(sum(found["seconds"].values()), rel=1e-12)
+    assert found["seconds"].pop("import") == 1000.0
+    # what is left out is the summary itself, and folders that are made and renamed
+    assert 0.0 < sum(found["seconds"].values()) <= took
+    assert all(
+        found["seconds"][section] > 0.0 for section in ("build", "settle", "step", "record", "export", "pictures")
+    )
+
+
+def test_what_was_not_done_took_no_time(bar, tmp_path) -> None:
+    seconds = summary(run_case(bar(), tmp_path))["seconds"]
+
+    assert tuple(seconds) == SECTIONS
+    assert seconds["import"] == 0.0
+    assert seconds["settle"] < 0.1 * sum(seconds.values())
+    assert seconds["pictures"] < 0.1 * sum(seconds.values())
 
 
 def test_the_summary_describes_the_sides(bar, tmp_path) -> None:
@@ -164,8 +200,8 @@ class Heard(Progress):
     def settling(self, steps: int, ratio: float) -> None:
         self.static.append((steps, ratio))
 
-    def running(self, simulation: Simulation, steps: int) -> None:
-        self.blocks.append((simulation.steps, steps))
+    def running(self, run: Run, steps: int) -> None:
+        self.blocks.append((run.state.step, steps))
 
 
 def test_progress_is_told_after_every_block(bar, tmp_path) -> None:
@@ -200,10 +236,10 @@ def test_what_would_stop_a_case_is_foreseen(bar, spalling) -> None:
         (bar({"material": {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0}}), "material"),
     ):
         with pytest.raises(CaseError, match=said) as caught:
-            foresee(stopped)
+            preflight(stopped)
         assert caught.value.source == stopped.name
-    foresee(bar())
-    foresee(spalling())
+    preflight(bar())
+    preflight(spalling())
 
 
 def test_energies_are_entered_a_hundred_times_or_as_often_as_asked(bar, tmp_path) -> None:
@@ -366,7 +402,7 @@ def test_blocks_of_a_bar_are_longer(spalling, tmp_path) -> None:
     run_case(spalling(quiet), tmp_path, heard)
 
     # the first step and the last are entered in the ledger, and stand alone
-    assert [done for done, _ in heard.blocks] == [1, 2049, 3999, 4000]
+    assert [done for done, _ in heard.blocks] == [1, 2048, 3999, 4000]
 
 
 def test_a_run_that_would_never_end_is_refused(spalling) -> None:

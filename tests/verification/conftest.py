@@ -10,16 +10,18 @@ import tomli_w
 
 from dembound.bar.scene import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
-from dembound.case import Case, loads
-from dembound.edges import find_edges
-from dembound.ground import make_ground
+from dembound.case import Case
+from dembound.disks.edges import find_edges
+from dembound.disks.ground import make_ground
+from dembound.disks.rows import contact_rows
+from dembound.disks.scene import DiskScene, build, with_boundaries
+from dembound.disks.stability import choose_step
+from dembound.disks.system import DiskSystem, Start
 from dembound.kernels.elastic import contact_forces
+from dembound.kinds import loads
+from dembound.motion.simulation import Simulation
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly
-from dembound.rows import contact_rows
-from dembound.scene import Scene, build, with_boundaries
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
 
 DENSITY = 2500.0
 SPEED = 1000.0
@@ -88,7 +90,7 @@ class Lab:
         }
         return loads(tomli_w.dumps(tables))
 
-    def scene(self, pattern: str, size: tuple[float, float], **words: Any) -> Scene:
+    def scene(self, pattern: str, size: tuple[float, float], **words: Any) -> DiskScene:
         """The scene of `case`."""
         return build(self.case(pattern, size, **words))
 
@@ -103,7 +105,7 @@ class Lab:
 
     def disks(
         self, positions: np.ndarray, radii: np.ndarray, pairs: Sequence[tuple[int, int]] = (), **words: Any
-    ) -> Scene:
+    ) -> DiskScene:
         """Disks at positions (n, 2) m, of radii (n,) m, of which `pairs` are bonded; the words are those of `case`.
 
         Each weighs ρ(2R)², as it would in a square lattice.
@@ -118,25 +120,33 @@ class Lab:
         twins, kinds = np.arange(len(radii), dtype=np.int32), np.arange(len(bonds), dtype=np.int32)
         assembly = Assembly(positions, radii, twins, bonds.astype(np.int32), kinds, (1, 1), box, box)
         edges = find_edges(assembly, (False, False))
-        rows = contact_rows(assembly, ground)
-        return with_boundaries(Scene(case, ground, assembly, rows, edges, SupportBuilder().table(), {}), case)
+        rows = (contact_rows(assembly, ground),)
+        return with_boundaries(DiskScene(case, ground, assembly, rows, edges, SupportBuilder().table(), {}), case)
 
     def pulse(self, period: float) -> dict[str, Any]:
         """Z's cosine pulse, 0.5 m/s high."""
         return {"type": "cosine", "amplitude": 0.5, "period": period}
 
-    def row(self, scene: Scene) -> np.ndarray:
+    def row(self, scene: DiskScene) -> np.ndarray:
         """Particles of a one-row scene, from left to right."""
         return np.argsort(scene.assembly.positions[:, 0])
 
-    def run(self, scene: Scene, probes: np.ndarray, duration: float, step: float | None = None) -> History:
+    def run(self, scene: DiskScene, probes: np.ndarray, duration: float, step: float | None = None) -> History:
         """Motion of some particles from rest, at every step."""
         step = step or choose_step(scene)[0]
         simulation = Simulation(scene, step, probes)
         record = simulation.advance(int(np.ceil(duration / step)))
         return History(step * np.arange(len(record)), record[..., :3], record[..., 3:])
 
-    def sections(self, scene: Scene, places: Sequence[float], duration: float) -> History:
+    def settled(
+        self, scene: DiskScene, start: Start, step: float | None = None, probes: Sequence[int] | np.ndarray = ()
+    ) -> Simulation:
+        """A simulation that goes on from a body at rest, by default at the step that its run would take."""
+        step = step or choose_step(scene)[0]
+        system = DiskSystem(scene, step, start)
+        return Simulation(scene, step, probes, system=system, datum=start.displacement)
+
+    def sections(self, scene: DiskScene, places: Sequence[float], duration: float) -> History:
         """Mean motion of the particles within 1 m of each place x (m): one column per place.
 
         Places a whole number of bricks apart have the same particles, so their histories differ by travel alone.
@@ -151,10 +161,11 @@ class Lab:
         )
         return History(history.times, *means)
 
-    def forces(self, scene: Scene, displacement: np.ndarray) -> np.ndarray:
+    def forces(self, scene: DiskScene, displacement: np.ndarray) -> np.ndarray:
         """Contact forces and moments (3, n) of displacements and rotations (3, n)."""
         force = np.empty_like(displacement)
-        contact_forces(displacement, scene.rows, force)
+        for rows in scene.rows:
+            contact_forces(displacement, rows, force)
         return force
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from dembound.exact import Lattice
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 CELLS, CYCLES, PASSAGES = 400, 6, 6
 ALPHA = 0.52

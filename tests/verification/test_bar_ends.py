@@ -14,7 +14,7 @@ import pytest
 from scipy.linalg import solveh_banded
 
 from dembound.exact import Lattice
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 CELLS, GAUGE, CYCLES = 1600, 1000, 6
 CENTRAL = {"type": "finite_difference"}
@@ -119,4 +119,4 @@ def test_wave_comes_in_through_a_viscous_end(rock):
     velocity = simulation.advance(600)[:, :, 3]
     expected = scene.case.wave["pulse"].velocity(step * np.arange(600)[:, None] - nodes * step)
     np.testing.assert_allclose(velocity, expected, rtol=0, atol=1e-12)
-    assert np.abs(simulation.velocity[0]).max() < 1e-12
+    assert np.abs(simulation.state.velocity[0]).max() < 1e-12

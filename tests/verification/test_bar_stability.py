@@ -5,7 +5,7 @@ import pytest
 
 from dembound.errors import RunError
 from dembound.exact import courant_limit
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 CELLS = 200
 HORIZONS = [1, 2, 3, 4, 5, 6, 8, 10]
@@ -16,13 +16,13 @@ def begin(lab, horizon: int, share: float, method: str = "peridynamics") -> Simu
     table = {"type": method} | ({"horizon": horizon} if method == "peridynamics" else {})
     scene = lab.bar(CELLS, table)
     step = share * courant_limit(horizon) * lab.diameter / lab.speed
-    simulation = Simulation(scene, step, np.zeros(0))
-    simulation.velocity[0] = np.random.default_rng(0).standard_normal(scene.count)
+    simulation = Simulation(scene, step)
+    simulation.state.velocity[0] = np.random.default_rng(0).standard_normal(scene.count)
     return simulation
 
 
 def energy(simulation: Simulation) -> float:
-    return 0.5 * float(np.sum(simulation.scene.mass * simulation.velocity[0] ** 2))
+    return 0.5 * float(np.sum(simulation.scene.mass * simulation.state.velocity[0] ** 2))
 
 
 @pytest.mark.parametrize("horizon", HORIZONS)

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from dembound.scene import Scene
-from dembound.simulate import Simulation
-from dembound.static import settle
+from dembound.disks.scene import DiskScene
+from dembound.disks.static import settle
+from dembound.motion.simulation import Simulation
 
 DISKS, RADIUS = 4, 0.25
 MASS = 2500.0 * (2.0 * RADIUS) ** 2
@@ -23,7 +23,7 @@ RATIO = 1e-9
 STEP = 0.02 * np.sqrt(MASS / EMOD)
 
 
-def block_on_slope(lab, loads: Sequence[dict]) -> Scene:
+def block_on_slope(lab, loads: Sequence[dict]) -> DiskScene:
     """Disks 0 to 3 are the slope, 4 to 7 the block above them."""
     along = 2.0 * RADIUS * np.arange(DISKS)
     material = {"law": "linearpbond", "kratio": KRATIO, "fric": FRICTION, "s_wave_speed": 0.5 * lab.speed}
@@ -47,7 +47,7 @@ def tilted(angle: float) -> tuple[float, float]:
 
 def on_the_slope(simulation: Simulation) -> np.ndarray:
     """Forces (DISKS, 2) N from the block on the slope."""
-    pairs = simulation.contacts.arrays
+    pairs = simulation.system.contacts["body"].arrays
     standing = (pairs.first < DISKS) & (pairs.second >= DISKS) & pairs.force[:, :2].any(axis=1)
     return pairs.force[standing, :2]
 
@@ -57,7 +57,7 @@ def test_below_the_friction_angle_it_rests(lab, angle):
     along, across = tilted(angle)
     scene = block_on_slope(lab, [{"acceleration": (along, across)}])
     settled = settle(scene)
-    simulation = Simulation(scene, STEP, np.arange(DISKS, 2 * DISKS), start=settled.start)
+    simulation = lab.settled(scene, settled.start, STEP, np.arange(DISKS, 2 * DISKS))
 
     # the mean force left is RATIO of that in a contact, MASS·g; all of it may be left on one disk
     left = 2 * DISKS * RATIO * MASS * GRAVITY
@@ -71,9 +71,9 @@ def test_above_the_friction_angle_it_slides(lab, angle):
     # across the slope it has come to rest before what pulls it along is switched on
     pull = {"acceleration": (along, 0.0), "wave": "pulse"}
     scene = block_on_slope(lab, [{"acceleration": (0.0, across)}, pull])
-    simulation = Simulation(scene, STEP, np.arange(DISKS, 2 * DISKS), start=settle(scene).start)
+    simulation = lab.settled(scene, settle(scene).start, STEP, np.arange(DISKS, 2 * DISKS))
     record = simulation.advance(400)
-    assert simulation.contacts.arrays.slip.any()
+    assert simulation.system.contacts["body"].arrays.slip.any()
 
     velocity = record[200:, :, 3]
     acceleration = np.diff(velocity, axis=0) / STEP

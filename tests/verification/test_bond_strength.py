@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from dembound.boundaries.support import SupportBuilder
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 RADII = np.array([0.2, 0.3])
 BOND_RADIUS = 0.8 * RADII.min()
@@ -82,13 +82,15 @@ def test_it_breaks_in_shear_at_cohesion_and_friction(lab, motion):
 
 
 def check_crack(simulation: Simulation, *, shear: bool) -> None:
-    """One crack, in the first step that begins beyond the strength, midway between the disks."""
-    simulation.advance(2 * int(REACH))
-    cracks = simulation.contacts.take_cracks()
+    """One crack, in the first step that begins beyond the strength, midway between the disks as they are then."""
+    simulation.advance(int(REACH) + 1)
+    moved = simulation.state.displacement[:2, 1].copy()
+    simulation.advance(int(REACH) - 1)
+    cracks = simulation.system.contacts["body"].take_cracks()
     assert cracks.pair.tolist() == [[0, 1]]
     assert cracks.shear.tolist() == [shear]
     assert cracks.step.tolist() == [int(REACH) + 1]
-    middle = simulation.scene.assembly.positions.mean(axis=0) + 0.5 * simulation.displacement[:2, 1]
+    middle = simulation.scene.assembly.positions.mean(axis=0) + 0.5 * moved
     np.testing.assert_allclose(cracks.position, [middle], rtol=1e-15)
 
 
@@ -104,17 +106,19 @@ def test_a_broken_bond_never_heals(lab):
     turns_at = 2 * int(REACH)
     simulation = gripped(lab, 1.0, 0.0, 0.2, turns_at, pb_ten=stress(1.0, 0.2))
 
+    contacts = simulation.system.contacts
+
     def force() -> np.ndarray:
-        return simulation.contacts.last_forces()[:, 1]
+        return simulation.system.last_forces(contacts)[:, 1]
 
     simulation.advance(turns_at)
-    assert len(simulation.contacts.take_cracks()) == 1
+    assert len(contacts["body"].take_cracks()) == 1
     assert not force().any()
     simulation.advance(turns_at // 2)  # half-way back, still apart
     assert not force().any()
     simulation.advance(turns_at)  # pressed together, turned back beyond the start
-    assert len(simulation.contacts.take_cracks()) == 0
+    assert len(contacts["body"].take_cracks()) == 0
     # the contact alone: k_n = E_c times the overlap of the last step's beginning. Across the pair the disk has moved by
     # less than the overlap, and turned the pair by less than 4e-6
-    pressed = PB_EMOD * STRETCH * (simulation.steps - 1 - 2 * turns_at)
+    pressed = PB_EMOD * STRETCH * (simulation.state.step - 1 - 2 * turns_at)
     np.testing.assert_allclose(force(), [*(pressed * DIRECTION), 0.0], rtol=0.0, atol=1e-5 * pressed)

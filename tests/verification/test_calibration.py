@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.calibrate import calibrate
-from dembound.scene import build
+from dembound.disks.scene import build
+from dembound.studies.calibration import calibrate
 
 RANDOM = ["B", "C"]
 KINDS = {

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.simulate import Simulation
-from dembound.stability import TOLERANCE, step_limit
+from dembound.disks.stability import TOLERANCE, step_limit
+from dembound.motion.simulation import Simulation
 
 SIDES = ("left", "right", "bottom", "top")
 
@@ -16,11 +16,11 @@ def test_bounded_at_the_undamped_limit(lab, pattern, beta):
     sides = {side: {"type": "viscous", "beta_p": beta, "beta_s": beta} for side in SIDES}
     scene = lab.scene(pattern, (10.0, 10.0), held=(), boundary=sides)
     free = lab.scene(pattern, (10.0, 10.0), held=())
-    simulation = Simulation(scene, 0.999 * step_limit(free), np.zeros(0))
-    simulation.velocity[:] = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
+    simulation = Simulation(scene, 0.999 * step_limit(free))
+    simulation.state.velocity[:] = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
     inertia = np.stack([scene.mass, scene.mass, scene.inertia])
-    start = np.sum(inertia * simulation.velocity**2)
+    start = np.sum(inertia * simulation.state.velocity**2)
     simulation.advance(2000)
     # as in test_stability_limit: ½mv²(1 − r²) is at most the energy, and dashpots only lower it
     share = 0.999 * (1.0 + TOLERANCE)
-    assert np.sum(inertia * simulation.velocity**2) < start / (1.0 - share**2)
+    assert np.sum(inertia * simulation.state.velocity**2) < start / (1.0 - share**2)

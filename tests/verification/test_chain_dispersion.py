@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
+from dembound.disks.stability import choose_step
+from dembound.motion.simulation import Simulation
 
 DISKS, STEPS = 40, 1000
 
@@ -22,14 +22,14 @@ def test_travelling_wave_keeps_its_frequency(lab, waves_per_row):
     def displacement(steps: float) -> np.ndarray:
         return np.cos(per_disk * np.arange(DISKS) - advance * steps)
 
-    simulation = Simulation(scene, step, np.zeros(0))
+    simulation = Simulation(scene, step)
     order = lab.row(scene)
-    simulation.displacement[0, order] = displacement(0)
-    simulation.velocity[0, order] = (displacement(0) - displacement(-1)) / step
+    simulation.state.displacement[0, order] = displacement(0)
+    simulation.state.velocity[0, order] = (displacement(0) - displacement(-1)) / step
     simulation.advance(STEPS)
 
     # each step rounds u by ε and Δt·v by a few ε; a velocity error made at step k moves the disk for all steps
     # left, so the worst sum is 4ε·STEPS²/2
     tolerance = 2.0 * np.finfo(float).eps * STEPS**2
-    np.testing.assert_allclose(simulation.displacement[0, order], displacement(STEPS), rtol=0, atol=tolerance)
-    assert not simulation.displacement[1:].any()
+    np.testing.assert_allclose(simulation.state.displacement[0, order], displacement(STEPS), rtol=0, atol=tolerance)
+    assert not simulation.state.displacement[1:].any()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.exact import Lattice, courant_limit
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 STEPS = 200
 CENTRAL = {"type": "finite_difference"}
@@ -25,8 +25,8 @@ def test_standing_wave_keeps_its_frequency(lab, horizon, method, share, part):
 
     simulation = Simulation(scene, step, np.array([middle]))
     shape = np.cos(wavenumber * (scene.positions[:, 0] - scene.positions[middle, 0]))
-    simulation.displacement[0] = shape
-    simulation.velocity[0] = shape * 2.0 * np.sin(0.5 * frequency * step) ** 2 / step
+    simulation.state.displacement[0] = shape
+    simulation.state.velocity[0] = shape * 2.0 * np.sin(0.5 * frequency * step) ** 2 / step
     record = simulation.advance(STEPS + 1)
 
     # each step rounds u and Δt·v by a few ε; a velocity error made at step k moves the node for all steps left, so the

@@ -7,8 +7,8 @@ The energy of central differences at a half step is ½m v² + ½uⁿ·K uⁿ⁺�
 import numpy as np
 import pytest
 
-from dembound.simulate import Simulation
-from dembound.stability import step_limit
+from dembound.disks.stability import step_limit
+from dembound.motion.simulation import Simulation
 
 STEPS = 1000
 EPS = np.finfo(float).eps
@@ -21,8 +21,8 @@ def inertia(scene):
 
 def thrown(scene, share: float) -> Simulation:
     """The scene in random motion, without strain."""
-    simulation = Simulation(scene, share * step_limit(scene), np.zeros(0))
-    simulation.velocity[:] = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
+    simulation = Simulation(scene, share * step_limit(scene))
+    simulation.state.velocity[:] = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
     return simulation
 
 
@@ -33,11 +33,11 @@ def energies(lab, simulation: Simulation, steps: int) -> tuple[np.ndarray, np.nd
     dashpots[scene.supports.component, scene.supports.node] = scene.supports.damping
     energy, taken = np.empty(steps), np.empty(steps)
     for k in range(steps):
-        before, force = simulation.velocity.copy(), lab.forces(scene, simulation.displacement)
+        before, force = simulation.state.velocity.copy(), lab.forces(scene, simulation.state.displacement)
         simulation.advance(1)
-        kinetic = 0.5 * np.sum(inertia(scene) * simulation.velocity**2)
-        energy[k] = kinetic - 0.5 * np.sum(force * simulation.displacement)
-        mean = 0.5 * (before + simulation.velocity)
+        kinetic = 0.5 * np.sum(inertia(scene) * simulation.state.velocity**2)
+        energy[k] = kinetic - 0.5 * np.sum(force * simulation.state.displacement)
+        mean = 0.5 * (before + simulation.state.velocity)
         taken[k] = simulation.time_step * np.sum(dashpots * mean**2)
     return energy, taken
 
@@ -50,7 +50,7 @@ def test_free_body_keeps_energy_and_momentum(lab, pattern):
 
     def momentum() -> np.ndarray:
         """Terms (3, k) of the momenta along x, y and about the origin."""
-        p = inertia(scene) * simulation.velocity
+        p = inertia(scene) * simulation.state.velocity
         zero = np.zeros_like(p)
         return np.stack(
             [

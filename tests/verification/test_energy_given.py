@@ -6,10 +6,8 @@ of what boundaries and weight bring in then stays below zero, and measured by th
 
 import numpy as np
 
-from dembound.energy import Ledger
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
-from dembound.static import settle
+from dembound.disks.static import settle
+from dembound.motion.energy import Ledger
 
 
 def test_a_wave_that_lifts_ground_under_gravity_runs_through(lab):
@@ -24,11 +22,11 @@ def test_a_wave_that_lifts_ground_under_gravity_runs_through(lab):
         load=[{"acceleration": [0.0, -9.81]}],
         static={"boundary": rollers},
     )
-    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0), start=settle(scene).start)
-    ledger = Ledger(simulation)
+    simulation = lab.settled(scene, settle(scene).start)
+    ledger = Ledger(simulation, 20)
+    simulation.track(ledger)
     while simulation.time < 0.1:
-        ledger.step()
-        simulation.advance(19)
+        simulation.advance(20)
     came = np.array([entry.outside + entry.load for entry in ledger.entries])
     given = max(entry.outside for entry in ledger.entries)
     assert came.max() < 0.1 * given

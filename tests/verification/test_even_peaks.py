@@ -1,12 +1,11 @@
 """Along one boundary of uneven disks the peaks of velocity are even."""
 
-import numpy as np
 import pytest
 
-from dembound.calibrate import calibrate
-from dembound.scene import build
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
+from dembound.motion.simulation import Simulation
+from dembound.studies.calibration import calibrate
 
 LENGTH, HEIGHT = 180.0, 20.0
 PERIOD = 0.5
@@ -36,7 +35,7 @@ def test_spread_of_peaks(lab, side, source, motion):
     matched = calibrate(case(1.0), side, motion=motion).result
     scene = build(case(matched))
     component = 0 if motion == "p" else 1
-    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0))
+    simulation = Simulation(scene, choose_step(scene)[0])
     arrival = LENGTH / scene.ground.wave_speeds(0)[component] if side == "right" else 0.0
     simulation.advance(int((arrival + 0.6 * PERIOD) / simulation.time_step))
     peaks = simulation.edge_peaks(side)[:, component, 1]

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from dembound.exact import bar_stress, bar_velocity
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 PRESSURE, PULSE = 10e6, 0.12e-3
 PASSAGES = 6

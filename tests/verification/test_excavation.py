@@ -14,9 +14,9 @@ The square lattice with k_s = k_n = K is isotropic with ν = 0 and G = K/2.
 import numpy as np
 import pytest
 
-from dembound.case import with_changes
-from dembound.scene import Scene, build
-from dembound.static import Settled, settle
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.static import Settled, settle
+from dembound.kinds import with_changes
 
 DISKS = 12  # in the hole's radius
 WIDTH = 12  # of the plate, in radii
@@ -29,7 +29,7 @@ def radius(lab) -> float:
 
 
 @pytest.fixture(scope="module")
-def plate(lab) -> tuple[Scene, Settled]:
+def plate(lab) -> tuple[DiskScene, Settled]:
     """A plate under biaxial stress, all sides free, with a hole excavated in its middle."""
     a = radius(lab)
     case = lab.case(

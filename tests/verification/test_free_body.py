@@ -8,11 +8,10 @@ with its sides.
 import numpy as np
 import pytest
 
-from dembound.engines import NO_FOLLOWERS
+from dembound.disks.stability import OPENING, choose_step
+from dembound.disks.static import settle
 from dembound.kernels.contacts import CLOSING
-from dembound.simulate import Simulation
-from dembound.stability import OPENING, choose_step
-from dembound.static import settle
+from dembound.motion.simulation import Simulation
 
 KICK = 3.0
 """J per metre."""
@@ -36,8 +35,8 @@ def kick(simulation: Simulation, *, spin: float = 0.5) -> None:
     arm = (scene.positions - np.average(scene.positions, axis=0, weights=scene.mass)).T
     turn = np.stack([-arm[1], arm[0], np.ones(scene.count)]) * scene.free[:, None]
     for share, motion in ((1.0 - spin, noise), (spin, turn)):
-        simulation.velocity += motion * np.sqrt(share * KICK / kinetic(simulation, motion)) if share else 0.0
-    simulation.velocity *= np.sqrt(KICK / kinetic(simulation, simulation.velocity))
+        simulation.state.velocity += motion * np.sqrt(share * KICK / kinetic(simulation, motion)) if share else 0.0
+    simulation.state.velocity *= np.sqrt(KICK / kinetic(simulation, simulation.state.velocity))
 
 
 def largest(simulation: Simulation, steps: int) -> float:
@@ -45,7 +44,7 @@ def largest(simulation: Simulation, steps: int) -> float:
     found = []
     for _ in range(steps // 50):
         simulation.advance(50)
-        found.append(kinetic(simulation, simulation.velocity))
+        found.append(kinetic(simulation, simulation.state.velocity))
     return max(found)
 
 
@@ -60,8 +59,7 @@ LAWS = {
 def kicked(lab, pattern: str, material: dict, boundary: dict, static: dict | None) -> Simulation:
     """A body of 20 m × 10 m, settled if it has a static stage, and kicked."""
     scene = lab.scene(pattern, (20.0, 10.0), held=(), material=material, boundary=boundary, static=static)
-    start = None if static is None else settle(scene).start
-    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0), start=start)
+    simulation = Simulation(scene, choose_step(scene)[0]) if static is None else lab.settled(scene, settle(scene).start)
     kick(simulation)
     return simulation
 
@@ -116,7 +114,7 @@ def test_a_row_of_disks_stays_below_that_limit(lab):
     scene = lab.scene("A", (100.0, lab.diameter), held=("y", "rotation"), material=material)
     step, limit = choose_step(scene)
     assert limit == pytest.approx(np.sqrt(OPENING) * lab.diameter / lab.speed, rel=1e-3)
-    simulation = Simulation(scene, step, np.zeros(0))
+    simulation = Simulation(scene, step)
     kick(simulation, spin=0.0)
     assert largest(simulation, 3000) < KICK
 
@@ -125,7 +123,7 @@ def rotation(simulation: Simulation) -> float:
     """Mean rotation (rad) of a body since its start."""
     scene = simulation.scene
     arm = (scene.positions - scene.positions.mean(axis=0)).T
-    moved = (simulation.displacement - simulation.datum)[:2]
+    moved = (simulation.state.displacement - simulation.state.datum)[:2]
     return float(np.sum(arm[0] * moved[1] - arm[1] * moved[0]) / np.sum(arm**2))
 
 
@@ -135,9 +133,10 @@ def test_forces_that_follow_the_sides_do_not_tip_a_body(lab, stress, follow):
     """Known failure: with forces of fixed direction θ grows at the rate √(12|σ_xx + σ_yy|/(ρ(W² + H²)))."""
     width, height = 20.0, 10.0
     scene = lab.scene("B", (width, height), held=(), material=LAWS["updated"], static={"stress": stress})
-    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0), start=settle(scene).start)
+    simulation = lab.settled(scene, settle(scene).start)
     if not follow:
-        simulation.engine.followers = NO_FOLLOWERS
+        assert simulation.system.turning is not None
+        simulation.system.turning = None
     kick(simulation, spin=1.0)
     spin = np.sqrt(
         2.0 * KICK / (np.sum(scene.mass * ((scene.positions - scene.positions.mean(axis=0)) ** 2).sum(axis=1)))

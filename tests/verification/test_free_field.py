@@ -7,11 +7,11 @@ part and moment included, so nothing is calibrated and nothing is left over.
 import numpy as np
 import pytest
 
-from dembound.case import with_changes
-from dembound.scene import build
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
-from dembound.static import settle
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
+from dembound.disks.static import settle
+from dembound.kinds import with_changes
+from dembound.motion.simulation import Simulation
 
 HEIGHT, WIDTH = 40.0, 40.0
 EPS = np.finfo(float).eps
@@ -38,13 +38,13 @@ def test_every_particle_moves_as_its_twin(lab, pattern, wave):
     """Up, reflected at the surface and out through the base, to 1e-9 of the peak for the whole run."""
     scene = build(ground(lab, pattern, 0.05, wave=wave))
     step, _ = choose_step(scene)
-    simulation = Simulation(scene, step, np.zeros(0))
+    simulation = Simulation(scene, step)
     furthest = peak = 0.0
     for _ in range(int(0.3 / step / 20)):
         simulation.advance(20)
-        apart = simulation.velocity - simulation.velocity[:, scene.seam.twin]
+        apart = simulation.state.velocity - simulation.state.velocity[:, scene.seam.twin]
         furthest = max(furthest, np.abs(apart[:2]).max())
-        peak = max(peak, np.abs(simulation.velocity[:2]).max())
+        peak = max(peak, np.abs(simulation.state.velocity[:2]).max())
     assert peak > 0.9
     assert furthest < 1e-9 * peak
 
@@ -52,10 +52,10 @@ def test_every_particle_moves_as_its_twin(lab, pattern, wave):
 def test_contacts_with_a_memory_are_met_across_the_seam_too(lab):
     material = {"law": "linearpbond", "fric": 0.5, "elastic_start": False}
     scene = build(ground(lab, "C", 0.05, material=material))
-    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0))
+    simulation = Simulation(scene, choose_step(scene)[0])
     simulation.run(400)
-    apart = np.abs(simulation.velocity - simulation.velocity[:, scene.seam.twin])[:2].max()
-    assert np.abs(simulation.velocity[:2]).max() > 0.2
+    apart = np.abs(simulation.state.velocity - simulation.state.velocity[:, scene.seam.twin])[:2].max()
+    assert np.abs(simulation.state.velocity[:2]).max() > 0.2
     assert apart < 1e-9 * 0.5
 
 
@@ -88,9 +88,9 @@ def test_p_and_sv_at_once_are_the_sum(lab):
     motions = []
     for wave in ("p", "s", "ps"):
         scene = build(ground(lab, "B", 0.05, wave=wave))
-        simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0))
+        simulation = Simulation(scene, choose_step(scene)[0])
         simulation.run(500)
-        motions.append(simulation.velocity[:2])
+        motions.append(simulation.state.velocity[:2])
     alone = motions[0] + motions[1]
     # 500 steps of sums that each round by ε of the whole, met by contact forces some ten times those of the wave
     assert np.abs(alone - motions[2]).max() < 10.0 * 500 * EPS * np.abs(alone).max()
@@ -112,6 +112,6 @@ def test_gravity_settles_between_free_field_sides(lab, pattern):
     # body and column each come to rest within the force ratio of 1e-5, which the body's width of two bricks and its
     # height of 40 disks multiply in displacements
     assert np.abs(sunk - sunk[:, scene.seam.twin])[1].max() < 1e-2 * np.abs(sunk).max()
-    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0), start=settled.start)
+    simulation = lab.settled(scene, settled.start)
     simulation.run(1000)
-    assert np.abs(simulation.velocity).max() < 1e-9 * 0.5
+    assert np.abs(simulation.state.velocity).max() < 1e-9 * 0.5

@@ -5,9 +5,8 @@ A weak pulse runs along a bar of random disks under a low locked-in stress and m
 
 import numpy as np
 
-from dembound.scene import build
-from dembound.simulate import Simulation, Start
-from dembound.stability import choose_step
+from dembound.disks.scene import build
+from dembound.disks.system import Start
 
 EPS = np.finfo(float).eps
 CONTACT_MODULUS = 1.25e9
@@ -31,12 +30,11 @@ def runs(lab, amplitude: float, pressure: float, geometry: str):
                 confining_stress=pressure,
             )
         )
-        step, _ = choose_step(scene)
         # taken as settled: with the cut sides balanced, and all contacts as closed as at the start
-        start = Start(np.zeros((3, scene.count)), scene.contact_list(), remembers=False)
-        simulation = Simulation(scene, step, np.arange(scene.count), start=start)
+        start = Start(np.zeros((3, scene.count)), scene.contact_lists())
+        simulation = lab.settled(scene, start, probes=np.arange(scene.count))
         motions.append(simulation.advance(540))
-        laws.append(simulation.laws)
+        laws.append(simulation.state.laws)
     assert [name for name, _ in laws[0]] == ["elastic", "linearpbond"]
     assert laws[1] == [("linearpbond", 0)]
     return *motions, laws[0]

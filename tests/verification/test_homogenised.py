@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from dembound.calibrate import calibrate
-from dembound.scene import build
+from dembound.disks.scene import build
+from dembound.studies.calibration import calibrate
 
 PERIOD = 0.2
 

@@ -10,7 +10,7 @@ import pytest
 from dembound.kernels.bar import plane_force
 from dembound.laws.peridynamic import families, volume_factor
 from dembound.methods.bonds import Bonds, Rod
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 HORIZONS = [1, 2, 3, 5, 8]
 NODES = 60
@@ -81,9 +81,10 @@ def torn(rock):
             load={"pressure": strengths * rock.strength, "nodes": nodes},
             wave=rock.triangle(0.12e-3),
         )
-        simulation = Simulation(scene, 1e-6, np.zeros(0))
+        simulation = Simulation(scene, 1e-6)
         simulation.advance(int(rock.length / rock.speed / 1e-6))
-        return bool(np.any(simulation.take_cracks().position[:, 0] < 0.1 * rock.length))
+        cracks = simulation.system.take_cracks(simulation.state.step)
+        return bool(np.any(cracks.position[:, 0] < 0.1 * rock.length))
 
     return tears
 

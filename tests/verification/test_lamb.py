@@ -6,11 +6,11 @@ The line load of Z section 3.2 acts on half a model with a mirror plane half a d
 import numpy as np
 import pytest
 
-from dembound.case import loads
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
 from dembound.exact.lamb import surface_displacement
-from dembound.scene import build
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
+from dembound.kinds import loads
+from dembound.motion.simulation import Simulation
 
 DENSITY, SPEED, PULSE, FORCE = 2500.0, 300.0, 0.5, 450e3
 SPRINGS = 'type = "viscoelastic"\nsource = [0.0, {size}]\nalpha_n = 1.0\nalpha_s = 0.5'

@@ -6,10 +6,10 @@ A pulse enters a block of random disks through a viscous side, is reflected by f
 import numpy as np
 import pytest
 
-from dembound.energy import Ledger
-from dembound.scene import build
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
+from dembound.motion.energy import Ledger
+from dembound.motion.simulation import Simulation
 
 
 def ledger_of(lab, material: dict, amplitude: float = 0.5) -> Ledger:
@@ -24,10 +24,10 @@ def ledger_of(lab, material: dict, amplitude: float = 0.5) -> Ledger:
         confining_stress=2e6,
     )
     scene = build(case)
-    ledger = Ledger(Simulation(scene, choose_step(scene)[0], np.zeros(0)))
-    for _ in range(20):
-        ledger.step()
-        ledger.simulation.advance(19)
+    simulation = Simulation(scene, choose_step(scene)[0])
+    ledger = Ledger(simulation, 20)
+    simulation.track(ledger)
+    simulation.run(400)
     return ledger
 
 

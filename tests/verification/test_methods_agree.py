@@ -10,7 +10,7 @@ import pytest
 
 from dembound.bar.fracture import Spall, spalls
 from dembound.exact import triangle_spall
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 LENGTH, SPACING, HORIZON = 0.99, 2.5e-3, 3
 PRESSURE, RISE, FALL, STRETCH = 25.5e6, 0.04e-3, 0.2e-3, 0.00095
@@ -36,13 +36,13 @@ def runs(rock) -> dict[str, Simulation]:
             load={"pressure": PRESSURE},
             wave={"type": "triangle", "amplitude": 1.0, "rise": RISE, "fall": FALL},
         )
-        finished[name] = Simulation(scene, rock.step(scene, 0.9), np.zeros(0))
+        finished[name] = Simulation(scene, rock.step(scene, 0.9))
         finished[name].run(int(0.5e-3 / finished[name].time_step))
     return finished
 
 
 def first_spall(simulation: Simulation) -> Spall:
-    return spalls(simulation.engine.bonds, simulation.scene.positions[:, 0], simulation.time_step)[0]
+    return spalls(simulation.system.parts[0].bonds, simulation.scene.positions[:, 0], simulation.time_step)[0]
 
 
 @pytest.mark.parametrize("name", METHODS)
@@ -63,8 +63,8 @@ def test_methods_agree_to_a_horizon(runs):
 
 def test_patch_costs_what_finite_differences_do(runs):
     """Zones come in the last tenth of the run and on less than half the bar, at three times the cost: 1/10 more."""
-    updates = {name: run.engine.bond_updates for name, run in runs.items()}
-    assert runs["patch"].laws[1][1] > 0.9 * runs["patch"].steps
+    updates = {name: run.system.parts[0].bond_updates for name, run in runs.items()}
+    assert runs["patch"].state.laws[1][1] > 0.9 * runs["patch"].state.step
     assert updates["patch"] <= 1.1 * updates["finite_difference"]
     assert updates["patch"] <= 0.4 * updates["peridynamics"]
     assert updates["patch"] < updates["switch"]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.calibrate import calibrate
-from dembound.scene import build, with_boundaries
+from dembound.disks.scene import build, with_boundaries
+from dembound.studies.calibration import calibrate
 
 PERIOD, LENGTH, PLACE = 0.2, 250.0, 135.0
 """The pulse is 200 m long: at 135 m it has passed before its echo from the end of the bar is there."""

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from dembound.kernels.contacts import CLOSING
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 RADII = np.array([0.2, 0.3])
 SPEED = 0.5
@@ -48,16 +48,16 @@ def impact(request, lab) -> Impact:
     scene = lab.disks(np.outer([0.0, RADII.sum() + gap], normal), RADII, held=(), material=material)
     simulation = Simulation(scene, step, np.arange(2))
     before = np.array([0.7 * SPEED, -0.3 * SPEED])
-    simulation.velocity[:2] = np.outer(normal, before)
+    simulation.state.velocity[:2] = np.outer(normal, before)
 
     overlaps, forces = [], []
     for _ in range(int(1.5 * np.pi / H)):
-        apart = np.diff(scene.assembly.positions + simulation.displacement[:2].T, axis=0)
+        apart = np.diff(scene.assembly.positions + simulation.state.displacement[:2].T, axis=0)
         overlaps.append(RADII.sum() - np.hypot(*apart[0]))
         simulation.advance(1)
-        forces.append(np.hypot(*simulation.contacts.arrays.force[0, :2]))
-    assert simulation.laws[-1][0] == "linearpbond"
-    assert not simulation.displacement[2].any()
+        forces.append(np.hypot(*simulation.system.contacts["body"].arrays.force[0, :2]))
+    assert simulation.state.laws[-1][0] == "linearpbond"
+    assert not simulation.state.displacement[2].any()
     touching = np.flatnonzero(np.array(overlaps) > 0.0)
     first, last = touching[0] - 1, touching[-1]
     x = np.array(overlaps)
@@ -68,7 +68,7 @@ def impact(request, lab) -> Impact:
         stiffness,
         step * (crossings[1] - crossings[0]),
         max(forces),
-        normal @ simulation.velocity[:2],
+        normal @ simulation.state.velocity[:2],
         2.0 * common - before,
     )
 

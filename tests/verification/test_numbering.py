@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.edges import find_edges
+from dembound.disks.edges import find_edges
+from dembound.disks.rows import contact_rows
+from dembound.disks.scene import with_boundaries
+from dembound.disks.stability import choose_step
 from dembound.kernels.tables import Rows
-from dembound.rows import contact_rows
-from dembound.scene import with_boundaries
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
+from dembound.motion.simulation import Simulation
 
 STEPS = 1000
 
@@ -41,17 +41,18 @@ def renumbered(scene, number):
         kind=body.kind[order],
     )
     edges = find_edges(body, (False, False))
-    scene = replace(scene, assembly=body, rows=contact_rows(body, scene.ground), edges=edges)
+    scene = replace(scene, assembly=body, rows=(contact_rows(body, scene.ground),), edges=edges)
     return with_boundaries(scene, scene.case)
 
 
 def rows_in_old_order(scene, number):
     """The rows of contacts under new numbers, each row's contacts in the order of the old one."""
-    contacts, old = scene.rows, np.argsort(number)
+    (contacts,), old = scene.rows, np.argsort(number)
     counts = np.diff(contacts.start.astype(int))
     start = np.concatenate([[0], np.cumsum(counts[old])])
     entries = np.concatenate([np.arange(contacts.start[i], contacts.start[i + 1]) for i in old])
     return Rows(
+        0,
         start.astype(np.uint32),
         number[contacts.neighbour[entries]].astype(np.uint32),
         contacts.kind[entries],
@@ -60,7 +61,7 @@ def rows_in_old_order(scene, number):
 
 
 def motion(scene, step):
-    simulation = Simulation(scene, step, np.zeros(0))
+    simulation = Simulation(scene, step)
     simulation.advance(STEPS)
     return simulation
 
@@ -76,15 +77,15 @@ def test_same_motion(scene, number):
     before, after = motion(scene, step), motion(renumbered(scene, number), step)
     # sums in another order differ by the rounding of displacements, a few ε·u/Δt of velocity per step, and the
     # motion is stable: the worst sum is proportional to the steps
-    largest = np.abs(before.displacement).max()
+    largest = np.abs(before.state.displacement).max()
     tolerance = 4.0 * np.finfo(float).eps * largest / step * STEPS
-    np.testing.assert_allclose(after.velocity[:, number], before.velocity, rtol=0, atol=tolerance)
-    assert np.abs(before.velocity).max() > 0.1  # the pulses did run
+    np.testing.assert_allclose(after.state.velocity[:, number], before.state.velocity, rtol=0, atol=tolerance)
+    assert np.abs(before.state.velocity).max() > 0.1  # the pulses did run
 
 
 def test_same_bits_when_rows_keep_their_order(scene, number):
     step = choose_step(scene)[0]
-    other = replace(renumbered(scene, number), rows=rows_in_old_order(scene, number))
+    other = replace(renumbered(scene, number), rows=(rows_in_old_order(scene, number),))
     before, after = motion(scene, step), motion(other, step)
-    np.testing.assert_array_equal(after.velocity[:, number], before.velocity)
-    np.testing.assert_array_equal(after.displacement[:, number], before.displacement)
+    np.testing.assert_array_equal(after.state.velocity[:, number], before.state.velocity)
+    np.testing.assert_array_equal(after.state.displacement[:, number], before.state.displacement)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 CELLS, STEPS = 300, 100
 TOLERANCE = 4.0 * np.finfo(float).eps * STEPS**2
@@ -16,10 +16,10 @@ def motion(lab):
 
     def move(method: dict) -> np.ndarray:
         scene = lab.bar(CELLS, method)
-        simulation = Simulation(scene, 0.5 * lab.diameter / lab.speed, np.zeros(0))
-        simulation.displacement[0] = np.random.default_rng(0).uniform(-1.0, 1.0, scene.count) / 4.0
+        simulation = Simulation(scene, 0.5 * lab.diameter / lab.speed)
+        simulation.state.displacement[0] = np.random.default_rng(0).uniform(-1.0, 1.0, scene.count) / 4.0
         simulation.advance(STEPS)
-        return simulation.displacement[0]
+        return simulation.state.displacement[0]
 
     return move
 

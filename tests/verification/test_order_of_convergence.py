@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 WIDTH = 10.0
 """Width σ of the pulse exp(−x²/2σ²), m; nine of them, to either side of where it is, leave 3e-18 of it at the ends."""
@@ -30,8 +30,8 @@ def error(lab, horizon: int, spacing: float) -> float:
     def pulse(time: float) -> np.ndarray:
         return np.exp(-0.5 * ((scene.positions[:, 0] - 9.0 * WIDTH - lab.speed * time) / WIDTH) ** 2)
 
-    simulation = Simulation(scene, step, np.zeros(0))
-    simulation.displacement[0] = pulse(0.0)
-    simulation.velocity[0] = (pulse(0.0) - pulse(-step)) / step
+    simulation = Simulation(scene, step)
+    simulation.state.displacement[0] = pulse(0.0)
+    simulation.state.velocity[0] = (pulse(0.0) - pulse(-step)) / step
     simulation.advance(steps)
-    return float(np.abs(simulation.displacement[0] - pulse(steps * step)).max())
+    return float(np.abs(simulation.state.displacement[0] - pulse(steps * step)).max())

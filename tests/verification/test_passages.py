@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from dembound.exact import Lattice, bar_stress
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 SPACING, STEP, PASSAGES = 5e-3, 1e-6, 4
 MODULUS, PRESSURE, PULSE = 20e9, 8.9e6, 0.12e-3

@@ -18,7 +18,7 @@ from dembound.bar.scene import BarScene
 from dembound.kernels import bar
 from dembound.methods import Patch
 from dembound.methods.bonds import Bonds, Rod
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 CELLS = 1600
 SEAM, GAUGE, CYCLES = 900, 450, 6
@@ -107,8 +107,8 @@ ZONES = {
 
 def forces(bonds: Bonds, u: np.ndarray) -> np.ndarray:
     """Forces (n,) N on all nodes by the kernel, none of them left to the stencil of plain ones."""
-    arrays, force = bonds.arrays(np.arange(len(u)), 1.0), np.empty(len(u))
-    every = (arrays.mixed, arrays.spring, arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.room)
+    arrays, force = bonds.arrays(np.arange(len(u)), 1.0, 1.0), np.empty(len(u))
+    every = (arrays.mixed, arrays.spring, arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.space)
     bar.forces(u, *every, force)
     return force
 
@@ -122,18 +122,18 @@ def test_no_ghost_forces(rock, zones, horizon):
     springs' elongation.
     """
     scene = with_zones(rock.scene({"type": "patch", "horizon": horizon}, spacing=0.01), zones, horizon)
-    engine = Simulation(scene, 1e-7, np.zeros(0)).engine
+    (part,) = Simulation(scene, 1e-7).system.parts
     displacement = np.zeros((3, scene.count))
     displacement[0] = 1.0
-    assert not forces(engine.bonds, displacement[0]).any()
+    assert not forces(part.bonds, displacement[0]).any()
     strain = 1e-4
     displacement[0] = strain * scene.positions[:, 0]
     pull = scene.rod.modulus * scene.rod.section * strain
     expected = np.zeros(scene.count)
     expected[[0, -1]] = pull, -pull
     tolerance = (2 * horizon + 2) * EPS * pull * scene.count
-    np.testing.assert_allclose(forces(engine.bonds, displacement[0]), expected, rtol=0, atol=tolerance)
-    np.testing.assert_allclose(engine.stress(displacement), scene.rod.modulus * strain, rtol=1e-12)
+    np.testing.assert_allclose(forces(part.bonds, displacement[0]), expected, rtol=0, atol=tolerance)
+    np.testing.assert_allclose(part.stress(displacement), scene.rod.modulus * strain, rtol=1e-12)
 
 
 def test_momentum_is_the_impulse(rock):
@@ -142,12 +142,12 @@ def test_momentum_is_the_impulse(rock):
     plain = rock.scene({"type": "patch", "horizon": 3}, load={"pressure": 10e6}, wave=pulse)
     scene = with_zones(plain, [(300, 420), (700, 1001)])
     step = rock.step(scene, 0.9)
-    simulation = Simulation(scene, step, np.zeros(0))
+    simulation = Simulation(scene, step)
     simulation.advance(400)
     impulse = 10e6 * np.sum(scene.case.wave["pulse"].velocity(step * np.arange(400))) * step
     worst = 0.0
     for _ in range(20):
         simulation.advance(100)
-        worst = max(worst, abs(np.sum(scene.mass * simulation.velocity[0]) - impulse))
+        worst = max(worst, abs(np.sum(scene.mass * simulation.state.velocity[0]) - impulse))
     fastest = 2.0 * 10e6 / (rock.density * rock.speed)
-    assert worst < EPS * fastest * scene.mass.sum() * np.sqrt(simulation.steps)
+    assert worst < EPS * fastest * scene.mass.sum() * np.sqrt(simulation.state.step)

@@ -13,7 +13,7 @@ leaves with the wave where a dashpot takes it, and comes back from a free end.
 import numpy as np
 import pytest
 
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 CELLS, FIRST, RISE, FALL = 200, 50, 20, 60
 """Of the bar, and before the spring that is looked at; of the pulse in steps."""

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.calibrate import calibrate
-from dembound.scene import build
+from dembound.disks.scene import build
+from dembound.studies.calibration import calibrate
 
 PERIOD, LENGTH = 0.2, 200.0
 PLACES = (55.0, 105.0, 155.0)  # the same place of a brick each time

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from dembound.exact import triangle_spall
-from dembound.simulate import Simulation
+from dembound.motion.simulation import Simulation
 
 RISE, FALL = 0.04e-3, 0.08e-3
 PRESSURES = np.linspace(11e6, 18e6, 32)
@@ -33,9 +33,9 @@ def errors(rock):
             wave={"type": "triangle", "amplitude": 1.0, "start": late * step, "rise": rise, "fall": FALL},
             strength=rock.strength,
         )
-        simulation = Simulation(scene, step, np.zeros(0))
+        simulation = Simulation(scene, step)
         simulation.advance(int(0.48e-3 / step))
-        cracks = simulation.take_cracks()
+        cracks = simulation.system.take_cracks(simulation.state.step)
         place, time = triangle_spall(rock.length, rock.speed, rise, FALL, pressure, rock.strength)
         return cracks.position[0, 0] - place, cracks.step[0] * step - (late * step + time)
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from dembound.contacts import Cracks
-from dembound.simulate import Simulation
+from dembound.motion.cracks import Cracks
+from dembound.motion.simulation import Simulation
 
 DISKS, DIAMETER = 200, 0.5
 DENSITY, SPEED = 2500.0, 1000.0
@@ -54,10 +54,10 @@ def bar(request, lab, tmp_path_factory) -> Spalled:
         boundary={"left": {"type": "velocity", "wave_p": "pulse"}},
         wave={"type": "file", "path": str(path)},
     )
-    simulation = Simulation(scene, STEP, np.zeros(0))
+    simulation = Simulation(scene, STEP)
     simulation.advance(STEPS)
     assert np.array_equal(lab.row(scene), np.arange(DISKS))
-    return Spalled(simulation.contacts.take_cracks(), simulation.velocity[0])
+    return Spalled(simulation.system.contacts["body"].take_cracks(), simulation.state.velocity[0])
 
 
 def expected_stress() -> np.ndarray:

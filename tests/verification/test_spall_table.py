@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from dembound.bar.fracture import spalls
-from dembound.case import load
+from dembound.kinds import load
+from dembound.motion.simulation import Simulation
 from dembound.run import plan
-from dembound.simulate import Simulation
 
 CASES = Path(__file__).parents[2] / "cases" / "lu2016"
 PRINTED = np.genfromtxt(CASES / "table1.csv", delimiter=",", names=True, skip_header=1)
@@ -38,8 +38,8 @@ def test_settings_are_the_printed_ones(row):
 def test_row_of_table_1(row):
     planned, printed = plan(load(CASES / f"table1_row{row}.toml")), PRINTED[row - 1]
     step, time = planned.time_step, 1e-3 * printed["t_F_ms"]
-    simulation = Simulation(planned.scene, step, np.zeros(0))
+    simulation = Simulation(planned.scene, step)
     simulation.advance(round(time / step) + 100)
-    first = spalls(simulation.engine.bonds, planned.scene.positions[:, 0], step)[0]
+    first = spalls(simulation.system.parts[0].bonds, planned.scene.positions[:, 0], step)[0]
     assert first.time == pytest.approx(time, abs=0.5e-6)
     assert 1e3 * np.array(first.start) == pytest.approx([printed["x_from_mm"], printed["x_to_mm"]], abs=2.5)

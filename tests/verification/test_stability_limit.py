@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.simulate import Simulation
-from dembound.stability import TOLERANCE, step_limit
+from dembound.disks.stability import TOLERANCE, step_limit
+from dembound.motion.simulation import Simulation
 
 PERIODIC = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
 
@@ -15,11 +15,11 @@ def kinetic_energy(scene, velocity):
 
 def growth(scene, share: float, steps: int) -> float:
     """Kinetic energy after some steps at a share of the limit, over that of the random start without strain."""
-    simulation = Simulation(scene, share * step_limit(scene), np.zeros(0))
-    simulation.velocity[:] = scene.free[:, None] * np.random.default_rng(0).standard_normal((3, scene.count))
-    start = kinetic_energy(scene, simulation.velocity)
+    simulation = Simulation(scene, share * step_limit(scene))
+    simulation.state.velocity[:] = scene.free[:, None] * np.random.default_rng(0).standard_normal((3, scene.count))
+    start = kinetic_energy(scene, simulation.state.velocity)
     simulation.advance(steps)
-    return kinetic_energy(scene, simulation.velocity) / start
+    return kinetic_energy(scene, simulation.state.velocity) / start
 
 
 @pytest.fixture(scope="module", params=["A", "B", "C"])

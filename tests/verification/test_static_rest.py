@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from dembound.case import with_changes
-from dembound.scene import build
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
-from dembound.static import settle
+from dembound.disks.scene import build
+from dembound.disks.static import settle
+from dembound.kinds import with_changes
 
 ROLLERS = {"left": {"type": "roller"}, "right": {"type": "roller"}, "bottom": {"type": "fixed"}}
 GRAVITY = [{"name": "gravity", "acceleration": [0.0, -9.81]}]
@@ -32,10 +30,10 @@ def test_nothing_moves_after_gravity(lab, pattern, material):
     settled = settle(scene)
     assert settled.ratio <= 1e-5
     assert settled.left < 1e-3 * settled.carried
-    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0), start=settled.start)
+    simulation = lab.settled(scene, settled.start)
     simulation.run(2000)
     # F_0 is minus the force the same kernel gave; the springs' part of it, which is not, is rounded
-    assert np.abs(simulation.velocity).max() < 1e-9 * 0.5
+    assert np.abs(simulation.state.velocity).max() < 1e-9 * 0.5
 
 
 @pytest.mark.parametrize("pattern", ["B", "C"])
@@ -43,9 +41,9 @@ def test_nothing_moves_with_locked_in_stress_alone(lab, pattern):
     scene = waiting(lab, pattern, {"law": "linearpbond", "fric": 0.5, "locked_in": 5e6}, {"static": {}})
     settled = settle(scene)
     assert np.abs(settled.start.displacement).max() > 0.0
-    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0), start=settled.start)
+    simulation = lab.settled(scene, settled.start)
     simulation.run(500)
-    assert np.abs(simulation.velocity).max() < 1e-9 * 0.5
+    assert np.abs(simulation.state.velocity).max() < 1e-9 * 0.5
 
 
 def test_the_stress_asked_for_is_there(lab):

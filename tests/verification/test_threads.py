@@ -4,9 +4,9 @@ import numba
 import numpy as np
 import pytest
 
-from dembound import threads
-from dembound.simulate import Simulation
-from dembound.stability import step_limit
+from dembound.disks.stability import step_limit
+from dembound.motion import threads
+from dembound.motion.simulation import Simulation
 
 STEPS = 500
 
@@ -25,7 +25,7 @@ def test_same_bits_for_one_and_two_threads(lab, monkeypatch):
             scene = lab.scene("B", (60.0, 20.0), brick=(20.0, 20.0), **case)
             simulation = Simulation(scene, 0.9 * step_limit(scene), np.arange(scene.count))
             record = simulation.advance(STEPS)
-            results.append((record, simulation.displacement, simulation.velocity))
+            results.append((record, simulation.state.displacement, simulation.state.velocity))
     finally:
         numba.set_num_threads(before)
     for one, two in zip(*results, strict=True):

@@ -7,9 +7,7 @@ to different ones, and the body then left its twins by 1.9 % of the peak.
 import numpy as np
 import pytest
 
-from dembound.simulate import Simulation
-from dembound.stability import choose_step
-from dembound.static import settle
+from dembound.disks.static import settle
 
 GRAVITY = [{"acceleration": [0.0, -9.81]}]
 SIDES = {"left": "free_field", "right": "free_field", "bottom": {"type": "viscous_input", "wave_s": "pulse"}}
@@ -35,11 +33,11 @@ def twins_apart(lab, pattern: str, material: dict) -> float:
     )
     settled = settle(scene)
     assert settled.column is not None
-    simulation = Simulation(scene, choose_step(scene)[0], np.zeros(0), start=settled.start)
+    simulation = lab.settled(scene, settled.start)
     apart = peak = 0.0
     while simulation.time < 0.12:
         simulation.advance(20)
-        velocity = simulation.velocity[:2]
+        velocity = simulation.state.velocity[:2]
         apart = max(apart, float(np.abs(velocity - velocity[:, scene.seam.twin]).max()))
         peak = max(peak, float(np.abs(velocity).max()))
     return apart / peak

@@ -5,6 +5,7 @@ import pytest
 
 from dembound.bar.scene import BarScene, build_bar
 from dembound.exact.dispersion import courant_limit
+from dembound.motion.supports import NodeSupports
 
 EPS = np.finfo(float).eps
 LINE = {"bar.diameter": 0.2, "load": []}
@@ -110,11 +111,16 @@ def test_attenuation_adds_no_supports(spalling) -> None:
 
 
 def test_no_free_field_stands_beside_a_bar(spalling) -> None:
-    scene = build_bar(spalling())
-    seam = scene.seam_table(np.array([0, 40]))
+    scene = build_bar(spalling({"boundary.right": {"type": "viscous"}}))
+    system = scene.system(1e-5)
 
-    assert seam.twin.tolist() == [-1, -1]
-    assert seam.start.tolist() == [0, 0, 0]
+    assert [part.nodes for part in system.parts] == [slice(0, 41)]
+    assert system.ties == ()
+    assert scene.twin is None
+    supports = NodeSupports(scene, system.ties, 1e-5)
+    assert supports.nodes.tolist() == [0, 1, 2, 40]
+    assert supports.twin.tolist() == [-1, -1, -1, -1]
+    assert not supports.follow.any()
     assert not scene.steady_load.any()
 
 

@@ -10,12 +10,14 @@ import pytest
 from dembound.bar import summary
 from dembound.bar.fracture import Spall, spalls
 from dembound.bar.scene import build_bar
-from dembound.bar.summary import LATER_SPALLS, describe_bar, describe_end, summarise_bar
-from dembound.peaks import first_fall
-from dembound.record import Recorder
+from dembound.bar.summary import LATER_SPALLS, describe_bar, describe_end, part_of, summarise_bar
+from dembound.gauge.peaks import first_fall
+from dembound.motion.energy import Ledger
+from dembound.motion.kind import Beginning, Plan
+from dembound.motion.simulation import Simulation
+from dembound.results.recorder import Histories, Recorder
+from dembound.results.summary import summarise
 from dembound.run import plan
-from dembound.simulate import Simulation
-from dembound.summary import summarise
 
 ENDS = {"boundary.left": {"type": "fixed"}, "boundary.right": {"type": "viscous", "beta_p": 0.9}, "load": []}
 
@@ -26,15 +28,21 @@ def run(spalling, tmp_path):
 
     def make(**changes: object):
         planned = plan(spalling(changes))
-        monitors = np.array(list(planned.scene.monitors.values()), dtype=np.int64)
-        simulation = Simulation(planned.scene, planned.time_step, monitors)
+        simulation = Simulation(planned.scene, planned.time_step, list(planned.scene.monitors.values()))
         path: Path = tmp_path / "run.h5"
-        with Recorder(path, simulation, planned.step_limit, 0.0) as recorder:
-            recorder.append(simulation.advance(planned.steps - 1))
-            recorder.append(recorder.enter_energy())
+        ledger = Ledger(simulation, planned.steps - 1)
+        with Recorder(path, simulation, planned.step_limit, ledger=ledger) as recorder:
+            simulation.track(Histories(recorder), ledger)
+            simulation.run(planned.steps)
         return planned, simulation, path
 
     return make
+
+
+def summary_of(planned: Plan, simulation: Simulation, path: Path) -> dict:
+    """The summary of a run that took a second."""
+    common = summarise(planned, simulation, path, {"step": 1.0})
+    return common | planned.kind.summarise(planned.scene, simulation, Beginning(simulation.system), path)
 
 
 def test_a_bar_in_numbers(spalling) -> None:
@@ -71,7 +79,7 @@ def test_ends_in_numbers(spalling) -> None:
 
 def test_the_summary_of_a_bar_is_plain_json(run) -> None:
     planned, simulation, path = run()
-    found = json.loads(json.dumps(summarise(planned, simulation, None, path, 1.0), allow_nan=False))
+    found = json.loads(json.dumps(summary_of(planned, simulation, path), allow_nan=False))
 
     assert (found["name"], found["nodes"], found["steps"]) == ("spalling", 41, 60)
     assert found["method"] == {"type": "peridynamics", "horizon": 3, "corrected_ends": False}
@@ -79,7 +87,7 @@ def test_the_summary_of_a_bar_is_plain_json(run) -> None:
     assert found["laws"] == [{"law": "peridynamics, m = 3", "from": 0.0}]
     assert found["bar"]["wave_speed"] == 1000.0
     assert found["boundaries"] == {"left": {"type": "free"}, "right": {"type": "free"}}
-    assert found["bond_updates"] == simulation.engine.bond_updates > 0
+    assert found["bond_updates"] == part_of(simulation).bond_updates > 0
     assert not {"particles", "contacts", "packing", "static"} & set(found)
     # the books close to rounding: 60 steps of sums over 41 nodes
     assert found["energy"]["relative_error"] < 60 * 41 * np.finfo(float).eps
@@ -87,14 +95,14 @@ def test_the_summary_of_a_bar_is_plain_json(run) -> None:
 
 def test_spalls_and_cracks_are_those_of_the_bonds(run) -> None:
     planned, simulation, path = run()
-    found = summarise(planned, simulation, None, path, 1.0)
-    expected = spalls(simulation.engine.bonds, planned.scene.positions[:, 0], planned.time_step)
+    found, bonds = summary_of(planned, simulation, path), part_of(simulation).bonds
+    expected = spalls(bonds, planned.scene.positions[:, 0], planned.time_step)
 
     assert found["spalls"] == [spall.describe() for spall in expected]
     assert len(expected) > 0
     # tension comes once crest and tail, 0.4 m apart, have met at the far end
     assert expected[0].time > 1e-3
-    assert found["cracks"] == {"tension": len(simulation.engine.bonds.breaks(0)[0]), "shear": 0}
+    assert found["cracks"] == {"tension": len(bonds.breaks(0)[0]), "shear": 0}
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.bar.check import cells_of_waves
+from dembound.bar.facts import cells_of_waves
 from dembound.bar.warnings import bar_warnings, ends_too_soon, stress_beside_strength
 from dembound.exact.bar import triangle_spall
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from dembound.case import load, loads
 from dembound.errors import CaseError
+from dembound.kinds import load, loads
 
 GOOD = """\
 title = "short bar"
@@ -248,7 +248,10 @@ def test_all_mistakes_of_all_tables_are_listed_at_once() -> None:
 
 def test_a_case_of_neither_disks_nor_a_bar_is_asked_what_it_is() -> None:
     (line,) = problems("")
-    assert line.startswith("has neither [packing] (disks) nor [bar]; `dembound new` ")
+    assert line == (
+        "has neither [bar] (a bar) nor [packing] (disks); `dembound new --bar` and `dembound new` write a case to "
+        "start from"
+    )
     # what else it holds cannot be judged, but for tables that no case has
     found = problems(GOOD.replace("[packing]", "[pakcing]").replace("density", "densitty"))
     assert [text.split(":")[0] for text in found] == ["pakcing", line]

@@ -7,9 +7,9 @@ import pytest
 import tomli_w
 from pydantic import Field, TypeAdapter, ValidationError
 
-from dembound.case import loads
 from dembound.case.sentences import allowed, describe, show, unknown
 from dembound.errors import CaseError
+from dembound.kinds import loads
 from dembound.table import Table, quantity
 
 FULL: dict[str, Any] = {

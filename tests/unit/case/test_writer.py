@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from dembound.case import STARTER, load, loads, to_toml, with_changes
+from dembound.case import to_toml
+from dembound.case.disks import STARTER
 from dembound.errors import CaseError
+from dembound.kinds import load, loads, with_changes
 
 RECORD = '[wave.quake]\ntype = "file"\npath = "quake.txt"\n'
 

@@ -13,13 +13,6 @@ Forces = Callable[[np.ndarray, np.ndarray], np.ndarray]
 State = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
-def no_seam(count: int) -> tables.Seam:
-    """Nodes that no free-field column stands beside."""
-    nothing = np.zeros(0, dtype=np.uint32)
-    start = np.zeros(count + 1, dtype=np.uint32)
-    return tables.Seam(np.full(count, -1), np.zeros((count, 3)), start, nothing, nothing, nothing)
-
-
 @dataclass
 class Stepped:
     """Particles under loads and supports, which a law's forces move by central differences.
@@ -102,8 +95,10 @@ class Stepped:
         keep = mobility * (inertia - 0.5 * self.damping)
         prescribed = self.prescribed.astype(float)
         drive = self.push * self.free
+        k = len(self.nodes)
+        nobody, nothing = np.full(k, -1), np.zeros((k, 3))
         supports = tables.Supports(
-            self.nodes, inertia, keep, mobility, self.stiffness, prescribed, drive, no_seam(len(self.nodes))
+            self.nodes, inertia, keep, mobility, self.stiffness, prescribed, drive, nobody, nothing
         )
         everyone = np.arange(self.count)
         record, peaks = np.empty((len(self.push), self.count, 6)), np.zeros((self.count, 3, 2))
@@ -225,6 +220,7 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
     palette = np.column_stack([vectors, np.hypot(*vectors.T), *springs, *bonds])
     owner, end = np.concatenate([first, second]), np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
     return tables.Contacts(
+        0,
         first.astype(np.uint32),
         second.astype(np.uint32),
         np.arange(b, dtype=np.uint32),
@@ -233,6 +229,7 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
         np.zeros(b),
         np.zeros(b),
         np.full(b, -1),
+        np.full((b, 2), np.nan),
         np.zeros((b, 4)),
         np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=count))]).astype(np.uint32),
         end[np.argsort(owner, kind="stable")].astype(np.uint32),
@@ -281,6 +278,28 @@ def one_pair() -> Callable[..., tables.Contacts]:
         return contacts_of(2, np.array([[2.0, 0.0]]), **pair, **columns)
 
     return make
+
+
+@pytest.fixture
+def copied() -> Callable[[tables.Contacts], tables.Contacts]:
+    """Copies lists of pairs, with all their columns."""
+
+    def copy(pairs: tables.Contacts) -> tables.Contacts:
+        return tables.Contacts(pairs.begin, *(column.copy() for column in pairs[1:]))
+
+    return copy
+
+
+@pytest.fixture
+def behind() -> Callable[[tables.Contacts, int], tables.Contacts]:
+    """Numbers the particles of a list of pairs anew: there are as many others before them."""
+
+    def shift(pairs: tables.Contacts, others: int) -> tables.Contacts:
+        first, second = ((ends + others).astype(np.uint32) for ends in (pairs.first, pairs.second))
+        start = np.concatenate([np.zeros(others, dtype=np.uint32), pairs.start])
+        return pairs._replace(begin=others, first=first, second=second, start=start)
+
+    return shift
 
 
 @pytest.fixture

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from dembound.kernels import bar, tables
+from dembound.kernels.common import DONE, TRIGGERED
+from dembound.kernels.loop import advance
 from dembound.laws.peridynamic import bond_forces, families, micromodulus
 from dembound.methods.bonds import Bonds, Rod
 
@@ -14,7 +16,8 @@ COUNT, STEPS = 60, 41
 STEP = 0.1
 SUPPORTED = np.array([0, 1, 7, 30, 59])
 ROD = Rod(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=np.inf)
-MASS = ROD.volumes / ROD.volumes.max()
+DENSITY = 1.0 / ROD.volumes.max()
+MASS = DENSITY * ROD.volumes
 """Of 1 inside, so that the fastest waves stay far below the limit of the step."""
 WEAK = Rod(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=0.55)
 """Bonds that reach their limit here and there while random motion stretches them by some tenths."""
@@ -97,8 +100,6 @@ class Outside:
         inertia = MASS[self.nodes] / STEP
         half = 0.5 * (self.damping + drag[self.nodes])
         mobility = ~self.prescribed / (inertia + half)
-        empty = np.zeros(0, dtype=np.uint32)
-        seam = tables.Seam(np.full(k, -1), np.zeros((k, 3)), np.zeros(k + 1, dtype=np.uint32), *[empty] * 3)
         return tables.Supports(
             self.nodes,
             np.repeat(inertia[:, None], 3, axis=1),
@@ -107,7 +108,8 @@ class Outside:
             along_x(self.stiffness * ~self.prescribed),
             along_x(self.prescribed.astype(float)),
             along_x(self.drive),
-            seam,
+            np.full(k, -1),
+            np.zeros((k, 3)),
         )
 
 
@@ -120,8 +122,7 @@ class Run:
     def __init__(self, bonds: Bonds, u: np.ndarray, v: np.ndarray, outside: Outside = NOTHING, a: float = 0.0) -> None:
         self.bonds, self.u, self.v, self.outside = bonds, u, v, outside
         self.drag = 2.0 * a / STEP * MASS
-        self.keep = (1.0 - a) / (1.0 + a)
-        self.arrays = bonds.arrays(outside.nodes, STEP)
+        self.arrays = bonds.arrays(outside.nodes, DENSITY, STEP, 2.0 * a / STEP)
         self.work, self.top_speed = np.zeros((2, 6)), np.zeros(COUNT)
         self.record = np.zeros((STEPS, COUNT, 7))
 
@@ -133,9 +134,8 @@ class Run:
         supports = supports._replace(drive=supports.drive[number : number + steps])
         nobody = np.zeros(0, dtype=np.int64)
         log = tables.Log(np.arange(COUNT), self.record[number:], nobody, np.zeros((0, 3, 2)), self.top_speed, self.work)
-        drag = self.drag if self.drag.any() else np.zeros(0)
         spare = np.zeros_like(self.u)
-        return bar.advance(self.u, spare, self.v, number, self.arrays, body, self.keep, drag, supports, log)
+        return advance(self.u, spare, self.v, number, (self.arrays,), (), None, body, supports, log)
 
 
 def plain_run(bonds: Bonds, u: np.ndarray, v: np.ndarray, outside: Outside = NOTHING, a: float = 0.0):
@@ -165,10 +165,10 @@ def plain_run(bonds: Bonds, u: np.ndarray, v: np.ndarray, outside: Outside = NOT
 def test_forces_are_those_of_the_stiffness_matrix(layout) -> None:
     bonds = damaged(layout(ROD))
     u = shaken()[0][0]
-    arrays = bonds.arrays(SUPPORTED, STEP)
+    arrays = bonds.arrays(SUPPORTED, DENSITY, STEP)
     of_ranges = np.full(COUNT, np.nan)
     reached = bar.forces(
-        u, arrays.mixed, arrays.spring, arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.room, of_ranges
+        u, arrays.mixed, arrays.spring, arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.space, of_ranges
     )
 
     expected = -matrix(bonds) @ u
@@ -192,9 +192,9 @@ def test_forces_of_a_peridynamic_bar_are_those_of_the_law(horizon: int) -> None:
     expected = np.bincount(first, pull, COUNT) - np.bincount(second, pull, COUNT)
 
     bonds = laid(ROD, horizon, (0, COUNT), complement=False)
-    arrays = bonds.arrays(np.zeros(0, dtype=np.int64), STEP)
+    arrays = bonds.arrays(np.zeros(0, dtype=np.int64), DENSITY, STEP)
     force = np.empty(COUNT)
-    limits = arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.room
+    limits = arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.space
     bar.forces(u, arrays.mixed, arrays.spring, *limits, force)
 
     # along a line stretch goes with displacements exactly, as no node moves by half a spacing and passes another: what
@@ -209,8 +209,8 @@ def test_forces_of_a_peridynamic_bar_are_those_of_the_law(horizon: int) -> None:
 def test_what_is_at_its_limit_is_counted(layout) -> None:
     bonds = layout(WEAK)
     u = 0.5 * 0.55 * (1.0 + 1e-9) * np.arange(COUNT)
-    arrays = bonds.arrays(np.arange(COUNT) if bonds.horizon == 0 else np.zeros(0, dtype=np.int64), STEP)
-    limits = arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.room
+    arrays = bonds.arrays(np.arange(COUNT) if bonds.horizon == 0 else np.zeros(0, dtype=np.int64), DENSITY, STEP)
+    limits = arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.space
     reached = bar.forces(u, arrays.mixed, arrays.spring, *limits, np.empty(COUNT))
 
     # every bond, and every spring beside a node that is not plain, once for each range beside it
@@ -227,7 +227,7 @@ def test_step_is_the_same_as_written_down_plainly(layout, outside: Outside, a: f
     run = Run(damaged(layout(ROD)), u, v, outside, a)
     # odd numbers of steps, after which displacements stand in the other array
     for number, steps in ((0, 7), (7, 1), (8, 33)):
-        assert run.advance(steps, number) == (steps, bar.DONE)
+        assert run.advance(steps, number) == (steps, DONE)
 
     np.testing.assert_allclose(run.u[0], places[-1], rtol=0.0, atol=ROUNDING)
     np.testing.assert_allclose(run.v[0], speeds[-1], rtol=0.0, atol=ROUNDING)
@@ -284,7 +284,7 @@ def test_bonds_break_in_the_step_that_reaches_their_limit() -> None:
     run = flying(laid(rod, 3, (0, COUNT), complement=False), 20)
     whole = run.bonds.bond.copy()
     for number, steps in ((0, 20), (20, 21)):
-        assert run.advance(steps, number) == (steps, bar.DONE)
+        assert run.advance(steps, number) == (steps, DONE)
 
     # 0.1 m a step: 1.345 m are reached after 14 steps, 2.69 and 4.035 m after 27 and 41; the last is not done
     for row, step in ((0, 14), (1, 27)):
@@ -322,23 +322,23 @@ def test_springs_that_ask_stop_the_kernel_before_the_step(plain: bool) -> None:
     done, why = run.advance()
 
     # 0.002 m a step against 0.1 · 0.5 · 0.5 m, but where the ends' waves have come
-    assert (done, why) == (13, bar.ASKED)
+    assert (done, why) == (13, TRIGGERED)
     assert run.bonds.asking(run.u[0]).size > 0
     assert np.all(run.bonds.spring_broken == -1)
     # it asks again at once
-    assert run.advance(10, done) == (0, bar.ASKED)
+    assert run.advance(10, done) == (0, TRIGGERED)
 
 
 def test_an_unbreakable_bar_never_asks(layout) -> None:
     u, v = shaken()
 
-    assert Run(layout(ROD), u, 1e6 * v).advance() == (STEPS, bar.DONE)
+    assert Run(layout(ROD), u, 1e6 * v).advance() == (STEPS, DONE)
 
 
 def test_force_through_a_plane_is_what_pulls_at_either_side(layout) -> None:
     bonds = damaged(layout(ROD))
     u = shaken()[0][0]
-    arrays = bonds.arrays(SUPPORTED, STEP)
+    arrays = bonds.arrays(SUPPORTED, DENSITY, STEP)
     force, stress = -matrix(bonds) @ u, np.empty(COUNT)
     bar.stresses(u, arrays, stress)
 
@@ -365,7 +365,7 @@ def test_stress_on_record_is_that_of_the_step(layout) -> None:
 def test_energy_stored_is_half_of_the_form(layout) -> None:
     bonds = damaged(layout(ROD))
     u = shaken()[0][0]
-    springs, peridynamic = bar.stored(u, bonds.arrays(SUPPORTED, STEP))
+    springs, peridynamic = bar.stored(u, bonds.arrays(SUPPORTED, DENSITY, STEP))
 
     assert springs == pytest.approx(0.5 * np.sum(bonds.spring * np.diff(u) ** 2), rel=COUNT * EPS)
     # terms of either sign may be larger than their sum

@@ -17,6 +17,7 @@ from dembound.kernels.contacts import (
     UPDATED,
     adopt,
     moved,
+    note_places,
     push,
     slack,
     strain_energy,
@@ -29,10 +30,6 @@ STEP = 0.1
 UNBREAKABLE = Limits(friction=0.5, tension=np.inf, cohesion=np.inf, tan_fa=0.0, geometry=UPDATED)
 WEAK = Limits(friction=0.5, tension=0.6, cohesion=0.6, tan_fa=0.6, geometry=UPDATED)
 GEOMETRIES = pytest.mark.parametrize("geometry", [UPDATED, BONDED, REFERENCE])
-
-
-def copied(pairs: Contacts) -> Contacts:
-    return Contacts(*(column.copy() for column in pairs))
 
 
 def close(found: np.ndarray, expected: np.ndarray) -> None:
@@ -57,7 +54,7 @@ def pushed(pairs: Contacts, limits: Limits, u: np.ndarray, v: np.ndarray, number
 
 
 @GEOMETRIES
-def test_pairs_push_as_the_law_says_step_by_step(random_pairs, plain, geometry: int) -> None:
+def test_pairs_push_as_the_law_says_step_by_step(random_pairs, plain, copied, geometry: int) -> None:
     found = random_pairs(PARTICLES, PAIRS)
     expected = plain(copied(found), WEAK._replace(geometry=geometry))
     slid = opened = 0
@@ -104,6 +101,37 @@ def test_particles_get_the_sum_of_their_pairs(random_pairs) -> None:
         np.add.at(expected[1], ends, sign * pairs.force[:, 1])
         np.add.at(expected[2], ends, pairs.force[:, moment])
     close(total, expected)
+
+
+def test_particles_before_those_of_the_pairs_are_left_alone(random_pairs, behind) -> None:
+    pairs, others = random_pairs(PARTICLES, PAIRS), 4
+    later = behind(random_pairs(PARTICLES, PAIRS), others)
+    for number, (u, v) in enumerate(motion(5)):
+        lost = pushed(pairs, WEAK, u, v, number)
+        there, speed = (np.hstack([np.full((3, others), np.nan), values]) for values in (u, v))
+        assert np.array_equal(pushed(later, WEAK, there, speed, number), lost)
+        assert np.array_equal(later.force, pairs.force)
+    total, expected = np.full((3, others + PARTICLES), 7.0), np.empty((3, PARTICLES))
+    sum_forces(later, total)
+    sum_forces(pairs, expected)
+
+    assert np.all(total[:, :others] == 7.0)
+    assert np.array_equal(total[:, others:], expected)
+
+
+def test_places_of_broken_bonds_are_those_of_their_step(random_pairs) -> None:
+    pairs, path = random_pairs(PARTICLES, PAIRS), motion(20)
+    for number, (u, v) in enumerate(path):
+        pushed(pairs, WEAK, u, v, number)
+        note_places(u, number, pairs)
+
+    for step, place, first, second in zip(pairs.cracked, pairs.place, pairs.first, pairs.second, strict=True):
+        if step < 0:
+            assert np.isnan(place).all()
+        else:
+            u, _ = path[step]
+            assert np.array_equal(place, 0.5 * (u[:2, first] + u[:2, second]))
+    assert len(np.unique(pairs.cracked)) > 3
 
 
 def two(x: float = 0.0, y: float = 0.0, turn: float = 0.0) -> np.ndarray:
@@ -288,7 +316,10 @@ def test_the_largest_motion_since_the_list_was_made() -> None:
     u[:2, 321] += [3.0, -4.0]
     u[2] = 100.0  # turning takes nobody nearer
 
-    assert moved(u, origin) == 5.0
+    assert moved(u, 0, origin) == 5.0
+    # of the particles from 320 or 322 on
+    assert moved(u, 320, origin[:, 320:]) == 5.0
+    assert moved(u, 322, origin[:, 322:]) == 0.0
 
 
 def outside(u: np.ndarray, pairs: Contacts, limits: Limits, law) -> np.ndarray:
@@ -384,7 +415,8 @@ def test_the_slack_of_one_bond_by_hand(one_pair, motion: np.ndarray, changes: di
 
 
 def test_without_pairs_there_is_all_the_slack_there_is(one_pair) -> None:
-    nobody = Contacts(*(column[:0] for column in one_pair()))
+    pair = one_pair()
+    nobody = Contacts(pair.begin, *(column[:0] for column in pair[1:]))
     assert slack(two(), nobody, UNBREAKABLE) == np.inf
 
 

@@ -6,10 +6,11 @@ import numba
 import numpy as np
 import pytest
 
-from dembound.engines import UNWATCHED
 from dembound.kernels import tables
+from dembound.kernels.common import CHUNKS, DONE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.contacts import BONDED, moved, slack
-from dembound.kernels.elastic import DONE, LAW_ENDS, LIST_ENDS, advance, contact_forces
+from dembound.kernels.elastic import contact_forces
+from dembound.kernels.loop import advance
 
 PARTICLES, CONTACTS = 30, 70
 TIME_STEP = 0.02
@@ -45,8 +46,8 @@ class Bodies:
             total[2, j] += self.arm_j[b] * self.k_s[b] * slip - bending
         return total
 
-    def rows(self) -> tables.Rows:
-        """The contacts as the kernels take them."""
+    def rows(self, begin: int = 0) -> tables.Rows:
+        """The contacts as the kernels take them; begin : number of the first particle."""
         lines, owner, neighbour = [], [], []
         for b, (i, j) in enumerate(self.pairs):
             root_n, root_s = np.sqrt(self.k_n[b]), np.sqrt(self.k_s[b])
@@ -56,10 +57,14 @@ class Bodies:
             owner += [i, j]
             neighbour += [j, i]
         order = np.argsort(owner, kind="stable")
-        start = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=PARTICLES))])
+        start = np.concatenate([np.zeros(begin + 1), np.cumsum(np.bincount(owner, minlength=PARTICLES))])
         index = np.uint32
-        neighbour = np.array(neighbour)[order].astype(index)
-        return tables.Rows(start.astype(index), neighbour, order.astype(index), np.array(lines))
+        neighbour = (begin + np.array(neighbour)[order]).astype(index)
+        return tables.Rows(begin, start.astype(index), neighbour, order.astype(index), np.array(lines))
+
+    def links(self, begin: int = 0) -> tables.Links:
+        """The law on them."""
+        return tables.Links(self.rows(begin), np.zeros(CHUNKS), np.zeros((CHUNKS, 2)))
 
 
 @pytest.fixture(scope="module")
@@ -78,12 +83,14 @@ def start(free: np.ndarray = FREE) -> tuple[np.ndarray, np.ndarray]:
     return tuple(rng.uniform(-1.0, 1.0, (2, 3, PARTICLES)) * free[:, None])
 
 
-def run_kernel(
-    bodies: Bodies, model, u: np.ndarray, v: np.ndarray, watch: tables.Watch = UNWATCHED
-) -> tuple[int, int, tables.Log]:
-    """Advance u and v in place with the kernel; steps done, why it stopped, and the log of all particles."""
+def run_kernel(bodies: Bodies, model, u: np.ndarray, v: np.ndarray, laws: tuple = ()) -> tuple[int, int, tables.Log]:
+    """Advance u and v in place with the kernel, under the plain elastic law if there are no others.
+
+    Returns steps done, why it stopped, and the log of all particles.
+    """
     body, supports, log = model.bundles()
-    done, why = advance(u, np.empty_like(u), v, bodies.rows(), body, supports, log, watch)
+    laws = laws or (bodies.links(),)
+    done, why = advance(u, np.empty_like(u), v, 0, laws, (), None, body, supports, log)
     return done, why, log
 
 
@@ -102,6 +109,16 @@ def test_row_forces_are_those_of_the_contacts(bodies: Bodies) -> None:
     contact_forces(u, bodies.rows(), found)
 
     close(found, bodies.forces(u))
+
+
+def test_rows_that_begin_later_leave_the_particles_before_alone(bodies: Bodies) -> None:
+    u, _ = start()
+    there = np.hstack([np.full((3, 4), np.nan), u])
+    found = np.full_like(there, 7.0)
+    contact_forces(there, bodies.rows(begin=4), found)
+
+    assert np.all(found[:, :4] == 7.0)
+    close(found[:, 4:], bodies.forces(u))
 
 
 def test_a_rigid_turn_needs_no_force_where_arms_fit_the_places() -> None:
@@ -218,12 +235,13 @@ def test_any_number_of_threads_gives_the_same_bits(bodies: Bodies, stepped) -> N
     assert np.array_equal(*results)
 
 
-def watched(random_pairs, **changes: object) -> tables.Watch:
-    """A watch over random pairs of strong bonds that start within the elastic law."""
+def watched(bodies: Bodies, random_pairs, **changes: object) -> tables.WatchedLinks:
+    """The law on watch over random pairs of strong bonds that start within it."""
     pairs = random_pairs(PARTICLES, CONTACTS, gap=0.3)
     limits = tables.Limits(friction=5.0, tension=1e3, cohesion=1e3, tan_fa=0.0, geometry=BONDED)
     arms = np.full(PARTICLES, 1.1)  # half of the longest distance, and the largest difference of radii
-    return tables.Watch(pairs, limits, np.zeros((2, PARTICLES)), 1e3, arms)._replace(**changes)
+    links, origin = bodies.links(), np.zeros((2, PARTICLES))
+    return tables.WatchedLinks(links, pairs, limits, origin, 1e3, arms, np.zeros(2))._replace(**changes)
 
 
 def calm() -> tuple[np.ndarray, np.ndarray]:
@@ -233,11 +251,11 @@ def calm() -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_no_step_begins_outside_the_elastic_law(bodies: Bodies, stepped, random_pairs) -> None:
-    watch = watched(random_pairs)
+    watch = watched(bodies, random_pairs)
     model = stepped(PARTICLES, 200, TIME_STEP)
     u, v = calm()
     states = model.leapfrog(bodies.forces, u, v)
-    done, why, _ = run_kernel(bodies, model, u, v, watch)
+    done, why, _ = run_kernel(bodies, model, u, v, (watch,))
 
     room = np.array([slack(then, watch.contacts, watch.limits) for then, _, _ in states])
     assert why == LAW_ENDS
@@ -248,14 +266,35 @@ def test_no_step_begins_outside_the_elastic_law(bodies: Bodies, stepped, random_
 
 
 def test_no_step_begins_with_a_list_that_is_too_old(bodies: Bodies, stepped, random_pairs) -> None:
-    watch = watched(random_pairs, skin=0.05)
+    watch = watched(bodies, random_pairs, skin=0.05)
     model = stepped(PARTICLES, 200, TIME_STEP)
     u, v = calm()
     states = model.leapfrog(bodies.forces, u, v)
-    done, why, _ = run_kernel(bodies, model, u, v, watch)
+    done, why, _ = run_kernel(bodies, model, u, v, (watch,))
 
-    far = np.array([moved(then, watch.origin) for then, _, _ in states])
+    far = np.array([moved(then, 0, watch.origin) for then, _, _ in states])
     assert why == LIST_ENDS
     assert 2 < done < 200
     assert done == np.argmax(2.0 * far > 0.05)
     close(u, states[done][0])
+
+
+def test_two_parts_move_as_each_would_alone(bodies: Bodies, stepped, random_pairs, behind) -> None:
+    part = slice(PARTICLES, 2 * PARTICLES)
+    model = stepped(2 * PARTICLES, 200, TIME_STEP, damp=DAMP)
+    assert 0 < np.count_nonzero(model.nodes < PARTICLES) < len(model.nodes)
+    watch = watched(bodies, random_pairs, skin=0.05)
+    arms = np.concatenate([np.zeros(PARTICLES), watch.arms])
+    later = watch._replace(links=bodies.links(begin=PARTICLES), contacts=behind(watch.contacts, PARTICLES), arms=arms)
+    u, v = (np.hstack([shaken, calmed]) for shaken, calmed in zip(start(), calm(), strict=True))
+    states = model.leapfrog(lambda u, _: np.hstack([bodies.forces(u[:, :PARTICLES]), bodies.forces(u[:, part])]), u, v)
+    done, why, _ = run_kernel(bodies, model, u, v, (bodies.links(), later))
+
+    far = np.array([moved(then, PARTICLES, watch.origin) for then, _, _ in states])
+    # how far the others move, which nothing watches, does not count
+    assert moved(u, 0, watch.origin) > 0.5
+    assert why == LIST_ENDS
+    assert 2 < done < 200
+    assert done == np.argmax(2.0 * far > 0.05)
+    close(u, states[done][0])
+    close(v, states[done][1])

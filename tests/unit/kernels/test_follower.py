@@ -133,7 +133,7 @@ def test_the_load_is_what_was_steady_with_its_forces_turned(followers) -> None:
     table, places = followers()
     u, v = table.datum + 3.0 * shaken(), shaken(3)
     load = np.full((3, PARTICLES), 7.0)
-    half = turn_forces(u, v, table, load, STEP)
+    half = turn_forces(table, u, v, load, STEP)
     angles = np.array([fitted(places[:, nodes], (u - table.datum)[:2, nodes]) for nodes in SIDES.values()])
     angles[:2] = angles[:2].mean()
 
@@ -156,7 +156,7 @@ def test_the_load_is_what_was_steady_with_its_forces_turned(followers) -> None:
 def test_what_a_small_turn_adds_along_a_force_keeps_its_digits(followers) -> None:
     table, places = followers()
     angle = 1e-5
-    turn_forces(table.datum + turned(places, angle), shaken(), table, np.zeros((3, PARTICLES)), STEP)
+    turn_forces(table, table.datum + turned(places, angle), shaken(), np.zeros((3, PARTICLES)), STEP)
 
     one_side = SIDE[1] < 0
     force = table.force[0][:, one_side]
@@ -174,7 +174,7 @@ def test_where_nothing_has_moved_nothing_changes(followers) -> None:
     before = load.copy()
     before[:2, NODE] = table.steady
 
-    assert turn_forces(table.datum.copy(), shaken(), table, load, STEP) == 0.0
+    assert turn_forces(table, table.datum.copy(), shaken(), load, STEP) == 0.0
     assert np.array_equal(load, before)
     assert not table.extra.any()
 
@@ -186,5 +186,5 @@ def test_the_work_of_half_a_step_is_that_of_what_turning_adds(followers) -> None
 
     # fourteen products of size 0.1
     expected = 0.5 * STEP * np.sum(table.extra * v[:2, NODE])
-    assert extra_work(v, table, STEP) == pytest.approx(expected, rel=0.0, abs=1e-16)
+    assert extra_work(table, v, STEP) == pytest.approx(expected, rel=0.0, abs=1e-16)
     assert abs(expected) > 1e-3

@@ -1,12 +1,13 @@
 """What free-field columns do in the kernels: forces across the seam, and dashpots that follow a twin."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 from dembound.kernels import tables
-from dembound.kernels.contacts import seam_ends_forces
+from dembound.kernels.bonded import seam_ends_forces
 from dembound.kernels.elastic import seam_forces
 from dembound.kernels.step import move_supported, note_before
 
@@ -21,25 +22,39 @@ def ids(values: np.ndarray) -> np.ndarray:
     return values.astype(np.uint32)
 
 
-@pytest.fixture
-def seam() -> tables.Seam:
+@dataclass
+class Contacts:
     """Contacts of the twins with random neighbours, of random lines and ends."""
+
+    start: np.ndarray
+    neighbour: np.ndarray
+    kind: np.ndarray
+    end: np.ndarray
+
+
+@pytest.fixture
+def contacts() -> Contacts:
     rng = np.random.default_rng(4)
     start, e = np.concatenate([[0], np.cumsum(MANY)]), MANY.sum()
     neighbour, kind, end = rng.integers(0, PARTICLES, e), rng.integers(0, LINES, e), rng.integers(0, 2 * LINES, e)
-    return tables.Seam(TWINS, np.zeros((5, 3)), ids(start), ids(neighbour), ids(kind), ids(end))
+    return Contacts(ids(start), ids(neighbour), ids(kind), ids(end))
 
 
-def summed(seam: tables.Seam, force: Callable[[int, int], np.ndarray]) -> np.ndarray:
+def already() -> np.ndarray:
+    """Forces and moments (5, 3) that another tie has brought, whole numbers, to which sums add exactly."""
+    return np.arange(15.0).reshape(5, 3) - 7.0
+
+
+def summed(contacts: Contacts, force: Callable[[int, int], np.ndarray]) -> np.ndarray:
     """Forces and moments (5, 3) of the nodes, contact by contact; force gets the twin and the contact's number."""
     total = np.zeros((len(TWINS), 3))
-    for node, (twin, first) in enumerate(zip(TWINS, seam.start, strict=False)):
+    for node, (twin, first) in enumerate(zip(TWINS, contacts.start, strict=False)):
         for e in range(first, first + MANY[node]):
             total[node] += force(twin, e)
     return total
 
 
-def test_the_elastic_laws_seam_forces_are_sums_over_the_twins_contacts(seam: tables.Seam) -> None:
+def test_the_elastic_laws_seam_forces_are_sums_over_the_twins_contacts(contacts: Contacts) -> None:
     rng = np.random.default_rng(5)
     u, angle = rng.uniform(-1.0, 1.0, (3, PARTICLES)), rng.uniform(0.0, 2.0 * np.pi, LINES)
     k_n, k_s, k_r, arm_i, arm_j = rng.uniform(0.5, 2.0, (5, LINES))
@@ -48,33 +63,42 @@ def test_the_elastic_laws_seam_forces_are_sums_over_the_twins_contacts(seam: tab
     palette = np.column_stack([*(np.sqrt(k_n) * n), root_s / np.sqrt(k_n), root_s * arm_i, root_s * arm_j, k_r])
 
     def force(i: int, e: int) -> np.ndarray:
-        j, k = seam.neighbour[e], seam.kind[e]
+        j, k = contacts.neighbour[e], contacts.kind[e]
         apart = u[:2, j] - u[:2, i]
         slip = t[:, k] @ apart - arm_i[k] * u[2, i] - arm_j[k] * u[2, j]
         moment = arm_i[k] * k_s[k] * slip + k_r[k] * (u[2, j] - u[2, i])
         return np.array([*(k_n[k] * (n[:, k] @ apart) * n[:, k] + k_s[k] * slip * t[:, k]), moment])
 
-    nothing = np.zeros(0, dtype=np.uint32)
-    across = np.full((len(TWINS), 3), np.nan)
-    seam_forces(u, tables.Rows(nothing, nothing, nothing, palette), seam, across)
+    across = np.zeros((len(TWINS), 3))
+    seam = tables.Seam(TWINS, contacts.start, contacts.neighbour, contacts.kind, palette)
+    seam_forces(seam, u, across)
 
     # sums of three forces of some ten
-    np.testing.assert_allclose(across, summed(seam, force), rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(across, summed(contacts, force), rtol=0.0, atol=1e-14)
+    # they add to what is there
+    both = already()
+    seam_forces(seam, u, both)
+    assert np.array_equal(both, already() + across)
 
 
-def test_the_seam_forces_of_pairs_with_a_memory_are_sums_over_the_twins_ends(seam: tables.Seam, random_pairs) -> None:
+def test_the_seam_forces_of_pairs_with_a_memory_are_sums_over_the_twins_ends(contacts: Contacts, random_pairs) -> None:
     pairs = random_pairs(PARTICLES, LINES)
     pairs.force[:] = np.random.default_rng(6).uniform(-1.0, 1.0, pairs.force.shape)
 
     def force(_: int, e: int) -> np.ndarray:
-        pair, second = divmod(int(seam.end[e]), 2)
+        pair, second = divmod(int(contacts.end[e]), 2)
         fx, fy, *moments = pairs.force[pair]
         return np.array([-fx, -fy, moments[1]] if second else [fx, fy, moments[0]])
 
-    across = np.full((len(TWINS), 3), np.nan)
-    seam_ends_forces(pairs, seam, across)
+    across, u = np.zeros((len(TWINS), 3)), np.full((3, PARTICLES), np.nan)
+    seam = tables.SeamEnds(contacts.start, contacts.end, pairs.force)
+    seam_ends_forces(seam, u, across)
 
-    assert np.array_equal(across, summed(seam, force))
+    assert np.array_equal(across, summed(contacts, force))
+    # they add to what is there
+    both = already()
+    seam_ends_forces(seam, u, both)
+    assert np.array_equal(both, already() + across)
 
 
 class Following:
@@ -95,12 +119,12 @@ class Following:
 
     def bundles(self) -> tuple[tables.Supports, tables.Body, tables.Log]:
         """As the kernel takes it."""
-        nothing, nobody = np.zeros(0, dtype=np.uint32), np.zeros(0, dtype=np.int64)
+        nobody = np.zeros(0, dtype=np.int64)
         mobility = 1.0 / (self.inertia / STEP + 0.5 * self.damping)
         keep = mobility * (self.inertia / STEP - 0.5 * self.damping)
-        seam = tables.Seam(self.twin, self.follow, np.zeros(4, dtype=np.uint32), nothing, nothing, nothing)
+        prescribed, drive = np.zeros((3, 3)), self.drive[None]
         supports = tables.Supports(
-            self.nodes, self.inertia / STEP, keep, mobility, self.stiffness, np.zeros((3, 3)), self.drive[None], seam
+            self.nodes, self.inertia / STEP, keep, mobility, self.stiffness, prescribed, drive, self.twin, self.follow
         )
         body = tables.Body(np.zeros(7), np.zeros(7), np.ones(3), np.zeros((3, 0)), 0.0, STEP)
         log = tables.Log(nobody, np.zeros((1, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 6)))
@@ -129,7 +153,7 @@ def test_a_dashpot_follows_its_twin_at_the_middle_of_the_step_supported_or_not()
     model = Following()
     supports, body, log = model.bundles()
     v, spare, followed = model.before.copy(), np.full((3, 7), np.nan), np.empty((3, 3))
-    note_before(0, model.u, v, log.probes, log.record, supports.seam.twin, followed)
+    note_before(0, model.u, v, log.probes, log.record, supports.twin, followed)
     v[:, model.free_ones] = model.after[:, model.free_ones]  # the free ones move first
     spare[:, model.nodes] = (model.force - model.across).T  # where the contacts' forces wait
     move_supported(0, model.u, v, spare, model.across, followed, supports, body, log.work)

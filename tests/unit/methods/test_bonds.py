@@ -296,7 +296,7 @@ def test_breaks_are_told_in_the_order_of_their_steps() -> None:
 
 
 def ranges(bonds: Bonds, supported: list[int]) -> tuple[np.ndarray, np.ndarray]:
-    arrays = bonds.arrays(np.array(supported, dtype=np.int64), 1.0)
+    arrays = bonds.arrays(np.array(supported, dtype=np.int64), 1.0, 1.0)
     return arrays.plain, arrays.mixed
 
 
@@ -341,10 +341,24 @@ def test_every_node_is_moved_once_and_holds_on_to_what_its_range_says(seed: int)
 
 def test_arrays_for_kernels_are_the_bonds_own() -> None:
     bonds = zoned(3, (10, 30), ask_at=0.5)
-    arrays = bonds.arrays(np.array([0]), 2.0)
+    arrays = bonds.arrays(np.array([0]), 4.0, 1.0)
 
     for name in ("spring", "spring_limit", "asks", "bond", "spring_broken", "bond_broken"):
         assert getattr(arrays, name) is getattr(bonds, name)
     np.testing.assert_allclose(arrays.bond_limit, LIMIT * np.array([1.0, 2.0, 3.0]), rtol=2 * EPS)
-    assert (arrays.plain_stiffness, arrays.plain_limit, arrays.plain_mobility) == (WHOLE, 0.5 * LIMIT, 2.0)
-    assert (arrays.section, arrays.room.size) == (0.5, COUNT + 4)
+    # of 4 kg/m³ · 0.5 m² · 0.25 m a node
+    assert (arrays.plain_push, arrays.plain_limit) == (2.0 * WHOLE, 0.5 * LIMIT)
+    assert (arrays.section, arrays.space.size) == (0.5, COUNT + 4)
+    assert arrays.mobility.tolist() == [0.0, *(COUNT - 2) * [2.0], 4.0]
+    assert (arrays.keep, arrays.drag.size, arrays.before.size) == (1.0, 0, 1)
+
+
+def test_attenuation_slows_every_node_down_alike() -> None:
+    bonds = zoned(3, (10, 30))
+    swift, slow = (bonds.arrays(np.array([0]), 4.0, 0.25, drag_rate) for drag_rate in (0.0, 1.6))
+
+    # m (v⁺ − v)/Δt = F − C (v⁺ + v)/2 with C = 1.6 m/s: v⁺ = (1 − 0.2)/(1 + 0.2) v + F Δt/m/(1 + 0.2)
+    assert slow.keep == pytest.approx(0.8 / 1.2, rel=2 * EPS)
+    assert slow.plain_push == pytest.approx(swift.plain_push / 1.2, rel=4 * EPS)
+    np.testing.assert_allclose(slow.mobility, swift.mobility / 1.2, rtol=4 * EPS)
+    np.testing.assert_allclose(slow.drag, 1.6 * 4.0 * ROD.volumes, rtol=2 * EPS)

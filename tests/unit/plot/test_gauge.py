@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from dembound.gauge.readings import Gauge
+from dembound.gauge.spalling import evaluate
 from dembound.plot.gauge import plot_gauge
-from dembound.readings import Gauge
-from dembound.spalling import evaluate
 
 
 @pytest.fixture

@@ -1,0 +1,80 @@
+"""What a bar's case would come to, without running it."""
+
+import numpy as np
+
+from dembound.bar.scene import BarScene
+from dembound.bar.summary import describe_bar, describe_end
+from dembound.case.bar import BarCase
+from dembound.case.bar.bar import Bar
+from dembound.case.magnitudes import waves_used
+from dembound.exact.dispersion import cells_per_wavelength, courant_limit
+
+ERROR = 0.01
+"""Error of the phase speed that the shortest wavelength may have without a warning."""
+
+PERCENT = f"{100.0 * ERROR:g} %"
+"""The same in words."""
+
+
+def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
+    """Facts about a bar and its method, ready to print."""
+    bar = describe_bar(scene)
+    case = scene.case
+    facts = {
+        "nodes": f"{scene.count:,}, {bar['spacing']:g} m apart",
+        "method": method_in_words(case),
+        "Courant number": f"{_courant(case, time_step):.6g}",
+        "bar": f"{bar['length']:g} m long, section {bar['section']:.4g} m², density {bar['density']:g} kg/m³",
+        "stiffness": f"E = {case.bar.modulus / 1e9:.4g} GPa, c = {case.bar.speed:.4g} m/s",
+        "strength": _strength_in_words(case.bar),
+    }
+    if case.bar.attenuation > 0.0:
+        facts["attenuation"] = f"{case.bar.attenuation:g} 1/m"
+    for side in scene.edges:
+        facts[f"{side} end"] = str(describe_end(scene, side)["type"])
+    for load in case.load:
+        largest = abs(load.pressure) * case.wave[load.wave].peak()
+        facts[f"load {load.name}"] = (
+            f"up to {largest / 1e6:.4g} MPa, {load.pressure:.4g} Pa times wave {load.wave}, "
+            f"on {load.nodes} node(s) at the {load.side} end"
+        )
+    for name, node in scene.monitors.items():
+        facts[f"monitor {name}"] = f"node {node} at {scene.positions[node, 0]:.4g} m"
+    for name, (cells, needed) in cells_of_waves(case, time_step).items():
+        facts[f"wave {name}"] = (
+            f"{cells:.3g} cells in its shortest wavelength, {needed:.3g} needed for an error of {PERCENT}"
+        )
+    return facts
+
+
+def method_in_words(case: BarCase) -> str:
+    """The method and its keys."""
+    keys = case.method.model_dump(exclude={"type"})
+    return f"{case.method.type}" + "".join(f", {key} = {value}" for key, value in keys.items())
+
+
+def _strength_in_words(bar: Bar) -> str:
+    """Stress and stretch at which it breaks."""
+    stretch = bar.breaking_stretch
+    if np.isinf(stretch):
+        return "unbreakable"
+    return f"{stretch * bar.modulus / 1e6:.4g} MPa, critical stretch {stretch:.4g}"
+
+
+def cells_of_waves(case: BarCase, time_step: float) -> dict[str, tuple[float, float]]:
+    """Of every wave in use the cells in its shortest wavelength, and how many keep the error of its speed below ERROR.
+
+    The shortest wavelength is that of the wave's highest frequency.
+    """
+    horizon = case.method.carrying_horizon
+    courant = min(_courant(case, time_step), courant_limit(horizon))
+    needed = cells_per_wavelength(horizon, courant, ERROR)
+    spacing = case.bar.length / case.bar.cells
+    used = waves_used(case)
+    fading = {name: wave.highest_frequency() for name, wave in case.wave.items() if name in used}
+    return {name: (case.bar.speed / (f * spacing) if f > 0.0 else np.inf, needed) for name, f in fading.items()}
+
+
+def _courant(case: BarCase, time_step: float) -> float:
+    """Courant number ν = cΔt/Δx."""
+    return time_step * case.bar.speed * case.bar.cells / case.bar.length

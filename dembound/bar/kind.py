@@ -1,0 +1,88 @@
+"""Bars as a kind of body."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dembound.bar.facts import bar_facts
+from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
+from dembound.bar.outcome import bar_outcome
+from dembound.bar.scene import BarScene, build_bar
+from dembound.bar.stability import choose_step
+from dembound.bar.summary import summarise_bar
+from dembound.bar.warnings import bar_warnings, warnings_after_bar
+from dembound.case.bar import SCHEMA, STARTER, BarCase
+from dembound.motion.kind import Beginning, Kind, OnLook
+from dembound.motion.trackers import Run
+from dembound.plot.bar import plot_bar, plot_bar_field
+from dembound.plot.histories import plot_histories
+from dembound.results.reader import has_monitors
+
+if TYPE_CHECKING:
+    import h5py
+    import meshio
+    from matplotlib.figure import Figure
+
+
+class Bars(Kind[BarCase, BarScene]):
+    """Bars of nodes."""
+
+    name, plural = "bar", "bars"
+    schema = SCHEMA
+    starter = STARTER
+    mesh_name = "bar"
+    view_script = VIEW_SCRIPT
+
+    def build(self, case: BarCase) -> BarScene:
+        """Its nodes and what supports them."""
+        return build_bar(case)
+
+    def choose_step(self, scene: BarScene) -> tuple[float, float]:
+        """Time step and stability limit (s)."""
+        return choose_step(scene)
+
+    def preflight(self, case: BarCase) -> None:
+        """All of it, as a bar is built at once."""
+        self.choose_step(self.build(case))
+
+    def begin(self, scene: BarScene, time_step: float, on_look: OnLook) -> Beginning:
+        """At rest as built."""
+        return Beginning(scene.system(time_step))
+
+    def facts(self, scene: BarScene, time_step: float) -> dict[str, str]:
+        """The bar, its method and what acts on it."""
+        return bar_facts(scene, time_step)
+
+    def warnings_before(self, scene: BarScene, time_step: float) -> list[str]:
+        """What is known before the run."""
+        return bar_warnings(scene.case, time_step)
+
+    def warnings_after(self, scene: BarScene, summary: Mapping[str, Any], record: Path) -> list[str]:
+        """What the run has shown."""
+        return warnings_after_bar(scene, summary, record)
+
+    def summarise(self, scene: BarScene, run: Run, beginning: Beginning, record: Path) -> dict[str, Any]:
+        """The bar and its spalls in numbers."""
+        return summarise_bar(scene, run, record)
+
+    def outcome(self, summary: Mapping[str, Any]) -> list[str]:
+        """Methods and spalls in words."""
+        return bar_outcome(summary)
+
+    def mesh(self, particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+        """One line from each node to the next."""
+        return bar_mesh(particles, snapshot, cracks)
+
+    def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:
+        """The bar over place and time, and the stress at its monitors."""
+        yield "scene", plot_bar(record)
+        if has_monitors(record):
+            yield "histories_stress", plot_histories([record], quantity="stress")
+
+    def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
+        """One field over place and time."""
+        return plot_bar_field(record, field, snapshot)

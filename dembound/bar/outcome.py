@@ -1,0 +1,38 @@
+"""What happened in a run of a bar, in words, from its summary."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+GAINED = 1e-3
+"""Share of the energy that fracture may give instead of taking it before a run says so."""
+
+LISTED = 3
+"""Spalls that are named one by one."""
+
+
+def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
+    """What became of a bar: changes of method, and where and when it spalled, and what of that converges."""
+    facts = [f"{used['law']} from {used['from'] * 1e3:.4g} ms" for used in summary["laws"][1:]]
+    facts += [
+        f"spall at {_range(spall['start'])} m, {spall['time'] * 1e3:.4f} ms" for spall in summary["spalls"][:LISTED]
+    ]
+    if (more := len(summary["spalls"]) - LISTED) > 0:
+        facts.append(f"and {more} more, see summary.json")
+    if summary["spalls_note"] is not None:
+        facts.append(summary["spalls_note"])
+    if not summary["spalls"] and summary["bar"]["strength"] is not None:
+        facts.append("no spall")
+    gained = -summary["energy"]["crack"]
+    if gained > GAINED * abs(summary["energy"]["outside"]):
+        facts.append(
+            f"bonds broke within single steps and gave {gained / abs(summary['energy']['outside']):.1%} of the energy, "
+            "take a smaller bar.spacing or run.courant"
+        )
+    if error := summary["energy"]["relative_error"]:
+        facts.append(f"energy closes to {100.0 * error:.2g} %")
+    return facts
+
+
+def _range(ends: Sequence[float]) -> str:
+    """Ends of a range as "0.906–0.909", a single place as it is."""
+    return "–".join(f"{end:.4g}" for end in sorted(set(ends)))

@@ -1,0 +1,34 @@
+"""A case of a bar: all tables of one file."""
+
+from dataclasses import dataclass
+
+from dembound.boundaries.driven import Driven
+from dembound.case.bar.bar import Bar
+from dembound.case.bar.load import BarLoad
+from dembound.case.bar.monitor import BarMonitor
+from dembound.case.bar.run import BarRun
+from dembound.case.model import Case
+from dembound.methods import MethodTable
+
+
+@dataclass(frozen=True, kw_only=True)
+class BarCase(Case):
+    """A case of a bar.
+
+    Attributes
+    ----------
+    bar, method : the tables of these names.
+    """
+
+    bar: Bar
+    method: MethodTable
+    load: tuple[BarLoad, ...]
+    monitor: tuple[BarMonitor, ...]
+    run: BarRun
+
+    @property
+    def loaded(self) -> str:
+        """The end that loads act on or a wave drives: "left", "right", "both" or "none"."""
+        driven = {side for side, table in self.boundary.items() if isinstance(table, Driven)}
+        ends = driven | {load.side for load in self.load}
+        return "both" if len(ends) > 1 else next(iter(ends), "none")

@@ -1,0 +1,32 @@
+"""A case of bonded disks: all tables of one file."""
+
+from dataclasses import dataclass
+
+from dembound.case.disks.load import Load
+from dembound.case.disks.material import Material
+from dembound.case.disks.monitor import Monitor
+from dembound.case.disks.motion import Motion
+from dembound.case.disks.static import Static
+from dembound.case.model import Case
+from dembound.holes import HoleTable
+from dembound.packings import PackingTable
+
+
+@dataclass(frozen=True, kw_only=True)
+class DiskCase(Case):
+    """A case of bonded disks.
+
+    Attributes
+    ----------
+    packing, material, motion : the tables of these names.
+    static : the table of this name; None: no static stage.
+    hole : in the order of the file.
+    """
+
+    packing: PackingTable
+    material: Material
+    motion: Motion
+    static: Static | None
+    hole: tuple[HoleTable, ...]
+    load: tuple[Load, ...]
+    monitor: tuple[Monitor, ...]

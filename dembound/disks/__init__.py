@@ -1,0 +1,1 @@
+"""Bonded disks: their scene, contacts, motion, and what is reported of them."""

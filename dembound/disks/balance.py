@@ -1,0 +1,225 @@
+"""The constant forces that balance the internal stress of a settled body: Z's unbalanced forces F_eq, sign turned.
+
+Under the law that follows the motion they turn with the side they act on, and they end on debris.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from dembound.boundaries import OPPOSITE, FreeField, Periodic
+from dembound.disks.body import DiskBody
+from dembound.disks.part import DiskPart
+from dembound.kernels.follower import GONE, side_rotations
+from dembound.kernels.fragments import pieces
+from dembound.kernels.tables import Followers
+from dembound.motion.state import Arrays
+
+
+class Balance:
+    """Forces that balance the stress of a body at a datum.
+
+    Parameters
+    ----------
+    scene : the body and its sides.
+    force : (3, n) N and N·m at the datum.
+    steady : (3, n) other steady forces, which never turn.
+    datum : (3, n) displacements at which the body is in equilibrium.
+    across : (3, n) N and N·m, what comes through free-field seams at the datum: no load, but it turns with the body and
+        ends on debris all the same.
+
+    Attributes
+    ----------
+    force : (3, n) N and N·m, in the directions of the datum.
+    followers : what turns them, for the kernels.
+    """
+
+    def __init__(
+        self, scene: DiskBody, force: np.ndarray, steady: np.ndarray, datum: np.ndarray, across: np.ndarray
+    ) -> None:
+        self.force = force
+        self.followers = _followers(scene, force, steady, datum, across)
+        self._scene, self._steady, self._datum, self._across = scene, steady, datum, across
+        self._of_ended = 0.0
+        self._ended = np.zeros(scene.count, dtype=np.bool_)
+        self._broken_before = np.zeros(scene.count, dtype=np.int64)
+        self._torn = np.zeros(scene.count, dtype=np.bool_)
+
+    def work(self, displacement: np.ndarray) -> float:
+        """Work (J) done up to displacements (3, n), without what turning has added, which the kernels count."""
+        return self._of_ended + float(np.sum(self.force * (displacement - self._datum)))
+
+    def memory(self) -> Arrays:
+        """All that evolves in it, by name."""
+        kept = {name: getattr(self, f"_{name}") for name in (*_FIXED, *_EVOLVING)}
+        kept |= {"force": self.force, "of_ended": np.array(self._of_ended)}
+        return kept | {f"follower_{name}": getattr(self.followers, name) for name in _FOLLOWING}
+
+    @classmethod
+    def recalled(cls, scene: DiskBody, memory: Arrays) -> Balance:
+        """What has the memory of another run of the same case."""
+        balance = cls(scene, memory["force"].copy(), *(memory[name].copy() for name in _FIXED))
+        for name in _EVOLVING:
+            setattr(balance, f"_{name}", memory[name].copy())
+        balance._of_ended = float(memory["of_ended"])
+        for name in _FOLLOWING:
+            getattr(balance.followers, name)[...] = memory[f"follower_{name}"]
+        return balance
+
+    def count_breaks_from(self, parts: Sequence[DiskPart]) -> None:
+        """Take the bonds that are broken by now as no sign of debris; parts make up the body."""
+        self._broken_before = _broken_bonds(parts)
+
+    def end_on_debris(
+        self, parts: Sequence[DiskPart], displacement: np.ndarray, velocity: np.ndarray, step: float, load: np.ndarray
+    ) -> None:
+        """End the forces on pieces that have broken off, and let the rest of the body bear what they came to.
+
+        A piece has broken off where neither bonds nor closed contacts join it to the largest one and a bond of it has
+        broken since the start: ground that was loose then stays confined. displacement (3, n) and velocity (3, n) are
+        those after a step (s). load (3, n), all steady forces, loses what ends; what keeps coming through a seam is
+        taken off by its constant part.
+        """
+        self._torn |= _broken_bonds(parts) > self._broken_before  # every break is looked at, so none is missed
+        loose = np.zeros(len(self._ended), dtype=np.bool_)
+        for part in parts:
+            body = part.nodes
+            piece = pieces(part.pairs, body.start, body.stop)
+            largest = np.argmax(np.bincount(piece))
+            loose[body] = (piece != largest) & np.isin(piece, piece[self._torn[body]])
+        loose &= ~self._ended
+        if not loose.any():
+            return
+        self._ended |= loose
+        change = np.where(loose, -self._across - self.force, 0.0)
+        followers = self.followers
+        turned = loose[followers.node]
+        load[:2, followers.node[turned]] -= followers.extra[:, turned]
+        followers.force[..., turned] = 0.0
+        followers.extra[:, turned] = 0.0
+        self._leave_sides()
+        for part in parts:
+            change[:, part.nodes] += self._borne_by_the_rest(change, part.nodes)
+        # the force of the last step acted until half a step before the displacements of now
+        self._of_ended -= float(np.sum(change * (displacement - 0.5 * step * velocity - self._datum)))
+        self.force += change
+        load += change
+        share = _shares(followers.side)
+        followers.force[...] += np.where(turned, 0.0, share[:, None, :] * change[:2, followers.node])
+        followers.steady[...] += change[:2, followers.node]
+
+    def _leave_sides(self) -> None:
+        """Let the rotation of each side be that of what is left of it."""
+        followers = self.followers
+        followers.twin[self._ended[followers.member]] = GONE
+        for first, last in pairwise(followers.start):
+            left = first + np.flatnonzero(followers.twin[first:last] != GONE)
+            if len(left):
+                followers.arm[:, left] -= followers.arm[:, left].mean(axis=1, keepdims=True)
+
+    def _borne_by_the_rest(self, change: np.ndarray, body: slice) -> np.ndarray:
+        """Forces (3, m) on the sides of what is left of a body that make up for what has ended in it, torque included.
+
+        change (3, n) N and N·m is what has come to the forces by ending. The ground beyond would take it over; without
+        that the body would be pushed away by what is left.
+        """
+        borne = np.zeros((3, body.stop - body.start))
+        node = self.followers.node
+        node = node[(node >= body.start) & (node < body.stop) & ~self._ended[node]]
+        if len(node) < 2:
+            return borne
+        places = self._scene.assembly.positions.T + self._datum[:2]
+        middle = places[:, node].mean(axis=1, keepdims=True)
+        arm, lost = places - middle, change[:, body]
+        x, y = arm[:, body]
+        torque = np.sum(x * lost[1] - y * lost[0]) + lost[2].sum()
+        turn = np.stack([-arm[1, node], arm[0, node]])
+        at = node - body.start
+        borne[:2, at] = -lost[:2].sum(axis=1)[:, None] / len(node) - torque / np.sum(turn**2) * turn
+        return borne
+
+
+_FIXED = ("steady", "datum", "across")
+"""What a balance is made of beside its forces."""
+
+_EVOLVING = ("ended", "broken_before", "torn")
+"""What it keeps of particles that have come off."""
+
+_FOLLOWING = ("twin", "arm", "force", "steady", "extra")
+"""The columns of its followers that change."""
+
+
+def _broken_bonds(parts: Sequence[DiskPart]) -> np.ndarray:
+    """Number (n,) of broken bonds of every particle."""
+    return np.concatenate([part.contacts.broken_bonds() for part in parts if part.contacts is not None])
+
+
+def mean_rotations(scene: DiskBody, moved: np.ndarray) -> dict[str, float]:
+    """Rotation (rad) by which forces on each side turn, of a body that has moved by (3, n), see `side_rotations`."""
+    still = np.zeros_like(moved)
+    followers = _followers(scene, still, still, still, still)
+    return dict(zip(_body_sides(scene), side_rotations(moved, followers).tolist(), strict=True))
+
+
+def _body_sides(scene: DiskBody) -> dict[str, np.ndarray]:
+    """The particles of each side of a body that can turn: not of a free-field column, nor of what is periodic."""
+    if any(isinstance(table, Periodic) for table in scene.case.boundary.values()):
+        return {}
+    first = 0 if scene.seam is None else scene.seam.count
+    sides = {side: edge.nodes[edge.nodes >= first] for side, edge in scene.edges.items()}
+    return {side: nodes for side, nodes in sides.items() if len(nodes) > 1}
+
+
+def _followers(
+    scene: DiskBody, force: np.ndarray, steady: np.ndarray, datum: np.ndarray, across: np.ndarray
+) -> Followers:
+    """The forces on the sides of a body, half of a corner's with each of its two sides; words as in `Balance`."""
+    sides = _body_sides(scene)
+    places = scene.assembly.positions.T + datum[:2]
+    arms = [places[:, nodes] - places[:, nodes].mean(axis=1, keepdims=True) for nodes in sides.values()]
+    members = np.concatenate([np.zeros(0, np.int64), *sides.values()])
+    node, side = _side_numbers(scene, sides)
+    names = list(sides)
+    return Followers(
+        opposite=np.array(
+            [names.index(OPPOSITE[side] if OPPOSITE[side] in names else side) for side in names], np.int64
+        ),
+        start=np.cumsum([0, *(len(nodes) for nodes in sides.values())]),
+        member=members,
+        twin=np.full(len(members), -1) if scene.seam is None else scene.seam.twin[members].copy(),
+        arm=np.concatenate([np.zeros((2, 0)), *arms], axis=1),
+        node=node,
+        side=side,
+        force=np.ascontiguousarray(_shares(side)[:, None, :] * (force + across)[:2, node]),
+        steady=np.ascontiguousarray((steady + force)[:2, node]),
+        extra=np.zeros((2, len(node))),
+        datum=datum,
+    )
+
+
+def _shares(side: np.ndarray) -> np.ndarray:
+    """Share (2, q) of a particle's force that turns with each of its sides, by their numbers (2, q)."""
+    return (side >= 0) / (side >= 0).sum(axis=0)
+
+
+def _side_numbers(scene: DiskBody, sides: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Particles (q,) on which forces turn, and the numbers (2, q) of the one or two sides of each, −1 for none.
+
+    Those of the sides, and beside a free field those with contacts beyond it.
+    """
+    pushed = dict(sides)
+    if scene.seam is not None:
+        left = scene.assembly.positions[scene.seam.node, 0] < 0.5 * scene.size[0]
+        for side, near in (("left", left), ("right", ~left)):
+            if isinstance(scene.case.boundary.get(side), FreeField) and side in sides:
+                pushed[side] = np.union1d(sides[side], scene.seam.node[near])
+    node = np.unique(np.concatenate([np.zeros(0, np.int64), *pushed.values()]))
+    number = np.full((2, len(node)), -1)
+    for k, nodes in enumerate(pushed.values()):
+        at = np.searchsorted(node, nodes)
+        row = (number[:, at] >= 0).sum(axis=0)
+        number[row[row < 2], at[row < 2]] = k  # of a very narrow body a particle may have a third side, left out
+    return node, number

@@ -1,0 +1,166 @@
+"""A body of disks as arrays. This is the one place that names them, their shapes and their units."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from dembound.boundaries.half_mass import mass_factor
+from dembound.boundaries.support import Edge, Supports
+from dembound.case.disks import DiskCase
+from dembound.disks.contacts import ContactList
+from dembound.disks.ground import Ground
+from dembound.disks.loads import steady
+from dembound.kernels.tables import Rows
+from dembound.motion.scene import Scene
+from dembound.motion.threads import worthwhile_threads
+from dembound.packings.column import Seam
+from dembound.packings.tiling import Assembly
+
+
+@dataclass(frozen=True)
+class DiskBody(Scene):
+    """A body of disks, with its free-field column if it has one, under its supports; n particles, all SI.
+
+    Attributes
+    ----------
+    case : where it came from.
+    ground : brick and material.
+    assembly : the tiled brick: positions (n, 2) m, radii (n,) m, brick_particle (n,), contacts.
+    rows : contacts of the elastic law for the kernels, of each part.
+    edges : side -> its exposed particles, for every side that is not periodic.
+    supports : the table of what pushes from outside, loads that follow a wave included.
+    monitors : name -> particle.
+    seam : what joins the free-field column, which stands first in the arrays, to the body; None without one.
+    """
+
+    case: DiskCase
+    ground: Ground
+    assembly: Assembly
+    rows: tuple[Rows, ...]
+    edges: Mapping[str, Edge]
+    supports: Supports
+    monitors: Mapping[str, int]
+    seam: Seam | None = None
+
+    kind = "disks"
+    energy_unit = "J/m"
+    record_width = 6
+    block = 256
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """What a record's header has beside that of every run."""
+        return {"seed": getattr(self.case.packing, "seed", 0)}
+
+    @property
+    def columns(self) -> dict[str, tuple[np.ndarray, str]]:
+        """What a record keeps of every particle, by name: values (n, …) and unit."""
+        assembly, bonded = self.assembly, self.ground.moduli.pb_emod > 0.0
+        return {
+            "position": (assembly.positions, "m"),
+            "radius": (assembly.radii, "m"),
+            "brick_particle": (assembly.brick_particle, "1"),
+            "bonds": (np.bincount(assembly.pairs.ravel(), minlength=self.count) * int(bonded), "1"),
+        }
+
+    @property
+    def places(self) -> dict[str, tuple[float, float]]:
+        """Where monitors were wanted, m."""
+        return {monitor.name: monitor.position for monitor in self.case.monitor}
+
+    @property
+    def count(self) -> int:
+        """Number of particles n."""
+        return len(self.assembly.radii)
+
+    @property
+    def positions(self) -> np.ndarray:
+        """(n, 2) m."""
+        return self.assembly.positions
+
+    @property
+    def size(self) -> np.ndarray:
+        """(2,) width and height, m."""
+        return self.assembly.size
+
+    @property
+    def threads(self) -> int:
+        """Threads its steps use."""
+        return worthwhile_threads(self.count)
+
+    @property
+    def parts(self) -> dict[str, slice]:
+        """The particles of each part: of the free-field column, if there is one, and of the body."""
+        return parts_of(self.count, self.seam)
+
+    @property
+    def twin(self) -> np.ndarray | None:
+        """(n,) each one's twin in the free-field column, the column's own being theirs; None without a column."""
+        return None if self.seam is None else self.seam.twin
+
+    @property
+    def damp(self) -> float:
+        """Local damping coefficient."""
+        return self.case.material.damp
+
+    @cached_property
+    def mass(self) -> np.ndarray:
+        """(n,) kg, of which particles on sides with half mass keep their half."""
+        return self.ground.mass[self.assembly.brick_particle] * self.share
+
+    @cached_property
+    def inertia(self) -> np.ndarray:
+        """(n,) kg·m², halved with the mass."""
+        return self.ground.inertia[self.assembly.brick_particle] * self.share
+
+    @cached_property
+    def share(self) -> np.ndarray:
+        """(n,) part of its cell that is a particle's own: 1, on a side of half cells ½, where two such meet ¼."""
+        return mass_factor(self.count, self.edges, self.case.boundary)
+
+    @cached_property
+    def steady_load(self) -> np.ndarray:
+        """(3, n) forces and moments (N, N·m) of the loads that are always there."""
+        return steady(self.case, self.assembly, self.mass)
+
+    @cached_property
+    def free(self) -> np.ndarray:
+        """(3,) 1 for a component that moves, 0 for one held everywhere."""
+        free = np.ones(3)
+        free[list(self.ground.held)] = 0.0
+        return free
+
+    @property
+    def has_history(self) -> bool:  # type: ignore[override]  # a constant of other kinds
+        """Whether the scene's law is history-dependent: contacts that open and slide, bonds that break."""
+        return self.case.material.law != "elastic"
+
+    def contact_lists(self) -> dict[str, ContactList]:
+        """The pairs of each part, without history."""
+        return {name: self._contact_list(name, nodes) for name, nodes in self.parts.items()}
+
+    def _contact_list(self, name: str, nodes: slice) -> ContactList:
+        """The pairs of one part."""
+        wide, high = self.assembly.size.tolist()
+        periodic = (is_periodic(self.case, "left"), is_periodic(self.case, "bottom"))
+        along_x, along_y = (length if wraps else None for length, wraps in zip((wide, high), periodic, strict=True))
+        held = None
+        if self.seam is not None and name == "column":
+            along_x, held = self.seam.width, self.seam.pairs(self.ground.brick)
+        part = self.assembly.part(nodes)
+        return ContactList(self.ground, self.case.material, part, (along_x, along_y), nodes.start, held)
+
+
+def parts_of(count: int, seam: Seam | None) -> dict[str, slice]:
+    """The particles of each part of `count` in all: of the free-field column, if there is one, and of the body."""
+    if seam is None:
+        return {"body": slice(0, count)}
+    return {"column": slice(0, seam.count), "body": slice(seam.count, count)}
+
+
+def is_periodic(case: DiskCase, side: str) -> bool:
+    """Whether a side of a case is periodic."""
+    return side in case.boundary and case.boundary[side].type == "periodic"

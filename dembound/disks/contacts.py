@@ -1,0 +1,374 @@
+"""The pairs of a scene: who touches or may soon touch whom, kept up to date as particles move."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from dembound.case.disks.material import Material
+from dembound.disks.ground import Ground
+from dembound.disks.neighbours import near_pairs, pair_keys
+from dembound.kernels import contacts as kernel
+from dembound.kernels.common import CHUNKS
+from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED
+from dembound.kernels.tables import Contacts, Limits
+from dembound.laws import pair_lines
+from dembound.motion.cracks import Cracks, joined
+from dembound.motion.state import Arrays
+from dembound.packings.tiling import Assembly
+
+SKIN = 0.05
+"""Pairs are listed while their gap is below this share of the mean diameter: they are looked for anew once a particle
+has moved by half of it."""
+
+
+def limits_of(material: Material) -> Limits:
+    """Where contacts and bonds of a material give way; the elastic law never does."""
+    unbreakable = material.law == "elastic"
+    return Limits(
+        friction=float(material.fric),
+        tension=np.inf if unbreakable or material.pb_ten is None else material.pb_ten,
+        cohesion=np.inf if unbreakable or material.pb_coh is None else material.pb_coh,
+        tan_fa=float(np.tan(np.radians(material.pb_fa))) if material.pb_coh is not None else 0.0,
+        geometry=REFERENCE if unbreakable else {"updated": UPDATED, "reference": BONDED}[material.geometry],
+    )
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """A list of pairs: first, second (b,) particles, image (b, 2) whole periods between, line (b,) of the palette."""
+
+    first: np.ndarray
+    second: np.ndarray
+    image: np.ndarray
+    line: np.ndarray
+
+
+class ContactList:
+    """All pairs of a part that push or may soon push, with their history.
+
+    Displacements (3, n) are those of all nodes of the scene.
+
+    Parameters
+    ----------
+    ground : brick and material.
+    material : the law's limits.
+    assembly : where the part's particles are at the start.
+    periods : length (m) of the part along x and y where it is periodic, else None.
+    begin : number of its first particle in the scene.
+    held : first, second (k,) particles of the part and vectors (k, 2) m of pairs that stay listed however far apart.
+
+    Attributes
+    ----------
+    arrays : the pairs as the kernels read them.
+    limits : where they give way.
+    origin : (2, m) m, displacements of the part's m particles at which the list was made.
+    skin : m, gap up to which it is complete.
+    arms : (begin + m,) m, the longest arm of each particle's contacts and bonds, 0 for those before the part.
+    """
+
+    def __init__(
+        self,
+        ground: Ground,
+        material: Material,
+        assembly: Assembly,
+        periods: tuple[float | None, float | None],
+        begin: int = 0,
+        held: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
+    ) -> None:
+        self.ground = ground
+        self.assembly = assembly
+        self.periods = periods
+        self.nodes = slice(begin, begin + len(assembly.radii))
+        self.limits = limits_of(material)
+        self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
+        self.searches = self.limits.geometry != REFERENCE
+        self.skin = SKIN * ground.brick.mean_diameter
+        self.origin = np.zeros((2, len(assembly.radii)))
+        self.bonds = _brick_lines(ground, gaps_close=self.searches, locked_in=self.locked_in)
+        first, second = assembly.pairs.T.astype(np.int64)
+        pairs = Pairs(first, second, self.images(first, second, self.bonds[assembly.kind, :2]), assembly.kind)
+        bonded = np.full(len(first), INTACT if ground.moduli.pb_emod > 0.0 else NONE, dtype=np.uint8)
+        zero = np.zeros(len(first))
+        self._palette = self.bonds
+        self._list(pairs, bonded, zero, zero, np.full(len(first), -1))
+        widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
+        arms = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
+        self.arms = np.concatenate([np.zeros(begin), arms])
+        self._cracks: list[Cracks] = []
+        self._held = held
+        if self.searches:
+            self.search(np.zeros((3, self.nodes.stop)))
+
+    def adopt(self, displacement: np.ndarray) -> None:
+        """Take over from the elastic law at displacements (3, n): nothing has slid so far."""
+        kernel.adopt(displacement, self.arrays)
+
+    def push(self, displacement: np.ndarray, *, reference: bool = False) -> None:
+        """Compute the pairs' own forces at displacements (3, n) reached at rest, and leave them in `arrays`.
+
+        reference : with the geometry of the start, as under the elastic law.
+        """
+        elastic = self.limits._replace(geometry=REFERENCE, tension=np.inf, cohesion=np.inf)
+        limits = elastic if reference else self.limits
+        still = np.zeros_like(displacement)
+        if kernel.push(displacement, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 2))) > 0:
+            kernel.note_places(displacement, 0, self.arrays)
+
+    def add_forces(self, total: np.ndarray) -> None:
+        """Add the forces and moments of the pairs' last forces to those of all nodes, total (3, n)."""
+        force = np.empty_like(total)
+        kernel.sum_forces(self.arrays, force)
+        total[:, self.nodes] += force[:, self.nodes]
+
+    def is_old(self, displacement: np.ndarray) -> bool:
+        """Whether a particle has moved so far by displacements (3, n) that pairs may be missing."""
+        return self.skin - 2.0 * kernel.moved(displacement, self.nodes.start, self.origin) < 0.0
+
+    def search(self, displacement: np.ndarray) -> None:
+        """List the pairs anew for displacements (3, n): near ones come in, those far apart and unbonded go."""
+        self.note_cracks()
+        moved, radii = displacement[:2, self.nodes].T, self.assembly.radii
+        here = self.assembly.positions + moved
+        if not np.isfinite(here).all():
+            return  # the loop's watch will say so
+        old, count = self.arrays, len(radii)
+        old_first, old_second = self.pairs
+        near, image = near_pairs(here, radii, self.skin, self.periods)
+        vectors = moved[old_second] - moved[old_first] + old.palette[old.kind, :2]
+        gap = np.hypot(*vectors.T) - radii[old_first] - radii[old_second]
+        kept = (old.state == INTACT) | (gap <= self.skin)
+        if self._held is not None:
+            kept[self.find(*self._held)[1]] = True
+        keys = pair_keys(old_first[kept], old_second[kept], self.image[kept], count)
+        fresh = ~np.isin(pair_keys(near[:, 0], near[:, 1], image, count), keys)
+        first, second = near[fresh].T
+        between = self.assembly.positions[second] - self.assembly.positions[first]
+        vectors = between + image[fresh] * [length or 0.0 for length in self.periods]
+        lines = pair_lines(
+            self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
+        )
+        lines, line_of_new = _shared(lines, self.skin)
+        # lines of earlier searches that are still in use move up behind the brick's own
+        own = len(self.bonds)
+        used, line = np.unique(old.kind[kept], return_inverse=True)
+        extra = used >= own
+        place = used.astype(np.int64)
+        place[extra] = own + np.arange(np.count_nonzero(extra))
+        self._palette = np.vstack([self.bonds, self._palette[used[extra]], lines])
+        pairs = Pairs(
+            np.concatenate([old_first[kept], first]),
+            np.concatenate([old_second[kept], second]),
+            np.concatenate([self.image[kept], image[fresh]]),
+            np.concatenate([place[line], own + np.count_nonzero(extra) + line_of_new]),
+        )
+        self._list(
+            pairs,
+            np.concatenate([old.state[kept], np.full(len(first), NONE, dtype=np.uint8)]),
+            np.concatenate([old.shear[kept], np.zeros(len(first))]),
+            np.concatenate([old.slip[kept], np.zeros(len(first))]),
+            np.concatenate([old.cracked[kept], np.full(len(first), -1)]),
+        )
+        self.origin = displacement[:2, self.nodes].copy()
+
+    def inherit(self, other: "ContactList", kept: np.ndarray) -> None:
+        """Take the pairs, with their history, of a list of more particles, of which this one's are `kept` (m,)."""
+        number = np.full(len(other.assembly.radii), -1)
+        number[kept] = np.arange(len(kept))
+        old, (old_first, old_second) = other.arrays, other.pairs
+        first, second = number[old_first], number[old_second]
+        left = (first >= 0) & (second >= 0)
+        self._palette, self.origin = other._palette, other.origin[:, kept]
+        pairs = Pairs(first[left], second[left], other.image[left], old.kind[left])
+        self._list(pairs, old.state[left], old.shear[left], old.slip[left], old.cracked[left], old.place[left])
+
+    def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
+        """Take the history of each pair's twin in a free-field column that has settled alone, at displacements (3, n).
+
+        twin : (m,) the column's particle for each of this list. Bonds that broke there have broken here before the
+        first step.
+        """
+        self.search(displacement)
+        pairs = self.arrays
+        first, second = (twin[particles] for particles in self.pairs)
+        found, at = column.find(first, second, pairs.palette[pairs.kind, :2])
+        there = column.arrays
+        for ours, theirs in ((pairs.state, there.state), (pairs.shear, there.shear), (pairs.slip, there.slip)):
+            ours[found] = theirs[at[found]]
+        pairs.cracked[(pairs.state == TENSION) | (pairs.state == SHEAR)] = 0
+        first, second = self.pairs
+        moved = displacement[:2, self.nodes].T
+        pairs.place[:] = 0.5 * (moved[first] + moved[second])
+        self.note_cracks()
+
+    def find(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Where pairs (b,) of particles with vectors (b, 2) m between them stand in this list.
+
+        Returns whether they are listed (b,), and their places (b,), whichever way round.
+        """
+        count = len(self.assembly.radii)
+        listed = pair_keys(*self.pairs, self.image, count)
+        order = np.argsort(listed)
+        keys = pair_keys(first, second, self.images(first, second, vectors), count)
+        at = order[np.minimum(np.searchsorted(listed, keys, sorter=order), len(order) - 1)]
+        return listed[at] == keys, at
+
+    def note_cracks(self) -> None:
+        """Write down the bonds that broke since the last time, where they did."""
+        pairs = self.arrays
+        broken = np.flatnonzero(pairs.cracked >= 0)
+        broken = broken[np.argsort(pairs.cracked[broken], kind="stable")]
+        if len(broken) == 0:
+            return
+        first, second = (particles[broken] for particles in self.pairs)
+        half = 0.5 * pairs.palette[pairs.kind[broken], :2]
+        middle = self.assembly.positions[first] + half + pairs.place[broken]
+        both = np.column_stack([first, second]) + self.nodes.start
+        self._cracks.append(Cracks(pairs.cracked[broken], both, middle, pairs.state[broken] == SHEAR))
+        pairs.cracked[broken] = -1
+
+    def take_cracks(self) -> Cracks:
+        """The bonds that broke since this was last called."""
+        self.note_cracks()
+        noted, self._cracks = self._cracks, []
+        return joined(noted)
+
+    @property
+    def pairs(self) -> tuple[np.ndarray, np.ndarray]:
+        """First and second particle (b,) int64 of every pair, numbered from the part's first one."""
+        begin = self.nodes.start
+        return self.arrays.first.astype(np.int64) - begin, self.arrays.second.astype(np.int64) - begin
+
+    def images(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+        """Whole periods (b, 2) that a pair's vector goes beyond the difference of its positions."""
+        inside = self.assembly.positions[second] - self.assembly.positions[first]
+        periods = np.broadcast_to([length or 0.0 for length in self.periods], inside.shape)
+        wraps = np.divide(vectors - inside, periods, out=np.zeros_like(inside), where=periods > 0.0)
+        return np.rint(wraps).astype(np.int64)
+
+    def broken_bonds(self) -> np.ndarray:
+        """Number (m,) of broken bonds of every particle among the listed pairs."""
+        state = self.arrays.state
+        return self._counted((state == TENSION) | (state == SHEAR))
+
+    def coordination(self) -> np.ndarray:
+        """Number (m,) of intact bonds and pushing contacts of every particle, from the pairs' last forces."""
+        return self._counted((self.arrays.state == INTACT) | self.arrays.force[:, :2].any(axis=1))
+
+    def _counted(self, chosen: np.ndarray) -> np.ndarray:
+        """Number (m,) of the chosen pairs (b,) that each particle has."""
+        ends = np.concatenate([particles[chosen] for particles in self.pairs])
+        return np.bincount(ends, minlength=len(self.assembly.radii))
+
+    def memory(self) -> Arrays:
+        """The pairs with their history, and cracks not yet taken."""
+        self.note_cracks()
+        memory = {name: getattr(self.arrays, name) for name in _KEPT}
+        memory |= {"image": self.image, "palette": self._palette, "origin": self.origin}
+        cracks = joined(self._cracks)
+        return memory | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
+
+    def recall(self, memory: Arrays) -> None:
+        """Take over what `memory` has returned in another run of the same case."""
+        self._palette, self.origin = memory["palette"], memory["origin"]
+        begin = self.nodes.start
+        first, second = (memory[name].astype(np.int64) - begin for name in ("first", "second"))
+        pairs = Pairs(first, second, memory["image"], memory["kind"])
+        columns = (memory[name] for name in ("state", "shear", "slip", "cracked"))
+        self._list(pairs, *columns)
+        self.arrays.force[:] = memory["force"]
+        self._cracks = [Cracks(*(memory[f"crack_{field.name}"] for field in fields(Cracks)))]
+
+    def _list(
+        self,
+        pairs: Pairs,
+        state: np.ndarray,
+        shear: np.ndarray,
+        slip: np.ndarray,
+        cracked: np.ndarray,
+        place: np.ndarray | None = None,
+    ) -> None:
+        """Sort the pairs, and list the ends of each particle."""
+        order = np.lexsort((pairs.image[:, 1], pairs.image[:, 0], pairs.second, pairs.first))
+        self.image = pairs.image[order]
+        first, second = pairs.first[order], pairs.second[order]
+        count, b, begin = len(self.assembly.radii), len(order), self.nodes.start
+        owner = np.concatenate([first, second])
+        end = np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
+        start = np.zeros(begin + count + 1, dtype=np.uint32)
+        np.cumsum(np.bincount(owner, minlength=count), out=start[begin + 1 :])
+        self.arrays = Contacts(
+            begin=begin,
+            first=(begin + first).astype(np.uint32),
+            second=(begin + second).astype(np.uint32),
+            kind=pairs.line[order].astype(np.uint32),
+            palette=self._palette,
+            state=state[order],
+            shear=shear[order],
+            slip=slip[order],
+            cracked=cracked[order],
+            place=np.zeros((b, 2)) if place is None else place[order],
+            force=np.zeros((b, 4)),
+            start=start,
+            end=end[np.lexsort((end, owner))].astype(np.uint32),
+        )
+
+
+_KEPT = ("first", "second", "kind", "state", "shear", "slip", "cracked", "force")
+"""What of the pairs' arrays their memory holds."""
+
+
+def plain_contacts(ground: Ground, assembly: Assembly, begin: int = 0) -> Contacts:
+    """The contacts of the elastic law, without history, forces and rows: what its strain energy takes.
+
+    begin : number of the assembly's first particle in the scene.
+    """
+    first, second = (begin + assembly.pairs.T).astype(np.uint32, order="C")
+    bonded = INTACT if ground.moduli.pb_emod > 0.0 else NONE
+    nothing = np.zeros(0)
+    return Contacts(
+        begin=begin,
+        first=first,
+        second=second,
+        kind=assembly.kind.astype(np.uint32),
+        palette=_brick_lines(ground, gaps_close=False, locked_in=0.0),
+        state=np.full(len(first), bonded, dtype=np.uint8),
+        shear=nothing,
+        slip=nothing,
+        cracked=np.zeros(0, dtype=np.int64),
+        place=np.zeros((0, 2)),
+        force=np.zeros((0, 4)),
+        start=first[:0],
+        end=first[:0],
+    )
+
+
+def _brick_lines(ground: Ground, *, gaps_close: bool, locked_in: float) -> np.ndarray:
+    """Palette lines (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
+
+    The words are those of `pair_lines`.
+    """
+    brick = ground.brick
+    first, second = brick.radii[brick.pairs].T
+    lines = pair_lines(
+        ground.moduli,
+        first,
+        second,
+        brick.vectors,
+        bonded=ground.moduli.pb_emod > 0.0,
+        gaps_close=gaps_close,
+        locked_in=locked_in,
+    )
+    half = lines.copy()
+    half[:, 5:10] *= 0.5  # stiffnesses
+    half[:, 10:] *= 2.0  # and areas and sections with them, so that stresses stay
+    return np.vstack([lines, half])
+
+
+def _shared(lines: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Palette lines (p, 12) of pairs without those that are equal but for rounding, and each pair's line (b,).
+
+    Pairs at the same place of different bricks then share a line; length (m) is what rounding is small against.
+    """
+    places = np.round(lines[:, :5] / (1e-6 * length))
+    _, first, line_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
+    return lines[first], line_of.reshape(-1)

@@ -1,0 +1,152 @@
+"""What a case of disks would come to, in words."""
+
+from typing import Any
+
+from dembound.case.disks import DiskCase
+from dembound.disks.loads import forces_of
+from dembound.disks.scene import DiskScene
+from dembound.disks.summary import describe_packing, describe_side
+from dembound.disks.warnings import particles_per_wavelength, strong_waves
+
+
+def disk_facts(scene: DiskScene) -> dict[str, str]:
+    """Facts about a packing, its law and what acts on it."""
+    case = scene.case
+    facts = {"particles": _particles(scene), "contacts": f"{len(scene.assembly.pairs):,}"}
+    facts |= _packing_facts(scene) | _law_facts(scene) | _hole_facts(case) | _static_facts(case)
+    for side in scene.edges:
+        facts[f"{side} side"] = _side_fact(scene, side)
+    facts |= _load_facts(scene)
+    for name, node in scene.monitors.items():
+        x, y = scene.assembly.positions[node]
+        facts[f"monitor {name}"] = f"particle {node} at ({x:.3f}, {y:.3f}) m"
+    facts |= _tension_facts(scene)
+    for name, count in particles_per_wavelength(scene).items():
+        facts[f"wave {name}"] = f"{count:.0f} particles per shortest wavelength"
+    return facts
+
+
+def _tension_facts(scene: DiskScene) -> dict[str, str]:
+    """Waves that would open contacts, where the elastic law then hands over."""
+    if not (scene.has_history and scene.case.material.elastic_start):
+        return {}
+    law = scene.case.material.law
+    return {
+        f"stress of {name}": f"ρcv = {stress}; where it pulls contacts open, and {law} takes over"
+        for name, stress in strong_waves(scene).items()
+    }
+
+
+def _particles(scene: DiskScene) -> str:
+    """How many there are, and were."""
+    loose = scene.assembly.loose
+    before = f", {scene.before.count:,} before the excavation" if scene.before is not None else ""
+    severed = f"; {loose:,} severed {'disk' if loose == 1 else 'disks'} left out" if loose else ""
+    return f"{scene.count:,}{before}{severed}"
+
+
+def _hole_facts(case: DiskCase) -> dict[str, str]:
+    """Shape of every hole, and when it is made."""
+    stages = {"before": "there from the start", "after": "excavated once the body has settled"}
+    return {f"hole {hole.name}": f"{hole.type}, {stages[hole.stage]}" for hole in case.hole}
+
+
+def _packing_facts(scene: DiskScene) -> dict[str, str]:
+    packing = describe_packing(scene)
+    speeds = [
+        f"{name} = {packing[key]:.1f} m/s"
+        for name, key in (("c_p", "p_wave_speed"), ("c_s", "s_wave_speed"))
+        if packing[key] is not None
+    ]
+    stiffness = ", ".join(f"{name} {packing[name] / 1e9:.4f}" for name in ("C11", "C22", "C12", "C66"))
+    return {
+        "brick": f"{packing['disks_per_brick']:,} disk(s), solid fraction {packing['solid_fraction']:.4f}, "
+        f"{packing['coordination']:.3f} contacts per disk",
+        "brick equilibrium": f"residual force ratio {packing['residual_ratio']:.1e}, "
+        f"packed under {scene.ground.packed_pressure / 1e6:.3f} MPa",
+        "homogenised stiffness": f"{stiffness} GPa",
+        "wave speeds": ", ".join(speeds) or "no motion is free",
+    }
+
+
+def _law_facts(scene: DiskScene) -> dict[str, str]:
+    """The law, and where contacts and bonds give way."""
+    material = scene.case.material
+    if not scene.has_history:
+        return {"law": "elastic: contacts neither open nor slip, bonds do not break"}
+    start = ", elastic until a contact opens, slips or closes or a bond yields" if material.elastic_start else ""
+    bonds = "no bonds"
+    if scene.ground.moduli.pb_emod > 0.0:
+        tension, shear = (
+            "unbreakable" if strength is None else f"{strength / 1e6:.3g} MPa"
+            for strength in (material.pb_ten, material.pb_coh)
+        )
+        pressed = f" + σ·tan {material.pb_fa:g}°" if material.pb_fa > 0.0 else ""
+        bonds = f"bonds {tension} in tension, {shear}{pressed} in shear"
+    facts = {
+        "law": f"{material.law}{start}",
+        "strength": f"{bonds}; contacts slip at {material.fric:g} of their normal force",
+    }
+    if scene.ground.moduli.emod > 0.0:
+        facts["tension"] = (
+            f"meets {100.0 * scene.ground.bond_share:.0f} % of the stiffness where nothing presses contacts together: "
+            "they open and leave it to the bonds; confine them (static.stress) or lower material.contact_share"
+        )
+    if material.locked_in is not None:
+        shares = [
+            f"{100.0 * material.locked_in / strength:.3g} % of {key}"
+            for key, strength in (("pb_ten", material.pb_ten), ("pb_coh", material.pb_coh))
+            if strength is not None
+        ]
+        facts["locked-in stress"] = ", ".join([f"{material.locked_in / 1e6:.3g} MPa before the static stage", *shares])
+    return facts
+
+
+def _static_facts(case: DiskCase) -> dict[str, str]:
+    """What acts during the static stage, and what holds."""
+    static = case.static
+    if static is None:
+        return {}
+    acting = [load.name for load in case.load if load.wave is None]
+    if static.stress is not None:
+        acting.append("σ_xx, σ_yy, σ_xy = {:.3g}, {:.3g}, {:.3g} MPa".format(*(s / 1e6 for s in static.stress)))
+    if case.material.law != "elastic" and case.material.locked_in:
+        acting.append("the locked-in stress")
+    sides = ", ".join(f"{side} {table.type}" for side, table in static.boundary.items()) or "all free"
+    return {
+        "static stage": f"under {' and '.join(acting)}, to a force ratio of {static.ratio:g}",
+        "static sides": sides,
+    }
+
+
+def _load_facts(scene: DiskScene) -> dict[str, str]:
+    """Particles each load acts on, its whole force, and its time factor."""
+    facts = {}
+    for load in scene.case.load:
+        nodes, forces = forces_of(load, scene.assembly, scene.mass)
+        fx, fy = forces.sum(axis=0)
+        factor = "steady" if load.wave is None else f"times wave {load.wave}"
+        facts[f"load {load.name}"] = f"({fx:.4g}, {fy:.4g}) N/m on {len(nodes):,} particle(s), {factor}"
+    return facts
+
+
+def _side_fact(scene: DiskScene, side: str) -> str:
+    facts = describe_side(scene, side)
+    factors = "".join(f", {factor} = {facts[factor]:g}" for factor in ("beta_p", "beta_s") if factor in facts)
+    half = ", half mass" if facts.get("half_mass") else ""
+    return (
+        f"{facts['type']}{factors}{half}{_springs_in_words(facts)}; {facts['particles']} particles, "
+        f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['cover']:.4f}"
+    )
+
+
+def _springs_in_words(side: dict[str, Any]) -> str:
+    """The springs of a described side, if it has any."""
+    if "alpha_n" not in side:
+        return ""
+    nearest, farthest = side["distance_min"], side["distance_max"]
+    reach = f"{nearest:.4g}" + (f"…{farthest:.4g}" if farthest > nearest else "")
+    return (
+        f"; springs α_n = {side['alpha_n']:g}, α_s = {side['alpha_s']:g}, "
+        f"G = {side['shear_modulus'] / 1e9:.4g} GPa, L = {reach} m"
+    )

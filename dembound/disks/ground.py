@@ -1,0 +1,220 @@
+"""The ground a brick makes: masses, contact constants, and the continuum it is equivalent to.
+
+Everything here is known from one brick, before any scene is built: the homogenised stiffness comes from one
+periodic linear solve and gives wave speeds without a dynamic run.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import coo_matrix, csc_matrix, diags
+from scipy.sparse.linalg import splu
+
+from dembound.case.disks.material import Material
+from dembound.errors import CaseError
+from dembound.laws import LAWS, Moduli, Stiffness, lattice_moduli
+from dembound.packings.brick import Brick
+
+GRADIENTS = ("xx", "yy", "xy", "yx")
+"""The four unit displacement gradients ∂u_a/∂b, in this order in every homogenised matrix."""
+
+LARGEST_OVERLAP = 0.1
+"""Most locked-in pressure in parts of the contact modulus, as overlaps are of the diameter: the most that is packed."""
+
+AXES = {"x": 0, "y": 1, "rotation": 2}
+
+
+@dataclass(frozen=True)
+class Ground:
+    """A brick with its material.
+
+    Attributes
+    ----------
+    brick : the packed periodic body.
+    density : bulk density, kg/m³.
+    moduli : micro-parameters in use, after any scaling to a wave speed.
+    law : name of the bond law.
+    held : components (0 x, 1 y, 2 rotation) no particle moves in.
+    """
+
+    brick: Brick
+    density: float
+    moduli: Moduli
+    law: str
+    held: tuple[int, ...] = ()
+
+    @cached_property
+    def stiffness(self) -> Stiffness:
+        """Constants of the brick's contacts."""
+        first, second = self.brick.radii[self.brick.pairs].T
+        return LAWS[self.law](self.moduli, first, second, np.hypot(*self.brick.vectors.T))
+
+    @cached_property
+    def mass(self) -> np.ndarray:
+        """Disk masses (n,) kg; all disks have one density, and the brick has the bulk density asked for."""
+        area = self.brick.radii**2
+        return self.density * float(np.prod(self.brick.size)) * area / area.sum()
+
+    @cached_property
+    def inertia(self) -> np.ndarray:
+        """Moments of inertia of the disks (n,) kg·m², mR²/2."""
+        return 0.5 * self.mass * self.brick.radii**2
+
+    @property
+    def packed_pressure(self) -> float:
+        """Pressure (Pa) that the brick's contacts, at the stiffness they have now, were packed under."""
+        return 0.0 - 0.5 * self.moduli.emod * float(self.brick.stress[0] + self.brick.stress[1])
+
+    @cached_property
+    def bond_share(self) -> float:
+        """Least share of the stiffness along x or y that bonds alone have: what tension meets where contacts open."""
+        if self.moduli.pb_emod == 0.0:
+            return 0.0
+        first, second = self.brick.radii[self.brick.pairs].T
+        bonds = LAWS[self.law](replace(self.moduli, emod=0.0), first, second, np.hypot(*self.brick.vectors.T))
+        alone = homogenise(self.brick, bonds, tuple(component for component in self.held if component == 2))
+        return min(float(alone[axis, axis] / self.material_tensor[axis, axis]) for axis in (0, 1))
+
+    @cached_property
+    def tensor(self) -> np.ndarray:
+        """Homogenised stiffness (4, 4) Pa with the scene's held motions; see `homogenise`."""
+        return homogenise(self.brick, self.stiffness, self.held)
+
+    @cached_property
+    def material_tensor(self) -> np.ndarray:
+        """Homogenised stiffness (4, 4) Pa with both translations free: the material's own."""
+        rotation_only = tuple(component for component in self.held if component == 2)
+        if rotation_only == self.held:
+            return self.tensor
+        return homogenise(self.brick, self.stiffness, rotation_only)
+
+    def wave_speeds(self, axis: int) -> tuple[float, float]:
+        """c_p and c_s (m/s) of plane waves along x (axis 0) or y (1) in the scene, held motions included.
+
+        The roots of the Christoffel equation det(Γ − ρc²) = 0; P is the one that moves mostly along the axis. The
+        wave whose motion is held has speed nan.
+        """
+        pair = [0, 3] if axis == 0 else [1, 2]
+        christoffel = self.tensor[np.ix_(pair, pair)] / self.density
+        moves = [axis not in self.held, 1 - axis not in self.held]
+        if not all(moves):
+            return tuple(float(np.sqrt(christoffel[k, k])) if moves[k] else float("nan") for k in range(2))  # type: ignore[return-value]
+        squares, shapes = np.linalg.eigh(christoffel)
+        p = int(np.argmax(np.abs(shapes[0])))
+        return float(np.sqrt(squares[p])), float(np.sqrt(squares[1 - p]))
+
+
+def make_ground(brick: Brick, material: Material, held: Iterable[str]) -> Ground:
+    """Give a brick its material, moduli scaled so that the wave speed asked for is met where the case says so.
+
+    Raises CaseError for a locked-in stress that the packing's contacts cannot carry.
+    """
+    ground = _scaled(brick, material, held)
+    if material.locked_in is not None:
+        most = LARGEST_OVERLAP * ground.moduli.emod
+        if ground.packed_pressure <= 0.0:
+            raise CaseError(["material.locked_in: needs disks that were packed under stress; ask for static.stress"])
+        if material.locked_in > most:
+            allowed = f"at most {most:.3g} Pa, {LARGEST_OVERLAP:g} of the contact modulus"
+            raise CaseError([f"material.locked_in: is {material.locked_in:g} Pa, must be {allowed}"])
+    return ground
+
+
+def _scaled(brick: Brick, material: Material, held: Iterable[str]) -> Ground:
+    """A brick with its material; a case's wave speed scales the moduli where it is that of the packing."""
+    ground = Ground(
+        brick=brick,
+        density=material.density,
+        moduli=nominal_moduli(material),
+        law=material.law,
+        held=tuple(AXES[name] for name in held),
+    )
+    if material.p_wave_speed is None or material.match == "lattice":
+        return ground
+    axis = 1 if 0 in ground.held else 0
+    factor = (material.p_wave_speed / ground.wave_speeds(axis)[0]) ** 2
+    moduli = replace(ground.moduli, emod=ground.moduli.emod * factor, pb_emod=ground.moduli.pb_emod * factor)
+    return replace(ground, moduli=moduli)
+
+
+def nominal_moduli(material: Material) -> Moduli:
+    """Micro-parameters as the case gives them, or by Z eq. 11 from its wave speed."""
+    if material.p_wave_speed is not None:
+        emod, pb_emod = lattice_moduli(
+            material.density, material.p_wave_speed, material.contact_share, material.pb_rmul
+        )
+    else:
+        assert material.emod is not None
+        assert material.pb_emod is not None
+        emod, pb_emod = material.emod, material.pb_emod
+    return Moduli(emod, pb_emod, material.kratio, material.pb_kratio, material.pb_rmul, material.fric)
+
+
+def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> np.ndarray:
+    """Stiffness (4, 4) Pa of the infinite tiling against the displacement gradients xx, yy, xy, yx.
+
+    The brick is strained by each unit mean gradient in turn while its particles settle periodically (rotations
+    free unless held): minimise ½ Σ k e² over the periodic displacements, a sparse linear solve. Entry [a, b] is
+    the mean stress conjugate to gradient a under unit gradient b. With free rotations xy and yx are the same
+    shear, so C66 = C[yx, yx]; c² = C/ρ for plane waves.
+
+    Raises CaseError when disks can move without resistance, as without bonds and friction.
+    """
+    motions, gradients = _elongations(brick, stiffness)
+    k = diags(np.concatenate([stiffness.normal, stiffness.shear, stiffness.bending]))
+    area = float(np.prod(brick.size))
+    unrelaxed = gradients.T @ (k @ gradients)
+    free = _free_columns(len(brick.radii), held)
+    if len(free) == 0:
+        return unrelaxed / area
+    motions = motions[:, free]
+    matrix = (motions.T @ k @ motions).tocsc()
+    load = motions.T @ (k @ gradients)
+    try:
+        solver = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    except RuntimeError:  # SuperLU's word for a singular matrix
+        raise CaseError(["material: leaves some motion without any stiffness; give bonds or friction"]) from None
+    return (unrelaxed - load.T @ solver.solve(load)) / area
+
+
+def _free_columns(count: int, held: tuple[int, ...]) -> np.ndarray:
+    """Unknowns of the periodic problem: no held components, and one disk pinned against drifting."""
+    free = np.ones((3, count), dtype=bool)
+    free[list(held)] = False
+    free[:2, 0] = False
+    return np.flatnonzero(free.ravel())
+
+
+def _elongations(brick: Brick, stiffness: Stiffness) -> tuple[csc_matrix, np.ndarray]:
+    """Normal, shear and bending elongations (3b) per unit particle motion (3n) and per unit mean gradient (4).
+
+    Particle motions are ordered all x, all y, all rotations. Rows are scaled as in the law: n·Δu,
+    t·Δu − l_iθ_i − l_jθ_j, θ_j − θ_i.
+    """
+    vectors = brick.vectors
+    count, contacts = len(brick.radii), len(vectors)
+    c, s = (vectors / np.hypot(*vectors.T)[:, None]).T
+    i, j = brick.pairs.T
+    row = np.arange(contacts)
+    entries = [
+        (row, j, c), (row, i, -c), (row, count + j, s), (row, count + i, -s),
+        (contacts + row, j, -s), (contacts + row, i, s),
+        (contacts + row, count + j, c), (contacts + row, count + i, -c),
+        (contacts + row, 2 * count + i, -stiffness.arm_i), (contacts + row, 2 * count + j, -stiffness.arm_j),
+        (2 * contacts + row, 2 * count + j, np.ones(contacts)),
+        (2 * contacts + row, 2 * count + i, -np.ones(contacts)),
+    ]  # fmt: skip
+    rows, columns, values = (np.concatenate(part) for part in zip(*entries, strict=True))
+    motions = coo_matrix((values, (rows, columns)), shape=(3 * contacts, 3 * count)).tocsc()
+    dx, dy = vectors.T
+    zero = np.zeros(contacts)
+    gradients = np.concatenate(
+        [
+            np.stack([c * dx, s * dy, c * dy, s * dx], axis=1),
+            np.stack([-s * dx, c * dy, -s * dy, c * dx], axis=1),
+            np.stack([zero] * 4, axis=1),
+        ]
+    )
+    return motions, gradients

@@ -1,0 +1,121 @@
+"""Bonded disks as a kind of body."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from dembound.case.disks import SCHEMA, STARTER, DiskCase
+from dembound.disks.facts import disk_facts
+from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
+from dembound.disks.outcome import disk_outcome
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import choose_step
+from dembound.disks.static import Settled, settle
+from dembound.disks.summary import asked_stress, describe_static, summarise_disks
+from dembound.disks.system import DiskSystem
+from dembound.disks.warnings import disk_warnings, warnings_after_disks
+from dembound.motion.kind import Beginning, Kind, OnLook, Stage
+from dembound.motion.trackers import Run
+from dembound.plot.field import FieldName
+from dembound.plot.scene import plot_scene
+
+if TYPE_CHECKING:
+    import h5py
+    import meshio
+    from matplotlib.figure import Figure
+
+
+class Disks(Kind[DiskCase, DiskScene]):
+    """Bonded disks."""
+
+    name = plural = "disks"
+    schema = SCHEMA
+    starter = STARTER
+    mesh_name = "particles"
+    view_script = VIEW_SCRIPT
+
+    def build(self, case: DiskCase) -> DiskScene:
+        """Its scene; loads that hit no particle and a singular material are found here."""
+        scene = build(case)
+        _ = scene.steady_load, scene.ground.material_tensor
+        return scene
+
+    def choose_step(self, scene: DiskScene) -> tuple[float, float]:
+        """Time step and stability limit (s)."""
+        return choose_step(scene)
+
+    def begin(self, scene: DiskScene, time_step: float, on_look: OnLook) -> Beginning:
+        """Settle the body if the case has a static stage, else begin as built."""
+        if scene.case.static is None:
+            return Beginning(DiskSystem(scene, time_step))
+        settled = settle(scene, on_look)
+        return Beginning(
+            system=DiskSystem(scene, time_step, settled.start),
+            datum=settled.start.displacement,
+            stages=tuple(_stages(scene, settled)),
+            summary=describe_static(settled, asked_stress(scene)),
+        )
+
+    def facts(self, scene: DiskScene, time_step: float) -> dict[str, str]:
+        """Packing, law and what acts on it."""
+        return disk_facts(scene)
+
+    def not_estimated(self, case: DiskCase) -> str:
+        """The static stage, and a law that takes over later."""
+        later = ["the static stage"] * (case.static is not None)
+        if case.material.law != "elastic" and case.material.elastic_start:
+            later.append(f"what {case.material.law} takes longer once it begins")
+        return f", without {' and '.join(later)}" if later else ""
+
+    def warnings_before(self, scene: DiskScene, time_step: float) -> list[str]:
+        """What is known before the run."""
+        return disk_warnings(scene, time_step)
+
+    def warnings_after(self, scene: DiskScene, summary: Mapping[str, Any], record: Path) -> list[str]:
+        """What the run has shown."""
+        return warnings_after_disks(scene, summary, record)
+
+    def summarise(self, scene: DiskScene, run: Run, beginning: Beginning, record: Path) -> dict[str, Any]:
+        """Packing, sides and the static stage in numbers."""
+        return summarise_disks(scene, run) | {"static": beginning.summary}
+
+    def outcome(self, summary: Mapping[str, Any]) -> list[str]:
+        """Static stage, laws and cracks in words."""
+        return disk_outcome(summary)
+
+    def mesh(self, particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+        """One vertex per disk."""
+        return disk_mesh(particles, snapshot, cracks)
+
+    def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:
+        """The scene."""
+        yield "scene", plot_scene(record)
+
+    def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
+        """The scene, its disks coloured by a field."""
+        return plot_scene(record, snapshot, cast(FieldName, field))
+
+
+def _stages(scene: DiskScene, settled: Settled) -> Iterator[Stage]:
+    """The static stage before an excavation, if there was one, and the last one."""
+    if settled.before is not None and scene.kept is not None:
+        before, kept = settled.before, scene.kept
+        displacement = before.start.displacement[:, kept]
+        yield Stage("static/before", _facts(before), displacement, before.cracks.among(kept))
+    yield Stage("static", _facts(settled), settled.start.displacement, settled.cracks)
+
+
+def _facts(settled: Settled) -> dict[str, Any]:
+    """What a record keeps of a static stage."""
+    return {
+        "steps": settled.steps,
+        "ratio": settled.ratio,
+        "carried": settled.carried,
+        "left": settled.left,
+        "stress": settled.stress,
+        "cracks": len(settled.cracks),
+    }

@@ -1,0 +1,26 @@
+"""How well a side's dashpots match the packing, from its homogenised stiffness alone; no wave is run."""
+
+from typing import Literal
+
+from dembound.disks.scene import DiskScene, boundary_medium
+
+Motion = Literal["p", "s"]
+"""Kinds of plane waves: P moves along a side's normal, S across it."""
+
+
+def homogenised_beta(scene: DiskScene, side: str, motion: Motion) -> float:
+    """β0 = (c_eff/c)·H/ΣD: the assembly's own wave speed over the nominal one, and the side's true length.
+
+    nan where the motion is held.
+    """
+    edge = scene.edges[side]
+    index = 0 if motion == "p" else 1
+    own = scene.ground.wave_speeds(edge.axis)[index]
+    medium = boundary_medium(scene.case, scene.ground, edge.axis)
+    nominal = (medium.p_wave_speed, medium.s_wave_speed)[index]
+    return own / nominal / edge.cover
+
+
+def reflected(beta: float, matched: float) -> float:
+    """Reflected over incident peak of a plane wave, (1 − β/β0)/(1 + β/β0), at dashpots of factor β; matched is β0."""
+    return (matched - beta) / (matched + beta)

@@ -1,0 +1,96 @@
+"""Snapshots of disks for ParaView: one vertex per disk, and a script that shows them.
+
+Every disk is a vertex at its reference position moved by its displacement (z = 0), with these point data:
+
+
+| name | unit | shape | what |
+|---|---|---|---|
+| ``radii`` | m | (n,) | disk radius (YADE's name) |
+| ``id`` | 1 | (n,) | number of the disk in the scene (YADE's name) |
+| ``linVelVec`` | m/s | (n, 3) | velocity, z = 0 (YADE's name) |
+| ``angVelVec`` | rad/s | (n, 3) | angular velocity, along z (YADE's name) |
+| ``speed`` | m/s | (n,) | length of ``linVelVec`` |
+| ``displacement`` | m | (n, 3) | since the start of the run, z = 0 |
+| ``rotation`` | rad | (n,) | since the start of the run |
+| ``brick_particle`` | 1 | (n,) | the disk of the brick that this one is a copy of |
+| ``coordNumber`` | 1 | (n,) | its intact bonds and pushing contacts, under a history-dependent law (YADE's name) |
+| ``nbCracks`` | 1 | (n,) | its bonds that have broken so far (YADE's name) |
+| ``damage`` | 1 | (n,) | that number over the bonds it had at the start, 0 where it had none |
+| ``stress`` | Pa | (n, 6) | XX, YY, ZZ, XY, YZ, XZ, tension positive, those with Z being 0; if the case asks for it |
+| ``peakVelocity`` | m/s | (n,) | largest speed in the whole run, in every file; if the case asks for it |
+
+To see disks in ParaView, run ``paraview --script=view.py`` in the folder, or open ``particles.pvd``, press
+Apply and run ``view.py`` from the Python shell (Run Script). By hand: representation *Point Gaussian*, shader
+preset *Plain circle*, scale by array ``radii``, no scale function, Gaussian radius 1. As solid geometry: filter
+*Glyph*, type *2D Glyph* (circle, filled), no orientation, scale array ``radii``, scale factor 2, all points.
+*Warp By Vector* with ``displacement`` and factor k − 1 shows displacements k times as large.
+"""
+
+import h5py
+import meshio
+import numpy as np
+
+from dembound.results.vtk import in_space, vertices
+
+VIEW_SCRIPT = '''\
+"""Shows the disks of particles.pvd in ParaView: paraview --script=view.py, or Run Script once it is open."""
+
+from pathlib import Path
+
+from paraview.simple import *
+
+folder = Path(globals().get("__file__", "view.py")).resolve().parent  # Run Script has no __file__
+disks = GetActiveSource() or PVDReader(FileName=str(folder / "particles.pvd"))
+view = GetActiveViewOrCreate("RenderView")
+view.InteractionMode = "2D"
+GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
+
+shown = Show(disks, view)
+shown.SetRepresentationType("Point Gaussian")
+shown.ShaderPreset = "Plain circle"
+shown.SetScaleArray = ["POINTS", "radii"]
+shown.ScaleByArray = 1
+shown.UseScaleFunction = 0
+shown.GaussianRadius = 1.0
+
+ColorBy(shown, ("POINTS", "linVelVec", "Magnitude"))
+shown.RescaleTransferFunctionToDataRangeOverTime()
+shown.SetScalarBarVisibility(view, True)
+view.ResetCamera()
+Render()
+'''
+
+
+def disk_mesh(particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+    """One snapshot, and the cracks until then, as vertices with the point data of this module's table."""
+    displacement, velocity = snapshot["displacement"][:], snapshot["velocity"][:]
+    count = len(displacement)
+    moved = in_space(displacement[:, :2])
+    bonds = particles["bonds"][:]
+    broken = np.bincount(cracks["particles"].ravel(), minlength=count)
+    data = {
+        "radii": particles["radius"][:],
+        "id": np.arange(count),
+        "linVelVec": in_space(velocity[:, :2]),
+        "angVelVec": np.column_stack([np.zeros((count, 2)), velocity[:, 2]]),
+        "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
+        "displacement": moved,
+        "rotation": displacement[:, 2],
+        "brick_particle": particles["brick_particle"][:],
+        "nbCracks": broken,
+        "damage": broken / np.maximum(bonds, 1),  # without bonds none can break
+    }
+    if "coordination" in snapshot:
+        data["coordNumber"] = snapshot["coordination"][:]
+    if "stress" in snapshot:
+        data["stress"] = _tensors(snapshot["stress"][:])
+    if "peak_velocity" in particles:
+        data["peakVelocity"] = particles["peak_velocity"][:]
+    return vertices(in_space(particles["position"][:]) + moved, data)
+
+
+def _tensors(stress: np.ndarray) -> np.ndarray:
+    """Stresses (n, 3) xx, yy, xy as (n, 6), in the order VTK knows symmetric tensors by: xx, yy, zz, xy, yz, xz."""
+    tensors = np.zeros((len(stress), 6))
+    tensors[:, [0, 1, 3]] = stress
+    return tensors

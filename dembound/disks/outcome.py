@@ -1,0 +1,44 @@
+"""What happened in a run of disks, in words, from its summary."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from dembound.results.reader import laws_in_words
+
+
+def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
+    """What became of disks: their static stage, and what a history-dependent law came to."""
+    facts = []
+    if (static := summary["static"]) is not None:
+        if (before := static["before"]) is not None:
+            facts += _settled(before, "settled")
+        facts += _settled(static, "settled" if before is None else "after the excavation")
+    if summary["has_history"]:
+        facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
+        tension, shear = summary["cracks"]["tension"], summary["cracks"]["shear"]
+        if tension + shear > 0:
+            facts.append(f"{tension + shear:,} bonds broke ({tension:,} tension, {shear:,} shear)")
+        if error := summary["energy"]["relative_error"]:  # zero where nothing came in
+            facts.append(f"energy closes to {100.0 * error:.2g} %")
+    return facts
+
+
+def _settled(static: Mapping[str, Any], words: str) -> list[str]:
+    """How a static stage went, after that of its free-field column if there is one."""
+    column = [] if static["column"] is None else [f"column settled in {_stage(static['column'])}"]
+    return [*column, f"{words} in {_stage(static)}"]
+
+
+def _stage(static: Mapping[str, Any]) -> str:
+    """How a static stage went, in words, from its summary."""
+    reached = ""
+    if (asked := static["asked"]) is not None:  # supports may have kept the body from it
+        reached = f" and a stress of {_in_mpa(static['stress'])} where {_in_mpa(asked)} MPa was asked for"
+    broken = f", breaking {static['cracks']:,} bonds" if static["cracks"] else ""
+    return f"{static['steps']:,} steps to a force ratio of {static['ratio']:.1e}{reached}{broken}"
+
+
+def _in_mpa(stress: Sequence[float]) -> str:
+    """A stress xx, yy, xy in Pa as a bracket of MPa; what is nothing beside the largest is given as nothing."""
+    least = 1e-3 * max(map(abs, stress))
+    return f"({', '.join(f'{value / 1e6 if abs(value) > least else 0.0:.3g}' for value in stress)})"

@@ -1,0 +1,169 @@
+"""A part of bonded disks, the body or its free-field column, and the seam that ties them."""
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.disks.contacts import ContactList, plain_contacts
+from dembound.disks.ground import Ground
+from dembound.disks.rows import palette_of
+from dembound.kernels import bonded, elastic  # their laws have to be known before the loop is compiled
+from dembound.kernels.common import CHUNKS, LIST_ENDS
+from dembound.kernels.contacts import REFERENCE, strain_energy
+from dembound.kernels.tables import Bonded, Contacts, Links, Rows, Seam, SeamEnds, WatchedLinks
+from dembound.motion.cracks import NO_CRACKS, Cracks
+from dembound.motion.part import Part, Tie
+from dembound.motion.state import Arrays, State
+from dembound.packings.column import Seam as ColumnSeam
+from dembound.packings.tiling import Assembly
+
+ELASTIC, BONDED = "elastic", "linearpbond"
+
+
+class DiskPart(Part):
+    """Disks under the elastic law (kernels/elastic.py) or the history-dependent one (kernels/bonded.py).
+
+    Parameters
+    ----------
+    name : what the state calls it.
+    ground : brick and material.
+    assembly : its disks and their contacts.
+    rows : the same contacts as the elastic law takes them.
+    contacts : its pairs with their history; None where the elastic law is the material's own.
+
+    Attributes
+    ----------
+    law_name : "elastic" or "linearpbond".
+    stops_at_breaks : whether the loop returns after a step in which a bond of it broke.
+    """
+
+    def __init__(self, name: str, ground: Ground, assembly: Assembly, rows: Rows, contacts: ContactList | None) -> None:
+        self.name = name
+        self.ground = ground
+        self.assembly = assembly
+        self.nodes = slice(rows.begin, rows.begin + len(assembly.radii))
+        self.contacts = contacts
+        self.law_name = ELASTIC
+        self.stops_at_breaks = False
+        self.rows = rows
+        self._fastest, self._way = np.zeros(CHUNKS), np.zeros(2)
+        self._damped, self._lost = np.zeros((CHUNKS, 2)), np.zeros((CHUNKS, 2))
+
+    def law(self) -> NamedTuple:
+        """The bundle of the law in use; a law with a history watches the elastic one in its place."""
+        links, contacts = Links(self.rows, self._fastest, self._damped), self.contacts
+        if contacts is None:
+            return links
+        listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skin)
+        if self.law_name == ELASTIC:
+            return WatchedLinks(links, *listed, contacts.arms, self._way)
+        return Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
+
+    def react(self, why: int, steps: int, state: State) -> None:
+        """List the pairs anew where some may be missing."""
+        if self.contacts is not None and why == LIST_ENDS and self.contacts.is_old(state.displacement):
+            self.contacts.search(state.displacement)
+
+    def add_elastic_forces(self, displacement: np.ndarray, total: np.ndarray) -> None:
+        """Add forces and moments of the elastic law at displacements (3, n) to those of all nodes, total (3, n)."""
+        force = np.empty_like(total)
+        elastic.contact_forces(displacement, self.rows, force)
+        total[:, self.nodes] += force[:, self.nodes]
+
+    def stored(self, displacement: np.ndarray) -> tuple[float, float]:
+        """Energy (J) in contacts and in bonds at displacements (3, n)."""
+        if self.contacts is None:
+            return strain_energy(displacement, self._plain_contacts, REFERENCE)
+        geometry = REFERENCE if self.law_name == ELASTIC else self.contacts.limits.geometry
+        return strain_energy(displacement, self.contacts.arrays, geometry)
+
+    def take_cracks(self, steps: int) -> Cracks:
+        """The bonds that broke since this was last called."""
+        return NO_CRACKS if self.contacts is None else self.contacts.take_cracks()
+
+    def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
+        """Under the history-dependent law the intact bonds and pushing contacts of every disk."""
+        if self.contacts is None or self.law_name == ELASTIC:
+            return {}
+        return {"coordination": (self.contacts.coordination(), "1")}
+
+    def memory(self) -> Arrays:
+        """The law in use, and the pairs."""
+        pairs = {} if self.contacts is None else self.contacts.memory()
+        return {"law": np.array(self.law_name), **pairs}
+
+    def recall(self, memory: Arrays) -> None:
+        """Take over what `memory` has returned in another run of the same case."""
+        self.law_name = str(memory["law"])
+        if self.contacts is not None:
+            self.contacts.recall(memory)
+
+    @property
+    def pairs(self) -> Contacts:
+        """Its pairs as the kernels read them, without history where the elastic law is the material's own."""
+        return self._plain_contacts if self.contacts is None else self.contacts.arrays
+
+    @cached_property
+    def _plain_contacts(self) -> Contacts:
+        return plain_contacts(self.ground, self.assembly, self.nodes.start)
+
+
+class FreeFieldSeam(Tie):
+    """What the free-field column does to the body across its sides; the body does nothing to the column.
+
+    Parameters
+    ----------
+    seam : contacts across it.
+    column : the part that stands for the ground beyond.
+    """
+
+    def __init__(self, seam: ColumnSeam, column: DiskPart) -> None:
+        self.seam = seam
+        self.column = column
+        self._line = palette_of(column.ground)[1][2 * seam.kind + seam.second]
+        self._ends: tuple[Contacts, np.ndarray] | None = None
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Particles (k,) of the body that have contacts beyond a side, ascending."""
+        return self.seam.node
+
+    def bundle(self, supported: np.ndarray) -> NamedTuple:
+        """The rows of contacts across the seam, under the law that the column is under."""
+        seam = self.seam
+        counts = np.zeros(len(supported), dtype=np.uint32)
+        counts[np.searchsorted(supported, seam.node)] = seam.many
+        start = np.zeros(len(supported) + 1, dtype=np.uint32)
+        np.cumsum(counts, out=start[1:])
+        if self.column.law_name == ELASTIC:
+            near, line = seam.near.astype(np.uint32), self._line.astype(np.uint32)
+            return Seam(seam.twin[supported], start, near, line, self.column.rows.palette)
+        assert self.column.contacts is not None
+        ends = self.ends(self.column.contacts).astype(np.uint32)
+        return SeamEnds(start, ends, self.column.contacts.arrays.force)
+
+    def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces and moments (3, k) on its nodes at displacements (3, n) under the elastic law."""
+        force = np.zeros((len(self.nodes), 3))
+        near, line = self.seam.near.astype(np.uint32), self._line.astype(np.uint32)
+        twin = self.seam.twin[self.nodes]
+        elastic.seam_forces(Seam(twin, self.seam.start, near, line, self.column.rows.palette), displacement, force)
+        return force.T
+
+    def last_forces(self, contacts: ContactList) -> np.ndarray:
+        """Forces and moments (3, k) on its nodes from the last forces of the column's pairs."""
+        force = np.zeros((len(self.nodes), 3))
+        ends = SeamEnds(self.seam.start, self.ends(contacts).astype(np.uint32), contacts.arrays.force)
+        bonded.seam_ends_forces(ends, np.zeros((3, 0)), force)
+        return force.T
+
+    def ends(self, contacts: ContactList) -> np.ndarray:
+        """Contact ends (e,) of the column's pairs at which its particles meet what is across, in the seam's order."""
+        if self._ends is None or self._ends[0] is not contacts.arrays:
+            owner, near, vectors = self.seam.pairs(contacts.ground.brick)
+            _, pair = contacts.find(owner, near, vectors)
+            image = contacts.images(owner, near, vectors)
+            turned = (contacts.pairs[0][pair] != owner) | (contacts.image[pair] != image).any(axis=1)
+            self._ends = contacts.arrays, 2 * pair + turned
+        return self._ends[1]

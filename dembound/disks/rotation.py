@@ -1,0 +1,35 @@
+"""The rotation of a body as a whole, which the law of small displacements follows along its tangent only."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dembound.disks.body import DiskBody
+
+
+def turns_freely(scene: DiskBody) -> bool:
+    """Whether nothing but dashpots keeps a body from turning as a whole."""
+    held = scene.supports.prescribed.any() or scene.supports.stiffness.any()
+    periodic = any(table.type == "periodic" for table in scene.case.boundary.values())
+    return bool(scene.free.all()) and scene.seam is None and not held and not periodic
+
+
+def turn_as_a_whole(scene: DiskBody, displacement: np.ndarray, velocity: np.ndarray, datum: np.ndarray) -> None:
+    """Take displacements and velocities (3, n) of small rotations for those of a body that has really turned.
+
+    The law of small displacements moves a body that turns by θ from r to r + θ ẑ × r + w, which is longer by ½θ². Its
+    motion is that of a body which has turned, r to R(θ)(r + w), seen along with it. datum : (3, n) displacements at the
+    start.
+    """
+    mass = scene.mass
+    arm = scene.assembly.positions.T + datum[:2]
+    arm = arm - np.average(arm, axis=1, weights=mass)[:, None]
+    moved = displacement[:2] - datum[:2]
+    centre = np.average(moved, axis=1, weights=mass)[:, None]
+    spin = np.sum(mass * (arm[0] * moved[1] - arm[1] * moved[0])) + np.sum(scene.inertia * (displacement - datum)[2])
+    angle = spin / (np.sum(mass * (arm**2).sum(axis=0)) + scene.inertia.sum())
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    stretched = moved - centre - angle * np.stack([-arm[1], arm[0]])
+    displacement[:2] = datum[:2] + centre + turn @ (arm + stretched) - arm
+    mean = np.average(velocity[:2], axis=1, weights=mass)[:, None]
+    velocity[:2] = mean + turn @ (velocity[:2] - mean)

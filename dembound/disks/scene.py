@@ -1,0 +1,210 @@
+"""From a case to its scene: pack, tile, hollow, support, and join the free-field column."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from dembound.boundaries import FreeField, Periodic
+from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
+from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
+from dembound.case.disks import DiskCase
+from dembound.case.disks.monitor import FREE_FIELD
+from dembound.disks.body import DiskBody, is_periodic, parts_of
+from dembound.disks.edges import edges_beside_column, find_edges, left_of
+from dembound.disks.ground import Ground, make_ground, nominal_moduli
+from dembound.disks.loads import drive
+from dembound.disks.rows import contact_rows
+from dembound.disks.system import DiskSystem
+from dembound.errors import CaseError
+from dembound.holes import Hole
+from dembound.laws import LAWS
+from dembound.packings.brick import Brick
+from dembound.packings.column import Seam, with_column
+from dembound.packings.tiling import Assembly, tile
+
+
+@dataclass(frozen=True)
+class DiskScene(DiskBody):
+    """A case turned into arrays, and what it was before it was excavated.
+
+    Attributes
+    ----------
+    before : the scene before it was excavated, in which the static stage begins; None where nothing is excavated.
+    kept : (n,) indices into that one's particles of those that are left.
+    """
+
+    before: "DiskScene | None" = None
+    kept: np.ndarray | None = None
+
+    def system(self, time_step: float) -> DiskSystem:
+        """Its parts and ties at rest as built, to be stepped by time_step (s)."""
+        return DiskSystem(self, time_step)
+
+    @property
+    def bytes(self) -> int:
+        """Memory of the particle, contact and state arrays, those before an excavation included."""
+        state = 9 * 8 * self.count  # u, its successor and v
+        step = 4 * 8 * self.count  # mass, inertia and their mobilities
+        arrays = (*(array for rows in self.rows for array in rows[1:]), *vars(self.assembly).values())
+        before = 0 if self.before is None else self.before.bytes
+        return before + state + step + sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
+
+
+def build(case: DiskCase) -> DiskScene:
+    """Pack, tile, hollow and support a case.
+
+    Raises PackingError when the brick cannot be made or nothing of it is left, CaseError when nothing of a side is.
+    """
+    ground = ground_of(case)
+    periodic = (is_periodic(case, "left"), is_periodic(case, "bottom"))
+    body = tile(ground.brick, case.packing.copies, periodic)
+    edges = find_edges(body, periodic)
+    first, later = (tuple(hole for hole in case.hole if hole.stage == stage) for stage in ("before", "after"))
+    if first:
+        body, edges, _ = _hollowed(case, ground.brick, body, edges, first)
+    scene = _scene(case, ground, body, edges)
+    if not later:
+        return scene
+    body, edges, kept = _hollowed(case, ground.brick, body, edges, later)
+    column = np.arange(0 if scene.seam is None else scene.seam.count)
+    kept = np.concatenate([column, len(column) + kept])
+    return replace(_scene(case, ground, body, edges), before=scene, kept=kept)
+
+
+def _scene(case: DiskCase, ground: Ground, assembly: Assembly, edges: Mapping[str, Edge]) -> DiskScene:
+    """The scene of a body and its sides, joined to a free-field column where the case has such sides."""
+    seam = None
+    if sides := _free_field_sides(case):
+        assembly, seam = with_column(ground.brick, assembly, sides)
+        edges = edges_beside_column(assembly, seam, edges)
+    assembly, seam = _with_half_contacts(case, ground.brick, assembly, seam, edges)
+    return DiskScene(
+        case=case,
+        ground=ground,
+        assembly=assembly,
+        rows=tuple(
+            contact_rows(assembly.part(nodes), ground, nodes.start)
+            for nodes in parts_of(len(assembly.radii), seam).values()
+        ),
+        edges=edges,
+        supports=_supports(case, ground, assembly, edges),
+        monitors=_monitors(case, assembly, seam),
+        seam=seam,
+    )
+
+
+def column_alone(scene: DiskScene) -> DiskScene:
+    """The free-field column beside a body as a scene of its own, under its bottom and top alone.
+
+    Its particles are numbered as in the body's scene; of the loads it has those that act everywhere.
+    """
+    case, brick = scene.case, scene.ground.brick
+    sides = {"left": Periodic(type="periodic"), "right": Periodic(type="periodic")}
+    upright = {side: table for side, table in case.boundary.items() if side not in sides}
+    static = case.static
+    if static is not None:
+        ends = {side: table for side, table in static.boundary.items() if side not in sides}
+        static = static.model_copy(update={"boundary": ends})
+    everywhere = tuple(load for load in case.load if load.position is None and load.region is None)
+    alone = replace(case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=())
+    column = tile(brick, (1, scene.assembly.copies[1]), (True, False))
+    return _scene(alone, scene.ground, column, find_edges(column, (True, False)))
+
+
+def ground_of(case: DiskCase) -> Ground:
+    """The case's brick, packed or from the cache, with its material."""
+    brick = case.packing.pack(nominal_moduli(case.material).emod)
+    return make_ground(brick, case.material, case.motion.held)
+
+
+def _free_field_sides(case: DiskCase) -> tuple[str, ...]:
+    return tuple(side for side, table in case.boundary.items() if isinstance(table, FreeField))
+
+
+def _hollowed(
+    case: DiskCase, brick: Brick, body: Assembly, edges: Mapping[str, Edge], holes: tuple[Hole, ...]
+) -> tuple[Assembly, dict[str, Edge], np.ndarray]:
+    """A body and its sides without what lies in some holes, and the indices (m,) of the particles left.
+
+    What a hole bares is free: no side gets other particles than it had.
+    """
+    removed = np.logical_or.reduce([hole.contains(body.positions) for hole in holes])
+    left, kept = body.without(removed)
+    if sides := _free_field_sides(case):
+        seam = with_column(brick, body, sides)[1]
+        if not np.isin(seam.node - seam.count, kept).all():
+            raise CaseError([f"hole: reaches the free field of {' or '.join(sides)}, which has no hole"])
+    return left, {side: left_of(edge, kept) for side, edge in edges.items()}, kept
+
+
+def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
+    """The same body under the boundaries of another case; only what stands in [boundary.*] and [wave.*] counts."""
+    built_in = [
+        ([edge.side for edge in half_edges(scene.edges, each.boundary)], _free_field_sides(each))
+        for each in (scene.case, case)
+    ]
+    if built_in[0] != built_in[1]:
+        return build(case)  # masses, contacts and the column change with them
+    return replace(scene, case=case, supports=_supports(case, scene.ground, scene.assembly, scene.edges))
+
+
+def _with_half_contacts(
+    case: DiskCase, brick: Brick, assembly: Assembly, seam: Seam | None, edges: Mapping[str, Edge]
+) -> tuple[Assembly, Seam | None]:
+    """The contacts along sides of half cells, those across a seam included, made of the half kind."""
+    vectors, whole = brick.vectors, len(brick.pairs)
+
+    def halved(kind: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        plain = kind % whole
+        return plain + whole * half_contacts(first, second, vectors[plain], edges, case.boundary).astype(kind.dtype)
+
+    assembly = replace(assembly, kind=halved(assembly.kind, *assembly.pairs.T))
+    if seam is not None:
+        owner = np.repeat(seam.twin[seam.node], seam.many)
+        seam = replace(seam, kind=halved(seam.kind, owner, seam.near))
+    return assembly, seam
+
+
+def boundary_medium(case: DiskCase, ground: Ground, axis: int) -> Medium:
+    """What a side stands for: the wave speeds the case names, else the packing's own along the side's normal.
+
+    axis is that of the normal, 0 (x) or 1 (y): a packing may be stiffer along one than along the other.
+    """
+    p_gradient, s_gradient = ((0, 3), (1, 2))[axis]  # of u_n and of u_s along the normal, see ground.GRADIENTS
+    p_speed, s_speed = case.material.p_wave_speed, case.material.s_wave_speed
+    if p_speed is None:
+        p_speed = float(np.sqrt(ground.material_tensor[p_gradient, p_gradient] / ground.density))
+    if s_speed is None:
+        s_speed = float(np.sqrt(ground.material_tensor[s_gradient, s_gradient] / ground.density))
+
+    def mirror_stiffness(diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        between = LAWS[ground.law](ground.moduli, 0.5 * diameters, 0.5 * diameters, diameters)
+        return between.normal, between.bending
+
+    return Medium(ground.density, p_speed, s_speed, mirror_stiffness)
+
+
+def _supports(case: DiskCase, ground: Ground, assembly: Assembly, edges: Mapping[str, Edge]) -> Supports:
+    """All sides' recipes and all driven loads in one table."""
+    builder = SupportBuilder(held=ground.held)
+    for side, table in case.boundary.items():
+        if side in edges:
+            edge = edges[side]
+            table.support(edge, boundary_medium(case, ground, edge.axis), case.wave, builder)
+    factor = mass_factor(len(assembly.radii), edges, case.boundary)
+    drive(case, assembly, ground.mass[assembly.brick_particle] * factor, builder)
+    return builder.table()
+
+
+def _monitors(case: DiskCase, assembly: Assembly, seam: Seam | None) -> dict[str, int]:
+    """The particle of the body nearest to each monitor's position, and its twin in the free-field column."""
+    if not case.monitor:
+        return {}
+    first = 0 if seam is None else seam.count
+    _, nodes = cKDTree(assembly.positions[first:]).query([m.position for m in case.monitor])
+    monitors = {m.name: first + int(node) for m, node in zip(case.monitor, nodes, strict=True)}
+    if seam is not None:
+        monitors |= {f"{name}{FREE_FIELD}": int(seam.twin[node]) for name, node in monitors.items()}
+    return monitors

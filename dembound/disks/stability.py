@@ -1,0 +1,122 @@
+"""The largest stable time step, from the scene's own largest eigenfrequency."""
+
+import numpy as np
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
+
+from dembound.disks.scene import DiskScene
+from dembound.errors import CaseError, RunError
+from dembound.kernels.contacts import CLOSING
+from dembound.kernels.elastic import contact_forces
+from dembound.motion.threads import threads_for
+
+TOLERANCE = 1e-3
+"""Relative residual at which the eigenvalue counts as found. It is added on top, so the step comes out too small by
+at most 0.05 %, never too large. Lattices need it, their largest eigenvalues lie close."""
+
+OPENING = 0.75 / CLOSING
+"""Share of 4/Δt² that ω² may come to where contacts open and close: sin²(π/3), for pushes that are CLOSING as strong.
+
+A contact that opens and closes makes overtones of every motion. At ωΔt = 2 sin(π/3) a motion has three steps a period,
+and its overtone, seen at whole steps, is the motion itself turned round: they drive each other, and energy grows by
+orders of magnitude within a thousand steps. Below, the loss at closing (`kernels.contacts.CLOSING`) outweighs the gain.
+"""
+
+LANCZOS_VECTORS = 8
+"""Krylov vectors kept: few, as they are the largest arrays of all."""
+
+
+def step_limit(scene: DiskScene, tolerance: float = TOLERANCE, damp: float | None = None) -> float:
+    """Largest stable step 2/(ω_max √(1 + damp)) of central differences (s), for a relative residual `tolerance`.
+
+    damp is the local damping coefficient, None: the material's. At the limit forces oppose velocities at every step, so
+    that local damping makes them 1 + damp times as strong.
+
+    ω_max² is the largest eigenvalue of M⁻¹K of the assembled scene, found by Lanczos iteration on M^(-1/2) K
+    M^(-1/2) with held and prescribed components taken out; centred dashpots do not change it. The start vector is
+    fixed, so the step is the same in every run. Under a history-dependent law ω_max² counts 1.4 times where contacts
+    may open (`OPENING`), and the limit also holds for loose disks.
+
+    Raises RunError when the iteration does not converge.
+    """
+    root = np.sqrt(_inverse_mass(scene))
+    stiffness = _support_stiffness(scene)
+    force = np.empty((3, scene.count))
+
+    def apply(vector: np.ndarray) -> np.ndarray:
+        u = root * vector.reshape(3, -1)
+        with threads_for(scene.count):
+            for rows in scene.rows:
+                contact_forces(u, rows, force)
+        return (root * (stiffness * u - force)).ravel()
+
+    size = 3 * scene.count
+    operator = LinearOperator((size, size), matvec=apply, dtype=float)
+    start = np.random.default_rng(0).standard_normal(size) * (root.ravel() > 0.0)
+    if not start.any():
+        largest = 0.0
+    elif size < 20:
+        matrix = np.stack([apply(column) for column in np.eye(size)], axis=1)
+        largest = np.linalg.eigvalsh(0.5 * (matrix + matrix.T))[-1]
+    else:
+        try:
+            largest = eigsh(
+                operator, k=1, which="LA", v0=start, ncv=LANCZOS_VECTORS, tol=tolerance, return_eigenvectors=False
+            )[0]
+        except ArpackNoConvergence as error:
+            raise RunError(f"the stability limit was not found ({error})") from None
+        largest *= 1.0 + tolerance  # it was found too small, by less than its residual
+    if scene.has_history:
+        opens = scene.ground.moduli.emod > 0.0
+        largest = max(largest / OPENING if opens else largest, _loose_eigenvalue(scene))
+    damp = scene.case.material.damp if damp is None else damp
+    return float(2.0 / np.sqrt(largest * (1.0 + damp))) if largest > 0.0 else np.inf
+
+
+def _loose_eigenvalue(scene: DiskScene) -> float:
+    """Bound ω² (1/s²) of the smallest disks rolling on six neighbours each: what broken or loose ground may come to.
+
+    Contacts alone. On the hexagonal lattice the normal springs give at most 6k_n/m, and the tangential ones 24k_s/m,
+    when all disks turn alike; the sum bounds both together.
+    """
+    moduli = scene.ground.moduli
+    shear = moduli.emod / moduli.kratio if moduli.fric > 0.0 else 0.0
+    return (6.0 * moduli.emod + 24.0 * shear) / float(scene.ground.mass.min())
+
+
+def _inverse_mass(scene: DiskScene) -> np.ndarray:
+    """(3, n): 1/m, 1/m, 1/I, and 0 for components that cannot move."""
+    inverse = scene.free[:, None] / np.stack([scene.mass, scene.mass, scene.inertia])
+    fixed = scene.supports.prescribed
+    inverse[scene.supports.component[fixed], scene.supports.node[fixed]] = 0.0
+    return inverse
+
+
+def _support_stiffness(scene: DiskScene) -> np.ndarray:
+    """(3, n) N/m that the supports add to the diagonal."""
+    stiffness = np.zeros((3, scene.count))
+    stiffness[scene.supports.component, scene.supports.node] = scene.supports.stiffness
+    return stiffness
+
+
+def _rounded_down(step: float) -> float:
+    """The step cut to four digits: the last bits of an eigenvalue may depend on the libraries' threads."""
+    unit = 10.0 ** (np.floor(np.log10(step)) - 3)
+    return float(np.floor(step / unit) * unit)
+
+
+def choose_step(scene: DiskScene) -> tuple[float, float]:
+    """Time step to run with and the stability limit (s).
+
+    Raises CaseError when the case gives a step above the limit.
+    """
+    limit = step_limit(scene)
+    wanted = scene.case.run.time_step
+    if wanted == "auto":
+        step = scene.case.run.safety * limit
+        if not np.isfinite(step):
+            raise CaseError(["run.time_step: is auto but nothing in the scene can vibrate, give a step in s"])
+        return _rounded_down(step), limit
+    assert isinstance(wanted, float | int)
+    if wanted > limit:
+        raise CaseError([f"run.time_step: is {wanted:g} s, must not be above the stability limit {limit:.6g} s"])
+    return float(wanted), limit

@@ -1,0 +1,322 @@
+"""The static stage: a damped run that brings a body to rest under steady loads and a given stress.
+
+What its supports and the outside pushed with then acts on as a constant force F_0 on every particle (Z eqs 5, 6: the
+unbalanced force F_eq with its sign turned), motion starts from rest, and the boundaries of the run take over.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dembound.boundaries import FreeField
+from dembound.boundaries.support import SupportBuilder, Supports
+from dembound.case.disks.static import Static
+from dembound.disks.contacts import ContactList
+from dembound.disks.part import BONDED, ELASTIC
+from dembound.disks.scene import DiskScene, boundary_medium, column_alone
+from dembound.disks.stability import step_limit
+from dembound.disks.system import DiskSystem, Start
+from dembound.disks.tractions import Tractions, mean_stress
+from dembound.motion.cracks import Cracks, joined
+from dembound.motion.kind import StalledError
+from dembound.motion.simulation import Simulation
+from dembound.motion.state import State
+from dembound.motion.trackers import Run, Tracker
+
+LOOK = 100
+"""Steps between two looks at the force ratio."""
+
+PATIENCE = 20_000
+"""Steps without a tenth of progress after which a stage counts as stalled."""
+
+SAFETY = 0.9
+"""Share of the stability limit taken as step."""
+
+WORST = 3
+"""Particles that a stalled stage names."""
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A body at rest, and how it got there.
+
+    Attributes
+    ----------
+    start : where the run begins.
+    steps : steps it took.
+    ratio : mean unbalanced over mean contact force at the end.
+    carried : N, mean force with which supports and tractions held the particles they act on.
+    left : N, mean unbalanced force on all other particles, which F_0 balances too.
+    stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive.
+    cracks : the bonds that broke on the way.
+    tractions : (3,) Pa, the stress that the tractions were made of in the end; None without a stress asked for.
+    before : what the body had come to before it was excavated, if it was; particles are numbered as they were then.
+    column : what the free-field column had come to alone, if there is one.
+    """
+
+    start: Start
+    steps: int
+    ratio: float
+    carried: float
+    left: float
+    stress: np.ndarray
+    cracks: Cracks
+    tractions: np.ndarray | None = None
+    before: "Settled | None" = None
+    column: "Settled | None" = None
+
+
+def settle(scene: DiskScene, on_look: Callable[[int, float], None] | None = None) -> Settled:
+    """Run a scene's static stage; on_look gets the steps done and the force ratio from time to time.
+
+    A scene that is excavated settles before, and then anew from there, under the same loads on the same supports.
+    Beside a free field the column settles first, alone; the body starts from its state, and both settle together: as
+    laws with friction leave more than one state of rest, the body would else come to another one.
+
+    Raises StalledError when it makes no more progress or takes more steps than allowed, saying how far it got, and
+    RunError when the motion grows without bound.
+    """
+    if scene.before is not None:
+        before = _settle_built(scene.before, on_look, "before the excavation the static stage")
+        excavated = _settle(scene, _excavate(scene, before.start), on_look, tractions=before.tractions)
+        return replace(excavated, before=before)
+    return _settle_built(scene, on_look, "the static stage")
+
+
+def _settle_built(scene: DiskScene, on_look: Callable[[int, float], None] | None, name: str) -> Settled:
+    """The stage of a body as built, after that of its free-field column; name : what messages call it."""
+    if scene.seam is None:
+        return _settle(scene, None, on_look, name)
+    column = _settle(column_alone(scene), None, on_look, f"{name} of the free-field column alone")
+    return replace(_settle(scene, _beside(scene, column.start), on_look, name), column=column)
+
+
+def _excavate(scene: DiskScene, before: Start) -> Start:
+    """Where an excavated scene begins to settle: as it stood before, contacts with all their history."""
+    assert scene.kept is not None
+    contacts = scene.contact_lists() if before.contacts else {}
+    for name, pairs in contacts.items():
+        there = before.contacts[name]
+        kept = scene.kept[(scene.kept >= there.nodes.start) & (scene.kept < there.nodes.stop)] - there.nodes.start
+        pairs.inherit(there, kept)
+    return Start(before.displacement[:, scene.kept], contacts, before.has_history)
+
+
+def _beside(scene: DiskScene, column: Start) -> Start:
+    """Where a body beside its settled column begins to settle: every particle and pair in the state of its twin."""
+    assert scene.seam is not None
+    displacement = column.displacement[:, scene.seam.twin]
+    contacts = scene.contact_lists() if column.contacts else {}
+    if column.has_history:
+        for pairs in contacts.values():
+            pairs.copy_twins(column.contacts["body"], scene.seam.twin[pairs.nodes], displacement)
+    return Start(displacement, contacts, column.has_history)
+
+
+def _settle(
+    scene: DiskScene,
+    start: Start | None,
+    on_look: Callable[[int, float], None] | None,
+    name: str = "the static stage",
+    tractions: np.ndarray | None = None,
+) -> Settled:
+    """One stage: from a start, or from the scene as built, to rest; tractions (3,) Pa, if they have been corrected."""
+    static = scene.case.static
+    assert static is not None
+    body = _StaticScene(scene, static, tractions)
+    step = SAFETY * step_limit(body.scene, damp=static.damp)
+    datum = np.zeros((3, scene.count)) if start is None else start.displacement
+    system = DiskSystem(body.scene, step, start, settling=True, load=body.load(datum))
+    simulation = Simulation(body.scene, step, system=system, datum=datum, damp=static.damp)
+    rest = _UntilAtRest(body, system, on_look, name)
+    simulation.track(rest)
+    simulation.run(static.max_steps)
+    displacement, forces = simulation.state.displacement, rest.forces
+    unbalanced = np.hypot(*(forces + scene.steady_load)[:2])
+    held = body.held
+    return Settled(
+        start=Start(displacement, system.contacts, system.law_name == BONDED),
+        steps=simulation.state.step,
+        ratio=rest.ratio,
+        carried=float(unbalanced[held].mean()) if held.any() else 0.0,
+        left=float(unbalanced[~held].mean()) if not held.all() else 0.0,
+        stress=mean_stress(scene, system.stress(displacement)),
+        cracks=rest.take_cracks(),
+        tractions=body.applied,
+    )
+
+
+class _UntilAtRest(Tracker):
+    """Ends a static stage that has come to rest, or one that does not; in between it lets loads follow the body.
+
+    Parameters
+    ----------
+    body : what settles.
+    system : its parts.
+    on_look : gets the steps done and the force ratio from time to time.
+    stage : what messages call it.
+
+    Attributes
+    ----------
+    ratio : mean unbalanced over mean contact force when it last looked.
+    forces : (3, n) N and N·m of contacts then.
+    """
+
+    name = "until at rest"
+
+    def __init__(
+        self, body: "_StaticScene", system: DiskSystem, on_look: Callable[[int, float], None] | None, stage: str
+    ) -> None:
+        self.ratio, self.forces = np.inf, np.zeros((3, 0))
+        self._body, self._system, self._on_look, self._stage = body, system, on_look, stage
+        self._best, self._best_at = np.inf, 0
+        # a law without history keeps no list of pairs, but their forces are looked at all the same
+        self._contacts = system.contacts or body.scene.contact_lists()
+        self._look_after(0)
+
+    def _look_after(self, step: int) -> None:
+        self.due = min(step + LOOK, max(self._body.static.max_steps, step + 1))
+
+    def handle(self, run: Run) -> None:
+        """Look at the force ratio; raise StalledError where it makes no more progress or takes too many steps."""
+        body, static, system, state = self._body, self._body.static, self._system, run.state
+        body.keep_from_turning(state)
+        self.forces = self._contact_forces(state.displacement)
+        self.ratio = body.force_ratio(system, self.forces, self._contacts)
+        if self._on_look is not None:
+            self._on_look(state.step, self.ratio)
+        if self.ratio <= static.ratio:
+            if not body.correct(system, state):
+                run.stopped = True
+                return
+            self._best, self._best_at = np.inf, state.step
+        elif self.ratio < 0.9 * self._best:
+            self._best, self._best_at = self.ratio, state.step
+        if state.step - self._best_at >= PATIENCE or state.step >= static.max_steps:
+            lacking, cracks = body.unbalanced(system, self.forces), self.take_cracks()
+            message = f"{self._stage} {_where_it_ended(static, run, self.ratio, lacking, cracks)}"
+            raise StalledError(message, run, lacking.T, cracks)
+        body.turn_tractions(system, state)
+        self._look_after(state.step)
+
+    def take_cracks(self) -> Cracks:
+        """The bonds that broke since this was last called."""
+        return joined([pairs.take_cracks() for pairs in self._contacts.values()])
+
+    def _contact_forces(self, displacement: np.ndarray) -> np.ndarray:
+        """Contact forces and moments (3, n) now, under the elastic law with what was locked in."""
+        if self._system.law_name == ELASTIC:
+            for pairs in self._contacts.values():
+                pairs.push(displacement, reference=True)
+        return self._system.last_forces(self._contacts)
+
+
+def _where_it_ended(static: Static, run: Run, ratio: float, unbalanced: np.ndarray, cracks: Cracks) -> str:
+    """How far a stage came that takes too long, in words, and what to look at; unbalanced (2, n) N as `_lacking`."""
+    steps = run.state.step
+    facts = f"static.ratio asks for {static.ratio:g}; broken bonds: {len(cracks):,}; {_lacking(run, unbalanced)}"
+    if steps >= static.max_steps:
+        return f"came to a force ratio of {ratio:.3g} in {steps:,} steps, {facts}; allow more with static.max_steps"
+    return (
+        f"stalls at a force ratio of {ratio:.3g} after {steps:,} steps, {facts}; "
+        "is the body held, and can its contacts carry the load?"
+    )
+
+
+def _lacking(run: Run, unbalanced: np.ndarray) -> str:
+    """Which particles lack most force, where and along which direction, and how many lack half of it all.
+
+    unbalanced (2, n) N is what the forces on each come to.
+    """
+    scene, size = run.scene, np.hypot(*unbalanced)
+    order = np.argsort(-size, kind="stable")
+    half = 1 + int(np.searchsorted(np.cumsum(size[order]), 0.5 * size.sum()))
+    places = scene.positions + run.state.displacement[:2].T
+    worst = [
+        f"particle {i} at ({places[i, 0]:.2f}, {places[i, 1]:.2f}) m lacks ({0.0 - unbalanced[0, i]:.3g}, "
+        f"{0.0 - unbalanced[1, i]:.3g}) N"
+        for i in order[: min(WORST, len(order))]
+    ]
+    low, high = places[order[:half]].min(axis=0), places[order[:half]].max(axis=0)
+    return (
+        f"{', '.join(worst)}; {half:,} of {scene.count:,} particles lack half of all, between "
+        f"({low[0]:.2f}, {low[1]:.2f}) and ({high[0]:.2f}, {high[1]:.2f}) m"
+    )
+
+
+class _StaticScene:
+    """A scene under its static supports and tractions."""
+
+    def __init__(self, scene: DiskScene, static: Static, tractions: np.ndarray | None) -> None:
+        case = scene.case
+        builder = SupportBuilder(held=scene.ground.held)
+        free_field = {side: table for side, table in case.boundary.items() if isinstance(table, FreeField)}
+        for side, table in (free_field | dict(static.boundary)).items():
+            if side in scene.edges:
+                edge = scene.edges[side]
+                table.support(edge, boundary_medium(case, scene.ground, edge.axis), case.wave, builder)
+        self.static = static
+        self._steady = scene.steady_load
+        self._tractions = None if static.stress is None else Tractions(scene, static.stress, tractions)
+        self.scene = replace(scene, supports=builder.table())
+        self.held = np.zeros(scene.count, dtype=bool)
+        for edge in scene.edges.values():
+            self.held[edge.nodes] = static.stress is not None
+        supports: Supports = self.scene.supports
+        self.held[supports.node[supports.prescribed]] = True  # dashpots carry nothing at rest
+        self._floats = len(supports) == 0
+        held = bool((scene.free[:2] == 0.0).any())
+        self._by_tractions_alone = self._floats and not held and not scene.steady_load.any()
+        self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.count, axis=1)
+        across = (supports.component < 2) & supports.prescribed
+        self._moves[supports.component[across], supports.node[across]] = False
+
+    def load(self, displacement: np.ndarray) -> np.ndarray:
+        """All steady forces (3, n) N and N·m at displacements (3, n)."""
+        return self._steady + (0.0 if self._tractions is None else self._tractions.forces(displacement))
+
+    @property
+    def applied(self) -> np.ndarray | None:
+        """The stress (3,) Pa that the tractions are made of, if one was asked for."""
+        return None if self._tractions is None else self._tractions.applied
+
+    def correct(self, system: DiskSystem, state: State) -> bool:
+        """Correct the tractions of a body at rest by what the stress inside lacks; whether it lacked something.
+
+        Beside steady loads, whose stress comes on top of the one asked for, and beside supports, which bear a part of
+        it, nothing is corrected.
+        """
+        if self._tractions is None or not self._by_tractions_alone:
+            return False
+        return self._tractions.correct(mean_stress(self.scene, system.stress(state.displacement)))
+
+    def turn_tractions(self, system: DiskSystem, state: State) -> None:
+        """Let tractions follow the sides, or what was corrected take effect."""
+        if self._tractions is not None:
+            system.apply(self.load(state.displacement))
+
+    def keep_from_turning(self, state: State) -> None:
+        """Stop the motion as a whole of a body that nothing holds, which has no force to bring it to rest."""
+        if not self._floats:
+            return
+        mass, velocity = self.scene.mass, state.velocity
+        arm = self.scene.assembly.positions + state.displacement[:2].T
+        arm = (arm - np.average(arm, axis=0, weights=mass)).T
+        velocity[:2] -= np.average(velocity[:2], axis=1, weights=mass)[:, None] * self.scene.free[:2, None]
+        if not self.scene.free.all():
+            return
+        spin = np.sum(mass * (arm[0] * velocity[1] - arm[1] * velocity[0])) + np.sum(self.scene.inertia * velocity[2])
+        rate = spin / (np.sum(mass * (arm**2).sum(axis=0)) + self.scene.inertia.sum())
+        velocity -= rate * np.stack([-arm[1], arm[0], np.ones(self.scene.count)])
+
+    def unbalanced(self, system: DiskSystem, forces: np.ndarray) -> np.ndarray:
+        """Unbalanced forces (2, n) N along the directions particles can move in, for contact forces (3, n)."""
+        return np.where(self._moves, (forces + system.load)[:2], 0.0)
+
+    def force_ratio(self, system: DiskSystem, forces: np.ndarray, contacts: Mapping[str, ContactList]) -> float:
+        """Mean unbalanced force over the mean contact force, for contact forces (3, n) and the pairs of each part."""
+        unbalanced = np.hypot(*self.unbalanced(system, forces)).mean()
+        pair = np.concatenate([np.hypot(*pairs.arrays.force[:, :2].T) for pairs in contacts.values()])
+        acting = pair > 0.0
+        return float(unbalanced / pair[acting].mean()) if acting.any() else (np.inf if unbalanced > 0.0 else 0.0)

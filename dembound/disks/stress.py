@@ -1,0 +1,77 @@
+"""The stress of every particle, from the forces across its contacts."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dembound.disks.body import DiskBody
+from dembound.disks.part import ELASTIC, DiskPart
+from dembound.kernels.common import CHUNKS
+from dembound.kernels.contacts import REFERENCE, push
+from dembound.kernels.tables import Contacts, Limits
+
+UNYIELDING = Limits(friction=0.0, tension=np.inf, cohesion=np.inf, tan_fa=0.0, geometry=REFERENCE)
+"""Under the elastic law nothing gives way."""
+
+PIECE = 2**18
+"""Pairs looked at in one go: large scenes then take little memory beside their own."""
+
+
+def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np.ndarray:
+    """Stress (m, 3) of one part's particles, see `particle_stress`: all of it, that of a static stage included.
+
+    displacement (3, n) m and rad. Under the history-dependent law its forces are those at the beginning of the last
+    step.
+    """
+    stress = particle_stress(scene, part.pairs, displacement, elastic=part.law_name == ELASTIC)
+    return stress[part.nodes]
+
+
+def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarray, *, elastic: bool) -> np.ndarray:
+    """Stress (n, 3) xx, yy, xy in Pa of all particles, tension positive; xy is the mean of both shear stresses.
+
+    A particle's stress is Σ f_a l n_b over its area πR² with its share of the pores, half of that for half cells, f the
+    force that pulls at it across a contact and l n the way from its centre to there (Love's and Weber's mean). What
+    pushes at a side from outside is no contact and does not count.
+
+    Parameters
+    ----------
+    scene : whose particles they are.
+    contacts : its pairs.
+    displacement : (3, n) m and rad.
+    elastic : take the forces of the elastic law, and the ways as at the start; else the pairs' last forces.
+    """
+    moments = np.zeros((3, scene.count))
+    for piece, force in _pieces(contacts, displacement, elastic=elastic):
+        first, second = contacts.first[piece].astype(np.int64), contacts.second[piece].astype(np.int64)
+        lines = contacts.palette[contacts.kind[piece]]
+        x, y = lines[:, :2].T if elastic else lines[:, :2].T + displacement[:2, second] - displacement[:2, first]
+        part = 0.5 + lines[:, 4] / np.hypot(x, y)  # of the way, on the first one's side
+        pull_x, pull_y = force[:, :2].T
+        for total, dyad in zip(moments, (pull_x * x, pull_y * y, 0.5 * (pull_x * y + pull_y * x)), strict=True):
+            np.add.at(total, first, part * dyad)
+            np.add.at(total, second, (1.0 - part) * dyad)
+    area = np.pi * scene.assembly.radii**2 * scene.share / scene.ground.brick.solid_fraction
+    return (moments / area).T
+
+
+def _pieces(contacts: Contacts, displacement: np.ndarray, *, elastic: bool) -> Iterator[tuple[slice, np.ndarray]]:
+    """Pieces of the list of pairs and their forces (k, 4), for which no pair's memory is touched."""
+    for begin in range(0, len(contacts.first), PIECE):
+        piece = slice(begin, begin + PIECE)
+        if not elastic:
+            yield piece, contacts.force[piece]
+            continue
+        count = len(contacts.first[piece])
+        pairs = contacts._replace(
+            first=contacts.first[piece],
+            second=contacts.second[piece],
+            kind=contacts.kind[piece],
+            state=contacts.state[piece],
+            shear=np.zeros(count),
+            slip=np.zeros(count),
+            cracked=np.full(count, -1),
+            force=np.empty((count, 4)),
+        )
+        push(displacement, displacement, 0.0, 0, pairs, UNYIELDING, np.empty((CHUNKS, 2)))  # a step of no time: at rest
+        yield piece, pairs.force

@@ -1,0 +1,113 @@
+"""Disks and their run in numbers, for scripts."""
+
+from typing import Any
+
+import numpy as np
+
+from dembound.boundaries.support import Edge
+from dembound.boundaries.viscoelastic import Springs
+from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.disks.static import Settled
+from dembound.motion.trackers import Run
+
+
+def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
+    """What a summary of disks has beside that of every run: plain JSON values, SI units."""
+    return {
+        "particles": scene.count,
+        "has_history": scene.has_history,
+        "contacts": len(scene.assembly.pairs),
+        "loose_disks_left_out": scene.assembly.loose,
+        "packing": describe_packing(scene),
+        "boundaries": {side: _describe_edge(scene, run, side) for side in scene.edges},
+    }
+
+
+def asked_stress(scene: DiskScene) -> list[float] | None:
+    """The stress (Pa) that the static stage was asked for, if any."""
+    static = scene.case.static
+    return None if static is None or static.stress is None else list(static.stress)
+
+
+def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, Any]:
+    """The static stage: steps, force ratio, forces (N) carried by supports and tractions and left, stress (Pa).
+
+    And the same of the free-field column alone, if there is one, and before an excavation, if there was one.
+    """
+    return {
+        "steps": settled.steps,
+        "ratio": settled.ratio,
+        "carried": settled.carried,
+        "left": settled.left,
+        "stress": settled.stress.tolist(),
+        "asked": asked,
+        "cracks": len(settled.cracks),
+        "column": None if settled.column is None else describe_static(settled.column, None),
+        "before": None if settled.before is None else describe_static(settled.before, asked),
+    }
+
+
+def describe_packing(scene: DiskScene) -> dict[str, Any]:
+    """The brick in numbers: stresses and stiffnesses in Pa, speeds along x in m/s (null where the motion is held)."""
+    ground, brick = scene.ground, scene.ground.brick
+    tensor = ground.material_tensor
+    p_speed, s_speed = ground.wave_speeds(0)
+    return {
+        "disks_per_brick": len(brick.radii),
+        "mean_diameter": brick.mean_diameter,
+        "solid_fraction": brick.solid_fraction,
+        "coordination": brick.coordination,
+        "residual_ratio": brick.residual_ratio,
+        "stress": (brick.stress * ground.moduli.emod).tolist(),
+        "emod": ground.moduli.emod,
+        "pb_emod": ground.moduli.pb_emod,
+        "C11": tensor[0, 0],
+        "C22": tensor[1, 1],
+        "C12": tensor[0, 1],
+        "C66": tensor[3, 3],
+        "p_wave_speed": None if np.isnan(p_speed) else p_speed,
+        "s_wave_speed": None if np.isnan(s_speed) else s_speed,
+    }
+
+
+def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
+    """One side in numbers: type, particles, diameters (m), ΣD/H, the factors β and whether masses are halved.
+
+    Of springs their factors α, modulus G (Pa) and distances L (m).
+    """
+    edge = scene.edges[side]
+    table = scene.case.boundary.get(side)
+    described: dict[str, Any] = {
+        "type": table.type if table is not None else "free",
+        "particles": len(edge.nodes),
+        "length": edge.length,
+        "diameter_min": edge.diameters.min(),
+        "diameter_mean": edge.diameters.mean(),
+        "diameter_max": edge.diameters.max(),
+        "cover": edge.cover,
+    }
+    for key in ("beta_p", "beta_s", "half_mass"):
+        if hasattr(table, key):
+            described[key] = getattr(table, key)
+    return described | (_describe_springs(scene, edge, table) if isinstance(table, Springs) else {})
+
+
+def _describe_springs(scene: DiskScene, edge: Edge, springs: Springs) -> dict[str, float]:
+    """Springs of a side in numbers."""
+    distances = springs.distances(edge)
+    return {
+        "alpha_n": springs.alpha_n,
+        "alpha_s": springs.alpha_s,
+        "shear_modulus": springs.shear_modulus(boundary_medium(scene.case, scene.ground, edge.axis)),
+        "distance_min": distances.min(),
+        "distance_max": distances.max(),
+    }
+
+
+def _describe_edge(scene: DiskScene, run: Run, side: str) -> dict[str, Any]:
+    """A side in numbers, with mean and standard deviation of its particles' largest |velocity| in x and y."""
+    described = describe_side(scene, side)
+    largest = np.abs(run.state.peaks[scene.tracked_of(side)][:, :2]).max(axis=2)
+    described["peak_velocity"] = largest.mean(axis=0).tolist()
+    described["peak_velocity_deviation"] = largest.std(axis=0).tolist()
+    return described

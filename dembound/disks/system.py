@@ -1,0 +1,238 @@
+"""Bonded disks in motion: the body, its free-field column, and the change from the elastic law to one with history."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dembound.disks.balance import Balance
+from dembound.disks.body import DiskBody
+from dembound.disks.contacts import ContactList
+from dembound.disks.part import BONDED, DiskPart, FreeFieldSeam
+from dembound.disks.rotation import turn_as_a_whole, turns_freely
+from dembound.disks.stress import part_stress
+from dembound.kernels.common import BROKE, LAW_ENDS, LIST_ENDS
+from dembound.kernels.contacts import UPDATED
+from dembound.kernels.follower import turn_forces
+from dembound.motion.part import System
+from dembound.motion.state import Arrays, State, within
+
+
+@dataclass(frozen=True)
+class Start:
+    """A body at rest to start from: displacement (3, n) since it was built, and its contacts.
+
+    contacts : those of each part by name, none where the scene's law has no history. The system that starts from them
+    goes on with them, so a start is good for one. has_history : whether anything has happened to them.
+    """
+
+    displacement: np.ndarray
+    contacts: Mapping[str, ContactList] = field(default_factory=dict)
+    has_history: bool = False
+
+
+class DiskSystem(System):
+    """The parts of a scene of disks.
+
+    Parameters
+    ----------
+    scene : what moves.
+    time_step : Δt in s.
+    start : a body that has settled; whatever pushes its particles is balanced from then on, unless it is `settling`
+        anew. None: as built, with nothing balanced.
+    settling : whether the body is on its way to rest, so that its forces are not balanced.
+    load : (3, n) steady forces and moments (N, N·m); None: the scene's own.
+
+    Attributes
+    ----------
+    balance : what balances the forces in a body that has settled; None for one as built or settling.
+    """
+
+    parts: tuple[DiskPart, ...]
+    ties: tuple[FreeFieldSeam, ...]
+
+    def __init__(
+        self,
+        scene: DiskBody,
+        time_step: float,
+        start: Start | None = None,
+        *,
+        settling: bool = False,
+        load: np.ndarray | None = None,
+    ) -> None:
+        lists: Mapping[str, ContactList] = {}
+        if scene.has_history:
+            lists = scene.contact_lists() if start is None else start.contacts
+        parts = [
+            DiskPart(name, scene.ground, scene.assembly.part(nodes), rows, lists.get(name))
+            for (name, nodes), rows in zip(scene.parts.items(), scene.rows, strict=True)
+        ]
+        ties = [] if scene.seam is None else [FreeFieldSeam(scene.seam, parts[0])]
+        super().__init__(parts, ties, scene.steady_load if load is None else load)
+        self.balance: Balance | None = None
+        self.scene, self._time_step = scene, time_step
+        self._start, self._settling = start, settling
+
+    def apply(self, load: np.ndarray) -> None:
+        """Take other steady forces and moments (3, n) from here on, of a body that is settling."""
+        if self.steady.shape[1] == 0:
+            self.steady = np.zeros_like(load)
+        self.steady += load - self.load
+        self.load = load
+
+    def begin(self, state: State) -> None:
+        """Choose the law to begin with, and the steady forces that go with it."""
+        scene, start = self.scene, self._start
+        has_history = start is not None and start.has_history
+        if start is not None and not self._settling:
+            springs = scene.supports.springs_at(state.datum)
+            resting = self._resting_force(state.datum, has_history=has_history)
+            self._balance(springs - resting - self.load, state.datum)
+            steady = springs - self.elastic_forces(state.datum)
+        elif scene.has_history and not has_history:
+            # the elastic law does not know the forces of the body as built, as of a locked-in stress
+            rest = np.zeros_like(self.load)
+            steady = self.load + self._forces_of_history(rest, fresh=True)
+        else:
+            steady = self.load
+        if steady.any():
+            self.steady = steady.copy()
+        # a locked-in stress also comes through the seam of a free field, of which the elastic law would not know
+        through = bool(self.ties) and scene.case.material.locked_in is not None and not self._settling
+        if has_history or (scene.has_history and (through or not scene.case.material.elastic_start)):
+            self._switch(state, fresh=not has_history)
+        else:
+            super().begin(state)
+
+    def react(self, why: int, steps: int, state: State) -> None:
+        """Change the law where contacts are about to leave the elastic one; end what balances pieces that came off."""
+        if why == LAW_ENDS:
+            self._switch(state)
+        elif self.balance is not None and self.law_name == BONDED and why in (BROKE, LIST_ENDS):
+            self.balance.end_on_debris(self.parts, state.displacement, state.velocity, self._time_step, self.steady)
+        super().react(why, steps, state)
+
+    def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
+        """Contact and seam forces and moments (3, n) of the elastic law at displacements (3, n)."""
+        force = np.zeros_like(displacement)
+        for part in self.parts:
+            part.add_elastic_forces(displacement, force)
+        for tie in self.ties:
+            force[:, tie.nodes] += tie.elastic_forces(displacement)
+        return force
+
+    @property
+    def contacts(self) -> dict[str, ContactList]:
+        """The pairs of each part by name, none where the elastic law is the material's own."""
+        return {part.name: part.contacts for part in self.parts if part.contacts is not None}
+
+    def last_forces(self, contacts: Mapping[str, ContactList]) -> np.ndarray:
+        """Forces and moments (3, n) from the last forces of each part's pairs, those across a seam included."""
+        force = np.zeros((3, self.scene.count))
+        for pairs in contacts.values():
+            pairs.add_forces(force)
+        return force + self._across(contacts)
+
+    def stress(self, displacement: np.ndarray) -> np.ndarray:
+        """Stress (n, 3) xx, yy, xy in Pa of all particles at displacements (3, n), tension positive."""
+        return np.concatenate([part_stress(self.scene, part, displacement) for part in self.parts])
+
+    def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
+        """What is known of every disk at displacements (3, n) beside its motion; stress if the case asks for it."""
+        known = super().snapshot(displacement)
+        if self.scene.case.output.stress:
+            known["stress"] = self.stress(displacement), "Pa"
+        return known
+
+    def balancing_work(self, displacement: np.ndarray) -> float:
+        """Work (J) up to displacements (3, n) of what balances the stress of a settled body, without its turning."""
+        return 0.0 if self.balance is None else self.balance.work(displacement)
+
+    def memory(self) -> Arrays:
+        """All that evolves in it beside the motion, by name."""
+        balance = {} if self.balance is None else self.balance.memory()
+        return {**super().memory(), **{f"balance/{name}": values for name, values in balance.items()}}
+
+    def recall(self, memory: Arrays) -> None:
+        """Take over what `memory` has returned in another run of the same case."""
+        super().recall(memory)
+        kept = within(memory, "balance")
+        self.balance = Balance.recalled(self.scene, kept) if kept else None
+        self._watch_breaks()
+        self._follow()
+
+    def _resting_force(self, datum: np.ndarray, *, has_history: bool) -> np.ndarray:
+        """Contact forces (3, n) of the body at rest at the datum."""
+        if not self.scene.has_history:
+            return self.elastic_forces(datum)
+        return self._forces_of_history(datum, fresh=not has_history)
+
+    def _forces_of_history(self, displacement: np.ndarray, *, fresh: bool) -> np.ndarray:
+        """Contact forces (3, n) of the history-dependent law at rest at displacements (3, n); fresh: with none yet."""
+        self._adopt(displacement, fresh)
+        for pairs in self.contacts.values():
+            pairs.push(displacement)
+        return self.last_forces(self.contacts)
+
+    def _across(self, contacts: Mapping[str, ContactList]) -> np.ndarray:
+        """Forces and moments (3, n) that come through the seam of a free field, from the pairs' last forces."""
+        force = np.zeros((3, self.scene.count))
+        for tie in self.ties:
+            if contacts:
+                force[:, tie.nodes] += tie.last_forces(contacts[tie.column.name])
+        return force
+
+    def _balance(self, force: np.ndarray, datum: np.ndarray) -> None:
+        """Balance forces (3, n) from here on."""
+        self.balance = Balance(self.scene, force, self.load, datum, self._across(self.contacts))
+
+    def _switch(self, state: State, fresh: bool = True) -> None:
+        """From here on the history-dependent law; fresh: without any history yet."""
+        before = self._potential(state) if state.laws else None
+        if fresh and self._is_updated and turns_freely(self.scene):
+            turn_as_a_whole(self.scene, state.displacement, state.velocity, state.datum)
+        self._adopt(state.displacement, fresh)
+        for part in self.parts:
+            part.law_name = BONDED
+        self._watch_breaks()
+        if self.balance is not None:
+            self.balance.count_breaks_from(self.parts)
+        if before is not None:
+            state.work[:, 4] += self._potential(state) - before
+        self._adopt(state.displacement - self._time_step * state.velocity, fresh)  # its first push adds this step
+        self.steady = self.load + (0.0 if self.balance is None else self.balance.force)
+        self._follow()
+        if before is not None and self.turning is not None:
+            # the step to come counts the work of turning from half a step ago, when forces did not turn yet
+            steady, step = self.steady.copy(), self._time_step
+            state.work[:, 4] -= turn_forces(self.turning, state.displacement, state.velocity, steady, step)
+        state.switch_velocity = state.velocity.copy()
+        state.laws.append((BONDED, state.step))
+
+    def _adopt(self, displacement: np.ndarray, fresh: bool) -> None:
+        """Let contacts without history take over from the elastic law at displacements (3, n)."""
+        for pairs in self.contacts.values():
+            if fresh:
+                pairs.adopt(displacement)
+
+    def _watch_breaks(self) -> None:
+        """Let the loop return after a break where balancing forces may have to end."""
+        for part in self.parts:
+            part.stops_at_breaks = self.balance is not None
+
+    def _follow(self) -> None:
+        """Let balancing forces turn with their sides where the law in use follows the motion."""
+        follows = self.law_name == BONDED and self._is_updated
+        self.turning = self.balance.followers if self.balance is not None and follows else None
+
+    @property
+    def _is_updated(self) -> bool:
+        """Whether the history-dependent law's normals and arms follow the motion."""
+        return any(pairs.limits.geometry == UPDATED for pairs in self.contacts.values())
+
+    def _potential(self, state: State) -> float:
+        """Energy (J) stored in contacts and bonds less the work of steady and balancing forces since the start."""
+        steady = float(np.sum(self.load * (state.displacement - state.datum)))
+        return sum(self.stored(state.displacement)) - steady - self.balancing_work(state.displacement)

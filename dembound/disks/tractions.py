@@ -1,0 +1,112 @@
+"""The stress that a static stage is asked for, as tractions on the sides of the body."""
+
+import numpy as np
+
+from dembound.disks.balance import mean_rotations
+from dembound.disks.contacts import limits_of
+from dembound.disks.scene import DiskScene
+from dembound.kernels.contacts import UPDATED
+
+RIM = 4.0
+"""Width in mean diameters of the rim that is left out where a mean stress is taken."""
+
+CLOSE = 5e-3
+"""Error of the mean stress, in parts of its largest component, at which it counts as that asked for."""
+
+CORRECTIONS = 5
+"""Most times that tractions are corrected; each leaves a few per cent of the error before."""
+
+
+class Tractions:
+    """Forces on the sides of a body under a mean stress, corrected until its inside has that stress.
+
+    The skin of a cut packing lacks bonds and carries less than its share, so that tractions σ·n alone make the inside
+    carry some per cent more.
+
+    Parameters
+    ----------
+    scene : the body.
+    stress : (3,) xx, yy, xy in Pa asked for, tension positive.
+    applied : (3,) Pa, tractions found before an excavation, which the stress around it has not changed; None: as asked.
+
+    Attributes
+    ----------
+    applied : (3,) Pa, the stress that the tractions are made of.
+    """
+
+    def __init__(self, scene: DiskScene, stress: tuple[float, float, float], applied: np.ndarray | None = None) -> None:
+        self.scene = scene
+        self.asked = np.array(stress)
+        self.applied = self.asked.copy() if applied is None else applied.copy()
+        self._left = CORRECTIONS if applied is None and _is_wide(scene) else 0
+        self._follow = limits_of(scene.case.material).geometry == UPDATED
+
+    def forces(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces (3, n) N at displacements (3, n), by the particles' share of their side's diameters.
+
+        Where the law follows the motion they turn with their side. Small forces about the middle free them of the
+        torque that uneven and strained sides leave.
+        """
+        moved = displacement if self._follow else np.zeros_like(displacement)
+        force = np.zeros_like(displacement)
+        xx, yy, xy = self.applied
+        rotations = mean_rotations(self.scene, moved)
+        for side, edge in self.scene.edges.items():
+            angle = rotations.get(side, 0.0)
+            turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+            sign = 1.0 if side in ("right", "top") else -1.0
+            pull = turn @ np.array([xx, xy] if edge.axis == 0 else [xy, yy]) * sign * edge.length
+            force[:2, edge.nodes] += pull[:, None] * edge.diameters / edge.diameters.sum()
+        loaded = np.unique(np.concatenate([edge.nodes for edge in self.scene.edges.values()]))
+        return _without_torque(force, self.scene.assembly.positions + moved[:2].T, loaded)
+
+    def correct(self, stress: np.ndarray) -> bool:
+        """Add what the mean stress (3,) Pa inside lacks to the tractions; whether there was something to add."""
+        lacking = self.asked - stress
+        largest = np.abs(self.asked).max()
+        if self._left == 0 or largest == 0.0 or np.abs(lacking).max() <= CLOSE * largest:
+            return False
+        self._left -= 1
+        self.applied += lacking
+        return True
+
+
+def mean_stress(scene: DiskScene, stress: np.ndarray) -> np.ndarray:
+    """Mean stress (3,) inside a body, away from its sides and with its holes, which bear none; stress (n, 3) of each.
+
+    Over the particles' areas, where there is a hole over the whole rectangle within the rim.
+    """
+    inside = _inside(scene)
+    area = (scene.assembly.radii**2 * scene.share)[inside]
+    mean = np.average(stress[inside], axis=0, weights=area)
+    if not scene.case.hole or inside.all():
+        return mean
+    whole = np.prod(scene.assembly.size - 2.0 * RIM * scene.ground.brick.mean_diameter)
+    return mean * min(1.0, np.pi * float(area.sum()) / scene.ground.brick.solid_fraction / whole)
+
+
+def _is_wide(scene: DiskScene) -> bool:
+    """Whether half a body's width and height are left inside the rim: the mean over less is that of a few particles."""
+    width = [scene.assembly.size[axis] for axis, low in enumerate(("left", "bottom")) if low in scene.edges]
+    return all(length >= 4.0 * RIM * scene.ground.brick.mean_diameter for length in width)
+
+
+def _inside(scene: DiskScene) -> np.ndarray:
+    """Particles (n,) bool that stand within the rim along the sides; all of a small scene."""
+    depth = RIM * scene.ground.brick.mean_diameter
+    inside = np.ones(scene.count, dtype=bool)
+    for axis, low in enumerate(("left", "bottom")):
+        if low in scene.edges:
+            place = scene.assembly.positions[:, axis]
+            inside &= (place > depth) & (place < scene.assembly.size[axis] - depth)
+    return inside if inside.any() else np.ones(scene.count, dtype=bool)
+
+
+def _without_torque(force: np.ndarray, positions: np.ndarray, loaded: np.ndarray) -> np.ndarray:
+    """Forces (3, n) made free of torque by small ones on the loaded particles (k,); positions (n, 2) m."""
+    arm = positions - positions[loaded].mean(axis=0)
+    torque = np.sum(arm[:, 0] * force[1] - arm[:, 1] * force[0])
+    turn = np.stack([-arm[loaded, 1], arm[loaded, 0]])
+    if (size := np.sum(turn**2)) > 0.0:  # a single disk has no arm
+        force[:2, loaded] -= torque / size * turn
+    return force

@@ -1,0 +1,260 @@
+"""What a run of disks will do that was probably not meant, as far as it is known before."""
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from dembound.boundaries import SIDES, Periodic, Velocity
+from dembound.boundaries.driven import Driven
+from dembound.boundaries.viscous import Dashpots
+from dembound.case.disks.load import Load
+from dembound.case.magnitudes import grip_stress, stress_warnings, time_warnings
+from dembound.disks.matching import Motion, homogenised_beta, reflected
+from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.results.reader import open_record
+from dembound.results.warnings import still_moving
+
+FEWEST_PER_WAVELENGTH = 20.0
+"""Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
+
+REFLECTED = 0.02
+"""Share of a wave that a side with factors nobody has chosen may reflect.
+
+Homogenised and calibrated β differ by 0.5 % at most, 2 % in bars of 20 disks, which is half of that in the reflection.
+"""
+
+LARGEST_PULL = 3.5
+"""Largest tensile stress of a bond over the mean one, where contacts under a locked-in stress relax.
+
+The mean is the bonds' share of the stiffness times the locked-in pressure; the largest of 1,900 bonds was 2.8 to 3.5
+times that (three bricks, radius ratio 1.5).
+"""
+
+MOTIONS: tuple[Motion, ...] = ("p", "s")
+"""Kinds of waves that a side's two factors are for."""
+
+SPEED_ERROR = 0.1
+"""Share by which a packing's own P-wave speed may differ from the one asked for."""
+
+
+def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
+    """All of them, one line each; time_step in s."""
+    return [
+        *_steady_without_static(scene),
+        *_locked_in(scene),
+        *_tension(scene),
+        *_too_few_per_wavelength(scene),
+        *time_warnings(scene.case, time_step, _travel_time(scene)),
+        *_stress_beside_strength(scene),
+        *_default_factors(scene),
+        *_speed_of_the_packing(scene),
+    ]
+
+
+def _steady_without_static(scene: DiskScene) -> Iterator[str]:
+    """Loads that fall on the body all at once."""
+    if scene.case.static is not None:
+        return
+    for load in scene.case.load:
+        if load.wave is None:
+            yield (
+                f"load.{load.name}: is steady, and without [static] falls on the body at t = 0; "
+                "viscous sides creep under it"
+            )
+
+
+def _locked_in(scene: DiskScene) -> Iterator[str]:
+    """Locked-in stress that the bonds cannot bear where it relaxes."""
+    material = scene.case.material
+    cut = any(not isinstance(scene.case.boundary.get(side), Periodic) for side in SIDES)
+    if material.locked_in is None or material.pb_ten is None or not cut:
+        return
+    pulled = LARGEST_PULL * scene.ground.bond_share * material.locked_in
+    if pulled > material.pb_ten:
+        yield (
+            f"material.locked_in: is {material.locked_in / 1e6:.3g} MPa; where it relaxes the most strained bonds come "
+            f"to some {pulled / 1e6:.3g} MPa of tension, above material.pb_ten = {material.pb_ten / 1e6:.3g} MPa, and "
+            "break in the static stage"
+        )
+
+
+def _tension(scene: DiskScene) -> Iterator[str]:
+    """Waves that would open real contacts, where the elastic law keeps them closed."""
+    if scene.has_history or not _confinement(scene):  # the docs say so of a lattice, which is packed without stress
+        return
+    for name, stress in strong_waves(scene).items():
+        yield (
+            f"wave.{name}: has a stress ρcv of {stress}; real contacts would open where it pulls, "
+            "the elastic law keeps them closed"
+        )
+
+
+def _too_few_per_wavelength(scene: DiskScene) -> Iterator[str]:
+    """Waves too short for the particles."""
+    for name, count in particles_per_wavelength(scene).items():
+        if count < FEWEST_PER_WAVELENGTH:
+            yield (
+                f"wave.{name}: has {count:.1f} particles in its shortest wavelength, fewer than "
+                f"{FEWEST_PER_WAVELENGTH:g}; the packing will disperse it"
+            )
+
+
+def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
+    """Waves and loads whose stress is a tiny part of the bonds' tensile strength, or far beyond it."""
+    strength, static = scene.case.material.pb_ten, scene.case.static
+    if strength is None:
+        return
+    stresses: dict[str, tuple[str, float]] = {}
+    for name, what, stress in _wave_stresses(scene, strength):
+        if stress > stresses.get(name, ("", 0.0))[1]:  # a wave may drive several sides
+            stresses[name] = (what, stress)
+    for load in scene.case.load:
+        stresses[f"load.{load.name}"] = _load_stress(scene, load)
+    if static is not None and static.stress is not None:
+        stresses["static.stress"] = ("its largest component", max(map(abs, static.stress)))
+    yield from stress_warnings(stresses, strength, "material.pb_ten")
+
+
+def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str, float]]:
+    """Of every wave on every side it drives its table, what its largest stress is in words, and in Pa."""
+    for edge in scene.edges.values():
+        table = scene.case.boundary.get(edge.side)
+        if not isinstance(table, Driven):
+            continue
+        medium, length = boundary_medium(scene.case, scene.ground, edge.axis), float(scene.size[edge.axis])
+        for name, speed in ((table.wave_p, medium.p_wave_speed), (table.wave_s, medium.s_wave_speed)):
+            if name is None:
+                continue
+            wave = scene.case.wave[name]
+            if isinstance(table, Velocity):
+                yield (
+                    f"wave.{name}",
+                    *grip_stress(wave, medium.density, speed, length, scene.case.run.duration, strength),
+                )
+            else:
+                yield f"wave.{name}", "its stress ρcv", medium.density * speed * wave.peak()
+
+
+def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
+    """What the stress of a load is in words, and how large (Pa): ρaL, or the force over the width it acts on."""
+    factor = 1.0 if load.wave is None else scene.case.wave[load.wave].peak()
+    low, high = np.zeros(2), scene.size
+    if load.region is not None:
+        low, high = np.maximum(low, load.region[:2]), np.minimum(high, load.region[2:])
+    extent = np.abs(load.vector) * factor
+    if load.acceleration is not None:
+        return "its stress ρaL", float(scene.ground.density * (extent * (high - low)).max())
+    widths = (high - low)[::-1] if load.region is not None else np.full(2, scene.ground.brick.mean_diameter)
+    return "its force over the width it acts on", float((extent / widths).max())
+
+
+def _default_factors(scene: DiskScene) -> Iterator[str]:
+    """Sides whose dashpots nobody has adjusted, on packings that need other factors."""
+    for side in scene.edges:
+        table = scene.case.boundary.get(side)
+        if not isinstance(table, Dashpots):
+            continue
+        matched = {motion: homogenised_beta(scene, side, motion) for motion in MOTIONS}
+        shares = {motion: abs(reflected(getattr(table, f"beta_{motion}"), matched[motion])) for motion in MOTIONS}
+        wrong = [
+            motion
+            for motion in MOTIONS
+            if f"beta_{motion}" not in table.model_fields_set and shares[motion] > REFLECTED  # nan where it is held
+        ]
+        if wrong:
+            waves = " and ".join(f"{100.0 * shares[motion]:.2g} % of {motion.upper()}" for motion in wrong)
+            factors = " and ".join(
+                f"beta_{motion} = {getattr(table, f'beta_{motion}'):g} (the packing has {matched[motion]:.3g})"
+                for motion in wrong
+            )
+            yield (
+                f"boundary.{side}: reflects {waves} waves with the default {factors}; "
+                f"run: {' and '.join(f'dembound calibrate CASE --boundary {side} --wave {motion}' for motion in wrong)}"
+            )
+
+
+def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
+    """A wave speed that the square lattice has, and the packing has not."""
+    material = scene.case.material
+    if material.p_wave_speed is None or material.match == "assembly":
+        return
+    for axis in _axes_in_use(scene):
+        own = scene.ground.wave_speeds(axis)[0]
+        if abs(own / material.p_wave_speed - 1.0) > SPEED_ERROR:  # nan where the motion is held
+            yield (
+                f"material.p_wave_speed: is {material.p_wave_speed:g} m/s of the square lattice; P waves along "
+                f'{"xy"[axis]} run at {own:.4g} m/s in this packing; give match = "assembly"'
+            )
+            return
+
+
+def _axes_in_use(scene: DiskScene) -> list[int]:
+    """x, and y if waves go there: through bottom or top, or from loads."""
+    vertical = any(
+        isinstance(scene.case.boundary.get(edge.side), Driven) for edge in scene.edges.values() if edge.axis == 1
+    )
+    return [0, 1] if vertical or scene.case.load else [0]
+
+
+def _travel_time(scene: DiskScene) -> float:
+    """Time (s) the fastest wave takes along the scene's longer side; nan where nothing moves that way."""
+    axis = int(np.argmax(scene.size))
+    speeds = [speed for speed in scene.ground.wave_speeds(axis) if not math.isnan(speed)]
+    return float(scene.size[axis]) / max(speeds, default=math.nan)
+
+
+def particles_per_wavelength(scene: DiskScene) -> dict[str, float]:
+    """Shortest wavelength of every wave, at its highest frequency and the scene's slowest speed, in diameters."""
+    speeds = [c for axis in (0, 1) for c in scene.ground.wave_speeds(axis) if np.isfinite(c)]
+    spacing = scene.ground.brick.mean_diameter
+    return {
+        name: min(speeds) / wave.highest_frequency() / spacing if speeds else np.inf
+        for name, wave in scene.case.wave.items()
+    }
+
+
+def strong_waves(scene: DiskScene) -> dict[str, str]:
+    """Waves of boundaries whose stress ρcv exceeds the pressure on the contacts; both in words."""
+    pressure = _confinement(scene)
+    if pressure is None:
+        return {}
+    sides = [table for table in scene.case.boundary.values() if isinstance(table, Driven)]
+    driving = {name for table in sides for name in (table.wave_p, table.wave_s)}
+    medium = boundary_medium(scene.case, scene.ground, axis=0)
+    impedance = medium.density * medium.p_wave_speed
+    stresses = {name: impedance * wave.peak() for name, wave in scene.case.wave.items() if name in driving}
+    return {
+        name: f"{stress / 1e6:.3g} MPa, above the confining stress of {pressure / 1e6:.3g} MPa"
+        for name, stress in stresses.items()
+        if stress > pressure
+    }
+
+
+def _confinement(scene: DiskScene) -> float | None:
+    """Pressure (Pa) that keeps contacts closed at the start of the run; None where only the static stage makes it."""
+    static, material = scene.case.static, scene.case.material
+    if static is not None:
+        return None if static.stress is None else 0.0 - 0.5 * (static.stress[0] + static.stress[1])
+    return scene.ground.packed_pressure if material.law == "elastic" else 0.0
+
+
+def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: Path) -> list[str]:
+    """What a run of disks has shown that was probably not meant, one line each, from its summary and record."""
+    with open_record(record) as file:
+        return list(still_moving(scene, summary["duration"], file, _pieces(scene, file["cracks/particles"][:])))
+
+
+def _pieces(scene: DiskScene, broken: np.ndarray) -> np.ndarray:
+    """Number (n,) of the piece that each particle belongs to, joined by the pairs of the start that have not broken.
+
+    broken (k, 2) particles.
+    """
+    pairs = np.sort(scene.assembly.pairs.astype(np.int64), axis=1)
+    left = pairs[~np.isin(pairs @ [scene.count, 1], np.sort(broken, axis=1) @ [scene.count, 1])]
+    joined = coo_matrix((np.ones(len(left)), left.T), shape=(scene.count, scene.count))
+    return connected_components(joined, directed=False)[1]

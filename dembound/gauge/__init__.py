@@ -1,0 +1,1 @@
+"""What a strain gauge on a bar measures: wave speed, attenuation, strength."""

@@ -1,0 +1,205 @@
+"""What a gauge on a bar tells: wave speed, attenuation, and the stress at which the bar spalls (L section 3.3).
+
+A compressive pulse enters a bar at x = 0 and runs to and fro between its free ends. A gauge in between feels it as
+compression on the way out and as tension on the way back. Stresses are positive in tension, and may be strains or
+voltages where only their course matters; places count from the loaded end.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.gauge.peaks import SMALLEST, Peaks, first_fall, positive_peaks, quietened
+
+ONSET = 0.01
+"""Share of its largest compression at which a pulse begins."""
+
+ENDED = 0.2
+"""Share of its largest compression below which a pulse counts as ended when its reflection returns."""
+
+FEWEST = 3
+"""Samples of a history that say something of its noise."""
+
+
+class Estimate(NamedTuple):
+    """A value from a line through so many points, and its standard error, which takes three; none: it was given."""
+
+    value: float
+    error: float = np.nan
+    points: int = 0
+
+
+def tension_peaks(time: np.ndarray, stress: np.ndarray, count: int | None = None) -> Peaks:
+    """Successive tension peaks at a gauge between free ends, 2L/c apart; how they are found says `positive_peaks`.
+
+    Where all tension is less than `SMALLEST` of the compression, it is what rings behind a pulse that has not returned,
+    and no peak.
+
+    Parameters
+    ----------
+    time, stress : (k,) s, evenly spaced, and any unit.
+    count : keep the first ones only; all by default.
+    """
+    rings = stress.max() < SMALLEST * np.abs(stress).max()
+    return positive_peaks(time, stress, 0 if rings else count)
+
+
+def wave_speed(peak_times: np.ndarray, length: float, weights: np.ndarray | None = None) -> Estimate:
+    """Speed c in m/s of a pulse that passes a gauge every 2L/c: from the straight line through the peaks' times.
+
+    Parameters
+    ----------
+    peak_times : (k,) s.
+    length : L, m.
+    weights : (k,) of the times, alike by default. Under noise they are the peaks' heights: the flatter a crest, the
+        less sure is its time.
+
+    Raises CaseError for fewer than two times.
+    """
+    if len(peak_times) < 2:
+        raise CaseError([f"--wave-speed: takes two tension peaks to be estimated, {len(peak_times)} found; give it"])
+    weights = np.ones(len(peak_times)) if weights is None else weights
+    spacing = _slope(np.arange(len(peak_times)), peak_times, weights)
+    speed = 2.0 * length / spacing.value
+    return Estimate(speed, speed * spacing.error / spacing.value, spacing.points)
+
+
+def attenuation(peak_times: np.ndarray, peak_heights: np.ndarray, speed: float) -> Estimate:
+    """Coefficient β in 1/m of σ = σ_0 e^(−βx), x = ct (L eq. 19): from the line through the heights' logarithms.
+
+    Each counts by its height, for the same noise changes a small height's logarithm more.
+
+    Parameters
+    ----------
+    peak_times : (k,) s, two or more.
+    peak_heights : (k,) in any unit, positive.
+    speed : c, m/s.
+
+    """
+    slope = _slope(speed * peak_times, np.log(peak_heights), peak_heights)
+    return slope._replace(value=-slope.value)
+
+
+def incident_pulse(
+    time: np.ndarray, stress: np.ndarray, gauge: float, length: float, speed: float, end: float | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Times (p,) and stresses (p,) of the incident pulse alone: the history (k,) up to a time, its noise smoothed.
+
+    Parameters
+    ----------
+    time, stress : (k,) s and any unit.
+    gauge, length : place of the gauge and length of the bar, m.
+    speed : c, m/s.
+    end : that time in s; by default when the pulse's front comes back from the free end.
+
+    Raises CaseError when there is no compression, the end comes before it, or, without an end, the pulse goes on when
+    its front comes back; and for fewer than three samples.
+    """
+    largest = -stress.min()
+    if not largest > 0.0:
+        raise CaseError(["--scale: leaves no compression, which must be negative; a negative scale turns the sign"])
+    begun, risen = _rise(-stress)
+    if end is None:
+        end = float(time[begun]) + 2.0 * (length - gauge) / speed
+        if end < time[risen] or abs(np.interp(end, time, stress)) > ENDED * largest:
+            raise CaseError(["--pulse-end: give it, the pulse goes on when its reflection is back at the gauge"])
+    elif not end > time[risen]:
+        raise CaseError([f"--pulse-end: is {end:g} s, must be after {time[risen]:g} s, when the pulse is half risen"])
+    count = int(np.searchsorted(time, end, side="right"))
+    if count < FEWEST:
+        raise CaseError([f"--pulse-end: leaves {count} samples of the incident pulse, must leave three or more"])
+    return time[:count], quietened(stress[:count])
+
+
+def near_free_end(
+    time: np.ndarray,
+    stress: np.ndarray,
+    gauge: float,
+    length: float,
+    speed: float,
+    positions: np.ndarray,
+    at_times: np.ndarray,
+) -> np.ndarray:
+    """Stress (q, k) at q positions (m) and k times (s) beside a free end, without attenuation: a pulse and its image.
+
+    σ(x, t) = s(t − (x − x_g)/c) − s(t − (2L − x − x_g)/c) (L section 3.3, fig. 11).
+
+    Parameters
+    ----------
+    time, stress : (p,) the incident pulse s alone, as the gauge feels it, zero before and after; s and any unit.
+    gauge, length : place x_g of the gauge and length L of the bar, m.
+    speed : c, m/s.
+    positions, at_times : (q,) m and (k,) s.
+    """
+    direct, mirrored = _delays(gauge, length, speed, np.asarray(positions, dtype=float)[:, None])
+    return _pulse(time, stress, at_times - direct) - _pulse(time, stress, at_times - mirrored)
+
+
+def nominal_strength(
+    time: np.ndarray, stress: np.ndarray, gauge: float, length: float, speed: float, position: float
+) -> tuple[float, float]:
+    """Largest tension that ever occurs where the bar spalls, `position` in m, without attenuation; and its time in s.
+
+    Exact for a pulse of straight lines between its samples: the largest sum stands at one of them, or at an image's.
+    Other arguments as for `near_free_end`.
+    """
+    moments = np.concatenate([time + delay for delay in _delays(gauge, length, speed, position)])
+    (there,) = near_free_end(time, stress, gauge, length, speed, np.array([position]), moments)
+    return float(there.max()), float(moments[there.argmax()])
+
+
+def way_by_the_end(gauge: float, length: float, position: Any) -> Any:
+    """Way in m, of the shape of the position, from a gauge to the free end and back: (L − x_g) + (L − x)."""
+    return 2.0 * length - gauge - position
+
+
+def attenuated_strength(nominal: float, coefficient: float, distance: float) -> float:
+    """What is left of a nominal strength in Pa after a way in m: σ_1 = σ_0 e^(−βx) (L section 3.3)."""
+    return float(nominal * np.exp(-coefficient * distance))
+
+
+def pull_back_strength(time: np.ndarray, velocity: np.ndarray, density: float, speed: float, length: float) -> float:
+    """Spall strength ½ρcΔV in Pa, ΔV the free end's fall from its first fastest to its next slowest (Novikov).
+
+    Only the pulse's first arrival counts: a whole bar's end comes to rest and moves on when the pulse is back, 2L/c
+    after it came.
+
+    Parameters
+    ----------
+    time, velocity : (k,) of the free end, s, evenly spaced, and m/s, positive outwards.
+    density, speed, length : kg/m³, c in m/s, and L of the bar in m.
+
+    Is nan where the velocity has no maximum with a minimum after it.
+    """
+    if not velocity.max() > 0.0:
+        return np.nan
+    begun, _ = _rise(velocity)
+    end = int(np.searchsorted(time, time[begun] + 2.0 * length / speed))
+    return 0.5 * density * speed * first_fall(velocity[begun:end]) if end - begun >= FEWEST else np.nan
+
+
+def _slope(x: np.ndarray, y: np.ndarray, weights: np.ndarray) -> Estimate:
+    """Slope of the straight line through points (k,) by least squares, each deviation times its weight."""
+    if len(x) == 2:
+        return Estimate(float((y[1] - y[0]) / (x[1] - x[0])), points=2)
+    (slope, _), covariance = np.polyfit(x, y, 1, w=weights, cov=True)
+    return Estimate(float(slope), float(np.sqrt(covariance[0, 0])), len(x))
+
+
+def _rise(values: np.ndarray) -> tuple[int, int]:
+    """Where a history (k,), positive somewhere, begins to rise to half its largest value, and where it is there."""
+    largest = values.max()
+    risen = int(np.argmax(values > 0.5 * largest))
+    quiet = np.flatnonzero(values[:risen] < ONSET * largest)
+    return (int(quiet[-1]) + 1 if len(quiet) else 0), risen
+
+
+def _delays(gauge: float, length: float, speed: float, position: Any) -> tuple[Any, Any]:
+    """Times in s, of the shape of the position, from the gauge to there: straight, and by the free end."""
+    return (position - gauge) / speed, way_by_the_end(gauge, length, position) / speed
+
+
+def _pulse(time: np.ndarray, stress: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """A pulse at other times, zero before and after."""
+    return np.interp(at, time, stress, left=0.0, right=0.0)

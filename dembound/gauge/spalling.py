@@ -1,0 +1,168 @@
+"""A spalling test on a bar: all that its gauge tells, and the velocity of its free end (L section 3.3)."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.gauge.estimates import (
+    Estimate,
+    attenuated_strength,
+    attenuation,
+    incident_pulse,
+    nominal_strength,
+    pull_back_strength,
+    tension_peaks,
+    wave_speed,
+    way_by_the_end,
+)
+from dembound.gauge.peaks import Peaks
+from dembound.gauge.readings import FREE, Gauge, not_above_zero, not_on_bar
+
+AGREEMENT = 0.05
+"""Share by which an estimated wave speed may be off the record's; coarse nodes slow pulses by less."""
+
+
+@dataclass(frozen=True)
+class Strength:
+    """The strength of a bar where it has spalled.
+
+    position : from the loaded end, m; nominal : largest tension there without attenuation, Pa, reached at `time`, s;
+    way : from the gauge by the free end to there, m; attenuated : what the way leaves of it, Pa, None without a
+    coefficient; pulse : times (p,) s and stresses (p,) Pa of the incident pulse alone.
+    """
+
+    position: float
+    nominal: float
+    time: float
+    way: float
+    attenuated: float | None
+    pulse: tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What a gauge tells: wave speed in m/s, attenuation in 1/m, strengths in Pa; None is unknown.
+
+    `peaks` are the tension peaks that speed or attenuation are estimated from, None if both were known.
+    """
+
+    peaks: Peaks | None
+    speed: Estimate
+    attenuation: Estimate | None
+    strength: Strength | None
+    pull_back: float | None
+
+
+def evaluate(
+    gauge: Gauge,
+    *,
+    spall: float | None = None,
+    free_end: tuple[np.ndarray, np.ndarray] | None = None,
+    estimate: bool = False,
+    count: int | None = None,
+    pulse_end: float | None = None,
+    speed: float | None = None,
+    coefficient: float | None = None,
+) -> Findings:
+    """All that a gauge tells with what is given beside it.
+
+    Parameters
+    ----------
+    gauge : what it has felt.
+    spall : where the bar has spalled, from the loaded end, m.
+    free_end : times (q,) in s and velocities (q,) in m/s of the free end, positive outwards.
+    estimate : take wave speed and attenuation from the tension peaks even if a record tells them.
+    count : the same, from the first peaks only.
+    pulse_end : time at which the incident pulse is over at the gauge, s; by default when its front comes back.
+    speed, coefficient : wave speed in m/s and attenuation in 1/m of another test; by default what a record tells,
+        else estimates.
+
+    Raises CaseError when what is given is not enough, and when a record contradicts what is to be found.
+    """
+    told = gauge.told
+    if told is not None and not estimate and count is None:
+        speed = told.speed if speed is None else speed
+        coefficient = told.attenuation if coefficient is None else coefficient
+    problems = list(_problems_with_options(gauge, spall, speed, coefficient))
+    if free_end is not None and gauge.density is None:
+        problems.append("--density: is not known, give it")
+    if problems:
+        raise CaseError(problems)
+    peaks, found, decay = _waves(gauge, speed, coefficient, count)
+    strength = None if spall is None else _strength(gauge, found.value, decay, spall, pulse_end)
+    pull_back = None if free_end is None else _pull_back(gauge, found.value, free_end)
+    return Findings(peaks, found, decay, strength, pull_back)
+
+
+def _problems_with_options(
+    gauge: Gauge, spall: float | None, speed: float | None, coefficient: float | None
+) -> Iterator[str]:
+    """What is wrong with what is given beside a gauge."""
+    if spall is not None:
+        yield from not_on_bar("--spall", spall, gauge.length)
+        if gauge.told is not None and gauge.told.ends[1] != FREE:
+            yield f"--spall: takes a pulse that a free end returns, the end opposite the load is {gauge.told.ends[1]}"
+    yield from not_above_zero("--wave-speed", speed, "m/s")
+    if coefficient is not None and not 0.0 <= coefficient < np.inf:
+        yield f"--attenuation: is {coefficient:g} 1/m, must be finite and not below 0"
+    if gauge.told is not None and (speed is None or coefficient is None):
+        for which, kind in zip(("the loaded end", "the end opposite the load"), gauge.told.ends, strict=True):
+            if kind != FREE:
+                yield f"--estimate: takes peaks of a pulse between free ends, {which} is {kind}"
+
+
+def _waves(
+    gauge: Gauge, speed: float | None, coefficient: float | None, count: int | None
+) -> tuple[Peaks | None, Estimate, Estimate | None]:
+    """Wave speed and attenuation, where they are not given estimated from tension peaks, and these."""
+    if speed is not None and coefficient is not None:
+        return None, Estimate(speed), Estimate(coefficient)
+    peaks = tension_peaks(gauge.time, gauge.stress, count)
+    _hold_against_break(gauge, peaks)
+    decay = None if coefficient is None else Estimate(coefficient)
+    if speed is not None and len(peaks.time) < 2:
+        return peaks, Estimate(speed), decay
+    passing = wave_speed(peaks.time, gauge.length, peaks.height)
+    _hold_against_speed(gauge, passing.value, speed)
+    found = passing if speed is None else Estimate(speed)
+    return peaks, found, attenuation(*peaks, found.value) if decay is None else decay
+
+
+def _hold_against_break(gauge: Gauge, peaks: Peaks) -> None:
+    """Raise CaseError if a record tells that the bar broke before the last of the tension peaks."""
+    broken = np.inf if gauge.told is None else gauge.told.broken
+    whole, count = int(np.sum(peaks.time <= broken)), len(peaks.time)
+    if whole < count:
+        said = f"this one broke at {broken:.4g} s, before {count - whole} of its {count}"
+        advice = f"use --peaks {whole}" if whole > 1 else "it tells neither speed nor attenuation"
+        raise CaseError([f"--estimate: takes tension peaks of a whole bar, {said}; {advice}"])
+
+
+def _hold_against_speed(gauge: Gauge, passing: float, given: float | None) -> None:
+    """Raise CaseError if the tension peaks' wave speed, m/s, is not the record's, or without one not the given one."""
+    known = given if gauge.told is None else gauge.told.speed
+    if known is not None and abs(passing / known - 1.0) > AGREEMENT:
+        option = "--attenuation: give it," if gauge.told is None else "--estimate:"
+        said = f"come to a wave speed of {passing:.4g} m/s, must be within {100.0 * AGREEMENT:g} % of {known:.4g} m/s"
+        raise CaseError([f"{option} the tension peaks {said}"])
+
+
+def _strength(gauge: Gauge, speed: float, decay: Estimate | None, position: float, pulse_end: float | None) -> Strength:
+    """Strengths at a position, m."""
+    bar = gauge.position, gauge.length, speed
+    pulse = incident_pulse(gauge.time, gauge.stress, *bar, pulse_end)
+    nominal, time = nominal_strength(*pulse, *bar, position)
+    way = way_by_the_end(gauge.position, gauge.length, position)
+    attenuated = None if decay is None else attenuated_strength(nominal, decay.value, way)
+    return Strength(position, nominal, time, way, attenuated, pulse)
+
+
+def _pull_back(gauge: Gauge, speed: float, free_end: tuple[np.ndarray, np.ndarray]) -> float:
+    """Strength in Pa from the velocity of the free end, m/s."""
+    assert gauge.density is not None
+    found = pull_back_strength(*free_end, gauge.density, speed, gauge.length)
+    if np.isnan(found):
+        raise CaseError(["--free-end: must fall and rise again before the pulse is back there, as where a bar spalls"])
+    return found

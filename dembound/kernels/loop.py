@@ -1,0 +1,72 @@
+"""The loop: the step of central differences for whatever laws move the parts of a scene.
+
+Compiled for every combination of laws and ties anew; they are chosen by the types of their bundles (law.py).
+"""
+
+import numpy as np
+from numba import njit
+
+from dembound.kernels.common import BROKE, DONE, FAST, MAKES
+from dembound.kernels.law import (
+    begin_all,
+    check_all,
+    finish_all,
+    move_all,
+    note_all,
+    pull,
+    push_all,
+    turn,
+    turning_work,
+)
+from dembound.kernels.step import copy, move_supported, note_after, note_before, note_top_speeds
+
+
+@njit(**MAKES)
+def advance(u, spare, v, number, laws, ties, turning, body, supports, log):
+    """Advance by up to supports.drive.shape[0] steps, the first being that of `number`; returns steps done and why.
+
+    u, spare, v : (3, n) displacement now, work space for the next one, velocity half a step ago; u holds the result.
+    laws, ties : tuples of bundles, a law for every part. turning : tables.Followers, or None. The other bundles are
+    explained in tables.py.
+    """
+    k = supports.nodes.size
+    pulled, followed = np.zeros((k, 3)), np.zeros((k, 3))
+    done, why = _advance(u, spare, v, number, laws, ties, turning, body, supports, log, pulled, followed)
+    if done % 2 == 1:
+        copy(spare, u)
+    return done, why
+
+
+@njit(**FAST)
+def _advance(u, spare, v, number, laws, ties, turning, body, supports, log, pulled, followed):
+    """The steps themselves, with work space (k, 3) of the supported nodes; the last displacements may be in spare."""
+    steps = supports.drive.shape[0]
+    nodes, work = supports.nodes, log.work
+    here, there = u, spare
+    done = steps
+    why = np.int64(DONE)
+    begin_all(laws)
+    for step in range(steps):
+        why = check_all(laws, here, there, v)
+        if why != DONE:
+            done = step
+            break
+        turned = turn(turning, here, v, body.load, body.step)
+        breaks = push_all(laws, here, there, v, number + step, body.step, work)
+        pull(ties, here, pulled)
+        note_before(step, here, v, log.probes, log.record, supports.twin, followed)
+        note_all(laws, step, here, log)
+        move_all(laws, here, there, v, body, nodes)
+        move_supported(step, here, v, there, pulled, followed, supports, body, work)
+        note_after(step, v, log.probes, log.record, log.tracked, log.peaks)
+        if log.top_speed.size > 0:
+            note_top_speeds(v, log.top_speed)
+        finish_all(laws, v, body, nodes, work)
+        work[1, 5] = work[0, 5] + turned
+        work[0, 5] += turned + turning_work(turning, v, body.step)
+        here, there = there, here
+        if breaks > 0:
+            done = step + 1
+            why = np.int64(BROKE)
+            break
+    return done, why

@@ -1,0 +1,44 @@
+"""The kinds of bodies there are: the one file that names them."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from dembound.bar.kind import Bars
+from dembound.case import Case, reader, writer
+from dembound.disks.kind import Disks
+from dembound.motion.kind import Kind
+from dembound.results.reader import open_record
+
+KINDS: tuple[Kind[Any, Any], ...] = (Bars(), Disks())
+"""In the order in which a case file is asked for their tables."""
+
+SCHEMAS = tuple(kind.schema for kind in KINDS)
+"""What their case files consist of."""
+
+
+def load(path: Path) -> Case:
+    """Read a case file of any kind; errors as `case.reader.load`."""
+    return reader.load(path, SCHEMAS)
+
+
+def loads(text: str, folder: Path = Path(), name: str = "case") -> Case:
+    """Read a case from TOML text, as if it stood in the file `name` of the folder; errors as `load`."""
+    return reader.loads(text, SCHEMAS, folder, name)
+
+
+def with_changes(case: Case, changes: Mapping[str, Any]) -> Case:
+    """The case with some keys changed, see `case.writer.with_changes`."""
+    return writer.with_changes(case, changes, SCHEMAS)
+
+
+def kind_of(case: Case) -> Kind[Any, Any]:
+    """What kind of body a case is of."""
+    return next(kind for kind in KINDS if isinstance(case, kind.schema.case))
+
+
+def kind_of_record(path: Path) -> Kind[Any, Any]:
+    """What kind of body a record is of; raises CaseError when it cannot be read."""
+    with open_record(path) as file:
+        name = file.attrs.get("kind", "disks")  # exact histories name none, and are those of disks
+    return next(kind for kind in KINDS if kind.name == name)

@@ -1,0 +1,156 @@
+"""The energy ledger: where the energy of a run is, and where it went.
+
+Central differences close their books exactly when kinetic energy is ½m v⁻·v⁺ (the velocities half a step before and
+after), strain energy that of the step itself, and the work of every force F the sum of F·(v⁻ + v⁺)/2·Δt. What is left
+open comes from contacts that open or close within a step, from normals that turn, and from rounding.
+"""
+
+from dataclasses import astuple, dataclass, fields
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.errors import RunError
+from dembound.motion.state import Arrays
+from dembound.motion.trackers import NEVER, Run, Tracker
+
+GAIN = 0.5
+"""Share of what was brought in that a run may gain before it stops; contacts that clap misjudge below 0.01 of it."""
+
+ROUNDING = 1e-9
+"""Share of the energies in a body that is nothing: differences of sums over a million contacts round to less."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One line of the ledger: time in s, energies in J per metre of thickness.
+
+    kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
+    of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
+    and driven loads; damping, friction, crack, taken by them; handover, what a change of method or law has added;
+    error, what is stored and taken beyond what came in. Of a bar in J.
+    """
+
+    time: float
+    kinetic: float
+    contact: float
+    bond: float
+    load: float
+    balance: float
+    outside: float
+    damping: float
+    friction: float
+    crack: float
+    handover: float
+    error: float
+
+
+class _Begun(NamedTuple):
+    """The beginning of an entry's step.
+
+    place, before : (3, n) displacements, and velocities half a step ago; balancing : J, work of balancing forces;
+    laws : number of laws used so far.
+    """
+
+    place: np.ndarray
+    before: np.ndarray
+    balancing: float
+    laws: int
+
+
+class Ledger(Tracker):
+    """Keeps the books of a run that has not begun yet, in entries that each take the step after it, too.
+
+    Parameters
+    ----------
+    run : it starts from the strain energy of this one.
+    interval : steps from one entry to the next, of which the first is at once.
+    last : step of one more entry; by default there is none.
+    """
+
+    name = "ledger"
+
+    def __init__(self, run: Run, interval: int, last: int = NEVER) -> None:
+        self.entries: list[Entry] = []
+        self.due = run.state.step
+        self._interval, self._last = interval, last
+        self._unit = run.scene.energy_unit
+        self._inertia = np.stack([run.scene.mass, run.scene.mass, run.scene.inertia])
+        self._first = run.system.stored(run.state.displacement)
+        self._most = 0.0, 0.0  # that boundaries and loads have brought in at any time
+        self._begun: _Begun | None = None
+
+    def handle(self, run: Run) -> None:
+        """Begin an entry, or enter the one that was begun a step ago."""
+        if self._begun is not None:
+            self._enter(run, self._begun)
+            self._begun = None
+            step = run.state.step - 1
+            later = step + self._interval
+            self.due = min(later, self._last) if step < self._last else later
+        if self.due == run.state.step:
+            state = run.state
+            balancing = run.system.balancing_work(state.displacement)  # forces may end in the step
+            self._begun = _Begun(state.displacement.copy(), state.velocity.copy(), balancing, len(state.laws))
+            self.due = state.step + 1
+
+    def _enter(self, run: Run, begun: _Begun) -> None:
+        """Enter the energies at the beginning of the last step."""
+        state, system = run.state, run.system
+        place, before, balancing, laws = begun
+        if len(state.laws) > laws and state.switch_velocity.size > 0:
+            # the law changed before the step: it began where the new law took over, maybe turned as a whole
+            place = state.displacement - run.time_step * state.velocity
+            before = state.switch_velocity
+            balancing = system.balancing_work(place)
+        kinetic = 0.5 * float(np.sum(self._inertia * before * state.velocity))
+        contact, bond = (now - first for now, first in zip(system.stored(place), self._first, strict=True))
+        load = float(np.sum(system.load * (place - state.datum)))
+        outside, damping, friction, crack, handover, turning = (float(work) for work in state.work[1])
+        balance = turning + balancing
+        error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - handover
+        taken = (damping, friction, crack, handover)
+        time = (state.step - 1) * run.time_step
+        self.entries.append(Entry(time, kinetic, contact, bond, load, balance, outside, *taken, error))
+        self._watch()
+
+    def _watch(self) -> None:
+        """Raise RunError where the run has gained energy from nothing, as it does with a step too large for its law."""
+        first, last = self.entries[0], self.entries[-1]
+        self._most = max(self._most[0], last.outside), max(self._most[1], last.load)
+        came = first.kinetic + sum(self._most)
+        gained = last.error - first.error
+        if gained > GAIN * came + ROUNDING * (sum(self._first) + last.kinetic + abs(last.outside)):
+            raise RunError(
+                f"the run has gained {gained:.3g} {self._unit} from nothing until t = {last.time:g} s, when loads and "
+                f"boundaries had brought in {came:.3g} {self._unit} at most; take a smaller run.safety or run.time_step"
+            )
+
+    @property
+    def columns(self) -> np.ndarray:
+        """All entries, (k, 12), in the order of `Entry`."""
+        return np.array([astuple(entry) for entry in self.entries]).reshape(-1, len(fields(Entry)))
+
+    def memory(self) -> Arrays:
+        """Entries, what came in at most, and an entry that has begun."""
+        begun = self._begun or _Begun(np.zeros((3, 0)), np.zeros((3, 0)), 0.0, 0)
+        return {
+            "due": np.array(self.due),
+            "entries": self.columns,
+            "first": np.array(self._first),
+            "most": np.array(self._most),
+            "has_begun": np.array(self._begun is not None),
+            "place": begun.place,
+            "before": begun.before,
+            "balancing": np.array(begun.balancing),
+            "laws": np.array(begun.laws),
+        }
+
+    def recall(self, memory: Arrays) -> None:
+        """Take over what `memory` has returned in another run of the same case."""
+        self.due = int(memory["due"])
+        self.entries = [Entry(*row) for row in memory["entries"].tolist()]
+        self._first = tuple(memory["first"].tolist())
+        self._most = tuple(memory["most"].tolist())
+        begun = _Begun(memory["place"].copy(), memory["before"].copy(), float(memory["balancing"]), int(memory["laws"]))
+        self._begun = begun if memory["has_begun"] else None

@@ -1,0 +1,137 @@
+"""The scene: the arrays a case becomes, as far as the loop, trackers and records need them."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from dembound.boundaries.support import Edge, Supports
+from dembound.case import Case
+from dembound.motion.part import System
+
+RUNAWAY = 1e4
+"""A node this many times as fast as all waves together is unphysical: resonance gives factors of ten."""
+
+FASTEST = 1e100
+"""Speed (m/s) beyond which energies come near the end of what numbers can say, 1e308 J."""
+
+
+class Scene(ABC):
+    """A case turned into arrays: n nodes of three components each (x, y, rotation), all SI.
+
+    Attributes
+    ----------
+    case : where it came from.
+    edges : side -> its exposed nodes, for every side that is not periodic.
+    supports : the table of what pushes from outside, loads that follow a wave included.
+    monitors : name -> node.
+    kind : what records call the kind of body.
+    energy_unit : the unit of its energies.
+    record_width : columns of a probe's record, see kernels.tables.Log.
+    block : steps between two looks at a run, which compiled code does not leave in between.
+    has_history : whether its law is history-dependent.
+    """
+
+    case: Case
+    edges: Mapping[str, Edge]
+    supports: Supports
+    monitors: Mapping[str, int]
+    kind: str
+    energy_unit: str
+    record_width: int
+    block: int
+    has_history: bool = False
+
+    @property
+    @abstractmethod
+    def count(self) -> int:
+        """Number of nodes n."""
+
+    @property
+    @abstractmethod
+    def positions(self) -> np.ndarray:
+        """(n, 2) m."""
+
+    @property
+    @abstractmethod
+    def size(self) -> np.ndarray:
+        """(2,) width and height, m."""
+
+    @property
+    @abstractmethod
+    def mass(self) -> np.ndarray:
+        """(n,) kg."""
+
+    @property
+    @abstractmethod
+    def inertia(self) -> np.ndarray:
+        """(n,) kg·m²."""
+
+    @property
+    @abstractmethod
+    def free(self) -> np.ndarray:
+        """(3,) 1 for a component that moves, 0 for one held everywhere."""
+
+    @property
+    @abstractmethod
+    def damp(self) -> float:
+        """Local damping coefficient."""
+
+    @property
+    @abstractmethod
+    def steady_load(self) -> np.ndarray:
+        """(3, n) forces and moments (N, N·m) of the loads that are always there."""
+
+    @property
+    @abstractmethod
+    def threads(self) -> int:
+        """Threads its steps use."""
+
+    @property
+    @abstractmethod
+    def bytes(self) -> int:
+        """Memory of its arrays and of the state."""
+
+    @property
+    @abstractmethod
+    def attributes(self) -> dict[str, Any]:
+        """What a record's header has beside that of every run."""
+
+    @property
+    @abstractmethod
+    def columns(self) -> dict[str, tuple[np.ndarray, str]]:
+        """What a record keeps of every node, by name: values (n, …) and unit."""
+
+    @property
+    @abstractmethod
+    def places(self) -> dict[str, tuple[float, float]]:
+        """Where monitors were asked for, m."""
+
+    @abstractmethod
+    def system(self, time_step: float) -> System:
+        """Its parts and ties at rest as built, to be stepped by time_step (s)."""
+
+    @property
+    def twin(self) -> np.ndarray | None:
+        """(n,) the node whose velocity the dashpots of each one follow, itself or another; None: no dashpots follow."""
+        return None
+
+    @cached_property
+    def tracked(self) -> np.ndarray:
+        """(q,) the nodes of all edges, one edge after the other."""
+        return np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in self.edges.values())])
+
+    def tracked_of(self, side: str) -> slice:
+        """Where a side's nodes stand among the tracked ones."""
+        sides = list(self.edges)
+        first = sum(len(self.edges[name].nodes) for name in sides[: sides.index(side)])
+        return slice(first, first + len(self.edges[side].nodes))
+
+    @property
+    def fastest(self) -> float:
+        """Speed (m/s) that no node can have; where more than waves moves them, that of the largest numbers."""
+        waves = sum(wave.peak() for wave in self.case.wave.values())
+        more = self.case.load or self.has_history
+        return min(RUNAWAY * waves, FASTEST) if waves and not more else FASTEST

@@ -1,0 +1,180 @@
+"""The loop: advance a scene in time to the steps that trackers want to see."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dembound.kernels import loop, tables
+from dembound.motion.clock import Clock
+from dembound.motion.part import System
+from dembound.motion.scene import Scene
+from dembound.motion.state import State
+from dembound.motion.supports import NodeSupports
+from dembound.motion.threads import threads_for
+from dembound.motion.trackers import Run, Tracker, Watch
+
+DRIVEN_BYTES = 64e6
+"""Most memory for the drives of a block; many driven nodes make blocks shorter."""
+
+
+class Simulation:
+    """A scene in motion, from rest at time zero.
+
+    Parameters
+    ----------
+    scene : what moves.
+    time_step : Δt in s; the caller has compared it with the stability limit.
+    probes : (p,) nodes whose motion `advance` returns at every step; by default none.
+    system : its parts and ties; by default those of the scene, at rest as built.
+    datum : (3, n) displacements at which they are at rest; by default zero.
+    damp : local damping coefficient; by default the scene's.
+    clock : counts the seconds of stepping and of trackers, which are "step" and "record".
+
+    Attributes
+    ----------
+    state : all that evolves.
+    trackers : who sees the run; a `Watch` at first, which all runs should have.
+    stopped : whether a tracker has ended the run.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        time_step: float,
+        probes: Sequence[int] | np.ndarray = (),
+        *,
+        system: System | None = None,
+        datum: np.ndarray | None = None,
+        damp: float | None = None,
+        clock: Clock | None = None,
+    ) -> None:
+        self.scene = scene
+        self.time_step = time_step
+        self.clock = clock or Clock()
+        self.probes = np.array(probes, dtype=np.int64)
+        self.system = scene.system(time_step) if system is None else system
+        datum = np.zeros((3, scene.count)) if datum is None else datum
+        self.state = State(
+            displacement=datum.copy(),
+            velocity=np.zeros((3, scene.count)),
+            datum=datum,
+            peaks=np.zeros((len(scene.tracked), 3, 2)),
+            top_speed=np.zeros(scene.count if scene.case.output.peaks else 0),
+        )
+        self.state.owners["system"] = self.system
+        self.trackers: list[Tracker] = []
+        self.track(Watch(scene.block))
+        self.stopped = False
+        self._spare = np.zeros((3, scene.count))
+        self._damp = scene.damp if damp is None else damp
+        self._supports = NodeSupports(scene, self.system.ties, time_step)
+        self._mobility, self._inverse_inertia = time_step / scene.mass, time_step / scene.inertia
+        for mobility in (self._mobility, self._inverse_inertia):
+            mobility[self._supports.nodes] = 0.0  # the support table moves these
+        self.system.begin(self.state)
+
+    def track(self, *trackers: Tracker) -> None:
+        """Let more trackers see the run; they are part of its state."""
+        self.trackers += trackers
+        self.state.owners |= {tracker.name: tracker for tracker in trackers}
+
+    @property
+    def time(self) -> float:
+        """Time of the current displacements (s)."""
+        return self.state.step * self.time_step
+
+    def run(self, steps: int) -> None:
+        """Go on to `steps` steps in all, or until a tracker ends the run, handing it to trackers when they are due.
+
+        Raises what trackers raise: RunError when the motion grows without bound, saying when and where.
+        """
+        self._hand_round(None)
+        while self.state.step < steps and not self.stopped:
+            with self.clock.of("step"):
+                record = self._advance_to(min(steps, *(tracker.due for tracker in self.trackers)))
+            self._hand_round(record)
+
+    def advance(self, steps: int) -> np.ndarray:
+        """Go on by `steps` steps; returns (steps, p, 6): displacement and velocity of the probes before each.
+
+        Displacements count from the start. Of a bar, stress (Pa) is a seventh column. Trackers see it as in `run`.
+        """
+        kept = _Records()
+        self.trackers.append(kept)
+        try:
+            self.run(self.state.step + steps)
+        finally:
+            self.trackers.remove(kept)
+        empty = np.empty((0, len(self.probes), self.scene.record_width))
+        return np.concatenate([empty, *kept.records])
+
+    def edge_peaks(self, side: str) -> np.ndarray:
+        """Smallest and largest velocity so far of the nodes of one edge, (k, 3, 2)."""
+        return self.state.peaks[self.scene.tracked_of(side)]
+
+    def _hand_round(self, record: np.ndarray | None) -> None:
+        """Let trackers receive what the probes have just done, if anything, and those that are due see the run."""
+        with self.clock.of("record"):
+            for tracker in self.trackers:
+                if record is not None:
+                    tracker.observe(self, record)
+            for tracker in self.trackers:
+                if tracker.due <= self.state.step:
+                    tracker.handle(self)
+
+    def _advance_to(self, step: int) -> np.ndarray:
+        """Advance to a step; returns what the probes did, see `advance`."""
+        record = np.empty((step - self.state.step, len(self.probes), self.scene.record_width))
+        at_once = max(1, int(DRIVEN_BYTES / (24 * max(1, len(self._supports.nodes)))))
+        with threads_for(self.scene.count):
+            for first in range(0, len(record), at_once):
+                self._advance(record[first : first + at_once])
+        record[..., :3] -= self.state.datum[:, self.probes].T
+        return record
+
+    def _advance(self, record: np.ndarray) -> None:
+        """As many steps as the record (k, p, 6 or 7) has room for, under one law after the other if need be."""
+        supports = self._supports.table((self.state.step + np.arange(len(record))) * self.time_step)
+        done = 0
+        while done < len(record):
+            remaining = supports._replace(drive=supports.drive[done:])
+            done += self._advance_under_one_law(record[done:], remaining)
+
+    def _advance_under_one_law(self, record: np.ndarray, supports: tables.Supports) -> int:
+        """As many of these steps as the laws in use, with their lists of pairs or bonds, are good for; those done."""
+        state, system = self.state, self.system
+        body = tables.Body(
+            self._mobility, self._inverse_inertia, self.scene.free, system.steady, self._damp, self.time_step
+        )
+        log = tables.Log(self.probes, record, self.scene.tracked, state.peaks, state.top_speed, state.work)
+        done, why = loop.advance(
+            state.displacement,
+            self._spare,
+            state.velocity,
+            state.step,
+            system.laws(),
+            system.bundles(supports.nodes),
+            system.turning,
+            body,
+            supports,
+            log,
+        )
+        state.step += int(done)
+        system.react(int(why), int(done), state)
+        return int(done)
+
+
+class _Records(Tracker):
+    """Keeps what the probes did."""
+
+    name = "records"
+
+    def __init__(self) -> None:
+        self.records: list[np.ndarray] = []
+
+    def handle(self, run: Run) -> None:
+        """It is never due."""
+
+    def observe(self, run: Run, record: np.ndarray) -> None:
+        """Keep it."""
+        self.records.append(record)

@@ -1,0 +1,83 @@
+"""The state of a run: everything that evolves, in one object."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+Arrays = Mapping[str, np.ndarray]
+"""Arrays by name."""
+
+WORK = ("outside", "damping", "friction", "crack", "handover", "turning")
+"""What the columns of the work are, see kernels.tables.Log."""
+
+
+class Owner(Protocol):
+    """Who keeps a part of the state: a system of parts, a tracker."""
+
+    def memory(self) -> Arrays:
+        """All that evolves in it, by name."""
+
+    def recall(self, memory: Arrays) -> None:
+        """Take over what `memory` has returned in another run of the same case."""
+
+
+@dataclass
+class State:
+    """What a run of n nodes has come to.
+
+    Attributes
+    ----------
+    displacement, velocity : (3, n) m and rad, m/s and rad/s; velocities are half a time step behind.
+    datum : (3, n) displacement at the start.
+    peaks : (q, 3, 2) smallest and largest velocity so far of the nodes of all edges, one edge after the other.
+    top_speed : (n,) m/s, largest speed of every node so far; (0,) unless the case asks for it.
+    work : (2, 6) J, in the columns `WORK`; see kernels.tables.Log.
+    step : steps done.
+    laws : name of each law used and the step it began with.
+    switch_velocity : (3, n) velocity with which the history-dependent law began, half a step before it did; (3, 0)
+        under another one.
+    owners : who keeps the rest of the state, by name.
+    """
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    datum: np.ndarray
+    peaks: np.ndarray
+    top_speed: np.ndarray
+    work: np.ndarray = field(default_factory=lambda: np.zeros((2, len(WORK))))
+    step: int = 0
+    laws: list[tuple[str, int]] = field(default_factory=list)
+    switch_velocity: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))
+    owners: dict[str, Owner] = field(default_factory=dict)
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """Copies of all of it, by name: enough to go on in another process, to the same bits."""
+        arrays = {name: getattr(self, name) for name in _ARRAYS}
+        arrays |= {f"work/{name}": self.work[:, column] for column, name in enumerate(WORK)}
+        arrays["step"] = np.array(self.step)
+        arrays["laws/name"] = np.array([name for name, _ in self.laws])
+        arrays["laws/step"] = np.array([step for _, step in self.laws], dtype=np.int64)
+        for owner, kept in self.owners.items():
+            arrays |= {f"{owner}/{name}": values for name, values in kept.memory().items()}
+        return {name: np.array(values) for name, values in arrays.items()}
+
+    def take(self, arrays: Arrays) -> None:
+        """Take over all that `arrays` has returned in another run of the same case."""
+        for name in _ARRAYS:
+            setattr(self, name, arrays[name].copy())
+        self.work = np.stack([arrays[f"work/{name}"] for name in WORK], axis=1)
+        self.step = int(arrays["step"])
+        self.laws = list(zip(arrays["laws/name"].tolist(), arrays["laws/step"].tolist(), strict=True))
+        for owner, kept in self.owners.items():
+            kept.recall(within(arrays, owner))
+
+
+_ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_velocity")
+"""The fields of a state that are arrays as they stand."""
+
+
+def within(arrays: Arrays, owner: str) -> dict[str, np.ndarray]:
+    """The arrays whose names begin with an owner's, without it."""
+    return {name.removeprefix(f"{owner}/"): values for name, values in arrays.items() if name.startswith(f"{owner}/")}

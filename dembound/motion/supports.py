@@ -1,0 +1,63 @@
+"""The support table as kernels apply it."""
+
+import numpy as np
+
+from dembound.boundaries.support import Supports
+from dembound.kernels import tables
+from dembound.motion.part import Tie
+from dembound.motion.scene import Scene
+
+
+class NodeSupports:
+    """One line per supported node, with all three components.
+
+    Parameters
+    ----------
+    scene : what is supported.
+    ties : they act on nodes of the table.
+    time_step : Δt in s.
+
+    Attributes
+    ----------
+    nodes : (k,) ascending.
+    inertia, keep, mobility, stiffness, prescribed, follow : (k, 3), see kernels.tables.Supports.
+    twin : (k,) see there.
+    """
+
+    def __init__(self, scene: Scene, ties: tuple[Tie, ...], time_step: float) -> None:
+        self._rows: Supports = scene.supports
+        self._half_step = 0.5 * time_step
+        tied = np.concatenate([np.zeros(0, dtype=np.int64), *(tie.nodes for tie in ties)])
+        self.nodes = np.union1d(self._rows.node, tied)
+        self._at = (np.searchsorted(self.nodes, self._rows.node), self._rows.component)
+        self.inertia = np.stack([scene.mass, scene.mass, scene.inertia], axis=1)[self.nodes] / time_step
+        damping = self._spread(self._rows.damping)
+        self.stiffness, self.prescribed = self._spread(self._rows.stiffness), self._spread(self._rows.prescribed)
+        self.follow = self._spread(self._rows.follow)
+        twin = self.nodes if scene.twin is None else scene.twin[self.nodes]
+        self.twin = np.where(twin == self.nodes, -1, twin)
+        moves = scene.free * (1.0 - self.prescribed)
+        self.mobility = moves / (self.inertia + 0.5 * damping)
+        self.keep = moves * (self.inertia - 0.5 * damping) / (self.inertia + 0.5 * damping)
+
+    def table(self, times: np.ndarray) -> tables.Supports:
+        """All of it for steps that begin at `times` (steps,) s."""
+        drive = np.zeros((len(times), len(self.nodes), 3))
+        drive[:, self._at[0], self._at[1]] = self._rows.sample(times, self._half_step)
+        return tables.Supports(
+            nodes=self.nodes,
+            inertia=self.inertia,
+            keep=self.keep,
+            mobility=self.mobility,
+            stiffness=self.stiffness,
+            prescribed=self.prescribed,
+            drive=drive,
+            twin=self.twin,
+            follow=self.follow,
+        )
+
+    def _spread(self, column: np.ndarray) -> np.ndarray:
+        """A column of the table as (k, 3), zero where it has no row."""
+        spread = np.zeros((len(self.nodes), 3))
+        spread[self._at] = column
+        return spread

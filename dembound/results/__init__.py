@@ -1,0 +1,1 @@
+"""Records of runs: writing, reading, comparing, and files for ParaView."""

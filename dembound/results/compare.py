@@ -1,0 +1,72 @@
+"""How far histories of runs are from those of a reference run."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.results.histories import UNITS, History, Quantity, read_histories
+from dembound.results.reader import COMPONENTS, record_names
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One monitor of a run beside the reference, in the component that moves most there.
+
+    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; last, reference_last : the values at the end;
+    unit : theirs; place, reference_place : where the monitor was asked for in both, in words.
+    """
+
+    run: str
+    monitor: str
+    component: str
+    rms: float
+    peak: float
+    last: float
+    reference_last: float
+    unit: str
+    place: str
+    reference_place: str
+
+
+def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Difference]:
+    """Differences of runs from a reference run at the monitors they share, over the time they share.
+
+    The runs' histories are interpolated at the reference's times. Raises CaseError when nothing can be compared.
+    """
+    names = record_names([reference, *runs])[1:]
+    wanted = read_histories(reference, quantity)
+    found = [
+        _difference(name, monitor, history, wanted[monitor], quantity)
+        for name, path in zip(names, runs, strict=True)
+        for monitor, history in read_histories(path, quantity).items()
+        if monitor in wanted
+    ]
+    if not found:
+        raise CaseError([f"{reference}: shares no monitor with the runs to compare"])
+    return found
+
+
+def _difference(run: str, monitor: str, history: History, reference: History, quantity: Quantity) -> Difference:
+    """One monitor's difference."""
+    column = int(np.argmax(np.abs(reference.values[:, :2]).max(axis=0)))
+    end = min(history.time[-1], reference.time[-1])
+    time = reference.time[reference.time <= end]
+    expected = reference.values[: len(time), column]
+    if not expected.any():
+        raise CaseError([f"monitor {monitor}: its {quantity} stays zero in the reference"])
+    values = np.interp(time, history.time, history.values[:, column])
+    error = values - expected
+    return Difference(
+        run=run,
+        monitor=monitor,
+        component=COMPONENTS[column],
+        rms=float(np.sqrt(np.sum(error**2) / np.sum(expected**2))),
+        peak=float(np.abs(error).max() / np.abs(expected).max()),
+        last=float(values[-1]),
+        reference_last=float(expected[-1]),
+        unit=UNITS[quantity][column],
+        place=history.place,
+        reference_place=reference.place,
+    )

@@ -1,0 +1,140 @@
+"""Result files: opening records, and writing what is made of them whole or not at all."""
+
+import errno
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from dembound.errors import CaseError
+
+COMPONENTS = ("x", "y", "rotation")
+"""The columns of every displacement and velocity in a record."""
+
+
+def open_record(path: Path) -> h5py.File:
+    """Open a record (``run.h5``, ``calibration.h5``) for reading; use it in a ``with`` statement.
+
+    Raises CaseError when it is not there or not readable.
+    """
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        raise CaseError([f"{path}: cannot be read as a record of results: {error}"]) from None
+
+
+def has_monitors(path: Path) -> bool:
+    """Whether a record has histories."""
+    with open_record(path) as file:
+        return len(file.get("histories", {})) > 0
+
+
+def is_line(size: Sequence[float]) -> bool:
+    """Whether a scene of this size, (2,) m, has no height: one of nodes in a row."""
+    return not size[1] > 0.0
+
+
+def place_in_words(place: Sequence[float], size: Sequence[float]) -> str:
+    """A place (2,) m in words; on a line, in a scene of size (2,) m, one number is enough, and millimetres count."""
+    return f"{place[0]:.4g} m" if is_line(size) else "({:.2f}, {:.2f}) m".format(*place)
+
+
+def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
+    """A snapshot of an open record by its number; negative ones count from the last.
+
+    Raises CaseError when there is no such snapshot.
+    """
+    snapshots = list(file.get("snapshots", {}).values())
+    if not -len(snapshots) <= number < len(snapshots):
+        raise CaseError([f"{file.filename}: has no snapshot {number}, they are {_numbers(len(snapshots))}"])
+    return snapshots[number]
+
+
+def _numbers(count: int) -> str:
+    """How snapshots are numbered, in words."""
+    return f"0 to {count - 1}" if count else "none"
+
+
+def liveliest_snapshot(file: h5py.File, field: str) -> h5py.Group:
+    """The snapshot of an open record in which a disk's `field` (velocity or displacement) is largest in x or y.
+
+    Raises CaseError when there is no snapshot.
+    """
+    groups = list(snapshot_of(file, -1).parent.values())
+    return max(groups, key=lambda group: float(np.abs(group[field][:, :2]).max()))
+
+
+def cracks_until(file: h5py.File, time: float) -> dict[str, np.ndarray]:
+    """The bonds of an open record that have broken at a time in s, those of the static stage included.
+
+    Columns time (k,) s, position (k, 2) m, particles (k, 2), shear (k,) bool, in the order the bonds broke.
+    """
+    cracks = {name: dataset[:] for name, dataset in file["cracks"].items()}
+    broken = cracks["time"] <= time
+    return {name: column[broken] for name, column in cracks.items()}
+
+
+def laws_in_words(laws: Sequence[tuple[str, float]]) -> str:
+    """The laws of a run, each with the time in s it began at, such as "elastic law to 0.012 s, then linearpbond"."""
+    (first, _), *later = laws
+    return f"{first} law" + ("".join(f" to {time:.3g} s, then {name}" for name, time in later) or " all through")
+
+
+def laws_of(file: h5py.File) -> list[tuple[str, float]]:
+    """The laws of an open record, each with the time in s it began at; none if the run was cut off before it told."""
+    if "laws" not in file:
+        return []
+    return list(zip(file["laws/name"].asstr()[:], file["laws/time"][:].tolist(), strict=True))
+
+
+def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
+    """The energy ledger of an open record: its columns (k,) by name, time in s and energies in J per metre (a bar: J).
+
+    One more column, relative_error, is the error in parts of what the run was given: the kinetic energy at the start
+    and the most that boundaries and steady loads have each brought in at any time. What balances the stress of a
+    settled body does not count, nor does what boundaries take: in a run that gains energy from nothing both grow.
+
+    Raises CaseError when there is no entry.
+    """
+    columns = {name: dataset[:] for name, dataset in file.get("energy", {}).items()}
+    if not columns or len(columns["time"]) == 0:
+        raise CaseError([f"{file.filename}: has no entries in its energy ledger"])
+    scale = float(columns["kinetic"][0] + max(columns["outside"].max(), 0.0) + max(columns["load"].max(), 0.0))
+    columns["relative_error"] = columns["error"] / scale if scale > 0.0 else np.zeros_like(columns["error"])
+    return columns
+
+
+def record_names(paths: Sequence[Path]) -> list[str]:
+    """A name for each record, for legends: its case's name, where two share it its folder's, else its path."""
+    names = []
+    for path in paths:
+        with open_record(path) as file:
+            names.append(str(file.attrs["name"]))
+    folders = [path.resolve().parent.name for path in paths]
+    return [
+        name if names.count(name) == 1 else folder if folders.count(folder) == 1 else str(path)
+        for name, folder, path in zip(names, folders, paths, strict=True)
+    ]
+
+
+def require_folder(path: Path) -> None:
+    """Raise FileNotFoundError, which names the folder, where the one that `path` is to be in is not there."""
+    if not path.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(path.parent))
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Give a neighbouring path to write to, which takes the place of `path` when all went well.
+
+    Raises FileNotFoundError as `require_folder`.
+    """
+    require_folder(path)
+    part = path.with_name(f"{path.name}.part")
+    try:
+        yield part
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)

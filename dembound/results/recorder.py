@@ -1,0 +1,275 @@
+"""The recorder: a run in one HDF5 file. Pictures, VTU files and reports are made from that file alone.
+
+Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset of numbers)::
+
+    /                       attributes: case, name, kind ("disks", "bar"), version, size, time_step, step_limit, steps,
+                            complete; of disks seed, of a bar density, section, wave_speed, attenuation, loaded,
+                            the end that is, and ends, the types of the left and the right one
+    particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
+                            of a bar's nodes volume (n,); if the case asks for it peak_velocity (n,), the largest speed
+                            of each in the whole run
+    histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle,
+                            position, wanted
+    boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2)
+    snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
+                            under a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
+                            and local damage (n,); of a static stage that stalled unbalanced (n, 2), what the forces on
+                            each particle come to; attribute time
+    energy/                 time and the columns of `motion.energy.Entry`, (k,) each
+    cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
+                            displacements, positions count from the start of the run
+    laws/                   name (l,) of each law or method used and time (l,) it began at
+    static/                 attributes: what the static stage came to, if there was one; displacement (n, 3) at its end
+    static/before/          the same before an excavation, of the particles that are left by it
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields
+from pathlib import Path
+from types import TracebackType
+
+import h5py
+import numpy as np
+
+from dembound import __version__
+from dembound.motion.cracks import Cracks
+from dembound.motion.energy import Entry, Ledger
+from dembound.motion.kind import Stage, StalledError
+from dembound.motion.trackers import NEVER, Run, Tracker
+
+DISPLACEMENT_UNIT = "m, m, rad"
+VELOCITY_UNIT = "m/s, m/s, rad/s"
+
+
+class Recorder:
+    """Writes one run, appending as it goes; ``complete`` turns true only when the run is over.
+
+    Parameters
+    ----------
+    path : file to create.
+    run : what to record; its first probes are the monitors in their order.
+    step_limit : stability limit in s, kept for the record.
+    interval : time between two history samples in s; 0 keeps every step.
+    ledger : the run's energy ledger, kept when it is over; None: it has none.
+    stages : those that came before the run.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        run: Run,
+        step_limit: float,
+        interval: float = 0.0,
+        ledger: Ledger | None = None,
+        stages: Sequence[Stage] = (),
+    ) -> None:
+        self.run = run
+        self.ledger = ledger
+        self.stride = max(1, round(interval / run.time_step))
+        self.file = h5py.File(path, "w")
+        self._write_header(step_limit)
+        self._write_particles()
+        self._histories = self._make_histories()
+        self._cracks = self._make_cracks()
+        for stage in stages:
+            self._write_stage(stage)
+        self._snapshots = 0
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if kind is None:
+            self._write_boundaries()
+            self._write_peaks()
+            self._write_energy()
+        self._write_laws()
+        self.file.attrs["steps"] = self.run.state.step
+        self.file.attrs["complete"] = kind is None
+        self.file.close()
+
+    def append(self, record: np.ndarray) -> None:
+        """Keep every stride-th step of the last ones, of which `record` has the probes; see `Simulation.advance`."""
+        state, step = self.run.state, self.run.time_step
+        begun = state.step - len(record)
+        rows = np.arange(-begun % self.stride, len(record), self.stride)
+        times = (begun + rows) * step
+        for index, group in enumerate(self._histories):
+            _extend(group["time"], times)
+            _extend(group["displacement"], record[rows, index, :3])
+            _extend(group["velocity"], record[rows, index, 3:6])
+            if "stress" in group:
+                _extend(group["stress"], record[rows, index, 6])
+        self._append_cracks(self.run.system.take_cracks(state.step), step)
+        self.file.flush()
+
+    def snapshot(self) -> None:
+        """Keep the whole scene as it is now."""
+        state = self.run.state
+        group = self.file.create_group(f"snapshots/{self._snapshots:04d}")
+        group.attrs["time"] = self.run.time
+        _write(group, "displacement", (state.displacement - state.datum).T, DISPLACEMENT_UNIT)
+        _write(group, "velocity", state.velocity.T, VELOCITY_UNIT)
+        for name, (values, unit) in self.run.system.snapshot(state.displacement).items():
+            _write(group, name, values, unit)
+        self._snapshots += 1
+
+    def stalled_snapshot(self, stalled: StalledError) -> None:
+        """Keep the scene as a stage that stalled left it, unbalanced forces and cracks with it."""
+        self.snapshot()
+        self._append_cracks(stalled.cracks, self.run.time_step)
+        _write(self.file[f"snapshots/{self._snapshots - 1:04d}"], "unbalanced", stalled.unbalanced, "N")
+
+    def _write_header(self, step_limit: float) -> None:
+        scene, case = self.run.scene, self.run.scene.case
+        self.file.attrs.update(
+            {
+                "name": case.name,
+                "title": case.title,
+                "case": case.text,
+                "version": __version__,
+                "time_step": self.run.time_step,
+                "step_limit": step_limit,
+                "size": scene.size,
+                "kind": scene.kind,
+                "complete": False,
+                **scene.attributes,
+            }
+        )
+
+    def _write_particles(self) -> None:
+        group = self.file.create_group("particles")
+        for name, (values, unit) in self.run.scene.columns.items():
+            _write(group, name, values, unit)
+
+    def _make_histories(self) -> list[h5py.Group]:
+        scene = self.run.scene
+        histories = self.file.create_group("histories", track_order=True)  # the case's order, not the alphabet's
+        groups = []
+        for name, node in scene.monitors.items():
+            group = histories.create_group(name)
+            group.attrs["particle"] = node
+            group.attrs["position"] = scene.positions[node]
+            group.attrs["wanted"] = scene.places.get(name, scene.positions[node])  # a twin was not asked for
+            group.attrs["unit"] = "m"
+            for dataset, width, unit in (
+                ("time", (), "s"),
+                ("displacement", (3,), DISPLACEMENT_UNIT),
+                ("velocity", (3,), VELOCITY_UNIT),
+            ):
+                _make(group, dataset, width, "f8", unit)
+            if scene.record_width > 6:
+                _make(group, "stress", (), "f8", "Pa")
+            groups.append(group)
+        return groups
+
+    def _make_cracks(self) -> h5py.Group:
+        group = self.file.create_group("cracks")
+        _make(group, "time", (), "f8", "s")
+        _make(group, "position", (2,), "f8", "m")
+        _make(group, "particles", (2,), "i8", "1")
+        _make(group, "shear", (), "?", "1")
+        return group
+
+    def _append_cracks(self, cracks: Cracks, time_step: float) -> None:
+        _extend(self._cracks["time"], cracks.step * time_step)
+        before = 0.5 * self.run.state.datum[:2, cracks.pair].sum(axis=2).T  # of the middle, until the run began
+        _extend(self._cracks["position"], cracks.position - before)
+        _extend(self._cracks["particles"], cracks.pair)
+        _extend(self._cracks["shear"], cracks.shear)
+
+    def _write_stage(self, stage: Stage) -> None:
+        """What a stage before the run came to."""
+        group = self.file.require_group(stage.name)
+        group.attrs.update(stage.facts)
+        _write(group, "displacement", stage.displacement.T, DISPLACEMENT_UNIT)
+        self._append_cracks(stage.cracks, 0.0)  # before the run began
+
+    def _write_energy(self) -> None:
+        if self.ledger is None:
+            return
+        unit = self.run.scene.energy_unit
+        group = self.file.create_group("energy")
+        for field, column in zip(fields(Entry), self.ledger.columns.T, strict=True):
+            _write(group, field.name, column, "s" if field.name == "time" else unit)
+
+    def _write_laws(self) -> None:
+        group = self.file.create_group("laws")
+        names, steps = zip(*self.run.state.laws, strict=True)
+        group.create_dataset("name", data=list(names))
+        _write(group, "time", np.array(steps) * self.run.time_step, "s")
+
+    def _write_boundaries(self) -> None:
+        scene = self.run.scene
+        for side, edge in scene.edges.items():
+            group = self.file.create_group(f"boundaries/{side}")
+            group.attrs["length"] = edge.length
+            group.attrs["cover"] = edge.cover
+            _write(group, "particle", edge.nodes, "1")
+            _write(group, "position", scene.positions[edge.nodes], "m")
+            _write(group, "diameter", edge.diameters, "m")
+            _write(group, "peak_velocity", self.run.state.peaks[self.run.scene.tracked_of(side)], VELOCITY_UNIT)
+
+    def _write_peaks(self) -> None:
+        if self.run.scene.case.output.peaks:
+            _write(self.file["particles"], "peak_velocity", self.run.state.top_speed, "m/s")
+
+
+class Histories(Tracker):
+    """Keeps what the monitors did, and the bonds that broke, whenever the loop comes back."""
+
+    name = "histories"
+
+    def __init__(self, recorder: Recorder) -> None:
+        self.recorder = recorder
+
+    def handle(self, run: Run) -> None:
+        """It is never due."""
+
+    def observe(self, run: Run, record: np.ndarray) -> None:
+        """Append the record."""
+        self.recorder.append(record)
+
+
+class Snapshots(Tracker):
+    """Keeps the whole scene at some steps.
+
+    Parameters
+    ----------
+    recorder : where.
+    steps : those steps.
+    """
+
+    name = "snapshots"
+
+    def __init__(self, recorder: Recorder, steps: Sequence[int]) -> None:
+        self.recorder = recorder
+        self._steps = sorted(steps)
+        self._after(-1)
+
+    def _after(self, step: int) -> None:
+        self.due = next((later for later in self._steps if later > step), NEVER)
+
+    def handle(self, run: Run) -> None:
+        """Keep the scene."""
+        self.recorder.snapshot()
+        self._after(run.state.step)
+
+
+def _make(group: h5py.Group, name: str, width: tuple[int, ...], kind: str, unit: str) -> None:
+    """An empty dataset that rows of this width can be appended to."""
+    group.create_dataset(name, shape=(0, *width), maxshape=(None, *width), dtype=kind).attrs["unit"] = unit
+
+
+def _write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:
+    group.create_dataset(name, data=values).attrs["unit"] = unit
+
+
+def _extend(dataset: h5py.Dataset, values: np.ndarray) -> None:
+    count = len(dataset)
+    dataset.resize(count + len(values), axis=0)
+    dataset[count:] = values

@@ -1,0 +1,92 @@
+"""A run in numbers, for scripts: what every kind of body has."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from dembound import __version__
+from dembound.motion.kind import Plan
+from dembound.motion.trackers import Run
+from dembound.results.reader import energy_of, open_record
+
+
+def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float]) -> dict[str, Any]:
+    """The run in numbers, for scripts: plain JSON values, SI units; seconds : time spent by what for."""
+    scene, state = planned.scene, run.state
+    return {
+        "name": scene.case.name,
+        "title": scene.case.title,
+        "version": __version__,
+        "time_step": planned.time_step,
+        "step_limit": planned.step_limit if np.isfinite(planned.step_limit) else None,
+        "steps": state.step,
+        "duration": run.time,
+        "wall_time": sum(seconds.values()),
+        "seconds": dict(seconds),
+        "threads": scene.threads,
+        "particle_steps_per_second": scene.count * state.step / seconds["step"],
+        "memory_bytes": scene.bytes,
+        "laws": [{"law": name, "from": step * run.time_step} for name, step in state.laws],
+        "cracks": _count_cracks(record),
+        "energy": _describe_energy(record),
+        "monitors": _describe_monitors(record),
+        "reduced": [],
+    }
+
+
+def _count_cracks(record: Path) -> dict[str, int]:
+    """Bonds that broke, in tension and in shear, those of the static stage included."""
+    with open_record(record) as file:
+        shear = file["cracks/shear"][:]
+    return {"tension": int(np.count_nonzero(~shear)), "shear": int(np.count_nonzero(shear))}
+
+
+def _describe_energy(record: Path) -> dict[str, float]:
+    """Last entry of the ledger (J/m), and the largest error of any over what came in from outside at most."""
+    with open_record(record) as file:
+        columns = energy_of(file)
+    last = {name: float(column[-1]) for name, column in columns.items()}
+    return last | {"relative_error": float(np.abs(columns["relative_error"]).max())}
+
+
+def _describe_monitors(record: Path) -> dict[str, Any]:
+    """Peaks and arrivals of every history."""
+    with open_record(record) as file:
+        groups: Mapping[str, h5py.Group] = file.get("histories", {})
+        return {
+            name: {
+                "particle": int(group.attrs["particle"]),
+                "position": group.attrs["position"].tolist(),
+                **arrival(group["time"][:], group["velocity"][:, :2]),
+                "peak_displacement": np.abs(group["displacement"][:, :2]).max(axis=0).tolist(),
+            }
+            for name, group in groups.items()
+        }
+
+
+def arrival(time: np.ndarray, velocity: np.ndarray) -> dict[str, Any]:
+    """Largest motion of a history and when it came.
+
+    time (k,) s, velocity (k, 2) m/s. Taken from the component that moves most: `peak_velocity` (signed),
+    `peak_time`, and `arrival`, the moment |velocity| first passes half its peak, interpolated; null at rest.
+    """
+    axis = int(np.argmax(np.abs(velocity).max(axis=0)))
+    speed = np.abs(velocity[:, axis])
+    crest = int(np.argmax(speed))
+    half = 0.5 * speed[crest]
+    if half == 0.0:
+        return {"component": "xy"[axis], "peak_velocity": 0.0, "peak_time": None, "arrival": None}
+    first = int(np.argmax(speed >= half))
+    passed = time[first]
+    if first > 0:
+        part = (half - speed[first - 1]) / (speed[first] - speed[first - 1])
+        passed = time[first - 1] + part * (time[first] - time[first - 1])
+    return {
+        "component": "xy"[axis],
+        "peak_velocity": float(velocity[crest, axis]),
+        "peak_time": float(time[crest]),
+        "arrival": float(passed),
+    }

@@ -1,0 +1,151 @@
+"""The disks of a run in a window to zoom into, or drawn without one into a picture."""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import h5py
+import numpy as np
+from matplotlib.image import imsave
+
+from dembound.errors import CaseError, DemboundError
+from dembound.results.reader import cracks_until, is_line, liveliest_snapshot, open_record, replacing, snapshot_of
+
+if TYPE_CHECKING:
+    import pyvista
+
+Field = Literal["velocity", "displacement"]
+LABELS = {"velocity": "speed (m/s)", "displacement": "displacement (m)"}
+
+CRACKS = "red"  # told from every disk; black would be lost on those at rest
+
+CORNERS = 24  # of a disk's polygon; a multiple of four, so that it is as wide and as high as the disk
+
+# Without OpenGL, VTK does not raise but crashes, so another process tries first; it says what it would draw in.
+TRIAL = """
+import pyvista
+plotter = pyvista.Plotter(off_screen=True, window_size=(9, 9))
+plotter.screenshot()
+print(plotter.render_window.GetClassName())
+"""
+
+WINDOWLESS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")  # what VTK draws in where it finds no display
+
+
+def view(
+    run: Path,
+    snapshot: int | None = None,
+    field: Field = "velocity",
+    picture: Path | None = None,
+    exaggerate: float = 0.0,
+) -> None:
+    """Show a run's disks from above, coloured by the length of a field, and its cracks.
+
+    run is a ``run.h5``; snapshot the number to begin with, negative ones counting from the last, by default the one
+    with the largest motion; field velocity in m/s or displacement in m; picture a PNG file to draw into instead of
+    opening a window; exaggerate how many times their displacement disks are moved, cracks with them: 0 shows them where
+    they began, 1 where they are. The axes are those of the scene at the start. The window has a slider over several
+    snapshots; dragging moves the scene, the wheel zooms. Returns once it is closed.
+
+    Raises CaseError when the file cannot be read, is that of a bar or has no such snapshot, DemboundError without
+    OpenGL or a display.
+    """
+    with open_record(run) as file:
+        if is_line(file.attrs["size"]):
+            raise CaseError([f"{run}: is a bar, view shows disks; `dembound plot RESULTS --field stress` draws bars"])
+        first = liveliest_snapshot(file, field) if snapshot is None else snapshot_of(file, snapshot)
+        require_rendering(in_window=picture is None)
+        plotter = make_plotter(file, first, field, exaggerate, off_screen=picture is not None)
+        if picture is None:
+            plotter.show(title=f"dembound: {file.attrs['name']}")
+        else:
+            with replacing(picture) as part:
+                imsave(part, plotter.screenshot(), format="png")
+
+
+def require_rendering(in_window: bool) -> None:
+    """Raise DemboundError if VTK cannot draw here, or `in_window` and there is no display to show a window on."""
+    tried = subprocess.run([sys.executable, "-c", TRIAL], capture_output=True, text=True, check=False)
+    if tried.returncode != 0:
+        raise DemboundError("view: cannot draw here, VTK finds no working OpenGL; `dembound plot` needs none")
+    if in_window and tried.stdout.split()[-1] in WINDOWLESS:
+        raise DemboundError("view: there is no display to open a window on, see DISPLAY, or try --picture FILE.png")
+
+
+def disk_mesh(positions: np.ndarray, radii: np.ndarray) -> "pyvista.PolyData":
+    """One filled polygon per disk, in the disks' order; positions (n, 2) and radii (n,) in m."""
+    import pyvista
+
+    places = pyvista.PolyData(np.column_stack([positions, np.zeros(len(positions))]))
+    places["diameter"] = 2.0 * radii
+    circle = pyvista.Circle(radius=0.5, resolution=CORNERS)
+    return places.glyph(geom=circle, scale="diameter", factor=1.0, orient=False)
+
+
+def make_plotter(
+    file: h5py.File, first: h5py.Group, field: Field, exaggerate: float, off_screen: bool
+) -> "pyvista.Plotter":
+    """The scene of an open record, ready to show, at its snapshot `first`; one colour scale for the whole run."""
+    import pyvista  # here, for it takes seconds and other commands can do without
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)  # to draw without a display is no reason to warn
+    snapshots = list(file["snapshots"].values())
+    label = LABELS[field]
+    disks = disk_mesh(file["particles/position"][:], file["particles/radius"][:])
+    still = disks.points.copy()
+    limit = max(lengths(each, field).max() for each in snapshots) or 1.0  # of a run at rest
+    plotter = pyvista.Plotter(off_screen=off_screen, window_size=(1600, 900))
+    disks.cell_data[label] = lengths(first, field)
+    plotter.add_mesh(disks, scalars=label, clim=(0.0, limit), lighting=False, scalar_bar_args={"vertical": True})
+    plotter.enable_anti_aliasing("ssaa")
+
+    def show(number: float) -> None:
+        shown = snapshots[round(number)]
+        moved = exaggerate * shown["displacement"][:, :2]
+        disks.cell_data[label] = lengths(shown, field)
+        disks.points[:, :2] = still[:, :2] + np.repeat(moved, CORNERS, axis=0)
+        cracks = cracks_until(file, shown.attrs["time"])
+        show_cracks(plotter, cracks["position"] + moved[cracks["particles"]].mean(axis=1))
+        scale = f", displacements × {exaggerate:g}" if exaggerate else ""
+        plotter.add_text(f"{file.attrs['name']}: t = {shown.attrs['time']:.3g} s{scale}", name="time", font_size=12)
+
+    show(snapshots.index(first))
+    if len(snapshots) > 1 and not off_screen:
+        span, place = (0, len(snapshots) - 1), {"pointa": (0.03, 0.1), "pointb": (0.28, 0.1)}  # lower left
+        slider = plotter.add_slider_widget(show, span, value=snapshots.index(first), title="snapshot", **place)
+        slider.GetRepresentation().ShowSliderLabelOff()  # its number has decimals, and the time is shown anyway
+    look_from_above(plotter, file.attrs["size"])
+    return plotter
+
+
+def show_cracks(plotter: "pyvista.Plotter", positions: np.ndarray) -> None:
+    """Mark broken bonds at positions (k, 2) m by points, in place of those marked before."""
+    plotter.remove_actor("cracks", render=False)
+    if len(positions) > 0:
+        raised = np.column_stack([positions, np.ones(len(positions))])  # from above, no height shows
+        plotter.add_points(raised, color=CRACKS, point_size=6.0, name="cracks", reset_camera=False)
+        plotter.renderer.ResetCameraClippingRange()
+
+
+def look_from_above(plotter: "pyvista.Plotter", size: np.ndarray) -> None:
+    """Put labelled axes around a scene of this size, (2,) m, and a camera above all that only moves and zooms."""
+    width, height = size
+    share = size / size.max()
+    x_labels, y_labels = 2 * np.ceil(3.0 * share).astype(int)  # even: an axis has its title at its middle
+    x_shown, y_shown = share > 0.05  # labels across a narrower scene collide
+    x_axis = {"xtitle": "x (m)", "n_xlabels": x_labels, "show_xlabels": x_shown}
+    y_axis = {"ytitle": "y (m)", "n_ylabels": y_labels, "show_ylabels": y_shown}
+    plotter.show_bounds(bounds=(0.0, width, 0.0, height, 0.0, 0.0), use_2d=True, show_zaxis=False, **x_axis, **y_axis)
+    plotter.view_xy()
+    plotter.enable_parallel_projection()
+    plotter.enable_custom_trackball_style(left="pan")
+    across, up = plotter.window_size
+    left, right, bottom, top, *_ = plotter.bounds
+    plotter.camera.parallel_scale = 0.7 * max(top - bottom, (right - left) * up / across)  # 0.5 fills the window
+
+
+def lengths(snapshot: h5py.Group, field: Field) -> np.ndarray:
+    """Length (n,) of a field of a snapshot in the plane, in m/s or m."""
+    return np.hypot(*snapshot[field][:, :2].T)

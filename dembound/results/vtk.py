@@ -1,0 +1,90 @@
+"""Snapshots for ParaView: one VTU file each, a PVD file listing their times, and a script that shows them.
+
+What the files of each kind of body hold stands in `disks.mesh` and `bar.mesh`.
+
+Where bonds broke in the run, ``cracks.vtu`` has one vertex per broken bond, between its two disks as they stood then:
+
+| name | unit | shape | what |
+|---|---|---|---|
+| ``time`` | s | (k,) | when it broke, 0 in the static stage |
+| ``mode`` | 1 | (k,) | how: 0 in tension, 1 in shear |
+| ``particles`` | 1 | (k, 2) | ids of the two disks |
+"""
+
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import meshio
+import numpy as np
+
+from dembound.motion.kind import Kind
+from dembound.results.reader import cracks_until, open_record, replacing
+
+
+def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
+    """Write every snapshot of a run for ParaView; returns the PVD file, None for a run without snapshots.
+
+    Parameters
+    ----------
+    run
+        the ``run.h5`` of a run.
+    folder
+        made when it is not there; gets ``particles_0000.vtu`` …, ``particles.pvd``, ``view.py`` and, where bonds
+        broke, ``cracks.vtu``; of a bar ``bar_0000.vtu`` … and ``bar.pvd``.
+    kind
+        the kind of body that the run is of.
+
+    The PVD file is written last, so it never names a file that is not there.
+
+    Raises CaseError when the record cannot be read.
+    """
+    with open_record(run) as file:
+        snapshots = file.get("snapshots", {})
+        if not snapshots:
+            return None
+        folder.mkdir(parents=True, exist_ok=True)
+        times = {}
+        for number, snapshot in snapshots.items():
+            name = f"{kind.mesh_name}_{number}.vtu"
+            times[name] = float(snapshot.attrs["time"])
+            _write(folder / name, kind.mesh(file["particles"], snapshot, cracks_until(file, times[name])))
+        cracks = cracks_until(file, np.inf)
+        if len(cracks["time"]) > 0:
+            _write(folder / "cracks.vtu", _cracks(cracks))
+    (folder / "view.py").write_text(kind.view_script, encoding="utf-8")
+    return _write_index(folder / f"{kind.mesh_name}.pvd", times)
+
+
+def _cracks(cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+    """Cracks as vertices with the point data of this module's table."""
+    data = {"time": cracks["time"], "mode": cracks["shear"].astype(int), "particles": cracks["particles"]}
+    return vertices(in_space(cracks["position"]), data)
+
+
+def vertices(points: np.ndarray, data: dict[str, np.ndarray]) -> meshio.Mesh:
+    """One vertex per point (n, 3) m, with arrays (n, …) on them."""
+    return meshio.Mesh(points, [("vertex", np.arange(len(points))[:, None])], point_data=data)
+
+
+def _write(path: Path, mesh: meshio.Mesh) -> None:
+    """A VTU file, whole or not at all."""
+    with replacing(path) as part:
+        meshio.write(part, mesh, file_format="vtu")
+
+
+def in_space(vectors: np.ndarray) -> np.ndarray:
+    """Vectors (n, 2) as (n, 3) with z = 0."""
+    return np.column_stack([vectors, np.zeros(len(vectors))])
+
+
+def _write_index(path: Path, times: dict[str, float]) -> Path:
+    """The PVD file: file name -> time in s."""
+    root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
+    collection = ElementTree.SubElement(root, "Collection")
+    for name, time in times.items():
+        ElementTree.SubElement(collection, "DataSet", timestep=repr(time), part="0", file=name)
+    ElementTree.indent(root)
+    with replacing(path) as part:
+        ElementTree.ElementTree(root).write(part, encoding="utf-8", xml_declaration=True)
+    return path

@@ -1,0 +1,73 @@
+"""What a run has shown that was probably not meant, whatever moved, from its finished record."""
+
+from collections.abc import Iterator
+
+import h5py
+import numpy as np
+
+from dembound.boundaries.viscous import Dashpots
+from dembound.case.magnitudes import period_of, waves_used
+from dembound.motion.scene import Scene
+
+MOVING = 0.2
+"""Share of a monitor's peak velocity by which it must move, and its velocity change, to count as moving.
+
+Behind a pulse random packings leave a coda of some per cent, and sides whose factors are 1 return up to a sixth:
+neither is what a run is made for. What moves by such a share and does not change is a steady motion: a piece in flight,
+a grip, a body that drifts on its dashpots.
+"""
+
+LATELY, NOW = 0.1, 0.05
+"""Last parts of a run: over the one a velocity must change, in the other it must be that large.
+
+The one is half a period at least, as a velocity stands still for a moment at its crest.
+"""
+
+QUIET = 0.01
+"""Share of the largest peak of all monitors below which one has not been reached by the motion."""
+
+
+def still_moving(scene: Scene, duration: float, file: h5py.File, pieces: np.ndarray) -> Iterator[str]:
+    """Monitors whose motion the end of the run cuts off, though it would come to an end, a line for all of them.
+
+    duration : of the run, s. file : its open record. pieces : (n,) number of the piece that each node has ended up in.
+    """
+    braked = _braked(scene, pieces)
+    histories = {
+        name: _largest_component(group["velocity"][:, :2])
+        for name, group in file["histories"].items()
+        if scene.monitors[name] in braked and name in scene.places
+    }
+    peaks = {name: float(np.abs(velocity).max()) for name, velocity in histories.items()}
+    period = max((period_of(scene.case.wave[name]) for name in waves_used(scene.case)), default=0.0)
+    lately = max(LATELY, min(0.5, 0.5 * period / duration))
+    moving = {}
+    for name, velocity in histories.items():
+        late, last = (velocity[-max(2, round(share * len(velocity))) :] for share in (lately, NOW))
+        at_the_end = float(np.abs(last).max())
+        if peaks[name] > QUIET * max(peaks.values()) and min(at_the_end, float(np.ptp(late))) > MOVING * peaks[name]:
+            moving[name] = at_the_end / peaks[name]
+    if moving:
+        worst = max(moving, key=lambda name: moving[name])
+        yield (
+            f"monitor.{worst}: its velocity is {100.0 * moving[worst]:.0f} % of its peak when the run ends after "
+            f"{duration:.3g} s, and still changes ({len(moving)} of {len(histories)} monitors); the motion "
+            "is not over, take a longer run.duration"
+        )
+
+
+def _braked(scene: Scene, pieces: np.ndarray) -> set[int]:
+    """Nodes from which motion is taken away: all under local damping, else those that hang together with dashpots.
+
+    Pieces that have come off fly on and ring.
+    """
+    if scene.damp > 0.0:
+        return set(range(scene.count))
+    sides = [edge for side, edge in scene.edges.items() if isinstance(scene.case.boundary.get(side), Dashpots)]
+    ends = np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in sides)])
+    return set(np.flatnonzero(np.isin(pieces, pieces[ends])).tolist())
+
+
+def _largest_component(velocity: np.ndarray) -> np.ndarray:
+    """Of velocities (k, 2) the component (k,) that comes to the largest value."""
+    return velocity[:, int(np.abs(velocity).max(axis=0).argmax())]

@@ -1,0 +1,232 @@
+"""Calibration: the factor β with which a side's dashpots absorb, or let in, a plane wave whole.
+
+A pulse of peak M_in meets the side at normal incidence; M_out is the mean peak velocity of the side's particles. An
+absorbing side of impedance β/β0 answers M_out/M_in = 2/(1 + β/β0), an input side 2/(1 + β0/β); both are 1 at β0.
+
+No more is modelled than decides M_out: a strip of the scene's own bricks, just long enough that nothing returns
+to the side before the peak has left it, and each pass ends then. It is a linear medium under one wave: no loads, no
+static stage, the elastic law.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import h5py
+import numpy as np
+
+from dembound import __version__
+from dembound.boundaries import OPPOSITE, Viscous, ViscousInput, normal_axis
+from dembound.case.disks import DiskCase
+from dembound.disks.matching import Motion, homogenised_beta
+from dembound.disks.scene import DiskScene, build, with_boundaries
+from dembound.disks.stability import choose_step
+from dembound.errors import CaseError, RunError
+from dembound.motion.simulation import Simulation
+from dembound.studies.strip import AFTER, axis_of_motion, calibration_pulse, linear_medium, strip_of, whole_of
+from dembound.waves import Cosine
+
+Method = Literal["impedance", "ratio", "homogenised"]
+
+MOST_PASSES = 40
+
+LARGEST_RATIO = 1.99
+"""M_out/M_in is 2 at most; dispersion may lift a free end's a little above, where the relation has no factor."""
+
+
+@dataclass
+class Calibration:
+    """What a calibration found.
+
+    Attributes
+    ----------
+    case, side, motion ("p" or "s"), method : what was asked.
+    kind : "absorbing" or "input".
+    incident : M_in, m/s.
+    beta, outgoing : per pass, the factor tried and the M_out (m/s) it gave.
+    result : the calibrated factor.
+    shortened : how the scene calibrated on differs from the case's, one sentence each.
+    particles, steps : size of the scene calibrated on, and steps of all passes.
+    """
+
+    case: DiskCase
+    side: str
+    motion: Motion
+    method: Method
+    kind: Literal["absorbing", "input"]
+    incident: float
+    shortened: list[str]
+    beta: list[float] = field(default_factory=list)
+    outgoing: list[float] = field(default_factory=list)
+    result: float = float("nan")
+    particles: int = 0
+    steps: int = 0
+
+    @property
+    def ratio(self) -> list[float]:
+        """M_out/M_in per pass."""
+        return [outgoing / self.incident for outgoing in self.outgoing]
+
+    @property
+    def factor(self) -> str:
+        """The calibrated key of the case file: beta_p or beta_s."""
+        return f"beta_{self.motion}"
+
+    def summary(self) -> dict[str, Any]:
+        """The passes and the result as plain JSON values."""
+        return {
+            "name": self.case.name,
+            "version": __version__,
+            "boundary": self.side,
+            "wave": self.motion,
+            "kind": self.kind,
+            "method": self.method,
+            "incident": self.incident,
+            "result": self.result,
+            "beta": self.beta,
+            "outgoing": self.outgoing,
+            "ratio": self.ratio,
+            "particles": self.particles,
+            "steps": self.steps,
+            "reduced": self.shortened,
+        }
+
+    def write(self, path: Path) -> None:
+        """Record the passes in an HDF5 file: attributes, and datasets beta, outgoing (m/s) and ratio."""
+        with h5py.File(path, "w") as file:
+            scalars = {key: value for key, value in self.summary().items() if not isinstance(value, list)}
+            file.attrs.update({**scalars, "case": self.case.text, "reduced": "\n".join(self.shortened)})
+            for name, values, unit in (
+                ("beta", self.beta, "1"),
+                ("outgoing", self.outgoing, "m/s"),
+                ("ratio", self.ratio, "1"),
+            ):
+                file.create_dataset(name, data=np.array(values)).attrs["unit"] = unit
+
+
+Report = Callable[[Calibration], None]
+
+
+def calibrate(
+    case: DiskCase,
+    side: str,
+    *,
+    motion: Motion | None = None,
+    method: Method = "impedance",
+    start: float | None = None,
+    tolerance: float = 1e-3,
+    full: bool = False,
+    report: Report | None = None,
+) -> Calibration:
+    """Find β of one side for P (motion "p", along its normal) or S waves ("s", across it).
+
+    Parameters
+    ----------
+    motion : by default P, or S where the scene holds the motion along the normal or sends only S waves that way.
+    method : "impedance" solves the end's impedance relation for β0 and checks it; "ratio" multiplies β by
+        M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised" takes β0 = (c_eff/c)·H/ΣD from the
+        brick alone and runs nothing.
+    start : first β; by default the case's.
+    tolerance : ends when |M_out/M_in − 1| is below it.
+    full : use the whole scene, with its own boundaries all around, instead of a strip.
+    report : called after every pass.
+
+    Raises CaseError when the side has no dashpots or cannot move that way, RunError when β does not converge.
+    """
+    if not 0.0 < tolerance < np.inf:
+        raise CaseError([f"--tolerance: is {tolerance:g}, must be above 0"])
+    plain, left_out = linear_medium(case)
+    table = _dashpots(plain, side)
+    motion = motion or _default_motion(case, side)
+    _must_move(case, side, motion)
+    pulse = calibration_pulse(case, side, motion)
+    strip, shortened = whole_of(plain, side, motion, pulse) if full else strip_of(plain, side, motion, pulse)
+    found = Calibration(
+        case=case,
+        side=side,
+        motion=motion,
+        method=method,
+        kind="input" if isinstance(table, ViscousInput) else "absorbing",
+        incident=pulse.peak(),
+        shortened=[*shortened, *left_out],
+    )
+    scene = build(strip)
+    found.particles = scene.count
+    if method == "homogenised":
+        found.result = homogenised_beta(scene, side, motion)
+        return found
+    beta = getattr(table, found.factor) if start is None else start
+    if not 0.0 < beta < np.inf:
+        raise CaseError([f"boundary.{side}.{found.factor}: is {beta:g}, must be above 0 to start a calibration"])
+    time_step, _ = choose_step(scene)  # β does not change it: centred dashpots cost no stability
+    for _ in range(MOST_PASSES):
+        trial = with_boundaries(scene, _with_beta(strip, side, found.factor, beta))
+        outgoing, steps = _pass(trial, time_step, found, pulse)
+        found.beta.append(beta)
+        found.outgoing.append(outgoing)
+        found.steps += steps
+        if report is not None:
+            report(found)
+        if abs(found.ratio[-1] - 1.0) < tolerance:
+            found.result = beta
+            return found
+        beta = _next_beta(found)
+    raise RunError(
+        f"calibration of {side} did not converge in {MOST_PASSES} passes: M_out/M_in = {found.ratio[-1]:.5f} "
+        f"at {found.factor} = {found.beta[-1]:.5f}"
+    )
+
+
+def _next_beta(found: Calibration) -> float:
+    """The factor to try next, from the last pass."""
+    beta, ratio = found.beta[-1], min(found.ratio[-1], LARGEST_RATIO)
+    absorbing = found.kind == "absorbing"
+    if found.method == "ratio":
+        return beta * ratio if absorbing else beta / ratio
+    return beta * ratio / (2.0 - ratio) if absorbing else beta * (2.0 - ratio) / ratio
+
+
+def _pass(scene: DiskScene, time_step: float, found: Calibration, pulse: Cosine) -> tuple[float, int]:
+    """M_out of one run (m/s) and its number of steps."""
+    simulation = Simulation(scene, time_step)
+    due = pulse.peak_time() + (0.0 if found.kind == "input" else _travel(scene, found.side, found.motion))
+    simulation.run(int(np.ceil((due + AFTER * pulse.period) / time_step)))
+    peaks = simulation.edge_peaks(found.side)[:, axis_of_motion(found.side, found.motion), 1]
+    return float(peaks.mean()), simulation.state.step
+
+
+def _travel(scene: DiskScene, side: str, motion: Motion) -> float:
+    """Time (s) a wave takes from the opposite side."""
+    axis = scene.edges[side].axis
+    return float(scene.assembly.size[axis]) / scene.ground.wave_speeds(axis)[0 if motion == "p" else 1]
+
+
+def _dashpots(case: DiskCase, side: str) -> Viscous | ViscousInput:
+    table = case.boundary.get(side)
+    if not isinstance(table, Viscous | ViscousInput):
+        has = "free" if table is None else table.type
+        usable = [name for name, t in case.boundary.items() if isinstance(t, Viscous | ViscousInput)]
+        raise CaseError(
+            [f"boundary.{side}: is {has}, only viscous sides can be calibrated; here: {', '.join(usable) or 'none'}"]
+        )
+    return table
+
+
+def _default_motion(case: DiskCase, side: str) -> Motion:
+    """S where the normal motion is held, or where only S waves run between this side and the opposite one."""
+    ends = [case.boundary.get(end) for end in (side, OPPOSITE[side])]
+    driven = {motion for motion in ("p", "s") for end in ends if getattr(end, f"wave_{motion}", None)}
+    held = "xy"[normal_axis(side)] in case.motion.held
+    return "s" if held or driven == {"s"} else "p"
+
+
+def _must_move(case: DiskCase, side: str, motion: Motion) -> None:
+    name = "xy"[axis_of_motion(side, motion)]
+    if name in case.motion.held:
+        raise CaseError([f"motion.held: holds {name}, the motion of {motion.upper()} waves at the side {side}"])
+
+
+def _with_beta(case: DiskCase, side: str, factor: str, beta: float) -> DiskCase:
+    table = case.boundary[side].model_copy(update={factor: beta})
+    return replace(case, boundary={**case.boundary, side: table})

@@ -1,0 +1,155 @@
+"""Dispersion of bars of nodes: lattices from numbers or cases, their table, and what simulations say of them."""
+
+import csv
+from collections.abc import Iterator, Sequence
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import tomli_w
+
+from dembound.bar.scene import build_bar
+from dembound.bar.stability import choose_step
+from dembound.case import Case
+from dembound.case.bar import SCHEMA, BarCase
+from dembound.case.bar.bar import LARGEST, SMALLEST
+from dembound.case.model import as_kind
+from dembound.case.reader import loads
+from dembound.errors import CaseError
+from dembound.exact.dispersion import Lattice, courant_limit
+from dembound.methods.bonds import Bonds
+from dembound.motion.simulation import Simulation
+from dembound.results.reader import replacing
+
+COLUMNS = (
+    "horizon",
+    "spacing",
+    "time_step",
+    "wave_speed",
+    "wavenumber",
+    "cells_per_wavelength",
+    "frequency_hz",
+    "phase_velocity",
+    "group_velocity",
+)
+"""Of the table; SI units, wave numbers in rad/m."""
+
+STEPS = 20
+"""Steps simulated to measure a frequency. Two would do; more of them average the rounding."""
+
+WIDEST = 1000
+"""Largest horizon in spacings; wider ones only take long."""
+
+ROWS = 100
+"""Wave numbers of each lattice in the table, evenly up to its shortest wave."""
+
+
+def lattices(
+    horizons: Sequence[int], spacings: Sequence[float], time_steps: Sequence[float], wave_speed: float
+) -> list[Lattice]:
+    """Rows of nodes with all combinations of horizons, spacings (m) and time steps (s).
+
+    Raises CaseError, as the options of the command line, for a number that makes no sense and if no lattice is stable.
+    """
+    limits = (
+        ("horizon", horizons, 1, WIDEST, ""),
+        ("spacing", spacings, SMALLEST, LARGEST, " m"),
+        ("time-step", time_steps, 0.0, LARGEST, " s"),
+        ("wave-speed", [wave_speed], SMALLEST**0.5, LARGEST**0.5, " m/s"),
+    )
+    problems = [
+        f"--{option}: is {value:g}, must be {least:g} to {most:g}{unit}"
+        for option, values, least, most, unit in limits
+        for value in values
+        if not least <= value <= most
+    ]
+    if problems:
+        raise CaseError(problems)
+    made = [Lattice(*numbers, wave_speed) for numbers in product(horizons, spacings, time_steps)]
+    if not any(lattice.stable for lattice in made):
+        limit = max(courant_limit(lattice.horizon) * lattice.spacing / wave_speed for lattice in made)
+        raise CaseError([f"--time-step: is {min(time_steps):g} s, must not be above the stability limit {limit:.6g} s"])
+    return made
+
+
+def lattices_of(case: Case) -> list[Lattice]:
+    """The rows of nodes that a case's bar is inside, narrow horizons first; several where its method changes.
+
+    Attenuation is left out. Raises CaseError for a case without a bar and a step above its stability limit.
+    """
+    bar = as_kind(case, BarCase, "bar: is missing; only the dispersion of bars is known")
+    scene = build_bar(bar)
+    time_step, _ = choose_step(scene)
+    horizons = sorted({_horizon(bonds) for bonds in bar.method.stages(scene.rod)})
+    return [Lattice(horizon, scene.rod.spacing, time_step, bar.bar.speed) for horizon in horizons]
+
+
+def _horizon(bonds: Bonds) -> int:
+    """Horizon of peridynamic bonds in spacings; local springs alone have 1."""
+    return max(1, int(np.count_nonzero(bonds.bond.any(axis=1))))
+
+
+def measure(lattice: Lattice, wavenumbers: np.ndarray) -> np.ndarray:
+    """Angular frequencies (k,) rad/s of harmonic waves of some wave numbers (k,) rad/m in simulations.
+
+    A bar is strained to a cosine and let go; the node in its middle does not hear of the ends. Its displacements u and
+    their second differences δ²u tell sin²(ωΔt/2) = −¼ Σu δ²u/Σu²; no formula for ω comes in. The lattice must be stable
+    and have a time step.
+    """
+    return np.array([_frequency(lattice, wavenumber) for wavenumber in wavenumbers])
+
+
+def _frequency(lattice: Lattice, wavenumber: float) -> float:
+    """Angular frequency (rad/s) at one wave number (rad/m)."""
+    simulation = Simulation(build_bar(_endless(lattice)), lattice.time_step, [lattice.horizon * STEPS])
+    x = simulation.scene.positions[:, 0]
+    simulation.state.displacement[0] = np.cos(wavenumber * (x - x[lattice.horizon * STEPS]))
+    u = simulation.advance(STEPS)[:, 0, 0]
+    square = -0.25 * np.sum(u[1:-1] * np.diff(u, 2)) / np.sum(u[1:-1] ** 2)
+    sine = min(1.0, float(np.sqrt(square)))  # at the stability limit rounding may take it beyond 1
+    return float(2.0 * np.arcsin(sine) / lattice.time_step)
+
+
+def _endless(lattice: Lattice) -> BarCase:
+    """A bar whose ends are not heard of in its middle for STEPS steps."""
+    central = {"type": "finite_difference"}
+    peridynamic = {"type": "peridynamics", "horizon": lattice.horizon}
+    tables = {
+        "bar": {
+            "length": 2 * lattice.horizon * STEPS * lattice.spacing,
+            "spacing": lattice.spacing,
+            "density": 1.0,
+            "wave_speed": lattice.wave_speed,
+        },
+        "method": central if lattice.horizon == 1 else peridynamic,
+        "run": {"duration": STEPS * lattice.time_step, "time_step": lattice.time_step},
+    }
+    case = loads(tomli_w.dumps(tables), (SCHEMA,), Path(), "endless")
+    return as_kind(case, BarCase, "is no bar")
+
+
+def write_table(rows: Sequence[Lattice], path: Path) -> None:
+    """Write frequencies and speeds of waves on some lattices as CSV, whole or not at all.
+
+    Empty where a wave grows.
+    """
+    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(COLUMNS)
+        for lattice in rows:
+            table.writerows(_lines(lattice))
+
+
+def _lines(lattice: Lattice) -> Iterator[list[str]]:
+    """The lines of one lattice."""
+    wavenumber = lattice.shortest * np.arange(1, ROWS + 1) / ROWS
+    columns = (
+        wavenumber,
+        2.0 * lattice.shortest / wavenumber,
+        lattice.frequency(wavenumber) / (2.0 * np.pi),
+        lattice.phase_velocity(wavenumber),
+        lattice.group_velocity(wavenumber),
+    )
+    same = [str(value) for value in (lattice.horizon, lattice.spacing, lattice.time_step, lattice.wave_speed)]
+    for numbers in zip(*columns, strict=True):
+        yield same + ["" if np.isnan(number) else f"{number:.10g}" for number in numbers]

@@ -1,0 +1,145 @@
+"""The exact motion of the half-space that a case of Lamb's problem stands for, at the case's own monitors.
+
+Written as a record like a run's, so that it is plotted and compared like one.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from dembound import __version__
+from dembound.boundaries import Free, Symmetry
+from dembound.case.disks import DiskCase
+from dembound.case.disks.load import Load
+from dembound.disks.scene import DiskScene, build
+from dembound.errors import CaseError
+from dembound.exact.lamb import surface_displacement
+from dembound.results.reader import replacing
+
+ISOTROPY = 1e-6
+"""Relative difference of C11 − C12 and 2 C66 up to which a medium counts as isotropic."""
+
+CORNER = 0.25
+"""Share of the way to a monitor that a side which does not mirror the load must be away from it."""
+
+SAMPLES = 2000
+"""Times at which the exact motion is written down."""
+
+
+@dataclass(frozen=True)
+class LineLoad:
+    """Vertical force history on the surface: where along x (m), and N per metre, downwards, per unit of the wave."""
+
+    x: float
+    force: float
+    wave: str
+
+
+def write_exact(case: DiskCase, path: Path) -> None:
+    """Write the exact histories of a case as a record; its monitors must lie on the surface.
+
+    The load is a line on the surface. With a symmetry side it lies in that plane, and twice the case's force acts. A
+    monitor is as far from it as the particle it records, taken to be on the surface.
+
+    The folder of `path` is made where it is not there.
+
+    Raises CaseError where the case is not Lamb's problem: one vertical load that follows a continuous wave, on a free
+    top, away from sides that do not mirror it, an isotropic and linear medium, monitors on the top and beside the load.
+    """
+    scene = build(case)
+    load, speeds = _line_load(scene), _wave_speeds(scene)
+    if problems := [*_yielding(case), *_ends_of_the_surface(scene, load)]:
+        raise CaseError(problems)
+    times = np.linspace(0.0, case.run.duration, SAMPLES)
+    motions = {monitor.name: _motion(scene, load, speeds, monitor.name, times) for monitor in case.monitor}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(path) as part, h5py.File(part, "w") as file:
+        file.attrs.update(
+            {"name": case.name, "case": case.text, "version": __version__, "size": scene.size, "complete": True}
+        )
+        histories = file.create_group("histories", track_order=True)
+        for monitor in case.monitor:
+            node, moved = scene.monitors[monitor.name], motions[monitor.name]
+            place = scene.assembly.positions[node]
+            group = histories.create_group(monitor.name)
+            group.attrs.update({"particle": node, "position": place, "wanted": monitor.position, "unit": "m"})
+            _write(group, "time", times, "s")
+            _write(group, "displacement", moved, "m, m, rad")
+            _write(group, "velocity", np.gradient(moved, times, axis=0), "m/s, m/s, rad/s")
+
+
+def _wave_speeds(scene: DiskScene) -> tuple[float, float]:
+    """c_p and c_s in m/s of the half-space."""
+    tensor = scene.ground.material_tensor
+    if abs(tensor[0, 0] - tensor[0, 1] - 2.0 * tensor[3, 3]) > ISOTROPY * tensor[0, 0]:
+        raise CaseError(["material: makes an anisotropic medium, which has no such solution; see kratio and fric"])
+    p_speed, s_speed = (float(np.sqrt(tensor[k, k] / scene.ground.density)) for k in (0, 3))
+    return p_speed, s_speed
+
+
+def _motion(scene: DiskScene, load: LineLoad, speeds: tuple[float, float], name: str, times: np.ndarray) -> np.ndarray:
+    """Displacements (k, 3) of a monitor's particle at times (k,) s."""
+    node = scene.monitors[name]
+    _must_be_on_top(scene, node, f"monitor.{name}.position")
+    away = float(scene.assembly.positions[node, 0]) - load.x
+    if away == 0.0:
+        raise CaseError([f"monitor.{name}.position: lies under the load, where the solution is infinite"])
+    velocity = scene.case.wave[load.wave].velocity
+    try:
+        along, down = surface_displacement(
+            times, abs(away), lambda t: load.force * velocity(t), scene.ground.density, *speeds
+        )
+    except RuntimeError:  # its quadrature does not converge
+        raise CaseError([f"wave.{load.wave}: jumps on its way; the solution needs a continuous load"]) from None
+    return np.column_stack([np.sign(away) * along, -down, np.zeros(len(times))])
+
+
+def _line_load(scene: DiskScene) -> LineLoad:
+    """The load of Lamb's problem."""
+    case = scene.case
+    driven: list[Load] = [load for load in case.load if load.wave is not None]
+    if len(driven) != 1 or driven[0].force is None or driven[0].position is None or driven[0].force[0] != 0.0:
+        raise CaseError(["load: Lamb's problem has one vertical force on one place, following a wave"])
+    load = driven[0]
+    assert load.position is not None and load.force is not None and load.wave is not None  # noqa: PT018
+    node = int(np.argmin(np.hypot(*(scene.assembly.positions - load.position).T)))
+    _must_be_on_top(scene, node, f"load.{load.name}.position")
+    x, factor = float(scene.assembly.positions[node, 0]), 1.0
+    for side, plane in (("left", 0.0), ("right", float(scene.assembly.size[0]))):
+        if isinstance(case.boundary.get(side), Symmetry) and node in scene.edges[side].nodes:
+            x, factor = plane, 2.0
+    return LineLoad(x, -factor * load.force[1], load.wave)
+
+
+def _yielding(case: DiskCase) -> Iterator[str]:
+    """What makes the body other than a linear half-space below a free surface."""
+    if case.material.law != "elastic":
+        yield f'material.law: is "{case.material.law}", must be "elastic"; the solution is that of a linear solid'
+    top = case.boundary.get("top", Free())
+    if not isinstance(top, Free):
+        yield f'boundary.top.type: is "{top.type}", must be "free", the surface of the half-space'
+
+
+def _ends_of_the_surface(scene: DiskScene, load: LineLoad) -> Iterator[str]:
+    """Sides so near that the load stands on the corner of a quarter space; one that mirrors it is at distance zero."""
+    monitors = scene.assembly.positions[[scene.monitors[monitor.name] for monitor in scene.case.monitor], 0]
+    reach = np.abs(monitors - load.x).max(initial=0.0)
+    for side, plane in (("left", 0.0), ("right", float(scene.assembly.size[0]))):
+        away = abs(plane - load.x)
+        if side in scene.edges and 0.0 < away < CORNER * reach:
+            yield (
+                f"load: is {away:.3g} m from the {side} side and {reach:.3g} m from a monitor, which makes a quarter "
+                f"space; the side must mirror the load (symmetry) or be at least {CORNER * reach:.3g} m away"
+            )
+
+
+def _must_be_on_top(scene: DiskScene, node: int, place: str) -> None:
+    if "top" not in scene.edges or node not in scene.edges["top"].nodes:
+        raise CaseError([f"{place}: must be on the top of the scene, where the solution is known"])
+
+
+def _write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:
+    group.create_dataset(name, data=values).attrs["unit"] = unit

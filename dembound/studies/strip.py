@@ -1,0 +1,154 @@
+"""The scene a calibration runs on: the case under one pulse, and no larger than it takes.
+
+A strip of the scene's own bricks, just long enough that nothing returns to the side before the peak has left it.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from dembound.boundaries import (
+    OPPOSITE,
+    BoundaryTable,
+    Fixed,
+    Free,
+    FreeField,
+    Periodic,
+    Velocity,
+    Viscoelastic,
+    ViscoelasticInput,
+    Viscous,
+    ViscousInput,
+    normal_axis,
+)
+from dembound.boundaries.viscous import Dashpots
+from dembound.case.disks import DiskCase
+from dembound.disks.matching import Motion
+from dembound.disks.scene import ground_of
+from dembound.errors import CaseError
+from dembound.waves import Cosine
+
+PULSE = "calibration"
+STRIP = 0.35
+"""Strip length in pulse lengths cT. The front is T/2 before the peak and needs 2L/c for an echo; a pass ends AFTER
+the peak, 0.6 T after the front, so L > 0.3 cT keeps M_out clean, and a sixth more makes it sure."""
+
+AFTER = 0.1
+"""How long a pass goes on after the peak is due at the side, in pulse lengths T: the peak may be a little late."""
+
+
+def axis_of_motion(side: str, motion: Motion) -> int:
+    """Axis along which a wave moves the particles of a side it meets at right angles."""
+    return normal_axis(side) if motion == "p" else 1 - normal_axis(side)
+
+
+def _waves_of(case: DiskCase, motion: Motion) -> Iterator[str]:
+    """Names of the waves that drive this kind of motion, then of all others."""
+    for table in case.boundary.values():
+        name = getattr(table, f"wave_{motion}", None)
+        if name is not None:
+            yield name
+    yield from case.wave
+
+
+def calibration_pulse(case: DiskCase, side: str, motion: Motion) -> Cosine:
+    """The calibrating pulse: a cosine with the peak and dominant period of the case's own wave.
+
+    Without a usable wave: 1 m/s and a length of 200 mean diameters.
+    """
+    for name in _waves_of(case, motion):
+        wave = case.wave[name]
+        frequency = wave.dominant_frequency()
+        if np.isfinite(frequency) and frequency > 0.0:
+            return Cosine(type="cosine", amplitude=wave.peak(), period=1.0 / frequency)
+    speed = _speed_of(case, normal_axis(side), motion)
+    return Cosine(type="cosine", amplitude=1.0, period=400.0 * case.packing.radius / speed)
+
+
+def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
+    """The case as what β is about, dashpots on a linear medium, and sentences that say what was left out.
+
+    Springs reflect whatever β is; seam forces of a column come and go with the wave; holes scatter; loads, a static
+    stage and a law with a memory add what is no wave's.
+    """
+    springs = any(isinstance(table, Viscoelastic | ViscoelasticInput) for table in case.boundary.values())
+    columns = any(isinstance(table, FreeField) for table in case.boundary.values())
+    boundary = {
+        side: table.dashpots_alone() if isinstance(table, Viscoelastic | ViscoelasticInput | FreeField) else table
+        for side, table in case.boundary.items()
+    }
+    material = case.material.model_copy(update={"law": "elastic"})
+    left_out = {
+        "viscoelastic sides without their springs": springs,
+        "free-field sides without their column": columns,
+        "no holes": bool(case.hole),
+        "no static stage": case.static is not None,
+        "no loads": bool(case.load),
+        "the elastic law": case.material.law != material.law,
+    }
+    plain = replace(case, boundary=boundary, material=material, static=None, hole=(), load=())
+    return plain, [sentence for sentence, applies in left_out.items() if applies]
+
+
+def _driven(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> DiskCase:
+    """The case with the pulse as its only wave: sent from the opposite side, or let in by the side itself."""
+    wave = {"wave_p": None, "wave_s": None, f"wave_{motion}": PULSE}
+    boundary = {name: _at_rest(table) for name, table in case.boundary.items()}
+    table = case.boundary[side]
+    if isinstance(table, ViscousInput):
+        boundary[side] = table.model_copy(update=wave)
+    else:
+        boundary[OPPOSITE[side]] = Velocity(type="velocity", **wave)
+    return replace(case, boundary=boundary, wave={PULSE: pulse}, monitor=())
+
+
+def _at_rest(table: BoundaryTable) -> BoundaryTable:
+    """The boundary without its waves."""
+    if isinstance(table, ViscousInput):
+        return Viscous(type="viscous", **table.model_dump(include=set(Dashpots.model_fields)))
+    return Fixed(type="fixed") if isinstance(table, Velocity) else table
+
+
+def _least_length(case: DiskCase, axis: int, motion: Motion, pulse: Cosine) -> float:
+    """Length (m) along the normal that keeps echoes away from M_out."""
+    return STRIP * _speed_of(case, axis, motion) * pulse.period
+
+
+def whole_of(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[DiskCase, list[str]]:
+    """The whole scene, if it is long enough to calibrate on."""
+    axis = normal_axis(side)
+    least, length = _least_length(case, axis, motion, pulse), case.packing.size[axis]
+    if length < least:
+        raise CaseError(
+            [f"--full: the scene is {length:g} m long, echoes need {least:.4g} m to come late enough; leave it out"]
+        )
+    return _driven(case, side, motion, pulse), ["each pass ends once the peak has left the side"]
+
+
+def strip_of(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[DiskCase, list[str]]:
+    """The least scene that decides M_out, and sentences that say how it differs from the case's."""
+    case = _driven(case, side, motion, pulse)
+    axis = normal_axis(side)
+    bricks, brick = list(case.packing.copies), case.packing.brick_size
+    bricks[axis] = max(1, int(np.ceil(_least_length(case, axis, motion, pulse) / brick[axis])))
+    shortened = [
+        f"a strip of {bricks[axis] * brick[axis]:g} m, the scene has {case.packing.size[axis]:g} m",
+        "each pass ends once the peak has left the side",
+    ]
+    lateral = ("bottom", "top") if axis == 0 else ("left", "right")
+    tables = [case.boundary.get(name) for name in lateral]
+    plane = "xy"[1 - axis] in case.motion.held and all(t is None or isinstance(t, Free) for t in tables)
+    if not plane:
+        case = replace(case, boundary={**case.boundary, **{name: Periodic(type="periodic") for name in lateral}})
+        if bricks[1 - axis] > 1 or not all(isinstance(t, Periodic) for t in tables):
+            shortened.append("one brick wide and periodic sideways")
+        bricks[1 - axis] = 1
+    size = (bricks[0] * brick[0], bricks[1] * brick[1])
+    return replace(case, packing=case.packing.model_copy(update={"size": size})), shortened
+
+
+def _speed_of(case: DiskCase, axis: int, motion: Motion) -> float:
+    """The packing's own wave speed (m/s) along an axis."""
+    ground = ground_of(case)
+    return ground.wave_speeds(axis)[0 if motion == "p" else 1]

@@ -1,0 +1,81 @@
+"""What ParaView is given of a bar equals the record."""
+
+import ast
+from xml.etree import ElementTree
+
+import h5py
+import numpy as np
+import pytest
+import pyvista
+
+from dembound.bar.kind import Bars
+from dembound.bar.mesh import broken_across
+from dembound.results.vtk import write_vtu
+
+
+@pytest.fixture(scope="module")
+def exported(spalled_run, tmp_path_factory):
+    return write_vtu(spalled_run, tmp_path_factory.mktemp("vtu") / "paraview", Bars())
+
+
+def test_a_broken_bond_counts_on_every_plane_between_its_nodes():
+    pairs = np.array([[0, 1], [0, 3], [4, 2]])
+    np.testing.assert_array_equal(broken_across(pairs, 6), [2, 1, 2, 1, 0])
+    np.testing.assert_array_equal(broken_across(np.empty((0, 2), dtype=int), 3), [0, 0])
+
+
+@pytest.mark.parametrize("number", ["0003", "0010", "0011"])
+def test_nodes_stand_where_they_have_moved_with_what_the_record_holds(spalled_run, exported, number):
+    mesh = pyvista.read(exported.parent / f"bar_{number}.vtu")
+    with h5py.File(spalled_run) as file:
+        particles, snapshot = file["particles"], file["snapshots"][number]
+        moved = snapshot["displacement"][:, 0]
+        assert np.abs(moved).max() > 0.0
+        np.testing.assert_array_equal(mesh.points[:, 0], particles["position"][:, 0] + moved)
+        np.testing.assert_array_equal(mesh.points[:, 1:], 0.0)
+        expected = {name: snapshot[name][:] for name in ("displacement", "velocity", "stress", "damage")}
+        expected |= {"volume": particles["volume"][:], "id": np.arange(41)}
+    assert set(mesh.point_data.keys()) == set(expected)
+    for name, values in expected.items():
+        np.testing.assert_array_equal(mesh.point_data[name], values, err_msg=name)
+
+
+def test_lines_join_neighbours_and_know_how_many_bonds_across_them_have_broken(spalled_run, exported):
+    totals = []
+    with h5py.File(spalled_run) as file:
+        times, pairs = file["cracks/time"][:], file["cracks/particles"][:]
+        for number, snapshot in file["snapshots"].items():
+            mesh = pyvista.read(exported.parent / f"bar_{number}.vtu")
+            assert set(mesh.celltypes) == {pyvista.CellType.LINE}
+            np.testing.assert_array_equal(mesh.cell_connectivity.reshape(-1, 2), [[k, k + 1] for k in range(40)])
+            broken = pairs[times <= snapshot.attrs["time"]]
+            counted = [sum(first <= k < last for first, last in broken) for k in range(40)]
+            np.testing.assert_array_equal(mesh.cell_data["brokenBonds"], counted)
+            totals.append(sum(counted))
+    assert totals[0] == 0 < totals[-1]
+
+
+def test_the_index_lists_files_and_times_and_a_script_shows_them(spalled_run, exported):
+    entries = ElementTree.parse(exported).getroot().findall("Collection/DataSet")
+    with h5py.File(spalled_run) as file:
+        times = [float(snapshot.attrs["time"]) for snapshot in file["snapshots"].values()]
+    shown = [f"bar_{number:04d}.vtu" for number in range(12)]
+    assert [entry.get("file") for entry in entries] == shown
+    assert [float(entry.get("timestep")) for entry in entries] == times
+    names = sorted(path.name for path in exported.parent.iterdir())
+    assert names == sorted(["bar.pvd", "cracks.vtu", "view.py", *shown])
+    script = (exported.parent / "view.py").read_text()
+    ast.parse(script)
+    assert f'"{exported.name}"' in script
+
+
+def test_peaks_are_in_every_file_where_the_record_has_them(spalled_run, tmp_path):
+    run = tmp_path / "run.h5"
+    run.write_bytes(spalled_run.read_bytes())
+    peaks = np.linspace(0.0, 3.0, 41)
+    with h5py.File(run, "r+") as file:
+        file["particles/peak_velocity"] = peaks
+    write_vtu(run, tmp_path / "paraview", Bars())
+    for number in ("0000", "0011"):
+        mesh = pyvista.read(tmp_path / "paraview" / f"bar_{number}.vtu")
+        np.testing.assert_array_equal(mesh.point_data["peakVelocity"], peaks)

@@ -1,0 +1,113 @@
+"""What a run of a bar has shown that was probably not meant."""
+
+import json
+import shutil
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.bar.scene import build_bar
+from dembound.bar.warnings import warnings_after_bar
+from dembound.run import run_case
+
+
+@pytest.fixture
+def run(spalling, tmp_path):
+    """What is warned of after a run of the spalling bar with keys changed."""
+
+    def make(changes: dict) -> list[str]:
+        case = spalling({"output.pictures": False, **changes})
+        folder = run_case(case, tmp_path)
+        return warnings_after_bar(build_bar(case), _summary(folder), folder / "run.h5")
+
+    return make
+
+
+def _summary(folder: Path) -> dict:
+    return json.loads((folder / "summary.json").read_text())
+
+
+def test_a_bar_that_spalls_is_not_warned_of(run) -> None:
+    assert run({}) == []
+
+
+def blow(pressure: float, nodes: int, side: str = "left") -> dict:
+    return {"load": [{"name": "blow", "pressure": pressure, "nodes": nodes, "wave": "hit", "side": side}]}
+
+
+SUDDEN = {"wave.hit.rise": 2.5e-5, "wave.hit.fall": 2.5e-4}
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_load_that_tears_its_own_end_is_warned_of(run, side: str) -> None:
+    (warning,) = run(SUDDEN | blow(9e7, 1, side))
+
+    assert warning.startswith("load.blow: the load itself tore the bar, at ")
+    assert warning.endswith(" m from the loaded end, before any wave was back there; give load.blow.nodes = 3")
+
+
+def test_a_load_that_is_spread_already_takes_finer_nodes(run) -> None:
+    (warning,) = run(SUDDEN | blow(-3e7, 3))
+
+    assert warning.endswith("take a smaller bar.spacing")
+
+
+@pytest.mark.parametrize(
+    ("place", "time", "warned"),
+    [
+        (0.0, 1e-4, True),
+        (0.07, 1e-4, True),
+        (0.08, 1e-4, False),  # beyond the horizon, which is 0.075 m
+        (0.0, 1.99e-3, True),
+        (0.0, 2.01e-3, False),  # the wave is back from the free end
+    ],
+)
+def test_the_first_spall_tells_who_tore_the_bar(spalling, spalled_run, place: float, time: float, warned: bool) -> None:
+    first = {"time": time, "start": [place, 0.5], "end": [place, 0.5]}
+    later = {"time": 1e-6, "start": [0.0, 0.0], "end": [0.0, 0.0]}
+    found = warnings_after_bar(build_bar(spalling()), {"duration": 1.0, "spalls": [first, later]}, spalled_run)
+
+    # the load of this bar is spread over the horizon
+    said = f"load.hit: the load itself tore the bar, at {time:.4g} s and {place:g} m from the loaded end, before any "
+    assert found == warned * [f"{said}wave was back there; take a smaller bar.spacing"]
+
+
+FIRM = {"method": {"type": "finite_difference"}, "boundary.right": {"type": "viscous"}}
+"""At ν = 1 the right end absorbs all, and nothing pulls but rounding."""
+
+
+def test_a_bar_that_nothing_pulls_is_warned_of(run) -> None:
+    (warning,) = run(FIRM)
+
+    assert warning.startswith("bar: the largest tension reached is ")
+    assert warning.endswith(" % of the strength, 8e+06 Pa; nothing can break")
+    assert run({**FIRM, "bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}}) == []
+
+
+@pytest.mark.parametrize(("tension", "warned"), [(4.1e5, False), (3.9e5, True)])
+def test_the_largest_tension_beside_the_strength(spalling, tmp_path, tension: float, warned: bool) -> None:
+    folder = run_case(spalling({"output.pictures": False, **FIRM}), tmp_path)
+    with h5py.File(folder / "run.h5", "r+") as file:
+        file["histories/gauge/stress"][3] = tension
+    said = "bar: the largest tension reached is 3.9e+05 Pa, 4.9 % of the strength, 8e+06 Pa; nothing can break"
+
+    assert warnings_after_bar(build_bar(spalling(FIRM)), _summary(folder), folder / "run.h5") == warned * [said]
+
+
+@pytest.mark.parametrize("changes", [{"run.duration": 5e-4}, blow(5.0, 3)], ids=["too short", "too weak"])
+def test_what_was_known_before_the_run_is_not_told_again(run, changes: dict) -> None:
+    assert run({"method": {"type": "finite_difference"}, **changes}) == []
+
+
+def test_a_bar_comes_to_rest_where_a_dashpot_holds_the_piece(spalling, spalled_run, tmp_path) -> None:
+    path = Path(shutil.copy(spalled_run, tmp_path / "run.h5"))
+    with h5py.File(path, "r+") as file:
+        velocity = file["histories/gauge/velocity"]
+        velocity[:, 0] = np.linspace(0.0, 1.0, len(velocity)) ** 4
+    scene = build_bar(spalling({"boundary.left": {"type": "viscous"}}))
+    spall = {"time": 1.2e-3, "start": [0.9, 0.9], "end": [0.9, 0.95]}
+    for where, warned in ((spall, True), ({**spall, "end": [0.3, 0.4]}, False)):
+        found = warnings_after_bar(scene, {"duration": 1.5e-3, "spalls": [where]}, path)
+        assert [warning.split(":")[0] for warning in found] == warned * ["monitor.gauge"]

@@ -1,0 +1,118 @@
+"""Holes: their keys, alone and beside the other tables."""
+
+import pytest
+
+from dembound.errors import CaseError
+from dembound.kinds import loads
+
+BASE = """\
+[packing]
+pattern = "A"
+size = [10.0, 5.0]
+radius = 0.25
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+[run]
+duration = 0.1
+"""
+CIRCLE = 'type = "circle"\ncentre = [5.0, 2.5]\nradius = 1.0'
+STATIC = "[static]\nstress = [-1e6, -1e6, 0.0]\n"
+
+
+def hole(keys: str = CIRCLE, name: str = "tunnel") -> str:
+    return f'[[hole]]\nname = "{name}"\n{keys}\n'
+
+
+def monitor(x: float, y: float) -> str:
+    return f'[[monitor]]\nname = "P1"\nposition = [{x}, {y}]\n'
+
+
+def load(place: str) -> str:
+    return f'[[load]]\nname = "tap"\nforce = [1.0, 0.0]\n{place}\n'
+
+
+def problems(*tables: str) -> list[str]:
+    try:
+        loads(BASE + "".join(tables))
+    except CaseError as error:
+        return error.problems
+    return []
+
+
+def test_holes_are_read_in_order_and_are_there_from_the_start() -> None:
+    square = 'type = "rectangle"\ncorners = [1, 1, 2, 2]\nstage = "after"'
+    case = loads(BASE + STATIC + hole() + hole(square, "shaft"))
+
+    assert [(entry.name, entry.type, entry.stage) for entry in case.hole] == [
+        ("tunnel", "circle", "before"),
+        ("shaft", "rectangle", "after"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("keys", "line"),
+    [
+        ("", 'hole[1, tunnel].type: is missing, must be one of "circle", "ellipse", "polygon", "rectangle"'),
+        ('type = "box"', 'hole[1, tunnel].type: is "box", must be one of '),
+        (f"{CIRCLE}\nradios = 1", "hole[1, tunnel].radios: unknown key; allowed: "),
+        ('type = "circle"\ncentre = [5, 2]\nradius = 0', "hole[1, tunnel].radius: is 0, must be greater than 0"),
+        (
+            'type = "ellipse"\ncentre = [5, 2]\nsemi_axes = [1, -1]',
+            "hole[1, tunnel].semi_axes: is [1, -1], must be a list of 2 values, each a number greater than 0 (m)",
+        ),
+        (
+            'type = "rectangle"\ncorners = [5, 1, 4, 2]',
+            "hole[1, tunnel].corners: must have x0 < x1 and y0 < y1, in the order x0, y0, x1, y1",
+        ),
+        (
+            'type = "polygon"\npoints = [[1, 1], [2, 2]]',
+            "hole[1, tunnel].points: has 2, must have at least three",
+        ),
+        (
+            'type = "polygon"\npoints = [1, 2, 3]',
+            "hole[1, tunnel].points: is [1, 2, 3], must be a list of values, each a list of 2 values, each ",
+        ),
+        (f'{CIRCLE}\nstage = "later"', 'hole[1, tunnel].stage: is "later", must be one of "before", "after"'),
+    ],
+)
+def test_each_mistake_gets_one_plain_line(keys: str, line: str) -> None:
+    (found,) = problems(hole(keys))
+    assert found.startswith(line)
+
+
+@pytest.mark.parametrize(("x", "y"), [(11.0, 2.5), (-1.0, 2.5), (5.0, 6.0), (5.0, -1.5)])
+def test_a_hole_beside_the_scene_is_refused(x: float, y: float) -> None:
+    assert problems(hole(f'type = "circle"\ncentre = [{x}, {y}]\nradius = 1.0')) == [
+        "hole[1, tunnel]: lies outside the scene, [0, 0] to [10.0, 5.0] (m)"
+    ]
+
+
+def test_a_hole_may_reach_beyond_the_scene() -> None:
+    assert problems(hole('type = "circle"\ncentre = [10.9, 2.5]\nradius = 1.0')) == []
+
+
+def test_excavating_takes_a_static_stage() -> None:
+    after = hole(f'{CIRCLE}\nstage = "after"')
+    assert problems(after, STATIC) == []
+    assert problems(after) == ['hole[1, tunnel].stage: is "after", but the case has no [static] stage to come after']
+    # a stage that is invalid is there all the same
+    assert problems(after, "[static]\ndamp = 2\n") == ["static.damp: is 2, must be less than 1"]
+
+
+def test_names_are_unique() -> None:
+    assert problems(hole(), hole(), hole(name="shaft")) == ['hole[2].name: "tunnel" is taken by hole[1]']
+
+
+def test_nothing_is_watched_or_pushed_where_nothing_is_left() -> None:
+    assert problems(hole(), monitor(5.0, 3.4), load("position = [4.1, 2.5]")) == [
+        "load[1, tap].position: lies in hole[1, tunnel]; must be where particles are left",
+        "monitor[1, P1].position: lies in hole[1, tunnel]; must be where particles are left",
+    ]
+    assert problems(hole(), monitor(5.0, 3.6), load("position = [3.9, 2.5]")) == []
+    # a region is loaded where particles are left in it
+    assert problems(hole(), load("region = [4.5, 2.0, 5.5, 3.0]")) == []
+
+
+def test_tables_that_are_no_list_are_refused() -> None:
+    assert problems('[hole.tunnel]\ntype = "circle"\n') == ["hole: is a table, must be made of tables [[hole]]"]

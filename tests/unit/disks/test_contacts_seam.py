@@ -1,0 +1,330 @@
+"""The lists of pairs beside a free-field column: one of each part, and the contact ends that act across the seam."""
+
+import numpy as np
+import pytest
+
+from dembound.disks.contacts import ContactList
+from dembound.disks.scene import DiskScene, build, column_alone
+from dembound.disks.system import DiskSystem
+from dembound.kernels.contacts import INTACT, NONE, SHEAR, TENSION
+from dembound.motion.cracks import joined
+
+FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
+STEP = 1e-4
+RANDOM = {"size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+PACKINGS = {
+    "A": {"pattern": "A", "size": [2.0, 1.5], "radius": 0.25},
+    "A, one disk wide": {"pattern": "A", "size": [0.5, 1.5], "radius": 0.25},
+    "B": {"pattern": "B", **RANDOM},
+    "B, one brick wide": {"pattern": "B", **RANDOM, "size": [4.0, 4.0]},
+    "C": {"pattern": "C", **RANDOM, "edge_radius": 0.26},
+}
+
+
+@pytest.fixture
+def scene(bar):
+    """Makes scenes between free-field sides under the law with a history."""
+
+    def make(packing: str = "B", **changes: object) -> DiskScene:
+        tables = {"packing": PACKINGS[packing], "boundary": FREE_FIELD, "wave": {}, "monitor": [], "motion.held": []}
+        return build(bar({**tables, "material.law": "linearpbond", **changes}))
+
+    return make
+
+
+@pytest.fixture(params=PACKINGS)
+def beside(scene, request) -> DiskSystem:
+    """Column and body."""
+    return DiskSystem(scene(request.param), STEP)
+
+
+def shaken(body: DiskScene, size: float, seed: int = 1) -> np.ndarray:
+    """A random motion (3, n) m of all particles."""
+    return size * np.random.default_rng(seed).uniform(-1.0, 1.0, (3, body.count))
+
+
+def seam_ends(beside: DiskSystem) -> np.ndarray:
+    """Contact ends of the column's pairs at which it pushes the body across the seam."""
+    (tie,) = beside.ties
+    return tie.ends(beside.contacts["column"])
+
+
+def both(lists: dict[str, ContactList], name: str) -> np.ndarray:
+    """A column of the pairs of column and body."""
+    return np.concatenate([getattr(contacts.arrays, name) for contacts in lists.values()])
+
+
+def check_ends(beside: DiskSystem) -> None:
+    """Every end is the twin's, at a pair with the neighbour that the seam names, along the brick's own vector."""
+    seam, pairs, ends = beside.scene.seam, beside.contacts["column"].arrays, seam_ends(beside)
+    twin, pair, side = np.repeat(seam.twin[seam.node], seam.many), ends >> 1, ends & 1
+    disks = np.stack([pairs.first, pairs.second])[:, pair].astype(np.int64)
+    column = np.arange(len(ends))
+
+    assert len(ends) == len(seam.near)
+    assert np.array_equal(disks[side, column], twin)
+    assert np.array_equal(disks[1 - side, column], seam.near)
+    outward = np.where(side, -1.0, 1.0)[:, None] * pairs.palette[pairs.kind[pair], :2]
+    brick = beside.scene.ground.brick
+    expected = np.where(seam.second, -1.0, 1.0)[:, None] * np.tile(brick.vectors, (2, 1))[seam.kind]
+    assert np.array_equal(outward, expected)
+
+
+def test_the_seams_ends_are_those_of_the_columns_pairs(beside: DiskSystem) -> None:
+    check_ends(beside)
+
+
+def test_a_search_moves_the_ends_and_keeps_them_right(beside: DiskSystem) -> None:
+    before = seam_ends(beside)
+    moved = shaken(beside.scene, 0.3)
+    for contacts in beside.contacts.values():
+        contacts.arrays.state[::2] = TENSION  # so that pairs go as well as come
+        contacts.search(moved)
+        assert np.array_equal(contacts.origin, moved[:2, contacts.nodes])
+
+    assert not np.array_equal(seam_ends(beside), before)
+    check_ends(beside)
+
+
+def test_a_broken_pair_across_the_seam_stays_listed_however_far_apart(scene) -> None:
+    beside = DiskSystem(scene(), STEP)
+    column = beside.contacts["column"]
+    column.arrays.state[seam_ends(beside) >> 1] = TENSION
+    apart = np.zeros((3, beside.scene.count))
+    apart[0] = 5.0 * beside.scene.positions[:, 0]
+    for contacts in beside.contacts.values():
+        contacts.search(apart)
+
+    check_ends(beside)
+    assert set(column.arrays.state[seam_ends(beside) >> 1]) == {TENSION}
+
+
+def plain_near(
+    ground: DiskScene, skin: float, body: slice, period: float, displacement: np.ndarray
+) -> set[tuple[int, ...]]:
+    """Pairs of a part of the disks within the skin, at times a period apart, found by trying all: (i, j, periods)."""
+    here, radii = (ground.positions + displacement[:2].T)[body], ground.assembly.radii[body]
+    found = set()
+    for image in (-1, 0, 1) if period else (0,):
+        apart = np.hypot(*(here[None] + [image * period, 0.0] - here[:, None]).transpose(2, 0, 1))
+        for i, j in zip(*np.nonzero(apart - radii - radii[:, None] <= skin), strict=True):
+            if i != j or image:
+                there, back = (i + body.start, j + body.start, image), (j + body.start, i + body.start, -image)
+                found.add(tuple(int(number) for number in min(there, back)))
+    return found
+
+
+def listed(contacts: ContactList, ground: DiskScene, width: float) -> list[tuple[int, ...]]:
+    """All pairs (i, j, periods) of a list as `plain_near` has them."""
+    pairs, places = contacts.arrays, ground.positions
+    beyond = pairs.palette[pairs.kind, :2] - (places[pairs.second] - places[pairs.first])
+    images = np.rint(beyond[:, 0] / width)
+    return [
+        tuple(int(number) for number in min((i, j, image), (j, i, -image)))
+        for i, j, image in zip(pairs.first.astype(int), pairs.second.astype(int), images, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("size", [0.0, 0.2])
+def test_the_column_meets_itself_sideways_the_body_does_not_and_they_never_meet(scene, size: float) -> None:
+    ground = scene()
+    lists, seam = ground.contact_lists(), ground.seam
+
+    def all_pairs() -> list[tuple[int, ...]]:
+        return [key for contacts in lists.values() for key in listed(contacts, ground, seam.width)]
+
+    bonded = {key for key, state in zip(all_pairs(), both(lists, "state"), strict=True) if state}
+    moved = shaken(ground, size)
+    for contacts in lists.values():
+        contacts.search(moved)
+    found, skin = all_pairs(), lists["column"].skin
+    column = plain_near(ground, skin, slice(0, seam.count), seam.width, moved)
+    body = plain_near(ground, skin, slice(seam.count, ground.count), 0.0, moved)
+
+    assert list(lists) == ["column", "body"]
+    assert lists["body"].skin == skin
+    assert len(set(found)) == len(found)
+    assert set(found) == column | body | bonded
+    assert any(key[2] for key in found)
+    for name, contacts in lists.items():
+        for i, j, image in listed(contacts, ground, seam.width):
+            assert (i < seam.count) == (j < seam.count) == (name == "column")
+            assert not image or i < seam.count
+
+
+def test_what_comes_across_the_seam_is_what_the_twins_feel_there(scene) -> None:
+    beside = DiskSystem(scene(), STEP)
+    moved, lists = shaken(beside.scene, 1e-3), beside.contacts
+    for contacts in lists.values():
+        contacts.push(moved)
+    total, seam = beside.last_forces(lists), beside.scene.seam
+    expected = np.zeros_like(total)
+    columns = (both(lists, name) for name in ("first", "second", "force"))
+    for i, j, (fx, fy, moment_i, moment_j) in zip(*columns, strict=True):
+        expected[:, i] += [fx, fy, moment_i]
+        expected[:, j] += [-fx, -fy, moment_j]
+    owner, force = np.repeat(seam.node, seam.many), lists["column"].arrays.force
+    for node, end in zip(owner, seam_ends(beside), strict=True):
+        fx, fy, *moments = force[end >> 1]
+        sign = -1.0 if end & 1 else 1.0
+        expected[:, node] += [sign * fx, sign * fy, moments[end & 1]]
+
+    # sums of some five forces, in another order
+    atol = 10.0 * np.finfo(float).eps * np.abs(both(lists, "force")).max()
+    np.testing.assert_allclose(total, expected, rtol=0.0, atol=atol)
+
+
+def test_without_a_column_there_are_no_ends(scene) -> None:
+    alone = DiskSystem(scene(boundary={}), STEP)
+
+    assert alone.ties == ()
+    assert list(alone.contacts) == ["body"]
+
+
+def twins_keys(lists: dict[str, ContactList], ground: DiskScene) -> list[tuple[int, ...]]:
+    """Of each pair (i, j, periods) of its twin in the column, as `plain_near` has them."""
+    places, twin = ground.positions, ground.seam.twin
+    first, second = twin[both(lists, "first")], twin[both(lists, "second")]
+    vectors = np.concatenate([contacts.arrays.palette[contacts.arrays.kind, :2] for contacts in lists.values()])
+    images = np.rint((vectors - (places[second] - places[first]))[:, 0] / ground.seam.width)
+    return [
+        tuple(int(number) for number in min((i, j, image), (j, i, -image)))
+        for i, j, image in zip(first, second, images, strict=True)
+    ]
+
+
+def copy_column(lists: dict[str, ContactList], column: ContactList, ground: DiskScene, moved: np.ndarray) -> None:
+    """Let all pairs take the history of their twins at displacements (3, n)."""
+    for contacts in lists.values():
+        contacts.copy_twins(column, ground.seam.twin[contacts.nodes], moved)
+
+
+@pytest.mark.parametrize("packing", PACKINGS)
+def test_every_pair_takes_the_history_of_its_twin_in_the_column(scene, packing: str) -> None:
+    ground, rng = scene(packing), np.random.default_rng(2)
+    bare = column_alone(ground)
+    column, lists = bare.contact_lists()["body"], ground.contact_lists()
+    alone = shaken(bare, 0.0 if packing.startswith("A") else 0.2)
+    column.search(alone)
+    pairs = column.arrays
+    bonded = pairs.state == INTACT
+    pairs.state[bonded] = rng.choice([INTACT, TENSION, SHEAR], np.count_nonzero(bonded))
+    pairs.shear[:], pairs.slip[:] = rng.uniform(-1.0, 1.0, (2, len(pairs.state)))
+    together = alone[:, ground.seam.twin]
+    copy_column(lists, column, ground, together)
+
+    history = list(zip(pairs.state.tolist(), pairs.shear.tolist(), pairs.slip.tolist(), strict=True))
+    expected = dict(zip(listed(column, bare, ground.seam.width), history, strict=True))
+    assert len(expected) == len(history)
+    keys, state = twins_keys(lists, ground), both(lists, "state")
+    found = list(zip(state.tolist(), both(lists, "shear").tolist(), both(lists, "slip").tolist(), strict=True))
+    assert [expected[key] for key in keys] == found
+    for contacts in lists.values():
+        assert np.array_equal(contacts.origin, together[:2, contacts.nodes])
+    # pairs of column and body, and in the column some across its period
+    in_column = both(lists, "first") < ground.seam.count
+    assert 0 < np.count_nonzero(in_column) < len(found)
+    assert {key for key, inside in zip(keys, in_column, strict=True) if inside} == set(expected)
+    assert any(key[2] for key in expected)
+    if not packing.startswith("A"):  # and some that were found since
+        assert np.count_nonzero(state[in_column] == NONE) > 0
+        assert np.count_nonzero(state[~in_column] == NONE) > 0
+
+
+def test_what_broke_in_the_column_is_noted_as_broken_before_the_first_step(scene) -> None:
+    ground = scene("B")
+    column, lists = column_alone(ground).contact_lists()["body"], ground.contact_lists()
+    pairs = column.arrays
+    pairs.state[np.flatnonzero(pairs.state == INTACT)[:6]] = [TENSION, SHEAR, SHEAR] * 2
+    column.arrays.cracked[:6] = 5
+    together = shaken(ground, 0.01)[:, ground.seam.twin]
+    copy_column(lists, column, ground, together)
+    first, second, state = (both(lists, name) for name in ("first", "second", "state"))
+    cracks = joined([contacts.take_cracks() for contacts in lists.values()])
+    broken = np.flatnonzero((state == TENSION) | (state == SHEAR))
+
+    # each of the column, and its twins in the body; two bricks side by side have those within a brick twice
+    assert len(cracks) == len(broken) > 2 * 6
+    assert sorted(map(tuple, cracks.pair.tolist())) == sorted(
+        zip(first[broken].tolist(), second[broken].tolist(), strict=True)
+    )
+    assert set(cracks.step) == {0}
+    assert np.count_nonzero(cracks.shear) == np.count_nonzero(state == SHEAR)
+    assert (both(lists, "cracked") == -1).all()
+    assert sum(len(contacts.take_cracks()) for contacts in lists.values()) == 0
+    # where the bonds of the body are now; those across the column's period lie at its sides
+    inside = cracks.pair[:, 0] >= ground.seam.count
+    places = (ground.positions + together[:2].T)[cracks.pair].mean(axis=1)
+    np.testing.assert_allclose(cracks.position[inside], places[inside], rtol=0.0, atol=1e-14 * 8.0)
+
+
+def test_what_the_column_does_not_list_keeps_its_own_state(scene) -> None:
+    ground = scene("B")
+    bare = column_alone(ground)
+    column, lists = bare.contact_lists()["body"], ground.contact_lists()
+    column.arrays.state[:] = SHEAR
+    column.arrays.shear[:] = 1.0
+    # a pair of the column alone is struck off its list, so that neither it nor any twin of it is known there
+    struck = listed(column, bare, ground.seam.width)[7]
+    kept = [key != struck for key in listed(column, bare, ground.seam.width)]
+    column.arrays = column.arrays._replace(
+        **{name: getattr(column.arrays, name)[kept] for name in ("first", "second", "state", "shear", "slip")}
+    )
+    column.image = column.image[kept]
+    copy_column(lists, column, ground, np.zeros((3, ground.count)))
+
+    same = np.array([key == struck for key in twins_keys(lists, ground)])
+    assert same.any()
+    assert not (both(lists, "state")[same] == SHEAR).any()
+    assert not both(lists, "shear")[same].any()
+    assert (both(lists, "shear")[~same] == 1.0).all()
+
+
+LATTICE = {"pattern": "A", "size": [2.0, 1.0], "radius": 0.25}
+HALF = {"right": {"type": "viscous", "half_mass": True}}
+
+
+def half_cells(bar, **strength: float) -> tuple[ContactList, np.ndarray, np.ndarray]:
+    """Four disks by two, those on the right half cells; which pairs are upright, and which of these on the right."""
+    material = {"material.law": "linearpbond", "material.geometry": "reference", **strength}
+    tables = {"packing": LATTICE, "boundary": HALF, "wave": {}, "monitor": [], "motion.held": []}
+    contacts = build(bar({**tables, **material})).contact_lists()["body"]
+    first, second = (contacts.assembly.positions[end, 0] for end in (contacts.arrays.first, contacts.arrays.second))
+    return contacts, first == second, (first == second) & (first == 1.75)
+
+
+def sheared(contacts: ContactList, upper: tuple[float, ...], lower: tuple[float, ...] = (0.0, 0.0, 0.0)) -> np.ndarray:
+    """The upper row moved by (m, m, rad), and the lower one."""
+    high = contacts.assembly.positions[:, 1] > 0.5
+    return np.where(high, np.array(upper)[:, None], np.array(lower)[:, None])
+
+
+def test_half_contacts_push_half_as_hard(bar) -> None:
+    contacts, upright, right = half_cells(bar)
+    contacts.push(sheared(contacts, (2e-5, 1e-5, 3e-5)))
+    force = contacts.arrays.force
+
+    assert (np.count_nonzero(upright), np.count_nonzero(right)) == (4, 1)
+    assert np.abs(force[upright]).min() > 0.0
+    # halves of the stiffness are exact, and so are all products with them
+    assert np.array_equal(force[right][0], 0.5 * force[upright & ~right][0])
+
+
+@pytest.mark.parametrize(
+    ("strength", "upper", "lower"),
+    [
+        ("material.pb_ten", (0.0, 4e-4, 0.0), (0.0, 0.0, 0.0)),
+        ("material.pb_coh", (4e-4, 0.0, 0.0), (0.0, 0.0, 0.0)),
+        ("material.pb_ten", (0.0, 0.0, 8e-4), (0.0, 0.0, -8e-4)),
+    ],
+    ids=["tension", "shear", "bending"],
+)
+def test_half_bonds_break_under_the_same_stress(bar, strength: str, upper: tuple, lower: tuple) -> None:
+    # bonds of 1.25 GPa over 0.5 m: 2.5 GPa per m of stretch or slide, and R̄ = 0.25 m times the turn; 1 MPa at 0.4 mm
+    contacts, upright, right = half_cells(bar, **{strength: 1e6})
+    contacts.push(0.999 * sheared(contacts, upper, lower))
+    assert not (contacts.arrays.state[upright] != INTACT).any()
+    contacts.push(1.001 * sheared(contacts, upper, lower))
+
+    assert right.any()
+    assert np.array_equal(contacts.arrays.state != INTACT, upright)

@@ -1,0 +1,128 @@
+"""What runs, checks and reports ask of bonded disks."""
+
+import numpy as np
+import pytest
+
+from dembound.case.disks import STARTER
+from dembound.disks.kind import Disks
+from dembound.disks.static import settle
+from dembound.errors import CaseError
+from dembound.kinds import loads
+
+HANGING = {
+    "wave.pulse.start": 1.0,
+    "boundary.left": {"type": "fixed"},
+    "boundary.right": {"type": "free"},
+    "load": [{"name": "weight", "acceleration": [9.81, 0.0]}],
+    "static": {"ratio": 1e-6, "boundary": {"left": {"type": "fixed"}}},
+}
+"""The bar hangs from its left end."""
+
+NICHE = {"name": "niche", "type": "rectangle", "corners": [1.0, 0.5, 2.0, 1.1], "stage": "after"}
+"""Two disks of the upper row."""
+
+STEP = 1e-4
+
+
+def begun(case):
+    """The scene of a case, where its run begins, and the looks at its static stage."""
+    looks: list[tuple[int, float]] = []
+    scene = Disks().build(case)
+    return scene, Disks().begin(scene, STEP, lambda *look: looks.append(look)), looks
+
+
+def test_without_a_static_stage_a_run_begins_as_built(bar) -> None:
+    scene, beginning, looks = begun(bar())
+
+    assert beginning.datum is None
+    assert beginning.stages == ()
+    assert beginning.summary is None
+    assert not beginning.system.parts[0].nodes.start
+    assert beginning.system.parts[0].nodes.stop == scene.count
+    assert looks == []
+
+
+def test_a_run_begins_where_its_static_stage_has_come_to_rest(bar) -> None:
+    _, beginning, looks = begun(bar(HANGING))
+    settled = settle(Disks().build(bar(HANGING)))
+
+    (stage,) = beginning.stages
+    assert stage.name == "static"
+    assert looks[-1] == (stage.facts["steps"], stage.facts["ratio"]) == (settled.steps, settled.ratio)
+    assert (stage.facts["carried"], stage.facts["left"]) == (settled.carried, settled.left)
+    assert stage.facts["cracks"] == len(stage.cracks) == 0
+    assert np.array_equal(stage.facts["stress"], settled.stress)
+    assert np.array_equal(stage.displacement, settled.start.displacement)
+    assert np.array_equal(beginning.datum, stage.displacement)
+    assert beginning.datum[0].max() > 0.0
+    assert beginning.summary["steps"] == settled.steps
+    assert beginning.summary["before"] is beginning.summary["asked"] is None
+
+
+def test_the_stage_before_an_excavation_is_told_of_the_disks_that_are_left(bar) -> None:
+    weak = {"material.law": "linearpbond", "material.pb_ten": 0.3 * 19 * 625.0 * 9.81 / 0.5}
+    held = {"boundary.right": {"type": "fixed"}, "static.boundary.right": {"type": "fixed"}}
+    case = bar({**HANGING, **held, **weak, "hole": [NICHE]})
+    scene, beginning, _ = begun(case)
+    settled = settle(Disks().build(case))
+
+    before, last = beginning.stages
+    assert (before.name, last.name) == ("static/before", "static")
+    assert len(scene.kept) == scene.count == 38
+    assert before.displacement.shape == last.displacement.shape == (3, 38)
+    assert np.array_equal(before.displacement, settled.before.start.displacement[:, scene.kept])
+    assert before.facts["steps"] == settled.before.steps == beginning.summary["before"]["steps"]
+    # all that broke is counted, and that between disks which are left is kept
+    assert before.facts["cracks"] == len(settled.before.cracks) > 0
+    left = np.isin(settled.before.cracks.pair, scene.kept).all(axis=1)
+    assert np.array_equal(scene.kept[before.cracks.pair], settled.before.cracks.pair[left])
+    assert np.array_equal(before.cracks.position, settled.before.cracks.position[left])
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"run.time_step": 5e-3}, "run.time_step"),
+        ({"material": {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0}}, "material"),
+        (
+            {"load": [{"name": "push", "force": [1.0, 0.0], "region": [3.01, 0.3, 3.02, 0.31]}]},
+            "no particle is centred",
+        ),
+    ],
+)
+def test_what_would_stop_a_run_is_found_before_it(bar, changes: dict, said: str) -> None:
+    with pytest.raises(CaseError, match=said):
+        Disks().preflight(bar(changes))
+    Disks().preflight(bar())
+
+
+@pytest.mark.parametrize(
+    ("changes", "without"),
+    [
+        ({}, ""),
+        (HANGING, ", without the static stage"),
+        ({"material.law": "linearpbond"}, ", without what linearpbond takes longer once it begins"),
+        ({"material.law": "linearpbond", "material.elastic_start": False}, ""),
+        (
+            {**HANGING, "material.law": "linearpbond"},
+            ", without the static stage and what linearpbond takes longer once it begins",
+        ),
+    ],
+)
+def test_what_a_short_trial_does_not_show(bar, changes: dict, without: str) -> None:
+    assert Disks().not_estimated(bar(changes)) == without
+
+
+def test_the_starter_is_a_case_of_disks() -> None:
+    assert Disks.starter is STARTER
+    assert isinstance(loads(Disks.starter), Disks.schema.case)
+
+
+def test_a_run_is_shown_as_its_scene(small_run) -> None:
+    ((name, figure),) = Disks().pictures(small_run)
+
+    assert name == "scene"
+    assert len(figure.axes) > 0
+    assert len(Disks().field_picture(small_run, "displacement", 0).axes) > 0
+    with pytest.raises(CaseError):
+        Disks().field_picture(small_run, "stress", None)

@@ -1,0 +1,100 @@
+"""What ParaView is given of disks equals the record."""
+
+import h5py
+import meshio
+import numpy as np
+import pytest
+import pyvista
+
+from dembound.disks.kind import Disks
+from dembound.results.vtk import write_vtu
+
+
+@pytest.fixture(scope="module")
+def exported(small_run, tmp_path_factory):
+    return write_vtu(small_run, tmp_path_factory.mktemp("vtu") / "paraview", Disks())
+
+
+def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Points and point data of a snapshot, written out column by column."""
+    particles, snapshot = file["particles"], file["snapshots"][number]
+    displacement, velocity = snapshot["displacement"][:], snapshot["velocity"][:]
+    points, moved, linear, angular = (np.zeros((len(velocity), 3)) for _ in range(4))
+    for axis in range(2):
+        points[:, axis] = particles["position"][:, axis] + displacement[:, axis]
+        moved[:, axis] = displacement[:, axis]
+        linear[:, axis] = velocity[:, axis]
+    angular[:, 2] = velocity[:, 2]
+    return points, {
+        "radii": particles["radius"][:],
+        "id": np.arange(len(velocity)),
+        "linVelVec": linear,
+        "angVelVec": angular,
+        "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
+        "displacement": moved,
+        "rotation": displacement[:, 2],
+        "brick_particle": particles["brick_particle"][:],
+        "nbCracks": np.zeros(len(velocity)),
+        "damage": np.zeros(len(velocity)),
+    }
+
+
+@pytest.mark.parametrize("number", ["0000", "0001"])
+def test_meshio_reads_back_what_the_record_holds(small_run, exported, number):
+    mesh = meshio.read(exported.parent / f"particles_{number}.vtu")
+    with h5py.File(small_run) as file:
+        points, data = expected(file, number)
+    assert all(np.abs(data[name]).max() > 0.0 for name in ("linVelVec", "angVelVec", "displacement", "rotation"))
+    np.testing.assert_array_equal(mesh.points, points)
+    assert mesh.point_data.keys() == data.keys()
+    for name, values in data.items():
+        np.testing.assert_array_equal(mesh.point_data[name], values, err_msg=name)
+
+
+def test_vtk_reads_one_vertex_per_disk(small_run, exported):
+    mesh = pyvista.read(exported.parent / "particles_0001.vtu")
+    with h5py.File(small_run) as file:
+        points, data = expected(file, "0001")
+    assert mesh.n_cells == len(points)
+    assert set(mesh.celltypes) == {pyvista.CellType.VERTEX}
+    np.testing.assert_array_equal(mesh.points, points)
+    for name, values in data.items():
+        np.testing.assert_array_equal(mesh.point_data[name], values, err_msg=name)
+
+
+def test_stress_is_a_symmetric_tensor_and_peaks_are_in_every_file(rich_run, tmp_path):
+    write_vtu(rich_run, tmp_path, Disks())
+    with h5py.File(rich_run) as file:
+        for number, snapshot in file["snapshots"].items():
+            mesh = pyvista.read(tmp_path / f"particles_{number}.vtu")
+            xx, yy, xy = snapshot["stress"][:].T
+            zero = np.zeros_like(xx)
+            # VTK's order: xx, yy, zz, xy, yz, xz
+            np.testing.assert_array_equal(mesh.point_data["stress"].T, [xx, yy, zero, xy, zero, zero])
+            np.testing.assert_array_equal(mesh.point_data["peakVelocity"], file["particles/peak_velocity"][:])
+
+
+def test_circle_glyphs_of_factor_two_have_the_radii(exported):
+    # as the module tells users to set ParaView's glyph filter, whose 2D circle has the diameter 1
+    mesh = pyvista.read(exported.parent / "particles_0000.vtu")
+    circle = pyvista.Circle(radius=0.5, resolution=4)
+    disks = mesh.glyph(geom=circle, scale="radii", factor=2.0, orient=False)
+    corners = disks.points.reshape(mesh.n_points, -1, 3) - mesh.points[:, None, :]
+    # VTK keeps glyph points in single precision: 6e-8 of coordinates up to 10 m
+    np.testing.assert_allclose(np.linalg.norm(corners, axis=2), 0.25, atol=2e-6)
+
+
+def test_cracks_and_damage_are_counted_up_to_each_snapshot(cracked_run, tmp_path):
+    write_vtu(cracked_run, tmp_path, Disks())
+    with h5py.File(cracked_run) as file:
+        bonds, cracks = file["particles/bonds"][:], {name: values[:] for name, values in file["cracks"].items()}
+        for number, snapshot in file["snapshots"].items():
+            data = meshio.read(tmp_path / f"particles_{number}.vtu").point_data
+            counted = np.zeros(len(bonds), dtype=int)
+            for time, pair in zip(cracks["time"], cracks["particles"], strict=True):
+                counted[pair] += time <= snapshot.attrs["time"]
+            np.testing.assert_array_equal(data["nbCracks"], counted)
+            np.testing.assert_array_equal(data["damage"], counted / bonds)
+            np.testing.assert_array_equal(data["coordNumber"], snapshot["coordination"][:])
+        broken = [np.count_nonzero(cracks["time"] <= each.attrs["time"]) for each in file["snapshots"].values()]
+    assert 0 < broken[0] < broken[1] == len(cracks["time"])

@@ -1,0 +1,34 @@
+"""What a run of disks ends by telling."""
+
+from dembound.disks.outcome import disk_outcome
+
+
+def test_only_what_applies_is_told() -> None:
+    elastic = {"static": None, "has_history": False, "laws": [{"law": "elastic", "from": 0.0}]}
+    quiet = {"has_history": True, "cracks": {"tension": 0, "shear": 0}, "energy": {"relative_error": 0.0}}
+    settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0, "before": None, "asked": None, "column": None}
+    stage = "settled in 3,100 steps to a force ratio of 9.8e-06"
+
+    assert disk_outcome(elastic) == []
+    assert disk_outcome(elastic | {"static": settled}) == [stage]
+    assert disk_outcome(elastic | quiet) == ["elastic law all through"]
+    broken = {"cracks": {"tension": 1200, "shear": 30}, "static": settled | {"cracks": 1100}}
+    assert disk_outcome(elastic | quiet | broken) == [
+        f"{stage}, breaking 1,100 bonds",
+        "elastic law all through",
+        "1,230 bonds broke (1,200 tension, 30 shear)",
+    ]
+    pressed = {"static": settled | {"asked": [-1e6, -2e6, 0.0], "stress": [-0.5e6, -2e6, 1e-3]}}
+    assert disk_outcome(elastic | pressed) == [
+        f"{stage} and a stress of (-0.5, -2, 0) where (-1, -2, 0) MPa was asked for"
+    ]
+    excavated = {"static": settled | {"steps": 900, "before": settled}}
+    assert disk_outcome(elastic | excavated) == [
+        stage,
+        "after the excavation in 900 steps to a force ratio of 9.8e-06",
+    ]
+    beside = {"static": settled | {"steps": 100, "column": settled}}
+    assert disk_outcome(elastic | beside) == [
+        f"column {stage}",
+        "settled in 100 steps to a force ratio of 9.8e-06",
+    ]

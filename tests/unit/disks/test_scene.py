@@ -1,0 +1,265 @@
+"""From a case to arrays."""
+
+import numpy as np
+import pytest
+from scipy.spatial.distance import cdist
+
+from dembound.case import Case
+from dembound.disks.scene import DiskScene, boundary_medium, build, with_boundaries
+from dembound.errors import CaseError, PackingError
+from dembound.kernels.elastic import contact_forces
+
+RANDOM = {
+    "packing": {"pattern": "B", "size": [12.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
+    "motion.held": [],
+}
+PERIODIC = {"boundary.bottom": {"type": "periodic"}, "boundary.top": {"type": "periodic"}}
+
+
+@pytest.fixture
+def random_scene(bar) -> DiskScene:
+    return build(bar(RANDOM))
+
+
+LATTICE = {"motion.held": []}
+KINDS = {"lattice": LATTICE, "half cells": {**LATTICE, "boundary.right.half_mass": True}, "random": RANDOM}
+
+
+@pytest.fixture(params=KINDS)
+def case(bar, request) -> Case:
+    return bar(KINDS[request.param])
+
+
+def test_every_contact_stands_in_two_rows(case: Case) -> None:
+    scene = build(case)
+    (rows,) = scene.rows
+    owner = np.repeat(np.arange(scene.count), np.diff(rows.start))
+    i, j = scene.assembly.pairs.T
+    expected = sorted([*zip(i, j, strict=True), *zip(j, i, strict=True)])
+
+    assert (rows.begin, len(rows.start)) == (0, scene.count + 1)
+    assert list(zip(owner, rows.neighbour, strict=True)) == expected
+    # seen from either end, whole and half
+    assert rows.palette.shape == (4 * len(scene.ground.brick.pairs), 6)
+    assert all(array.dtype == np.uint32 for array in (rows.start, rows.neighbour, rows.kind))
+
+
+def forces(scene: DiskScene, u: np.ndarray) -> np.ndarray:
+    found = np.empty_like(u)
+    for rows in scene.rows:
+        contact_forces(u, rows, found)
+    return found
+
+
+def test_rows_and_palette_make_the_forces_of_the_assemblys_contacts(case: Case) -> None:
+    scene = build(case)
+    body, law = scene.assembly, scene.ground.stiffness
+    halves = scene.edges["right"].nodes if case.boundary["right"].half_mass else []
+    u = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
+    expected = np.zeros_like(u)
+    for (i, j), k in zip(body.pairs, body.kind % len(law.normal), strict=True):
+        share = 0.5 if i in halves and j in halves else 1.0
+        along = body.positions[j] - body.positions[i]
+        n = along / np.hypot(*along)
+        t = np.array([-n[1], n[0]])
+        apart = u[:2, j] - u[:2, i]
+        slip = t @ apart - law.arm_i[k] * u[2, i] - law.arm_j[k] * u[2, j]
+        force = share * (law.normal[k] * (n @ apart) * n + law.shear[k] * slip * t)
+        bending = share * law.bending[k] * (u[2, j] - u[2, i])
+        expected[:2, i] += force
+        expected[:2, j] -= force
+        expected[2, i] += law.arm_i[k] * (force @ t) + bending
+        expected[2, j] += law.arm_j[k] * (force @ t) - bending
+
+    # places in far bricks carry rounding of 1e-15 of 12 m into directions: 1e-14 of forces of size k
+    np.testing.assert_allclose(forces(scene, u), expected, atol=1e-13 * law.normal.max())
+
+
+def test_a_rigid_turn_of_a_random_body_needs_no_force(random_scene: DiskScene) -> None:
+    x, y = random_scene.assembly.positions.T
+    found = forces(random_scene, np.stack([-y, x, np.ones_like(x)]))
+
+    # terms of size k·12 m cancel
+    np.testing.assert_allclose(found, 0.0, atol=1e-13 * 12.0 * random_scene.ground.stiffness.normal.max())
+
+
+def test_masses_are_those_of_the_bricks_particles(random_scene: DiskScene) -> None:
+    # 2 × 2 bricks; a sum of some 500 terms
+    assert random_scene.mass.sum() == pytest.approx(2500.0 * 12.0 * 10.0, rel=1e-13)
+    np.testing.assert_allclose(
+        random_scene.inertia, random_scene.mass * random_scene.assembly.radii**2 / 2.0, rtol=1e-14
+    )
+
+
+def test_a_scene_takes_little_memory(bar) -> None:
+    # what the scene promises for every 2D pattern: 1 kB per particle, far from the smallest scenes' overhead
+    for changes in ({"packing.size": [50.0, 50.0]}, RANDOM):
+        scene = build(bar(changes))
+        assert 0 < scene.bytes <= 1000 * scene.count
+
+
+def test_a_monitor_is_the_nearest_particle(bar) -> None:
+    places = {"low": [0.1, 0.1], "middle": [6.2, 4.9], "high": [12.0, 10.0]}
+    scene = build(bar({**RANDOM, "monitor": [{"name": n, "position": p} for n, p in places.items()]}))
+    distances = cdist(list(places.values()), scene.assembly.positions)
+
+    assert list(scene.monitors) == list(places)
+    for distance, node in zip(distances, scene.monitors.values(), strict=True):
+        assert distance[node] == distance.min()
+
+
+def test_a_scene_without_monitors_has_none(bar) -> None:
+    assert build(bar({"monitor": []})).monitors == {}
+
+
+def test_edges_are_the_outer_rows_with_their_lengths(bar) -> None:
+    edges = build(bar()).edges
+
+    assert list(edges) == ["left", "right", "bottom", "top"]
+    assert [len(edge.nodes) for edge in edges.values()] == [2, 2, 20, 20]
+    assert [edge.length for edge in edges.values()] == [1.0, 1.0, 10.0, 10.0]
+    assert all(edge.cover == 1.0 for edge in edges.values())
+
+
+def test_periodic_sides_have_bonds_across_and_no_edge(bar) -> None:
+    open_scene, scene = build(bar()), build(bar(PERIODIC))
+
+    assert list(scene.edges) == ["left", "right"]
+    # one vertical contact more in each of the 20 columns
+    assert len(scene.assembly.pairs) == len(open_scene.assembly.pairs) + 20
+    # all are alike sideways: every disk has two vertical contacts, the ends lack one horizontal one
+    assert np.bincount(scene.assembly.pairs.ravel()).tolist() == [3, 3] + 36 * [4] + [3, 3]
+
+
+def test_supports_come_from_all_sides_but_not_for_held_motions(bar) -> None:
+    scene = build(bar({"boundary.bottom": {"type": "fixed"}, "motion.held": ["y", "rotation"]}))
+    supports = scene.supports
+
+    assert set(supports.component) == {0}
+    assert supports.prescribed.sum() == 20
+    # the upper disk of each end has the dashpot ρc_pD, the lower is fixed
+    assert sorted(supports.damping[supports.damping > 0.0]) == [2500.0 * 1000.0 * 0.5] * 2
+
+
+def test_held_components_are_marked(bar) -> None:
+    assert build(bar({"motion.held": ["y", "rotation"]})).free.tolist() == [1.0, 0.0, 0.0]
+
+
+def test_other_boundaries_on_the_same_body(bar) -> None:
+    scene = build(bar())
+    other = with_boundaries(scene, bar({"boundary.right.beta_p": 0.5}))
+
+    assert other.assembly is scene.assembly
+    assert other.rows is scene.rows
+    changed = other.supports.damping / scene.supports.damping
+    assert sorted(changed) == [0.5, 0.5, 1.0, 1.0]
+
+
+def test_edges_know_where_their_particles_are(bar) -> None:
+    scene = build(bar())
+    for edge in scene.edges.values():
+        assert (edge.positions == scene.assembly.positions[edge.nodes]).all()
+
+
+def test_a_mirror_image_is_held_like_a_touching_disk(bar) -> None:
+    scene = build(bar({"motion.held": [], "boundary.top": {"type": "symmetry"}}))
+    supports, law = scene.supports, scene.ground.stiffness
+    top = np.isin(supports.node, scene.edges["top"].nodes)
+
+    # all disks of the lattice are alike, so its own contacts are what stands between disk and image
+    for component, stiffness in ((1, law.normal[0]), (2, law.bending[0])):
+        chosen = supports.stiffness[top & (supports.component == component)]
+        np.testing.assert_allclose(chosen, 20 * [2.0 * stiffness], rtol=1e-14)
+
+
+def test_half_masses_follow_the_boundaries(bar) -> None:
+    whole = build(bar())
+    half = build(bar({"boundary.right.half_mass": True}))
+    right = half.edges["right"].nodes
+
+    assert (half.mass / whole.mass)[right].tolist() == [0.5, 0.5]
+    assert (half.inertia / whole.inertia)[right].tolist() == [0.5, 0.5]
+    assert np.delete(half.mass, right).tolist() == np.delete(whole.mass, right).tolist()
+    assert with_boundaries(half, whole.case).mass.tolist() == whole.mass.tolist()
+
+
+def test_dashpots_absorb_into_the_speeds_named_else_into_the_packings_own(bar) -> None:
+    moduli = {"density": 2500.0, "emod": 1.25e9, "pb_emod": 1.25e9}
+    media = []
+    for material in ({"density": 2500.0, "p_wave_speed": 900.0, "s_wave_speed": 300.0}, moduli):
+        case = bar({"material": material})
+        media.append(boundary_medium(case, build(case).ground, axis=0))
+
+    assert (media[0].density, media[0].p_wave_speed, media[0].s_wave_speed) == (2500.0, 900.0, 300.0)
+    # the lattice with μ = 0: c_p² = (E_c + Ē_c)/ρ, c_s = c_p/2; a solve with one unknown
+    assert media[1].p_wave_speed == pytest.approx(1000.0, rel=1e-12)
+    assert media[1].s_wave_speed == pytest.approx(500.0, rel=1e-12)
+
+
+def test_a_gap_without_a_bond_carries_nothing(bar) -> None:
+    packing = {**RANDOM["packing"], "bond_gap": 0.02}
+    scene = build(
+        bar({**RANDOM, "packing": packing, "material": {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0, "fric": 0.5}})
+    )
+
+    assert (scene.ground.brick.gaps > 0.0).any()
+    assert all(np.isfinite(rows.palette).all() for rows in scene.rows)
+
+
+TUNNEL = {"name": "tunnel", "type": "circle", "centre": [6.0, 5.0], "radius": 2.0}
+STANDING = {
+    "static": {"boundary": {"bottom": {"type": "fixed"}}},
+    "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+}
+FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
+
+
+def test_a_hole_takes_out_what_is_centred_in_it_and_leaves_the_sides_alone(bar) -> None:
+    whole, hollow = build(bar(RANDOM)), build(bar({**RANDOM, "hole": [TUNNEL]}))
+    away = np.hypot(*(hollow.assembly.positions - [6.0, 5.0]).T)
+
+    assert away.min() >= 2.0
+    near = np.hypot(*(whole.assembly.positions - [6.0, 5.0]).T) < 2.0
+    assert hollow.count == whole.count - np.count_nonzero(near) - hollow.assembly.loose + whole.assembly.loose
+    assert hollow.rows[0].start[-1] == 2 * len(hollow.assembly.pairs)
+    assert (hollow.before, hollow.kept) == (None, None)
+    for side, edge in whole.edges.items():
+        left = hollow.edges[side]
+        assert np.array_equal(left.positions, edge.positions)
+        assert np.array_equal(hollow.assembly.positions[left.nodes], left.positions)
+        assert left.length == edge.length
+
+
+@pytest.mark.parametrize("boundary", [{}, FREE_FIELD], ids=["free", "free field"])
+def test_an_excavated_scene_knows_what_was_before(bar, boundary: dict) -> None:
+    tables = {**RANDOM, **STANDING, "boundary": boundary, "wave": {}}
+    shaft = {"name": "shaft", "type": "rectangle", "corners": [8.5, 4.0, 10.5, 6.0]}
+    scene = build(bar({**tables, "hole": [shaft, {**TUNNEL, "stage": "after"}]}))
+    before, after = build(bar({**tables, "hole": [shaft]})), build(bar({**tables, "hole": [shaft, TUNNEL]}))
+
+    for found, expected in ((scene, after), (scene.before, before)):
+        assert np.array_equal(found.assembly.positions, expected.assembly.positions)
+        assert np.array_equal(found.assembly.pairs, expected.assembly.pairs)
+        assert found.monitors == expected.monitors
+    assert np.array_equal(scene.before.assembly.positions[scene.kept], scene.assembly.positions)
+    assert scene.before.before is None
+
+
+def test_a_side_that_a_hole_cuts_stands_for_what_is_left_of_it(bar) -> None:
+    tables = {"packing.size": [4.0, 4.0], "monitor": [], "motion.held": []}
+    pit = {"name": "pit", "type": "rectangle", "corners": [1.0, 3.0, 3.0, 4.5]}
+    edge = build(bar({**tables, "hole": [pit]})).edges["top"]
+
+    # four of its eight disks, and nothing of the pit's floor
+    assert edge.positions.tolist() == [[x, 3.75] for x in (0.25, 0.75, 3.25, 3.75)]
+    assert (edge.length, edge.cover) == (2.0, 1.0)
+
+
+def test_holes_that_leave_nothing_are_refused(bar) -> None:
+    tables = {"packing.size": [4.0, 4.0], "monitor": []}
+    for corners, error, line in (
+        ([-1.0, -1.0, 5.0, 5.0], PackingError, "no disk is left of the body"),
+        ([-1.0, 3.0, 5.0, 5.0], CaseError, "hole: leaves nothing of the top side"),
+    ):
+        with pytest.raises(error, match=line):
+            build(bar({**tables, "hole": [{"name": "pit", "type": "rectangle", "corners": corners}]}))

@@ -1,0 +1,109 @@
+"""The stable step, against closed forms of the square lattice."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dembound.boundaries.support import SupportBuilder
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import TOLERANCE, choose_step, step_limit
+from dembound.errors import CaseError
+
+MASS = 2500.0 * 0.5**2
+K = 2500.0 * 1000.0**2
+"""Normal stiffness of a lattice contact, N/m; with μ = 0 its shear stiffness is half of it."""
+
+ONLY_X = {"motion.held": ["y", "rotation"]}
+
+
+def free_chain(k: float, count: int) -> float:
+    """Largest ω² of a chain with free ends: (4k/m) sin²((N − 1)π/2N)."""
+    return 4.0 * k / MASS * np.sin((count - 1) * np.pi / (2 * count)) ** 2
+
+
+def test_the_limit_of_a_lattice_that_moves_in_x_only(bar) -> None:
+    scene = build(bar({**ONLY_X, "packing.size": [10.0, 2.0]}))
+    # modes along x and y separate: normal springs along x, shear springs along y
+    squared = free_chain(K, 20) + free_chain(0.5 * K, 4)
+
+    assert step_limit(scene) == pytest.approx(2.0 / np.sqrt(squared), rel=TOLERANCE)
+
+
+def test_the_limit_of_two_disks(bar) -> None:
+    scene = build(bar({**ONLY_X, "packing.size": [1.0, 0.5], "monitor": []}))
+
+    # ω² = 2k/m, from a dense solve
+    assert step_limit(scene) == pytest.approx(2.0 / np.sqrt(2.0 * K / MASS), rel=1e-12)
+
+
+def test_prescribed_motions_do_not_vibrate(bar) -> None:
+    left = {"type": "velocity", "wave_p": "pulse"}
+    scene = build(bar({**ONLY_X, "packing.size": [1.0, 0.5], "monitor": [], "boundary.left": left}))
+
+    # one disk on one spring
+    assert step_limit(scene) == pytest.approx(2.0 / np.sqrt(K / MASS), rel=1e-12)
+
+
+def test_springs_of_supports_count(bar) -> None:
+    scene = build(bar({**ONLY_X, "packing.size": [0.5, 0.5], "monitor": []}))
+    supports = SupportBuilder()
+    supports.add(np.array([0]), 0, stiffness=9.0 * MASS)
+
+    # ω = 3
+    assert step_limit(replace(scene, supports=supports.table())) == pytest.approx(2.0 / 3.0, rel=1e-12)
+
+
+def test_dashpots_cost_no_stability(bar) -> None:
+    strong = {"boundary.left.beta_p": 50.0, "boundary.right.beta_p": 50.0}
+
+    assert step_limit(build(bar(strong))) == step_limit(build(bar()))
+
+
+def test_the_same_scene_has_the_same_limit(bar) -> None:
+    assert step_limit(build(bar())) == step_limit(build(bar()))
+
+
+def given(bar, step: float | str, **more: object) -> DiskScene:
+    return build(bar({"run.time_step": step, **more}))
+
+
+def test_an_automatic_step_is_the_share_of_the_limit_asked_for(bar) -> None:
+    step, limit = choose_step(build(bar({"run.safety": 0.75})))
+
+    # cut to four digits
+    assert 0.0 <= 1.0 - step / (0.75 * limit) < 1e-3
+    assert float(f"{step:.4g}") == pytest.approx(step, rel=1e-15)
+
+
+def test_a_given_step_is_taken_as_it_is(bar) -> None:
+    step, limit = choose_step(given(bar, 1e-4))
+
+    assert step == 1e-4
+    assert limit > step
+
+
+def test_a_step_above_the_limit_is_refused_and_told_the_limit(bar) -> None:
+    limit = step_limit(build(bar()))
+    with pytest.raises(CaseError) as caught:
+        choose_step(given(bar, 1.01 * limit))
+
+    (problem,) = caught.value.problems
+    assert problem.startswith("run.time_step: ")
+    assert f"{limit:.6g}" in problem
+
+
+def test_a_scene_in_which_nothing_vibrates_needs_a_step_of_its_own(bar) -> None:
+    still = {"boundary.left": {"type": "fixed"}, "packing.size": [0.5, 0.5], "monitor": []}
+    with pytest.raises(CaseError, match=r"run\.time_step: .*give a step in s"):
+        choose_step(given(bar, "auto", **still))
+
+    assert choose_step(given(bar, 1e-3, **still)) == (1e-3, np.inf)
+
+
+def test_the_limit_is_never_too_large(bar) -> None:
+    # a lattice's largest frequencies lie close, so Lanczos iteration ends early; sides as above
+    for width, height in ((20.0, 1.0), (50.0, 5.0), (20.0, 20.0)):
+        scene = build(bar({**ONLY_X, "packing.size": [width, height], "monitor": []}))
+        squared = free_chain(K, round(2 * width)) + free_chain(0.5 * K, round(2 * height))
+        assert step_limit(scene) <= 2.0 / np.sqrt(squared)

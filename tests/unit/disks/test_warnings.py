@@ -1,0 +1,248 @@
+"""What a run of disks will do that was probably not meant."""
+
+import numpy as np
+import pytest
+
+from dembound.case import Case
+from dembound.disks.ground import Ground
+from dembound.disks.scene import build
+from dembound.disks.warnings import disk_warnings, particles_per_wavelength
+from dembound.run import plan
+from dembound.waves.spectrum import HANN_FADE
+
+SLOW = {"wave.pulse.period": 0.5, "run.duration": 0.5}
+"""A wave far longer than the bar, nothing about which is to be warned of."""
+
+CALIBRATED = {f"boundary.{side}.beta_{motion}": 1.0 for side in ("left", "right") for motion in "ps"}
+"""Factors that somebody has chosen."""
+
+DENSE = {
+    "packing": {"pattern": "B", "size": [6.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
+    "monitor": [],
+    **SLOW,
+    **CALIBRATED,
+}
+"""A packing with its default of 10 MPa locked in."""
+
+PERIODIC = {f"boundary.{side}": {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
+
+
+def warned(case: Case) -> list[str]:
+    planned = plan(case)
+    return disk_warnings(planned.scene, planned.time_step)
+
+
+def test_particles_per_wavelength_at_the_waves_highest_frequency_and_slowest_speed(bar) -> None:
+    # c_s = c_p/2 = 500 m/s, the Hann lobe fades at 3.27/T, disks are 0.5 m apart
+    for held, speed in ((["rotation"], 1000.0 / np.sqrt(2.0)), ([], 500.0), (["y"], 500.0)):
+        scene = build(bar({"motion.held": held}))
+        found = particles_per_wavelength(scene)
+        assert found == {"pulse": pytest.approx(speed * 0.01 / HANN_FADE / 0.5, rel=1e-9)}
+
+
+@pytest.mark.parametrize(("count", "few"), [(19.9, True), (20.1, False)])
+def test_waves_with_fewer_than_twenty_particles_are_warned_of(bar, count: float, few: bool) -> None:
+    period = count * 0.5 * HANN_FADE / 500.0
+    said = "wave.pulse: has 19.9 particles in its shortest wavelength, fewer than 20; the packing will disperse it"
+
+    assert warned(bar({"wave.pulse.period": period, "run.duration": 0.1})) == few * [said]
+
+
+def test_a_wave_stronger_than_the_locked_in_stress_is_warned_of(bar) -> None:
+    # the default locks in 10 MPa; ρcv = 2500·1000·v reaches that at 4 m/s; packings meet it within 0.05 %
+    for amplitude, strong in ((3.99, False), (4.01, True)):
+        found = warned(bar({**DENSE, "wave.pulse.amplitude": amplitude}))
+        assert [warning.split(":")[0] for warning in found] == strong * ["wave.pulse"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "beyond"),
+    [
+        ({"material.pb_ten": 3.4e6}, True),
+        ({"material.pb_ten": 4.5e6}, False),
+        ({}, False),
+        ({"material.pb_ten": 3.4e6, "wave": {}, **PERIODIC}, False),  # nothing is cut
+    ],
+)
+def test_locked_in_stress_that_breaks_bonds_is_warned_of(bar, changes: dict, beyond: bool) -> None:
+    locked_in = {"material.law": "linearpbond", "material.locked_in": 2e6, "static": {}}
+    found = warned(bar({**DENSE, **locked_in, **changes}))
+
+    # more than half of 2 MPa, the bonds share of the stiffness as contacts without friction bear no shear, times 3.5
+    start = "material.locked_in: is 2 MPa; where it relaxes the most strained bonds come to some 3."
+    assert [warning[: len(start)] for warning in found] == [start] * beyond
+
+
+@pytest.mark.parametrize(
+    ("static", "sudden"), [({}, True), ({"static": {"boundary": {"left": {"type": "fixed"}}}}, False)]
+)
+def test_a_steady_load_without_a_static_stage_is_warned_of(bar, static: dict, sudden: bool) -> None:
+    weight = {"name": "weight", "acceleration": [10.0, 0.0]}
+    tap = {"name": "tap", "acceleration": [1.0, 0.0], "wave": "pulse"}
+    found = warned(bar({"load": [weight, tap], **SLOW, **static}))
+
+    assert [warning.split(",")[0] for warning in found] == ["load.weight: is steady"] * sudden
+
+
+def test_a_lattice_without_stress_is_not_warned_of(bar) -> None:
+    assert warned(bar({**SLOW, "wave.pulse.amplitude": 1e3})) == []
+
+
+@pytest.mark.parametrize(("period", "long"), [(0.99, False), (1.01, True)])
+def test_a_wave_is_compared_with_the_way_through_the_scene(bar, period: float, long: bool) -> None:
+    # 10 m at 1000 m/s
+    found = warned(bar({"wave.pulse.period": period, "run.duration": 1.0}))
+    said = "wave.pulse: has a period of 1.01 s, 101 times its way through the scene, 0.01 s; "
+    assert [warning[: len(said)] for warning in found] == long * [said]
+
+
+BREAKABLE = {**SLOW, "material.law": "linearpbond", "material.pb_ten": 5e6}
+
+
+@pytest.mark.parametrize(("amplitude", "weak"), [(2.02e-4, False), (1.98e-4, True)])
+def test_a_weak_wave_beside_the_strength(bar, amplitude: float, weak: bool) -> None:
+    # ρc = 2.5e6 Pa·s/m
+    found = warned(bar({**BREAKABLE, "wave.pulse.amplitude": amplitude}))
+    said = "wave.pulse: its stress ρcv is 495 Pa, 0.0099 % of material.pb_ten, 5e+06 Pa: Pa and MPa?"
+    assert found == weak * [said]
+
+
+@pytest.mark.parametrize(("strength", "strong"), [(1251.0, False), (1249.0, True)])
+def test_a_wave_far_beyond_the_strength(bar, strength: float, strong: bool) -> None:
+    found = warned(bar({**BREAKABLE, "material.pb_ten": strength}))
+    said = "wave.pulse: its stress ρcv is 1.25e+06 Pa, 1,001 times material.pb_ten, 1249 Pa: Pa and MPa?"
+    assert found == strong * [said]
+
+
+def test_the_strength_counts_only_where_bonds_have_one(bar) -> None:
+    weak = {**SLOW, "wave.pulse.amplitude": 1e-9}
+    assert warned(bar(weak)) == []
+    assert warned(bar({**weak, "material.law": "linearpbond", "material.pb_coh": 5e6})) == []
+
+
+def test_the_largest_of_all_stresses_counts(bar) -> None:
+    weak = {**BREAKABLE, "wave.pulse.amplitude": 1e-9}
+    # what has come to rest under 1 MPa is near its strength whatever the wave
+    assert warned(bar({**weak, "static": {"stress": [0.0, 1e6, 0.0]}})) == []
+    said = "static.stress: its largest component is 400 Pa, 0.008 % of material.pb_ten, 5e+06 Pa: Pa and MPa?"
+    assert warned(bar({**weak, "static": {"stress": [0.0, -400.0, 0.0]}})) == [said]
+
+
+@pytest.mark.parametrize(
+    ("load", "what", "stress"),
+    [
+        # 2 m of the height of 1 m count no more than that; the wave's peak is 1
+        ({"force": [100.0, 0.0], "region": [4.0, 0.0, 6.0, 1.0]}, "its force over the width it acts on", 100.0),
+        ({"force": [0.0, 100.0], "region": [4.0, 0.0, 6.0, 1.0]}, "its force over the width it acts on", 50.0),
+        ({"force": [100.0, 0.0], "position": [5.0, 0.5]}, "its force over the width it acts on", 200.0),
+        ({"acceleration": [0.01, 0.0]}, "its stress ρaL", 250.0),
+        ({"acceleration": [0.01, 0.0], "region": [4.0, 0.0, 6.0, 1.0]}, "its stress ρaL", 50.0),
+    ],
+    ids=str,
+)
+def test_loads_beside_the_strength(bar, load: dict, what: str, stress: float) -> None:
+    free = {"motion.held": [], "boundary.left": {"type": "viscous"}}
+    tap = {"name": "tap", "wave": "pulse", **load}
+    for strength, weak in ((0.99e4 * stress, False), (1.01e4 * stress, True)):
+        case = bar({**BREAKABLE, **free, "load": [tap], "wave.pulse.amplitude": 1.0, "material.pb_ten": strength})
+        said = f"load.tap: {what} is {stress:g} Pa, 0.0099 % of material.pb_ten, {strength:g} Pa: Pa and MPa?"
+        assert warned(case) == weak * [said]
+
+
+def test_a_slow_grip_strains_the_body_to_its_strength(bar) -> None:
+    # ρcv of 1 µm/s is 2.5 Pa, but 10 s of it strain 10 m by 1e-6, which is 2.5 kPa
+    slow = {"type": "constant", "amplitude": 1e-6}
+    grip = {"boundary.left": {"type": "velocity", "wave_p": "pulse"}, "wave.pulse": slow}
+    for duration, weak in ((10.0, False), (1.9, True)):
+        found = warned(bar({**BREAKABLE, **grip, "run.duration": duration}))
+        said = "wave.pulse: its stress ρc²u/L is 475 Pa, 0.0095 % of material.pb_ten, 5e+06 Pa: Pa and MPa?"
+        assert [each for each in found if "stress" in each] == weak * [said]
+
+
+RANDOM = {**DENSE, "boundary.left": {"type": "viscous_input", "wave_p": "pulse", "beta_p": 0.7, "beta_s": 0.7}}
+
+
+def test_factors_that_nobody_has_chosen_are_warned_of(bar) -> None:
+    from_file = {"boundary.right": {"type": "viscous"}, "motion.held": []}
+    (found,) = warned(bar({**RANDOM, **from_file}))
+    matched = {motion: _matched(bar({**RANDOM, **from_file}), motion) for motion in "ps"}
+    shares = {motion: (1.0 - beta) / (1.0 + beta) for motion, beta in matched.items()}
+
+    assert found == (
+        f"boundary.right: reflects {100 * shares['p']:.2g} % of P and {100 * shares['s']:.2g} % of S waves with the "
+        f"default beta_p = 1 (the packing has {matched['p']:.3g}) and beta_s = 1 (the packing has {matched['s']:.3g}); "
+        "run: dembound calibrate CASE --boundary right --wave p and dembound calibrate CASE --boundary right --wave s"
+    )
+    assert min(shares.values()) > 0.02
+
+
+def _matched(case: Case, motion: str) -> float:
+    """H/ΣD of the right side times the packing's own speed over the nominal one."""
+    scene = plan(case).scene
+    edge, own = scene.edges["right"], scene.ground.wave_speeds(0)["ps".index(motion)]
+    return own / (1000.0 if motion == "p" else own) * edge.length / edge.diameters.sum()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"boundary.right": {"type": "viscous", "beta_p": 1.0}},  # y is held
+        {"boundary.right": {"type": "viscous", "beta_p": 1.0, "beta_s": 1.0}, "motion.held": []},
+        {"boundary.right": {"type": "free"}, "motion.held": []},
+    ],
+    ids=str,
+)
+def test_factors_that_were_chosen_or_make_no_difference_are_not(bar, changes: dict) -> None:
+    assert warned(bar({**RANDOM, **changes})) == []
+
+
+@pytest.mark.parametrize("side", ["viscoelastic", "free_field"])
+def test_every_kind_of_absorbing_side_has_factors(bar, side: str) -> None:
+    springs = {"distance": 10.0} if side == "viscoelastic" else {}
+    sides = {"boundary.bottom": {"type": "viscous_input", "wave_p": "pulse", "beta_p": 1.0, "beta_s": 1.0}}
+    sides |= {"boundary.left": {"type": "free"}, "boundary.right": {"type": side, "beta_s": 1.0, **springs}}
+    (found,) = warned(bar({**DENSE, **sides, "motion.held": []}))
+
+    assert found.startswith("boundary.right: reflects ")
+    assert found.endswith("run: dembound calibrate CASE --boundary right --wave p")
+
+
+@pytest.mark.parametrize(("speed", "other"), [(960.0, True), (962.0, False), (1040.0, False), (1042.0, True)])
+def test_reflections_of_two_per_cent_are_warned_of(bar, speed: float, other: bool) -> None:
+    # β0 of the lattice is its own S speed of 500 m/s over the one given
+    s_wave = {"motion.held": [], "material.s_wave_speed": 0.5 * speed}
+    found = warned(bar({**SLOW, **s_wave}))
+
+    # (1 − β)/(1 + β) is 0.02 at β = 0.98/1.02 = 0.9608 and at its inverse, 1.0408
+    assert [warning.split(":")[0] for warning in found] == other * ["boundary.left", "boundary.right"]
+    assert all(warning.endswith("--wave s") for warning in found)
+
+
+@pytest.mark.parametrize(("ratio", "other"), [(1.09, False), (1.11, True), (0.91, False), (0.89, True)])
+def test_a_packing_of_another_speed_is_warned_of(bar, monkeypatch, ratio: float, other: bool) -> None:
+    monkeypatch.setattr(Ground, "wave_speeds", lambda self, axis: (1000.0 * ratio, np.nan))
+    found = [each for each in warned(bar({**SLOW, **CALIBRATED})) if each.startswith("material")]
+
+    assert found == other * [
+        f"material.p_wave_speed: is 1000 m/s of the square lattice; P waves along x run at {1000 * ratio:.4g} m/s in "
+        'this packing; give match = "assembly"'
+    ]
+
+
+def test_the_speed_along_y_counts_where_waves_go_there(bar, monkeypatch) -> None:
+    monkeypatch.setattr(Ground, "wave_speeds", lambda self, axis: (1000.0 if axis == 0 else 1200.0, np.nan))
+    tap = {"name": "tap", "force": [1.0, 0.0], "position": [5.0, 0.5], "wave": "pulse"}
+    below = {"boundary.bottom": {"type": "velocity", "wave_p": "pulse"}, "motion.held": []}
+    for changes, there in (({}, False), ({"load": [tap]}, True), (below, True)):
+        found = warned(bar({**SLOW, **CALIBRATED, **changes}))
+        assert any("along y run at 1200 m/s" in each for each in found) == there
+
+
+def test_a_packing_that_was_given_its_speed_or_no_speed_is_not_warned_of(bar) -> None:
+    # contacts without friction carry no shear, which slows P waves of a random packing
+    soft = {**DENSE, "motion.held": [], "material.contact_share": 0.9}
+    (found,) = warned(bar(soft))
+    assert found.startswith("material.p_wave_speed: is 1000 m/s of the square lattice; P waves along x run at ")
+    assert warned(bar({**soft, "material.match": "assembly"})) == []
+    moduli = {"density": 2500.0, "emod": 2.25e9, "pb_emod": 0.25e9}
+    assert warned(bar({**DENSE, "motion.held": [], "material": moduli})) == []

@@ -1,0 +1,207 @@
+"""Gauges and free ends read from text and from records."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.errors import CaseError
+from dembound.gauge.readings import Told, read_free_end, read_gauge
+
+BAR = {"position": 0.6, "length": 0.99}
+VELOCITY = np.interp(np.arange(400), [0, 100, 140, 240, 270], [0.0, 0.0, 10.0, 4.0, 8.0])
+
+
+@pytest.fixture
+def text(felt, tmp_path):
+    """A gauge's history in a text file, in MPa and positive in compression."""
+    time, stress = felt()
+    path = tmp_path / "gauge.csv"
+    np.savetxt(path, np.column_stack([time, -stress]), delimiter=",")
+    return path
+
+
+@pytest.fixture
+def record(felt, tmp_path):
+    """The record of a run on a bar with two gauges, `near` at 0.6 m; `end` has velocities alone."""
+    time, stress = felt()
+    path = tmp_path / "run.h5"
+    with h5py.File(path, "w") as file:
+        file.attrs.update({"name": "bar", "size": [0.99], "density": 2620.0, "loaded": "left"})
+        for name, place in (("near", 0.6), ("far", 0.9), ("end", 0.99)):
+            group = file.create_group(f"histories/{name}")
+            group.attrs["position"] = [place]
+            group["time"] = time
+            group["velocity"] = np.resize(VELOCITY, len(time))[:, None] * [1.0, 2.0, 3.0]
+            if name != "end":
+                group["stress"] = 1e6 * stress
+    return path
+
+
+def test_a_text_file_is_told_where_it_was_felt(text, felt):
+    gauge = read_gauge(text, position=0.6, length=0.99, density=2620.0, scale=-1e6)
+    time, stress = felt()
+    np.testing.assert_array_equal(gauge.time, time)
+    np.testing.assert_allclose(gauge.stress, 1e6 * stress, rtol=1e-15)
+    assert (gauge.position, gauge.length, gauge.density) == (0.6, 0.99, 2620.0)
+
+
+def test_a_record_knows_its_bar_unless_told_otherwise(record, felt):
+    gauge = read_gauge(record, "near")
+    np.testing.assert_array_equal(gauge.stress, 1e6 * felt()[1])
+    assert (gauge.position, gauge.length, gauge.density) == (0.6, 0.99, 2620.0)
+    moved = read_gauge(record, "near", position=0.5, length=1.0, density=2000.0)
+    assert (moved.position, moved.length, moved.density) == (0.5, 1.0, 2000.0)
+
+
+def test_the_only_gauge_needs_no_name_and_a_record_no_density(record):
+    with h5py.File(record, "r+") as file:
+        del file["histories/far/stress"], file.attrs["density"]
+    gauge = read_gauge(record)
+    assert (gauge.position, gauge.density) == (0.6, None)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({}, ["--position: is not known, give it", "--length: is not known, give it"]),
+        ({"position": 0.6}, ["--length: is not known, give it"]),
+        (BAR | {"position": 0.99}, ["--position: is 0.99 m, must be above 0 and below the length, 0.99 m"]),
+        (BAR | {"position": 0.0}, ["--position: is 0 m, must be above 0 and below the length, 0.99 m"]),
+        (BAR | {"position": np.nan}, ["--position: is nan m, must be above 0 and below the length, 0.99 m"]),
+        (BAR | {"length": -1.0}, ["--length: is -1 m, must be finite and above 0"]),
+        (BAR | {"length": np.inf}, ["--length: is inf m, must be finite and above 0"]),
+        (BAR | {"density": 0.0}, ["--density: is 0 kg/m³, must be finite and above 0"]),
+        (BAR | {"scale": 0.0}, ["--scale: is 0, must be finite and not 0"]),
+        (BAR | {"scale": np.nan}, ["--scale: is nan, must be finite and not 0"]),
+        (BAR | {"monitor": "near"}, ["--monitor: is for results of a run, gauge.csv is a text file"]),
+        (
+            {"position": 0.6, "length": 0.0, "density": np.nan},
+            ["--length: is 0 m, must be finite and above 0", "--density: is nan kg/m³, must be finite and above 0"],
+        ),
+    ],
+)
+def test_gauges_beside_the_bar_are_refused(text, monkeypatch, given, said):
+    monkeypatch.chdir(text.parent)
+    with pytest.raises(CaseError) as caught:
+        read_gauge(Path(text.name), **given)
+    assert caught.value.problems == said
+
+
+def test_files_that_hold_no_history_are_refused(tmp_path, small_run):
+    short = tmp_path / "short.txt"
+    short.write_text("0 1\n1 2\n")
+    (tmp_path / "wide.txt").write_text("0 1 2\n1 2 3\n")
+    for path, said in (
+        (tmp_path / "absent.txt", "no file"),
+        (tmp_path / "wide.txt", r"has 3 columns, must have two: time \(s\), stress \(Pa\)"),
+        (short, "holds 2 samples, must hold three or more"),
+        (small_run, "holds no history of stress between the ends of a bar"),
+    ):
+        with pytest.raises(CaseError, match=said):
+            read_gauge(path, position=0.6, length=0.99)
+
+
+def test_monitors_go_by_name(record):
+    with pytest.raises(CaseError, match="--monitor: is not named, must be one of far, near"):
+        read_gauge(record)
+    with pytest.raises(CaseError, match="--monitor: is end, must be between the bar's ends, which is far or near"):
+        read_gauge(record, "end")
+
+
+def test_monitors_at_the_ends_are_no_gauges(record):
+    with h5py.File(record, "r+") as file:
+        for name, place in (("start", 0.0), ("tip", 0.99 * (1.0 - 1e-15))):
+            file.copy("histories/far", f"histories/{name}")
+            file[f"histories/{name}"].attrs["position"] = [place]
+        del file["histories/far"]
+    assert read_gauge(record).position == 0.6
+    with h5py.File(record, "r+") as file:
+        del file["histories/near"]
+    with pytest.raises(CaseError, match="holds no history of stress between the ends of a bar"):
+        read_gauge(record)
+
+
+def test_the_free_end_is_a_monitor_or_a_file(record, text, tmp_path):
+    np.savetxt(tmp_path / "end.txt", np.column_stack([np.arange(400), VELOCITY]))
+    time, velocity = read_free_end(record, "end")
+    with h5py.File(record) as file:
+        np.testing.assert_array_equal(time, file["histories/end/time"][:])
+    np.testing.assert_array_equal(velocity[:400], VELOCITY)
+    time, velocity = read_free_end(text, str(tmp_path / "end.txt"))
+    np.testing.assert_array_equal(time, np.arange(400))
+    np.testing.assert_array_equal(velocity, VELOCITY)
+
+
+@pytest.mark.parametrize("name", ["near", "end.txt"])
+def test_what_does_not_move_with_the_free_end_is_refused(record, name):
+    said = f"--free-end: is {name}, must be a monitor at the end opposite the load, "
+    with pytest.raises(CaseError) as caught:
+        read_free_end(record, name)
+    assert caught.value.problems == [said + "which is end"]
+    with h5py.File(record, "r+") as file:
+        del file["histories/end"]
+    with pytest.raises(CaseError) as caught:
+        read_free_end(record, name)
+    assert caught.value.problems == [said + "but the results have none there"]
+
+
+def test_beside_a_text_file_the_free_end_is_another(text, tmp_path):
+    with pytest.raises(CaseError) as caught:
+        read_free_end(text, "end")
+    assert caught.value.problems == ["--free-end: is end, must be a text file of time (s) and velocity (m/s)"]
+    (tmp_path / "end.txt").write_text("0 1\n1 2\n")
+    with pytest.raises(CaseError, match="holds 2 samples, must hold three or more"):
+        read_free_end(text, str(tmp_path / "end.txt"))
+
+
+@pytest.mark.parametrize("loaded", ["left", "right"])
+def test_a_record_tells_of_its_bar(record, loaded):
+    assert read_gauge(record, "near").told is None
+    with h5py.File(record, "r+") as file:
+        file.attrs.update({"wave_speed": 2740.0, "attenuation": 0.52, "ends": ["viscous", "fixed"], "loaded": loaded})
+        file["cracks/time"] = np.empty(0)
+    ends = ("viscous", "fixed") if loaded == "left" else ("fixed", "viscous")
+    assert read_gauge(record, "near").told == Told(2740.0, 0.52, ends, np.inf)
+    with h5py.File(record, "r+") as file:
+        del file["cracks/time"]
+        file["cracks/time"] = [4e-4, 3e-4, 5e-4]
+    assert read_gauge(record, "near").told.broken == 3e-4
+
+
+def test_an_end_that_is_held_is_not_free(record):
+    with h5py.File(record, "r+") as file:
+        file.attrs.update({"wave_speed": 2740.0, "attenuation": 0.0, "ends": ["free", "fixed"]})
+        file["cracks/time"] = np.empty(0)
+    with pytest.raises(CaseError) as caught:
+        read_free_end(record, "end")
+    assert caught.value.problems == ["--free-end: is end, where the bar's end is fixed, must be free"]
+
+
+def test_places_and_velocities_count_from_the_loaded_end(record, felt):
+    with h5py.File(record, "r+") as file:
+        file.attrs["loaded"] = "right"
+        file["histories/start"] = file["histories/end"]  # another name of the same
+        file["histories/start"].attrs["position"] = [0.0]
+    near, far = (read_gauge(record, name) for name in ("near", "far"))
+    np.testing.assert_array_equal(near.stress, 1e6 * felt()[1])
+    assert (near.position, far.position) == (0.99 - 0.6, 0.99 - 0.9)
+    assert read_gauge(record, "near", position=0.6).position == 0.6  # options count from there anyway
+    np.testing.assert_array_equal(read_free_end(record, "start")[1][:400], -VELOCITY)  # outwards is to the left
+
+
+@pytest.mark.parametrize(
+    ("loaded", "said"), [("both", "both ends"), ("none", "neither end"), (None, "an end that is not told")]
+)
+def test_a_bar_that_is_not_loaded_at_one_end_is_refused(record, loaded, said):
+    with h5py.File(record, "r+") as file:
+        del file.attrs["loaded"]
+        if loaded:
+            file.attrs["loaded"] = loaded
+    for read in (read_gauge, read_free_end):
+        with pytest.raises(CaseError) as caught:
+            read(record, "far")
+        assert caught.value.problems == [
+            f"{record}: is of a bar loaded at {said}, must be loaded at the left or the right"
+        ]

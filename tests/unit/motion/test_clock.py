@@ -1,0 +1,93 @@
+"""Seconds are counted once, for the innermost section."""
+
+import time
+
+import numba
+import pytest
+
+from dembound.motion.clock import Clock
+
+
+@pytest.fixture
+def ticking(monkeypatch):
+    """Lets the time go on by hand."""
+    now = [100.0]
+    monkeypatch.setattr(time, "perf_counter", lambda: now[0])
+
+    def wait(seconds: float) -> None:
+        now[0] += seconds
+
+    return wait
+
+
+def test_a_section_within_another_does_not_count_for_that_one(ticking) -> None:
+    clock = Clock()
+    with clock.of("run"):
+        ticking(1.0)
+        with clock.of("draw"):
+            ticking(2.0)
+        ticking(4.0)
+        with clock.of("draw"):
+            ticking(8.0)
+
+    assert clock.seconds == {"run": 5.0, "draw": 10.0}
+
+
+def test_time_between_sections_is_not_counted(ticking) -> None:
+    clock = Clock()
+    for _ in range(3):
+        with clock.of("run"):
+            ticking(1.0)
+        ticking(16.0)
+
+    assert clock.seconds == {"run": 3.0}
+
+
+def test_a_section_that_fails_is_counted_and_over(ticking) -> None:
+    clock = Clock()
+
+    def fail() -> None:
+        with clock.of("run"):
+            ticking(1.0)
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
+    ticking(2.0)
+    with clock.of("draw"):
+        ticking(4.0)
+
+    assert clock.seconds == {"run": 1.0, "draw": 4.0}
+
+
+def test_what_is_compiled_within_is_a_section_of_its_own() -> None:
+    @numba.njit
+    def doubled(value):
+        return 2.0 * value
+
+    clock = Clock()
+    with clock.with_compiling(), clock.of("run"):
+        began = time.perf_counter()
+        doubled(1.0)
+        took = time.perf_counter() - began
+
+    assert set(clock.seconds) == {"run", "compile"}
+    assert 0.9 * took < clock.seconds["compile"] < took
+    # what it has been compiled for it is not compiled for again
+    before = clock.seconds["compile"]
+    with clock.with_compiling(), clock.of("run"):
+        doubled(2.0)
+    assert clock.seconds["compile"] == before
+
+
+def test_compiling_outside_is_not_counted() -> None:
+    @numba.njit
+    def halved(value):
+        return 0.5 * value
+
+    clock = Clock()
+    with clock.with_compiling():
+        pass
+    halved(1.0)
+
+    assert not clock.seconds

@@ -1,0 +1,177 @@
+"""Records open by name and tell what happened; files are replaced whole."""
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.errors import CaseError
+from dembound.results.reader import (
+    cracks_until,
+    energy_of,
+    is_line,
+    laws_in_words,
+    laws_of,
+    open_record,
+    place_in_words,
+    record_names,
+    replacing,
+    snapshot_of,
+)
+
+
+def test_what_is_no_record_is_refused_by_name(tmp_path):
+    text = tmp_path / "run.h5"
+    text.write_text("not a record")
+    for path in (text, tmp_path / "missing.h5"):
+        with pytest.raises(CaseError, match=path.name):
+            open_record(path)
+
+
+def test_records_tell_bars_from_disks(small_run, spalled_run):
+    with open_record(small_run) as disks, open_record(spalled_run) as bar:
+        assert (is_line(disks.attrs["size"]), is_line(bar.attrs["size"])) == (False, True)
+
+
+def test_a_place_on_a_bar_is_one_number():
+    assert place_in_words((2.4, 1.2), (10.0, 2.5)) == "(2.40, 1.20) m"
+    assert place_in_words((0.8755, 0.0), (1.0, 0.0)) == "0.8755 m"
+
+
+@pytest.mark.parametrize(("number", "name"), [(0, "0000"), (1, "0001"), (-1, "0001"), (-2, "0000")])
+def test_snapshots_go_by_number_from_either_end(small_run, number, name):
+    with open_record(small_run) as file:
+        assert snapshot_of(file, number) == file[f"snapshots/{name}"]
+
+
+@pytest.mark.parametrize("number", [2, -3])
+def test_a_missing_snapshot_is_refused_with_the_file_and_their_number(small_run, number):
+    with (
+        open_record(small_run) as file,
+        pytest.raises(CaseError, match=rf"run.h5: has no snapshot {number}, they are 0 to 1"),
+    ):
+        snapshot_of(file, number)
+
+
+def test_cracks_are_those_up_to_a_time_that_time_included(cracked_run):
+    with open_record(cracked_run) as file:
+        times = file["cracks/time"][:]
+        moment = times[len(times) // 2]
+        found = cracks_until(file, moment)
+        count = np.count_nonzero(times <= moment)
+        assert 0 < count < len(times)
+        for name, values in file["cracks"].items():
+            np.testing.assert_array_equal(found[name], values[:count])
+        assert len(cracks_until(file, -1.0)["position"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("laws", "words"),
+    [
+        ([("elastic", 0.0)], "elastic law all through"),
+        ([("linearpbond", 0.0)], "linearpbond law all through"),
+        ([("elastic", 0.0), ("linearpbond", 0.01234)], "elastic law to 0.0123 s, then linearpbond"),
+    ],
+)
+def test_laws_are_told_in_words(laws, words):
+    assert laws_in_words(laws) == words
+
+
+def test_laws_come_with_the_times_they_began_at(small_run, cracked_run, tmp_path):
+    with open_record(small_run) as file:
+        assert laws_of(file) == [("elastic", 0.0)]
+    with open_record(cracked_run) as file:
+        first, (name, time) = laws_of(file)
+        assert (first, name) == (("elastic", 0.0), "linearpbond")
+        assert 0.002 <= time <= file["cracks/time"][0]  # no wave is sent before
+    cut_off = tmp_path / "run.h5"
+    h5py.File(cut_off, "w").close()
+    with open_record(cut_off) as file:
+        assert laws_of(file) == []
+
+
+def ledger(path, **columns):
+    with h5py.File(path, "w") as file:
+        for name, values in columns.items():
+            file[f"energy/{name}"] = np.array(values)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("outside", "load", "relative"),
+    [
+        ([0.0, 4.0, 1.0], [0.0, -2.0, 0.0], [0.0, 0.25, 0.25]),  # what a load took of it came in all the same
+        ([0.0, 1.0, -9.0], [0.0, 4.0, 0.0], [0.0, 0.2, 0.2]),  # what went out again does not count
+        ([0.0, 0.0, -9.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+    ],
+)
+def test_the_error_of_the_ledger_is_measured_by_the_most_that_came_in(tmp_path, outside, load, relative):
+    still, error = [0.0, 7.0, 7.0], [0.0, 1.0, 1.0]
+    columns = {"time": [0.0, 1.0, 2.0], "outside": outside, "load": load, "kinetic": still, "error": error}
+    with open_record(ledger(tmp_path / "run.h5", **columns)) as file:
+        found = energy_of(file)
+    assert found.pop("relative_error").tolist() == relative
+    assert {name: values.tolist() for name, values in found.items()} == columns
+
+
+def test_the_energy_a_run_begins_with_came_in(tmp_path):
+    columns = {
+        "time": [0.0, 1.0],
+        "outside": [0.0, 1.0],
+        "load": [0.0, 0.0],
+        "kinetic": [3.0, 5.0],
+        "error": [0.0, 1.0],
+    }
+    with open_record(ledger(tmp_path / "run.h5", **columns)) as file:
+        assert energy_of(file)["relative_error"].tolist() == [0.0, 0.25]
+
+
+@pytest.mark.parametrize("columns", [{}, {"time": [], "outside": [], "load": [], "kinetic": [], "error": []}])
+def test_a_ledger_without_entries_is_refused(tmp_path, columns):
+    path = ledger(tmp_path / "run.h5", **columns)
+    with open_record(path) as file, pytest.raises(CaseError, match=r"run\.h5: has no entries in its energy ledger"):
+        energy_of(file)
+
+
+def test_names_are_the_cases_names(small_run, other_run):
+    assert record_names([small_run, other_run]) == ["small", "other"]
+
+
+def test_records_of_one_name_go_by_their_folders_or_their_paths(small_run, other_run, tmp_path):
+    (tmp_path / "twin").mkdir()
+    twin, sibling = tmp_path / "twin" / "run.h5", tmp_path / "twin" / "sibling.h5"
+    for copy in (twin, sibling):
+        copy.write_bytes(small_run.read_bytes())
+    folder = small_run.parent.name
+    assert record_names([small_run, other_run, twin]) == [folder, "other", "twin"]
+    assert record_names([small_run, twin, sibling]) == [folder, str(twin), str(sibling)]
+
+
+def test_a_file_is_replaced_whole(tmp_path):
+    path = tmp_path / "file"
+    path.write_text("old")
+    with replacing(path) as part:
+        part.write_text("new")
+        assert path.read_text() == "old"
+    assert path.read_text() == "new"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(FileNotFoundError) as refused, replacing(tmp_path / "nowhere" / "file"):
+        pytest.fail("nothing can be written")
+    assert refused.value.filename == str(tmp_path / "nowhere")
+
+
+def test_a_failure_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "file"
+    path.write_text("old")
+
+    def write_half():
+        with replacing(path) as part:
+            part.write_text("half")
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        write_half()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]

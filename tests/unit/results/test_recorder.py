@@ -1,0 +1,384 @@
+"""The record of a run: what was kept comes back, and says whether it is whole."""
+
+from dataclasses import fields
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound import __version__
+from dembound.bar.scene import build_bar
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
+from dembound.disks.system import DiskSystem, Start
+from dembound.motion.energy import Entry, Ledger
+from dembound.motion.simulation import Simulation
+from dembound.results.recorder import Histories, Recorder, Snapshots
+
+STEP = 3e-4
+MONITORS = {"monitor": [{"name": "front", "position": [0.0, 0.0]}, {"name": "back", "position": [9.9, 0.9]}]}
+
+
+ORDER = np.argsort([field.name for field in fields(Entry)])
+"""Places of the ledger's columns in the alphabetical order in which a file lists its datasets."""
+
+
+def breaking(bar, shift: float | None = None) -> Simulation:
+    """A bar of brittle bonds whose end is pulled away; shift (m) is how far a static stage has brought it along x."""
+    brittle = {
+        "material.law": "linearpbond",
+        "material.pb_ten": 1e6,
+        "boundary.left": {"type": "velocity", "wave_p": "pulse"},
+        "wave.pulse.amplitude": -5.0,
+    }
+    scene = build(bar({**MONITORS, **brittle}))
+    step, monitors = choose_step(scene)[0], list(scene.monitors.values())
+    if shift is None:
+        return Simulation(scene, step, monitors)
+    displacement = np.zeros((3, scene.count))
+    displacement[0] = shift
+    system = DiskSystem(scene, step, Start(displacement, scene.contact_lists()))
+    return Simulation(scene, step, monitors, system=system, datum=displacement)
+
+
+@pytest.fixture
+def simulation(bar) -> Simulation:
+    scene = build(bar(MONITORS))
+    return Simulation(scene, STEP, np.array(list(scene.monitors.values())))
+
+
+def recorder(path: Path, simulation: Simulation, interval: float = 0.0) -> Recorder:
+    """A recorder of a simulation, whose energies are entered every ten steps."""
+    ledger = Ledger(simulation, 10)
+    simulation.track(ledger)
+    return Recorder(path, simulation, step_limit=4e-4, interval=interval, ledger=ledger)
+
+
+def test_histories_come_back_as_they_were(tmp_path, simulation) -> None:
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        records = []
+        for count in (7, 12):
+            records.append(simulation.advance(count))
+            kept.append(records[-1])
+
+    expected = np.concatenate(records)
+    with h5py.File(tmp_path / "run.h5") as file:
+        for index, (name, node) in enumerate(simulation.scene.monitors.items()):
+            group = file["histories"][name]
+            assert np.array_equal(group["time"], np.arange(19) * STEP)
+            assert np.array_equal(group["displacement"], expected[:, index, :3])
+            assert np.array_equal(group["velocity"], expected[:, index, 3:])
+            assert group.attrs["particle"] == node
+            assert np.array_equal(group.attrs["position"], simulation.scene.assembly.positions[node])
+        assert file["histories/back"].attrs["wanted"].tolist() == [9.9, 0.9]
+
+
+@pytest.mark.parametrize("blocks", [(19,), (7, 12), (1, 1, 5, 3, 9)])
+def test_an_interval_keeps_every_nth_step_however_the_run_is_cut(tmp_path, simulation, blocks) -> None:
+    with recorder(tmp_path / "run.h5", simulation, interval=4.2 * STEP) as kept:
+        records = []
+        for count in blocks:
+            records.append(simulation.advance(count))
+            kept.append(records[-1])
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert np.array_equal(file["histories/front/time"], np.array([0, 4, 8, 12, 16]) * STEP)
+        assert np.array_equal(file["histories/front/velocity"], np.concatenate(records)[::4, 0, 3:])
+
+
+def test_an_interval_shorter_than_a_step_keeps_every_step(tmp_path, simulation) -> None:
+    with recorder(tmp_path / "run.h5", simulation, interval=0.1 * STEP) as kept:
+        kept.append(simulation.advance(5))
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert len(file["histories/front/time"]) == 5
+
+
+def test_a_snapshot_is_the_whole_scene_at_its_time(tmp_path, simulation) -> None:
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        kept.append(simulation.advance(10))
+        kept.snapshot()
+        displacement = simulation.state.displacement.copy()
+        kept.append(simulation.advance(5))
+        kept.snapshot()
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert list(file["snapshots"]) == ["0000", "0001"]
+        assert file["snapshots/0000"].attrs["time"] == 10 * STEP
+        assert np.array_equal(file["snapshots/0000/displacement"], displacement.T)
+        assert np.array_equal(file["snapshots/0001/velocity"], simulation.state.velocity.T)
+
+
+def test_stress_and_peaks_are_kept_if_the_case_asks_for_them(tmp_path, bar, simulation) -> None:
+    asking = Simulation(build(bar({"output.stress": True, "output.peaks": True, "monitor": []})), STEP)
+    fastest = np.zeros(asking.scene.count)
+    with recorder(tmp_path / "asked.h5", asking) as kept:
+        for _ in range(40):
+            kept.append(asking.advance(1))
+            fastest = np.maximum(fastest, np.hypot(*asking.state.velocity[:2]))
+        kept.snapshot()
+    with recorder(tmp_path / "not.h5", simulation) as kept:
+        kept.append(simulation.advance(1))
+        kept.snapshot()
+
+    with h5py.File(tmp_path / "asked.h5") as file:
+        stress, peaks = file["snapshots/0000/stress"], file["particles/peak_velocity"]
+        assert np.array_equal(stress, asking.system.stress(asking.state.displacement))
+        assert stress[:, 0].min() < -1e5
+        # y is held, so no square is rounded; both ends are supported
+        assert np.array_equal(peaks, fastest)
+        assert peaks[:].min() > 0.1
+        assert (stress.attrs["unit"], peaks.attrs["unit"]) == ("Pa", "m/s")
+    with h5py.File(tmp_path / "not.h5") as file:
+        assert "stress" not in file["snapshots/0000"]
+        assert "peak_velocity" not in file["particles"]
+
+
+def test_scene_and_sides_are_kept(tmp_path, simulation) -> None:
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        kept.append(simulation.advance(60))
+
+    scene = simulation.scene
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert np.array_equal(file["particles/position"], scene.assembly.positions)
+        assert np.array_equal(file["particles/radius"], scene.assembly.radii)
+        assert np.array_equal(file["particles/brick_particle"], scene.assembly.brick_particle)
+        # two rows of twenty: a neighbour across, and two along but for the ends
+        ends = np.isin(scene.assembly.positions[:, 0], (0.25, 9.75))
+        assert np.array_equal(file["particles/bonds"], np.where(ends, 2, 3))
+        assert set(file["boundaries"]) == set(scene.edges)
+        side = file["boundaries/right"]
+        assert np.array_equal(side["particle"], scene.edges["right"].nodes)
+        assert np.array_equal(side["position"], scene.assembly.positions[scene.edges["right"].nodes])
+        assert side["diameter"][:].tolist() == [0.5, 0.5]
+        assert (side.attrs["length"], side.attrs["cover"]) == (1.0, 1.0)
+        assert np.array_equal(side["peak_velocity"], simulation.edge_peaks("right"))
+        assert side["peak_velocity"][0, 0, 1] > 0.4  # the pulse of 0.5 m/s has arrived
+
+
+def test_a_record_says_what_it_is_of(tmp_path, simulation) -> None:
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        kept.append(simulation.advance(3))
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        about = dict(file.attrs)
+    assert (about["name"], about["version"]) == ("bar", __version__)
+    assert about["case"] == simulation.scene.case.text
+    assert (about["time_step"], about["step_limit"], about["steps"]) == (STEP, 4e-4, 3)
+    assert about["size"].tolist() == [10.0, 1.0]
+    assert bool(about["complete"])
+
+
+def test_every_dataset_has_its_unit(tmp_path, simulation) -> None:
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        kept.append(simulation.advance(3))
+        kept.snapshot()
+
+    units: dict[str, str] = {}
+
+    def note(name: str, item: h5py.Group | h5py.Dataset) -> None:
+        if isinstance(item, h5py.Dataset):
+            units[name] = item.attrs.get("unit", "")
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        file.visititems(note)
+    assert units.pop("laws/name") == ""  # text has none
+    assert len(units) == 4 + 2 * 3 + 4 * 4 + 2 + 12 + 4 + 1
+    assert all(units.values())
+    assert units["histories/front/time"] == units["energy/time"] == units["laws/time"] == "s"
+    assert units["energy/kinetic"] == "J/m"
+    assert units["snapshots/0000/velocity"] == units["boundaries/left/peak_velocity"] == "m/s, m/s, rad/s"
+
+
+def test_energies_are_kept_as_the_ledger_has_them(tmp_path, simulation) -> None:
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        kept.append(simulation.advance(19))
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert np.array_equal(file["energy/time"], np.array([0, 10]) * STEP)
+        for name, column in zip(file["energy"], kept.ledger.columns.T[ORDER], strict=True):
+            assert np.array_equal(file["energy"][name], column)
+        assert file["energy/outside"][1] > 0.0
+        assert len(file["histories/front/time"]) == 19
+
+
+def test_a_run_without_a_ledger_has_no_energies(tmp_path, simulation) -> None:
+    with Recorder(tmp_path / "run.h5", simulation, step_limit=4e-4) as kept:
+        kept.append(simulation.advance(3))
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert "energy" not in file
+
+
+def test_trackers_keep_histories_and_snapshots(tmp_path, simulation) -> None:
+    plain = Simulation(simulation.scene, STEP, simulation.probes)
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        simulation.track(Histories(kept), Snapshots(kept, [12, 19, 5]))
+        simulation.run(19)
+
+    expected, moved = plain.advance(5), [plain.state.displacement.T.copy()]
+    for steps in (7, 7):
+        expected = np.concatenate([expected, plain.advance(steps)])
+        moved.append(plain.state.displacement.T.copy())
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert np.array_equal(file["histories/front/time"], np.arange(19) * STEP)
+        assert np.array_equal(file["histories/back/velocity"], expected[:, 1, 3:])
+        assert [group.attrs["time"] for group in file["snapshots"].values()] == [5 * STEP, 12 * STEP, 19 * STEP]
+        for group, displacement in zip(file["snapshots"].values(), moved, strict=True):
+            assert np.array_equal(group["displacement"], displacement)
+
+
+def test_cracks_laws_and_coordination_are_kept(tmp_path, bar) -> None:
+    simulation = breaking(bar)
+    steps = 60
+    with Recorder(tmp_path / "run.h5", simulation, step_limit=4e-4, interval=0.0) as kept:
+        for _ in range(3):
+            kept.append(simulation.advance(steps // 3))
+        kept.snapshot()
+
+    began = next(step for name, step in simulation.state.laws if name == "linearpbond")
+    with h5py.File(tmp_path / "run.h5") as file:
+        cracks = file["cracks"]
+        assert [name.decode() for name in file["laws/name"]] == ["elastic", "linearpbond"]
+        assert file["laws/time"][:].tolist() == [0.0, began * simulation.time_step]
+        assert len(cracks["time"]) > 0
+        assert cracks["time"][0] >= file["laws/time"][1]
+        assert np.all(np.diff(cracks["time"]) >= 0.0)
+        assert not cracks["shear"][:].any()  # pulled apart along the lattice
+        # bonds along x, between neighbours that lie on either side of the crack
+        first, second = simulation.scene.assembly.positions[cracks["particles"][:].T]
+        np.testing.assert_allclose(second - first, np.tile([0.5, 0.0], (len(first), 1)), atol=1e-12)
+        middle = 0.5 * (first + second)
+        np.testing.assert_allclose(cracks["position"][:], middle, atol=np.abs(simulation.state.displacement).max())
+        ends = np.bincount(cracks["particles"][:].ravel(), minlength=simulation.scene.count)
+        bonds = np.bincount(simulation.scene.assembly.pairs.ravel(), minlength=simulation.scene.count)
+        # a contact without bond that pushes counts, too
+        coordination = file["snapshots/0000/coordination"][:]
+        assert np.all(coordination <= bonds)
+        assert np.all(coordination >= bonds - ends)
+        assert np.any(coordination < bonds)
+
+
+def test_a_material_without_bonds_has_none(tmp_path, bar) -> None:
+    material = {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0, "fric": 0.5}
+    scene = build(bar({"material": material, "monitor": []}))
+    simulation = Simulation(scene, STEP)
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        kept.append(simulation.advance(1))
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert not file["particles/bonds"][:].any()
+
+
+def test_cracks_stand_where_bonds_were_counting_from_the_start(tmp_path, bar) -> None:
+    simulation = breaking(bar, shift=100.0)
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        kept.append(simulation.advance(60))
+
+    moved = simulation.state.displacement - simulation.state.datum
+    with h5py.File(tmp_path / "run.h5") as file:
+        ends = simulation.scene.assembly.positions[file["cracks/particles"][:]]
+        assert len(ends) > 0
+        # between the two at the start, and no farther than anything has moved since
+        np.testing.assert_allclose(file["cracks/position"], ends.mean(axis=1), atol=np.abs(moved).max())
+
+
+def test_cracks_are_the_same_however_the_run_is_cut(tmp_path, bar) -> None:
+    found = []
+    for name, blocks in (("whole", (60,)), ("cut", 60 * (1,))):
+        simulation = breaking(bar)
+        with Recorder(tmp_path / f"{name}.h5", simulation, step_limit=4e-4) as kept:
+            for steps in blocks:
+                kept.append(simulation.advance(steps))
+        with h5py.File(tmp_path / f"{name}.h5") as file:
+            found.append({column: values[:] for column, values in file["cracks"].items()})
+
+    whole, cut = found
+    assert len(whole["time"]) > 0
+    for column, values in whole.items():
+        assert np.array_equal(values, cut[column])
+
+
+def test_a_run_that_fails_leaves_its_histories_and_is_not_complete(tmp_path, simulation) -> None:
+    def fail() -> None:
+        with recorder(tmp_path / "run.h5", simulation) as kept:
+            kept.append(simulation.advance(5))
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert not file.attrs["complete"]
+        assert file.attrs["steps"] == 5
+        assert len(file["histories/front/time"]) == 5
+        assert "boundaries" not in file
+
+
+def test_what_was_appended_can_be_read_if_the_process_dies(tmp_path, simulation) -> None:
+    kept = recorder(tmp_path / "run.h5", simulation)
+    kept.append(simulation.advance(5))
+    (tmp_path / "as_found.h5").write_bytes((tmp_path / "run.h5").read_bytes())
+    kept.file.close()
+
+    with h5py.File(tmp_path / "as_found.h5") as file:
+        assert not file.attrs["complete"]
+        assert len(file["histories/front/time"]) == 5
+
+
+def test_a_bar_is_kept_with_its_section_and_volumes(spalled_run) -> None:
+    with h5py.File(spalled_run) as file:
+        about, particles = dict(file.attrs), file["particles"]
+        assert (about["kind"], about["density"], about["section"]) == ("bar", 2500.0, 1.0)
+        assert (about["loaded"], list(about["ends"])) == ("left", ["free", "free"])
+        assert (about["wave_speed"], about["attenuation"]) == (1000.0, 0.0)
+        assert about["size"].tolist() == [1.0, 0.0]
+        assert set(particles) == {"position", "volume"}
+        assert particles["position"].shape == (41, 2)
+        np.testing.assert_allclose(particles["volume"], [0.0125, *39 * [0.025], 0.0125], rtol=1e-15)
+        assert particles["volume"].attrs["unit"] == "m³"
+        assert file["energy/kinetic"].attrs["unit"] == "J"
+        assert file["histories/gauge"].attrs["wanted"].tolist() == [0.525, 0.0]
+        assert set(file["boundaries"]) == {"left", "right"}
+        assert [name.decode() for name in file["laws/name"]] == ["peridynamics, m = 3"]
+
+
+def test_disks_are_kept_as_disks(tmp_path, simulation) -> None:
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        kept.append(simulation.advance(1))
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert file.attrs["kind"] == "disks"
+        assert "stress" not in file["histories/front"]
+
+
+def test_stress_and_damage_of_a_bar_are_kept(tmp_path, spalling) -> None:
+    scene = build_bar(spalling())
+    simulation = Simulation(scene, 2.5e-5, np.array([21]))
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        records = []
+        for count in (25, 35):
+            records.append(simulation.advance(count))
+            kept.append(records[-1])
+        kept.snapshot()
+
+    (part,) = simulation.system.parts
+    with h5py.File(tmp_path / "run.h5") as file:
+        history, snapshot = file["histories/gauge"], file["snapshots/0000"]
+        assert np.array_equal(history["stress"], np.concatenate(records)[:, 0, 6])
+        assert np.array_equal(history["velocity"], np.concatenate(records)[:, 0, 3:6])
+        assert np.array_equal(snapshot["stress"], part.stress(simulation.state.displacement))
+        assert np.array_equal(snapshot["damage"], part.bonds.damage())
+        assert snapshot["damage"][:].max() >= 0.3
+        assert (history["stress"].attrs["unit"], snapshot["stress"].attrs["unit"]) == ("Pa", "Pa")
+
+
+def test_cracks_of_a_bar_stand_between_the_nodes_they_part(spalled_run) -> None:
+    with h5py.File(spalled_run) as file:
+        cracks, place = file["cracks"], file["particles/position"][:, 0]
+        pairs = cracks["particles"][:]
+        assert len(pairs) > 0
+        assert np.all(np.diff(cracks["time"]) >= 0.0)
+        assert not cracks["shear"][:].any()
+        np.testing.assert_allclose(cracks["position"][:, 0], place[pairs].mean(axis=1), rtol=1e-15)
+        assert len(np.unique(pairs, axis=0)) == len(pairs)

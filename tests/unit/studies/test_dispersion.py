@@ -1,0 +1,120 @@
+"""Lattices from numbers and from cases, their table, and the frequencies that simulations have."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dembound.case.disks import STARTER
+from dembound.errors import CaseError
+from dembound.exact import Lattice, courant_limit
+from dembound.kinds import loads, with_changes
+from dembound.studies.dispersion import COLUMNS, ROWS, lattices, lattices_of, measure, write_table
+
+BAR = """
+[bar]
+length = 0.5
+spacing = 0.005
+density = 2620.0
+wave_speed = 2500.0
+strength = 1e7
+[method]
+type = "peridynamics"
+horizon = 3
+[run]
+duration = 1e-4
+time_step = 1e-6
+"""
+
+
+def test_all_combinations_are_made():
+    made = lattices([1, 3], [0.01, 0.005], [1e-6], 2500.0)
+    assert made == [
+        Lattice(1, 0.01, 1e-6, 2500.0),
+        Lattice(1, 0.005, 1e-6, 2500.0),
+        Lattice(3, 0.01, 1e-6, 2500.0),
+        Lattice(3, 0.005, 1e-6, 2500.0),
+    ]
+
+
+def test_every_number_that_makes_no_sense_is_told():
+    with pytest.raises(CaseError) as refused:
+        lattices([0, 3, 1001], [0.0, np.inf], [np.nan, 0.0], -1.0)
+    assert refused.value.problems == [
+        "--horizon: is 0, must be 1 to 1000",
+        "--horizon: is 1001, must be 1 to 1000",
+        "--spacing: is 0, must be 1e-30 to 1e+30 m",
+        "--spacing: is inf, must be 1e-30 to 1e+30 m",
+        "--time-step: is nan, must be 0 to 1e+30 s",
+        "--wave-speed: is -1, must be 1e-15 to 1e+15 m/s",
+    ]
+
+
+@pytest.mark.filterwarnings("error")
+def test_the_largest_and_smallest_numbers_neither_overflow_nor_vanish():
+    for spacing, speed, time_step in ((1e-30, 1e15, 9e-46), (1e30, 1e-15, 1e30)):
+        for lattice in lattices([1, 3], [spacing], [0.0, time_step], speed):
+            # the longest of ten waves runs at c but for (kΔx)²(m² + 1)/48, (0.1π)²·10/48 = 2.1 % (L eq. 12 expanded)
+            speeds = lattice.phase_velocity(lattice.shortest * np.arange(1, 11) / 10.0)
+            assert speeds[0] == pytest.approx(speed, rel=0.025)
+            assert np.all(speeds > 0.0)
+
+
+def test_some_lattice_must_be_stable():
+    with pytest.raises(CaseError) as refused:
+        lattices([1, 2], [0.01, 0.005], [1e-3, 2e-3], 2500.0)
+    # the largest step is that of two spacings to the horizon, √2Δx/c = √2·4 µs
+    assert refused.value.problems == ["--time-step: is 0.001 s, must not be above the stability limit 5.65685e-06 s"]
+    assert len(lattices([1, 2], [0.01, 0.005], [1e-3, 5.6e-6], 2500.0)) == 8
+
+
+def test_table_holds_the_curves(tmp_path):
+    stable, unstable = lattices([1], [0.005], [1e-6, 3e-6], 2500.0)
+    write_table([stable, unstable], tmp_path / "table.csv")
+    with (tmp_path / "table.csv").open(newline="") as file:
+        head, *lines = csv.reader(file)
+    assert tuple(head) == COLUMNS
+    assert len(lines) == 2 * ROWS
+    numbers = np.array(lines[:ROWS], dtype=float)
+    assert np.all(numbers[:, :4] == [1, 0.005, 1e-6, 2500.0])
+    wavenumber = numbers[:, 4]
+    assert wavenumber[-1] == pytest.approx(stable.shortest, rel=1e-9)  # written with ten digits, here and below
+    np.testing.assert_allclose(numbers[:, 5], 2.0 * np.pi / (wavenumber * 0.005), rtol=1e-9)
+    np.testing.assert_allclose(numbers[:, 6], stable.frequency(wavenumber) / (2.0 * np.pi), rtol=1e-9)
+    np.testing.assert_allclose(numbers[:, 7], stable.phase_velocity(wavenumber), rtol=1e-9)
+    # wave numbers are rounded by up to 5e-8 rad/m, and the group velocity changes by up to cΔx = 12.5 m²/s
+    np.testing.assert_allclose(numbers[:, 8], stable.group_velocity(wavenumber), rtol=0, atol=1e-6)
+    assert lines[-1][6:] == ["", "", ""]
+    assert "" not in lines[ROWS]
+
+
+@pytest.mark.parametrize(
+    ("method", "horizons"),
+    [
+        ({"type": "finite_difference"}, [1]),
+        ({"type": "peridynamics", "horizon": 3}, [3]),
+        ({"type": "peridynamics", "horizon": 2, "corrected_ends": True}, [2]),
+        ({"type": "switch", "horizon": 4, "before": "peridynamics"}, [1, 4]),
+        ({"type": "patch", "horizon": 3}, [1, 3]),
+    ],
+)
+def test_bars_of_cases_have_the_horizons_their_method_comes_to(method, horizons):
+    case = with_changes(loads(BAR, Path(), "bar"), {"method": method})
+    assert lattices_of(case) == [Lattice(horizon, 0.005, 1e-6, 2500.0) for horizon in horizons]
+
+
+def test_only_bars_have_lattices():
+    with pytest.raises(CaseError, match="bar: is missing") as refused:
+        lattices_of(loads(STARTER, Path(), "disks"))
+    assert refused.value.source == "disks"
+
+
+@pytest.mark.parametrize("horizon", [1, 3])
+@pytest.mark.parametrize("share", [0.5, 1.0])
+def test_measured_frequencies_are_those_of_the_lattice(horizon, share):
+    lattice = Lattice(horizon, 0.005, share * courant_limit(horizon) * 2e-6, 2500.0)
+    wavenumber = np.array([0.1, 0.4, 0.9]) * lattice.shortest
+    # second differences round by 4ε of displacements of 1 and are at least 4sin²(ωΔt/2) = 0.02 of them; half of that
+    # goes into ω, but near the limit arcsin multiplies it by tan(ωΔt/2), up to 10 here
+    np.testing.assert_allclose(measure(lattice, wavenumber), lattice.frequency(wavenumber), rtol=1e-12)
