@@ -2,8 +2,8 @@
 
     python benchmarks/step_rate.py [CASE] [--threads 1 2 ...] [--steps 200] [--repeats 7]
 
-Builds a case (by default the full long bar of random disks) under the elastic law and under the contact law with a
-memory, sets every particle in motion, compiles first, and then times blocks of steps. In the same run it times a plain
+Builds a case (by default the full long bar of random disks) under the elastic law and under the history-dependent
+law, sets every particle in motion, compiles first, and then times blocks of steps. In the same run it times a plain
 array copy (STREAM's "copy": one stream read, one written, and the written one read before it is overwritten) with as
 many threads, on arrays of the same total size as the solver moves per step, so the share of the machine's memory
 bandwidth is a ratio measured side by side. Medians are quoted.
@@ -45,7 +45,7 @@ def ends(scene: DiskScene) -> int:
 
 
 def listed(simulation: Simulation) -> int:
-    """Pairs with a memory; none under the elastic law."""
+    """Pairs with a history; none under the elastic law."""
     return sum(len(contacts.arrays.first) for contacts in simulation.system.contacts.values())
 
 
@@ -53,7 +53,7 @@ def bytes_per_step(simulation: Simulation) -> float:
     """Least memory traffic of one step in bytes: every array once, palette excluded (it stays in cache).
 
     Per particle: u read (24), its successor written and fetched for writing (48), v read and written (48), Δt/m and
-    Δt/I (16), start of row (4); per contact end: neighbour and palette line (8). With a memory each pair is read first
+    Δt/I (16), start of row (4); per contact end: neighbour and palette line (8). With a history each pair is read first
     (particles and line 12, state 1, slip 8), its shear read and written (16), its force written, fetched for writing
     and read again (96), its two ends named (8), and u, v and the steady load read once more (72 per particle).
     """

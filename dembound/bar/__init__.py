@@ -1,5 +1,5 @@
-"""Rock bars: a scene of nodes in a row, how it is stepped, and what is told of it.
+"""Rock bars: nodes in a row, how they are stepped, and what is reported of them.
 
-scene: the arrays; engine: the steps; banded: their stability limit; check: what a case would come to; fracture: where
-and when a bar came apart; summary and export: a run in numbers and for ParaView. Methods stand in `dembound.methods`.
+body and scene: the arrays; part: the steps; banded and stability: their step limit; facts, warnings, summary, outcome,
+mesh: what reports say; fracture: where and when a bar came apart. Methods stand in `dembound.methods`.
 """

@@ -6,7 +6,7 @@ The force on node i of a bar is (L eq. 8 and its finite difference counterpart, 
 
 where p = 0 stands for the local springs between neighbours. Springs and bonds stand in rows by index offset, so every
 loop runs along contiguous numbers and no node looks for its family. Stretches of the bar with nothing but whole local
-springs are `plain`: one stencil with constants moves them.
+springs are `plain`: one stencil with constants moves them. A bar is alone in its loop: its kernels take all nodes.
 """
 
 import numpy as np
@@ -238,7 +238,7 @@ def _note_drag(v, mean, before, nodes, drag, step, work):
         work[0, 0] += taken * mean[i]
         work[1, 0] += taken * 0.5 * before[s]
     whole, late = _drag_work(mean, v, drag)
-    work[1, 1] = work[0, 1] + step * (whole - late)
+    work[1, 1] += step * (whole - late)
     work[0, 1] += step * whole
 
 

@@ -152,7 +152,10 @@ def is_law(
     push: Kernel = _no_push,
     note: Kernel = _no_note,
 ) -> None:
-    """Make bundles of this type a law with these kernels; each does what this module's function of its name says."""
+    """Make bundles of this type a law with these kernels; each does what this module's function of its name says.
+
+    The type has to be importable by its name, as what is compiled for it is kept on disk.
+    """
     for name, kernel in locals().copy().items():
         if name != "bundle":
             _answer(globals()[name], bundle, kernel)

@@ -70,7 +70,7 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
     """The case as what β is about, dashpots on a linear medium, and sentences that say what was left out.
 
     Springs reflect whatever β is; seam forces of a column come and go with the wave; holes scatter; loads, a static
-    stage and a law with a memory add what is no wave's.
+    stage and a history-dependent law add what is no wave's.
     """
     springs = any(isinstance(table, Viscoelastic | ViscoelasticInput) for table in case.boundary.values())
     columns = any(isinstance(table, FreeField) for table in case.boundary.values())
