@@ -21,7 +21,7 @@ from dembound.disks.tractions import Tractions, mean_stress
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.kind import StalledError
 from dembound.motion.simulation import Simulation
-from dembound.motion.state import State
+from dembound.motion.state import Arrays, State
 from dembound.motion.trackers import Run, Tracker
 
 LOOK = 100
@@ -200,6 +200,19 @@ class _UntilAtRest(Tracker):
         body.turn_tractions(system, state)
         self._look_after(state.step)
 
+    def memory(self) -> Arrays:
+        """When it looks next, the least force ratio that counted as progress and when, and the tractions."""
+        applied = np.zeros(0) if self._body.applied is None else self._body.applied
+        best = {"best": np.array(self._best), "best_at": np.array(self._best_at)}
+        return {**super().memory(), **best, "tractions": applied, "corrections": np.array(self._body.corrections_left)}
+
+    def recall(self, memory: Arrays) -> None:
+        """Take over what `memory` has returned in another run of the same case."""
+        super().recall(memory)
+        self._best, self._best_at = float(memory["best"]), int(memory["best_at"])
+        if memory["tractions"].size:
+            self._body.go_on_with(memory["tractions"], int(memory["corrections"]))
+
     def take_cracks(self) -> Cracks:
         """The bonds that broke since this was last called."""
         return joined([pairs.take_cracks() for pairs in self._contacts.values()])
@@ -280,6 +293,16 @@ class _StaticScene:
     def applied(self) -> np.ndarray | None:
         """The stress (3,) Pa that the tractions are made of, if one was asked for."""
         return None if self._tractions is None else self._tractions.applied
+
+    @property
+    def corrections_left(self) -> int:
+        """How often the tractions may still be corrected."""
+        return 0 if self._tractions is None else self._tractions.corrections_left
+
+    def go_on_with(self, applied: np.ndarray, corrections_left: int) -> None:
+        """Take tractions (3,) Pa that have been corrected in another run of the same case."""
+        assert self._tractions is not None
+        self._tractions.applied, self._tractions.corrections_left = applied.copy(), corrections_left
 
     def correct(self, system: DiskSystem, state: State) -> bool:
         """Correct the tractions of a body at rest by what the stress inside lacks; whether it lacked something.

@@ -32,13 +32,14 @@ class Tractions:
     Attributes
     ----------
     applied : (3,) Pa, the stress that the tractions are made of.
+    corrections_left : how often they may still be corrected.
     """
 
     def __init__(self, scene: DiskScene, stress: tuple[float, float, float], applied: np.ndarray | None = None) -> None:
         self.scene = scene
         self.asked = np.array(stress)
         self.applied = self.asked.copy() if applied is None else applied.copy()
-        self._left = CORRECTIONS if applied is None and _is_wide(scene) else 0
+        self.corrections_left = CORRECTIONS if applied is None and _is_wide(scene) else 0
         self._follow = limits_of(scene.case.material).geometry == UPDATED
 
     def forces(self, displacement: np.ndarray) -> np.ndarray:
@@ -64,9 +65,9 @@ class Tractions:
         """Add what the mean stress (3,) Pa inside lacks to the tractions; whether there was something to add."""
         lacking = self.asked - stress
         largest = np.abs(self.asked).max()
-        if self._left == 0 or largest == 0.0 or np.abs(lacking).max() <= CLOSE * largest:
+        if self.corrections_left == 0 or largest == 0.0 or np.abs(lacking).max() <= CLOSE * largest:
             return False
-        self._left -= 1
+        self.corrections_left -= 1
         self.applied += lacking
         return True
 

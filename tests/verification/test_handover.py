@@ -1,4 +1,4 @@
-"""The elastic law is left in the step in which it would go wrong: the answer is that of the law with a memory.
+"""The elastic law is left in the step in which it would go wrong: the answer is that of the history-dependent law.
 
 A weak pulse runs along a bar of random disks under a low locked-in stress and meets a free end, where contacts open.
 """

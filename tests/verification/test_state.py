@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import tomli_w
 
+from dembound.disks import static
 from dembound.kinds import kind_of, loads
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
@@ -123,3 +124,28 @@ def test_the_cases_change_their_laws_and_break(plan) -> None:
     assert len(simulation.state.owners["ledger"].entries) == 5
     assert len(simulation.state.laws) == (2 if case.name in CHANGING else 1)
     assert (sum(map(len, cracks)) + sum(map(np.count_nonzero, broken)) > 0) == (case.name in BREAKING)
+
+
+class Rewound(Simulation):
+    """Goes on from a state taken at step 250 after it has done 230 steps more, which must leave no trace."""
+
+    def run(self, steps: int) -> None:
+        super().run(250)
+        kept = self.state.arrays()
+        super().run(480)
+        self.state.take(kept)
+        assert self.state.step == 250
+        super().run(steps)
+
+
+@pytest.mark.parametrize("name", ["settled, updated", "settled, elastic"])
+def test_a_static_stage_taken_back_settles_to_the_same_bits(name: str, monkeypatch) -> None:
+    case = loads(tomli_w.dumps(CASES[name] | {"static": SQUEEZED | {"ratio": 1e-7}}), name=name)
+    scene = kind_of(case).build(case)
+    whole = static.settle(scene)
+    monkeypatch.setattr(static, "Simulation", Rewound)
+    again = static.settle(scene)
+
+    assert whole.steps == again.steps > 480
+    assert whole.start.displacement.tobytes() == again.start.displacement.tobytes()
+    assert (whole.ratio, whole.tractions.tobytes()) == (again.ratio, again.tractions.tobytes())

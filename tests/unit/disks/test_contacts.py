@@ -1,4 +1,4 @@
-"""The list of pairs: complete, each pair once, and with a memory that outlives every search."""
+"""The list of pairs: complete, each pair once, and with a history that outlives every search."""
 
 from collections import Counter
 
@@ -22,7 +22,7 @@ Key = tuple[int, int, int, int]
 
 @pytest.fixture
 def scene(bar):
-    """Makes scenes of the law with a memory: a random packing, or changed."""
+    """Makes scenes of the history-dependent law: a random packing, or changed."""
 
     def make(sides: str = "open", **changes: object) -> DiskScene:
         tables = {"packing": RANDOM, "boundary": SIDES[sides], "wave": {}, "monitor": [], "motion.held": []}

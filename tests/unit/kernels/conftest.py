@@ -1,4 +1,4 @@
-"""The equations of the kernels written down plainly: the step, one component at a time, and pairs with a memory."""
+"""The equations of the kernels written down plainly: the step, one component at a time, and pairs with a history."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -137,7 +137,7 @@ def stepped() -> Callable[..., Stepped]:
 
 @dataclass
 class PlainPairs:
-    """Pairs with a memory, one at a time; `lost` is what friction and cracks took so far."""
+    """Pairs with a history, one at a time; `lost` is what friction and cracks took so far."""
 
     arrays: tables.Contacts
     limits: tables.Limits
@@ -304,5 +304,5 @@ def behind() -> Callable[[tables.Contacts, int], tables.Contacts]:
 
 @pytest.fixture
 def plain() -> type[PlainPairs]:
-    """The law of pairs with a memory, written down plainly."""
+    """The law of pairs with a history, written down plainly."""
     return PlainPairs

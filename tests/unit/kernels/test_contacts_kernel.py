@@ -1,4 +1,4 @@
-"""Pairs with a memory against the same law written down plainly, and against what it must do by hand."""
+"""Pairs with a history against the same law written down plainly, and against what it must do by hand."""
 
 from itertools import pairwise
 
