@@ -11,6 +11,7 @@ import tomli_w
 from dembound.bar.scene import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
 from dembound.case import Case
+from dembound.disks.body import is_periodic
 from dembound.disks.edges import find_edges
 from dembound.disks.ground import make_ground
 from dembound.disks.rows import contact_rows
@@ -21,7 +22,7 @@ from dembound.kernels.elastic import contact_forces
 from dembound.kinds import loads
 from dembound.motion.simulation import Simulation
 from dembound.packings.brick import Brick
-from dembound.packings.tiling import Assembly
+from dembound.packings.tiling import Assembly, tile
 
 DENSITY = 2500.0
 SPEED = 1000.0
@@ -121,6 +122,15 @@ class Lab:
         assembly = Assembly(positions, radii, twins, bonds.astype(np.int32), kinds, (1, 1), box, box)
         edges = find_edges(assembly, (False, False))
         rows = (contact_rows(assembly, ground),)
+        return with_boundaries(DiskScene(case, ground, assembly, rows, edges, SupportBuilder().table(), {}), case)
+
+    def tiled(self, brick: Brick, copies: tuple[int, int], **words: Any) -> DiskScene:
+        """Copies (along x, along y) of a brick made by hand; the words are those of `case`."""
+        case = self.case("A", (self.diameter, self.diameter), **words)
+        periodic = (is_periodic(case, "left"), is_periodic(case, "bottom"))
+        ground = make_ground(brick, case.material, case.motion.held)
+        assembly = tile(brick, copies, periodic)
+        edges, rows = find_edges(assembly, periodic), (contact_rows(assembly, ground),)
         return with_boundaries(DiskScene(case, ground, assembly, rows, edges, SupportBuilder().table(), {}), case)
 
     def pulse(self, period: float) -> dict[str, Any]:

@@ -5,6 +5,7 @@ import pytest
 
 from dembound.disks.stability import TOLERANCE, step_limit
 from dembound.motion.simulation import Simulation
+from dembound.packings.brick import Brick
 
 PERIODIC = dict.fromkeys(("left", "right", "bottom", "top"), "periodic")
 
@@ -46,6 +47,35 @@ def test_limit_is_that_of_all_eigenvalues(lab):
     root = 1.0 / np.sqrt(np.concatenate([scene.mass, scene.mass, scene.inertia]))
     largest = np.linalg.eigvalsh(root[:, None] * stiffness * root)[-1]
     assert step_limit(scene) == pytest.approx(2.0 / np.sqrt(largest), rel=TOLERANCE)
+
+
+def hexagonal(diameter: float) -> Brick:
+    """Two touching disks of which copies make the hexagonal lattice, each disk with six neighbours."""
+    size = diameter * np.array([1.0, np.sqrt(3.0)])
+    pairs = np.array([[0, 0], [1, 1], [0, 1], [0, 1], [0, 1], [0, 1]])
+    images = np.array([[1, 0], [1, 0], [0, 0], [-1, 0], [0, -1], [-1, -1]])
+    nothing = np.zeros((2, 2), bool), np.zeros(3)
+    return Brick(size, np.array([[0.0, 0.0], 0.5 * size]), np.full(2, 0.5 * diameter), pairs, images, *nothing, 0.0)
+
+
+@pytest.mark.parametrize("kratio", [0.5, 1.0])
+def test_limit_of_loose_disks_also_holds_where_they_come_to_lie_densely(lab, kratio):
+    """A square lattice without bonds may fall into the hexagonal one, of which ω² = 24k_s/m where k_s ≥ k_n.
+
+    There all disks turn alike: six contacts each shear by 2Rθ and turn back by k_s·2R²θ, and the moment of inertia is
+    mR²/2. In the square lattice four contacts make it 16k_s/m, too little even with the reserve for contacts that open.
+    """
+    emod = 1.25e9
+    loose = {"emod": emod, "pb_emod": 0.0, "fric": 0.5, "kratio": kratio}
+    square = lab.scene("A", (6.0, 6.0), held=(), material=loose | {"law": "linearpbond"}, boundary=PERIODIC)
+    disk = lab.density * lab.diameter**2  # kg; the denser lattice is made of the same disks
+    denser = loose | {"density": 2.0 / np.sqrt(3.0) * lab.density}
+    dense = lab.tiled(hexagonal(lab.diameter), (6, 3), held=(), material=denser, boundary=PERIODIC)
+    np.testing.assert_allclose([*square.mass, *dense.mass], disk, rtol=1e-14)
+
+    limit = 2.0 / np.sqrt(24.0 * emod / kratio / disk)
+    assert step_limit(dense) == pytest.approx(limit, rel=TOLERANCE)
+    assert step_limit(square) < limit
 
 
 def test_bounded_below_the_limit(scene):

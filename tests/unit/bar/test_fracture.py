@@ -68,6 +68,15 @@ def test_a_spall_begins_when_the_first_node_has_lost_enough(bonds) -> None:
     assert (spall.start, spall.end) == ((PLACES[20], PLACES[21]), (PLACES[19], PLACES[22]))
 
 
+def test_a_spall_starts_with_what_cracked_in_its_first_step_alone(bonds) -> None:
+    cut(bonds, 20, step=5)
+    cut(bonds, 21, step=6)
+
+    # the second cut, a step later, adds the node 23 as the first one had 22
+    (spall,) = spalls(bonds, PLACES, STEP)
+    assert (spall.start, spall.end) == ((PLACES[19], PLACES[22]), (PLACES[19], PLACES[23]))
+
+
 def test_what_breaks_later_does_not_make_an_earlier_crack_younger(bonds) -> None:
     cut(bonds, 20, step=5)
     before = cracked_since(bonds)

@@ -111,3 +111,14 @@ def test_a_bar_comes_to_rest_where_a_dashpot_holds_the_piece(spalling, spalled_r
     for where, warned in ((spall, True), ({**spall, "end": [0.3, 0.4]}, False)):
         found = warnings_after_bar(scene, {"duration": 1.5e-3, "spalls": [where]}, path)
         assert [warning.split(":")[0] for warning in found] == warned * ["monitor.gauge"]
+
+
+@pytest.mark.parametrize(("near", "warned"), [(0.93, True), (0.92, False)])
+def test_places_count_from_the_end_that_is_loaded(spalling, spalled_run, near: float, warned: bool) -> None:
+    # cracked from the middle up to 0.07 or 0.08 m from the right end; the horizon is 0.075 m
+    first = {"time": 1e-4, "start": [0.5, near], "end": [0.5, near]}
+    scene = build_bar(spalling(blow(12e6, 3, "right")))
+    found = warnings_after_bar(scene, {"duration": 1.0, "spalls": [first]}, spalled_run)
+
+    said = "load.blow: the load itself tore the bar, at 0.0001 s and 0.07 m from the loaded end, before any "
+    assert found == warned * [f"{said}wave was back there; take a smaller bar.spacing"]

@@ -51,6 +51,23 @@ def test_a_narrow_gap_shows_the_disk_behind_it() -> None:
         assert exposed(positions, np.full(3, 0.5), "left").tolist() == seen
 
 
+def test_a_disk_on_the_shoulder_of_a_larger_one_is_seen() -> None:
+    # seen from the left the large disk reaches farther out, to 1, and over all of the small one's height; but there it
+    # has rounded off to 0.6 and less, and the small one stands on it, up to 0.73: (0.63, 0.9) is 1.1 from its centre
+    positions, radii = np.array([[0.0, 0.0], [-np.sqrt(1.1**2 - 0.9**2), 0.9]]), np.array([1.0, 0.1])
+
+    assert exposed(positions, radii, "left").tolist() == [0, 1]
+    assert exposed(-positions, radii, "right").tolist() == [1, 0]
+    assert exposed(positions, radii, "right").tolist() == [0]
+
+
+def test_a_disk_sunk_into_a_larger_one_is_hidden() -> None:
+    # of height 0 to 1 both; the small one's top, at 0.2, is farther out than the large one's rim, but below its surface
+    positions, radii = np.array([[0.0, 0.0], [0.3, 0.5]]), np.array([1.0, 0.5])
+
+    assert exposed(positions, radii, "left").tolist() == [0]
+
+
 def test_a_periodic_side_sees_disks_reach_over_its_ends() -> None:
     # the last disk covers y in [3.1, 4.1] and so, seen periodically over 4 m, [-0.9, 0.1] too: its image hides the
     # small disk at the lower end

@@ -11,7 +11,7 @@ from dembound.disks.part import DiskPart
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.system import DiskSystem
 from dembound.kernels.contacts import TENSION
-from dembound.kernels.follower import extra_work, turn_forces
+from dembound.kernels.follower import extra_work, side_rotations, turn_forces
 
 BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": [], "material.law": "linearpbond"}
 LATTICE = {"pattern": "A", "size": [2.5, 2.0], "radius": 0.25}
@@ -215,6 +215,22 @@ def test_forces_end_on_what_has_broken_away_and_there_alone(scene) -> None:
     assert np.abs(load - turned)[:2, balance.followers.node].max() > 0.1
 
 
+def test_what_is_left_of_the_sides_turns_by_its_own_rotation(scene) -> None:
+    body = scene()
+    parts, (balance, steady) = parts_of(body), balance_of(body)
+    datum, debris = balance.followers.datum, [at(body, 0.25, 0.25), at(body, 2.25, 0.75)]
+    isolate(parts, debris)
+    balance.end_on_debris(parts, datum.copy(), np.zeros((3, body.count)), STEP, steady + balance.force)
+
+    places, angle = body.positions.T + datum[:2], 0.3
+    turn = np.array([[np.cos(angle) - 1.0, -np.sin(angle)], [np.sin(angle), np.cos(angle) - 1.0]])
+    moved = datum.copy()
+    moved[:2] += turn @ places
+    moved[:2, debris] += 7.0
+    # some ten operations on numbers of size 1
+    assert side_rotations(moved, balance.followers) == pytest.approx(np.full(4, angle), rel=1e-14)
+
+
 def test_a_contact_that_pushes_still_carries_the_forces(scene) -> None:
     body = scene()
     parts, (balance, steady) = parts_of(body), balance_of(body)
@@ -227,6 +243,27 @@ def test_a_contact_that_pushes_still_carries_the_forces(scene) -> None:
 
     assert np.array_equal(load, steady + balance.force)
     assert balance.force[:, corner].all()
+
+
+def test_a_break_is_remembered_when_its_pair_has_left_the_list(scene) -> None:
+    body = scene()
+    parts, (balance, steady) = parts_of(body), balance_of(body)
+    corner, load = at(body, 0.25, 0.25), steady + balance.force
+    u, v = np.zeros((3, body.count)), np.zeros((3, body.count))
+    isolate(parts, [corner])
+    pairs = parts[0].pairs
+    pairs.force[np.flatnonzero(pairs.first == corner)[0], 0] = -1.0
+    balance.end_on_debris(parts, u, v, STEP, load)
+    assert balance.force[:, corner].all()
+
+    # it flies away: a search finds no pair of it any more, so nothing in the list tells that it was ever bonded
+    u[:2, corner] = -5.0
+    contacts = parts[0].contacts
+    assert contacts is not None
+    contacts.search(u)
+    assert contacts.broken_bonds()[corner] == 0
+    balance.end_on_debris(parts, u, v, STEP, load)
+    assert not balance.force[:, corner].any()
 
 
 def test_the_work_goes_on_from_where_forces_end(scene) -> None:

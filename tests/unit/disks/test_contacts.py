@@ -293,6 +293,23 @@ def test_with_the_geometry_of_the_start_nothing_gives_way(scene) -> None:
     assert {TENSION, SHEAR} & set(contacts.arrays.state)
 
 
+@pytest.mark.parametrize("share", [0.5, 1.0, 1.5])
+def test_arms_reach_to_the_contacts_and_to_the_ends_of_the_bonds(scene, share: float) -> None:
+    body = scene(**{"material.pb_rmul": share})
+    contacts = list_of(body)
+    lines, radii = plain_contacts(body.ground, body.assembly).palette[body.assembly.kind], body.assembly.radii
+    reached = np.zeros(len(radii))
+    for particle, sign in zip(body.assembly.pairs.T, (1.0, -1.0), strict=True):
+        np.maximum.at(reached, particle, 0.5 * lines[:, 2] + sign * lines[:, 4])  # half the distance and (Ri − Rj)/2
+        np.maximum.at(reached, particle, share * radii[body.assembly.pairs].min(axis=1))
+
+    # bonds are `share` times the smaller disk's radius long to either side; 1e-15 is rounding
+    assert np.all(contacts.arms >= reached * (1.0 - 1e-15))
+    # no longer than the longer of disk and bond, and half a gap
+    gaps = max(float(body.ground.brick.gaps.max()), 0.0)
+    np.testing.assert_allclose(contacts.arms, max(share, 1.0) * radii, atol=0.5 * gaps * (1.0 + 1e-12), rtol=0.0)
+
+
 def test_limits_are_those_of_the_material(scene) -> None:
     strength = {"material.pb_ten": 1e6, "material.pb_coh": 2e6, "material.pb_fa": 45.0, "material.fric": 0.5}
     limits = limits_of(scene(**strength).case.material)

@@ -107,3 +107,18 @@ def test_the_limit_is_never_too_large(bar) -> None:
         scene = build(bar({**ONLY_X, "packing.size": [width, height], "monitor": []}))
         squared = free_chain(K, round(2 * width)) + free_chain(0.5 * K, round(2 * height))
         assert step_limit(scene) <= 2.0 / np.sqrt(squared)
+
+
+@pytest.mark.parametrize(("fric", "most"), [(0.0, 6.0), (0.5, 24.0)])
+def test_the_smallest_disks_of_loose_ground_may_come_to_lie_together(bar, fric: float, most: float) -> None:
+    packing = {"pattern": "B", "size": [6.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]}
+    loose = {"density": 2500.0, "law": "linearpbond", "emod": 1e9, "pb_emod": 0.0, "fric": fric, "kratio": 1.0}
+    springs = {"pb_emod": 1e6, "pb_ten": 1e6} if fric == 0.0 else {}  # a brick resists no shear without
+    scene = build(bar({"packing": packing, "material": loose | springs, "motion.held": [], "monitor": []}))
+
+    # of the hexagonal lattice of equal disks ω² = 6k_n/m where only normal springs act, when neighbouring rows move
+    # against each other, and 24k_s/m where all disks turn alike; k_n = k_s = emod. Equal disks of the mean mass, half
+    # as much again as the least, would come to less
+    least = float(scene.mass.min())
+    assert float(scene.mass.mean()) > 1.5 * least
+    assert step_limit(scene) <= 2.0 / np.sqrt(most * 1e9 / least)

@@ -55,6 +55,15 @@ def test_a_wave_stronger_than_the_locked_in_stress_is_warned_of(bar) -> None:
         assert [warning.split(":")[0] for warning in found] == strong * ["wave.pulse"]
 
 
+@pytest.mark.parametrize(("amplitude", "strong"), [(0.79, False), (0.81, True)])
+def test_a_wave_stronger_than_the_stress_it_comes_upon_is_warned_of(bar, amplitude: float, strong: bool) -> None:
+    # ρcv = 2500·1000·v reaches the mean of 1 and 3 MPa at 0.8 m/s; 0.81 m/s make 2.025
+    static = {"stress": [-1e6, -3e6, 0.5e6]}
+    found = warned(bar({**SLOW, **CALIBRATED, "motion.held": [], "wave.pulse.amplitude": amplitude, "static": static}))
+    said = "wave.pulse: has a stress ρcv of 2.03 MPa, above the confining stress of 2 MPa; "
+    assert [warning[: len(said)] for warning in found if warning.startswith("wave")] == strong * [said]
+
+
 @pytest.mark.parametrize(
     ("changes", "beyond"),
     [
@@ -147,6 +156,26 @@ def test_loads_beside_the_strength(bar, load: dict, what: str, stress: float) ->
         case = bar({**BREAKABLE, **free, "load": [tap], "wave.pulse.amplitude": 1.0, "material.pb_ten": strength})
         said = f"load.tap: {what} is {stress:g} Pa, 0.0099 % of material.pb_ten, {strength:g} Pa: Pa and MPa?"
         assert warned(case) == weak * [said]
+
+
+@pytest.mark.parametrize("amplitude", [4.0, -4.0])
+def test_a_load_is_as_strong_as_the_crest_of_its_wave(bar, amplitude: float) -> None:
+    free = {"motion.held": [], "boundary.left": {"type": "viscous"}, "wave.pulse.amplitude": amplitude}
+    tap = {"name": "tap", "wave": "pulse", "force": [100.0, 0.0], "region": [4.0, 0.0, 6.0, 1.0]}
+    (found,) = warned(bar({**BREAKABLE, **free, "load": [tap]}))
+
+    # 4·100 N per metre of thickness on a height of 1 m
+    said = "load.tap: its force over the width it acts on is 400 Pa, 0.008 % of material.pb_ten, 5e+06 Pa: Pa and MPa?"
+    assert found == said
+
+
+def test_a_wave_counts_with_the_largest_of_its_stresses(bar) -> None:
+    # ρc_p v = 2.5e6·1e-4 Pa as a P wave, half of that as an S wave, which comes to too little by itself
+    both = {"motion.held": [], "boundary.left": {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}}
+    shear = {"motion.held": [], "boundary.left": {"type": "viscous_input", "wave_s": "pulse"}}
+    for driven, said in ((both, []), (shear, ["wave.pulse: its stress ρcv is 125 Pa"])):
+        case = bar({**BREAKABLE, **driven, "wave.pulse.amplitude": 1e-4, "material.pb_ten": 2e6})
+        assert [each.split(",")[0] for each in warned(case)] == said
 
 
 def test_a_slow_grip_strains_the_body_to_its_strength(bar) -> None:

@@ -189,6 +189,23 @@ def test_nominal_and_attenuated_strength_are_those_of_the_paper(felt):
     assert attenuated_strength(25.5e6, DECAY, way) == pytest.approx(18.76e6, abs=0.005e6)  # as printed: 18.8
 
 
+@pytest.mark.parametrize(
+    ("knots", "heights", "when"),
+    [
+        ([0.0, 0.4, 0.8, 2.4], [0.0, -1.0, -0.25, 0.0], 0.4 + 1.25),  # as the image's crest comes
+        ([0.0, 0.4, 1.6, 2.0, 2.4], [0.0, -1.0, -0.875, -0.875, 0.0], 2.4 + 0.25),  # as the pulse has passed
+    ],
+    ids=["image", "pulse"],
+)
+def test_the_nominal_strength_of_straight_lines_is_exact(knots, heights, when):
+    # at 0.5 m of 1 m and at 1 m/s the pulse comes 0.25 s after it was at the gauge, its image 1 s later. When the
+    # image's crest comes, the pulse is down to 1/4 · (2.4 − 1.4)/1.6; when the other pulse has passed, its image is at
+    # 1.4 s, where it has fallen by 1/8 · (1.4 − 0.4)/1.2
+    strength = {0.4 + 1.25: 1.0 - 0.25 / 1.6, 2.4 + 0.25: 1.0 - 0.125 / 1.2}[when]
+    found = nominal_strength(np.array(knots), np.array(heights), 0.25, 1.0, 1.0, 0.5)
+    assert found == pytest.approx((strength, when), rel=1e-14)
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_one_percent_of_noise_leaves_the_nominal_strength(felt, seed):
     clean, _ = nominal_strength(*strong_test(felt), *BAR, SPALL)

@@ -49,6 +49,16 @@ def test_ringing_behind_a_peak_is_not_taken_for_one():
     assert len(positive_peaks(TIME, bells(TIME) + ringing).time) == len(CRESTS)
 
 
+def test_two_peaks_may_stand_as_close_as_the_higher_is_wide():
+    # nine samples are above half of the higher one, whose crest is nine from the other's
+    values = np.zeros(100)
+    values[10:19], values[14] = 0.9, 1.0
+    values[19] = 0.1
+    values[20:27], values[23] = 0.8, 0.85
+    found = positive_peaks(np.arange(100.0), values)
+    assert (found.time.tolist(), found.height.tolist()) == ([14.0, 23.0], [1.0, 0.85])
+
+
 def test_where_nothing_is_positive_there_is_no_peak():
     nothing = Peaks(*positive_peaks(TIME, -np.abs(bells(TIME))))
     assert len(nothing.time) == len(nothing.height) == 0
@@ -86,6 +96,14 @@ def test_the_first_fall_bears_noise(seed):
     # r = (√32 · 0.04/2.5 · 100)^(2/3) = 4: the top loses (3/16)·4 samples of (0.04 + 0.025)/2 each, the bottom of
     # (0.025 + 0.005)/2: 0.036 in all; of the noise 3/√(8·4) = 0.53 is left on each, of which four are allowed
     assert first_fall(noisy) == pytest.approx(2.5, abs=0.036 + 4.0 * np.sqrt(2.0) * 0.53 * 0.04)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_fall_is_the_same_seen_backwards_and_upside_down(seed):
+    values = np.interp(TIME, [0.0, 50.0, 100.0, 150.0], [0.0, 4.0, 1.5, 2.0])
+    noisy = values + 0.04 * np.random.default_rng(seed).standard_normal(len(TIME))
+    # sums of nine samples, the other way round
+    assert first_fall(-noisy[::-1]) == pytest.approx(first_fall(noisy), rel=1e-13)
 
 
 @pytest.mark.parametrize("values", [np.zeros(1000), TIME, -TIME, np.minimum(TIME, 200.0), -np.abs(TIME - 200.0)])

@@ -59,6 +59,13 @@ def test_a_record_knows_speed_and_attenuation_unless_an_estimate_is_asked_for(ga
     assert (half.speed.points, half.attenuation.points) == (0, 5)
 
 
+def test_attenuation_is_that_along_the_way_at_the_speed_that_is_given(gauge):
+    # decay in time, at peaks that are where they are, is βc
+    slow, fast = (evaluate(gauge, speed=speed).attenuation for speed in (2700.0, 2780.0))
+    assert slow.points == fast.points == 5
+    assert slow.value * 2700.0 == pytest.approx(fast.value * 2780.0, rel=1e-12)
+
+
 ESTIMATE = {"estimate": True}
 FIRST, SECOND = (20e-6 + (1.38 + 1.98 * turn) / 2740.0 + 40e-6 for turn in range(2))
 """Times at which the first two tension peaks pass the gauge."""

@@ -108,7 +108,8 @@ class Following:
     twin = np.array([-1, 2, 0])
     free_ones = np.array([0, 1, 3, 4])
 
-    def __init__(self) -> None:
+    def __init__(self, damp: float) -> None:
+        self.damp = damp
         rng = np.random.default_rng(7)
         self.u, self.before, self.after = rng.uniform(-1.0, 1.0, (3, 3, 7))
         self.inertia, self.damping, self.stiffness, self.follow = rng.uniform(0.5, 2.0, (4, 3, 3))
@@ -126,31 +127,34 @@ class Following:
         supports = tables.Supports(
             self.nodes, self.inertia / STEP, keep, mobility, self.stiffness, prescribed, drive, self.twin, self.follow
         )
-        body = tables.Body(np.zeros(7), np.zeros(7), np.ones(3), np.zeros((3, 0)), 0.0, STEP)
+        body = tables.Body(np.zeros(7), np.zeros(7), np.ones(3), np.zeros((3, 0)), self.damp, STEP)
         log = tables.Log(nobody, np.zeros((1, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 6)))
         return supports, body, log
 
     def expected(self) -> tuple[np.ndarray, np.ndarray]:
-        """Velocities (3, 7) after the step, and the outside's work whole and up to the step's middle."""
+        """Velocities (3, 7) after the step; work (2, 2) of the outside and of damping, whole and up to the middle."""
         v = self.before.copy()
         v[:, self.free_ones] = self.after[:, self.free_ones]
-        work = np.zeros(2)
+        work = np.zeros((2, 2))
         for s, (i, twin) in enumerate(zip(self.nodes, self.twin, strict=True)):
             for c in range(3):
                 m, C, was = self.inertia[s, c], self.damping[s, c], self.before[c, i]
                 outside = self.drive[s, c] - self.stiffness[s, c] * self.u[c, i]
+                # of all that pushes, also across the seam, but for dashpots: it acts on the twin alike
+                drag = -self.damp * abs(self.force[s, c] + outside) * np.sign(was)
                 if twin >= 0:  # the dashpot's other end, at the middle of the step as its own
                     outside += self.follow[s, c] * 0.5 * (self.before[c, twin] + v[c, twin])
-                total = self.force[s, c] + outside
+                total = self.force[s, c] + outside + drag
                 v[c, i] = ((m / STEP - C / 2.0) * was + total) / (m / STEP + C / 2.0)
                 mean = 0.5 * (was + v[c, i])
                 push = outside - C * mean + self.across[s, c]
-                work += push * STEP * np.array([mean, 0.5 * was])
+                work += STEP * np.outer([mean, 0.5 * was], [push, -drag])
         return v, work
 
 
-def test_a_dashpot_follows_its_twin_at_the_middle_of_the_step_supported_or_not() -> None:
-    model = Following()
+@pytest.mark.parametrize("damp", [0.0, 0.3])
+def test_a_dashpot_follows_its_twin_at_the_middle_of_the_step_supported_or_not(damp: float) -> None:
+    model = Following(damp)
     supports, body, log = model.bundles()
     v, spare, followed = model.before.copy(), np.full((3, 7), np.nan), np.empty((3, 3))
     note_before(0, model.u, v, log.probes, log.record, supports.twin, followed)
@@ -165,4 +169,4 @@ def test_a_dashpot_follows_its_twin_at_the_middle_of_the_step_supported_or_not()
     np.testing.assert_allclose(spare[:, model.nodes], moved[:, model.nodes], rtol=0.0, atol=1e-14)
     assert np.isnan(spare[:, model.free_ones]).all()
     # of nine components; what comes across the seam is the outside's work
-    np.testing.assert_allclose(log.work[:, 0], work, rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(log.work[:, :2], work, rtol=0.0, atol=1e-13)

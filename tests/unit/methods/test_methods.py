@@ -128,6 +128,22 @@ def test_a_patch_grows_from_where_its_edge_asks() -> None:
     assert bonds.zones == [(20, 51)]
 
 
+@pytest.mark.parametrize(("beyond", "zone"), [(-1, (11, 41)), (0, (10, 41)), (2, (14, 41))], ids=str)
+def test_a_patch_grows_alike_to_the_left_and_to_the_right(beyond: int, zone: tuple[int, int]) -> None:
+    found = method("patch", horizon=2, reach=2)
+    zones = []
+    for place, plane in (((21, 41), 20 - beyond), ((20, 40), 39 + beyond)):
+        bonds = found.begin(ROD)
+        bonds.cover(*place)
+        found.answer(bonds, pulled(plane))
+        zones += bonds.zones
+
+    # by half of its twenty nodes beyond the spring where this is its own or stands across its edge; two springs further
+    # out it is not the zone's, and what it makes reaches two horizons beyond it. Nodes a to b − 1 seen in a mirror are
+    # 61 − b to 60 − a
+    assert zones == [zone, (61 - zone[1], 61 - zone[0])]
+
+
 @pytest.mark.parametrize("horizon", [1, 2, 3, 8])
 @pytest.mark.parametrize("plane", [0, 1, 5, 30, 57, 59])
 def test_what_a_patch_has_answered_does_not_ask_again(horizon: int, plane: int) -> None:

@@ -220,6 +220,22 @@ def test_what_is_not_a_number_ends_the_run(bar) -> None:
         simulation.advance(1)
 
 
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_runaway_node_ends_the_run_whichever_way_it_flies(bar, axis: int, sign: float) -> None:
+    simulation = simulated(bar)
+    where, limit = 2, simulation.scene.fastest
+    simulation.state.velocity[axis, where] = 0.9 * sign * limit
+    watch = simulation.trackers[0]
+    none = np.zeros((0, 0, 6))
+    watch.observe(simulation, none)
+
+    simulation.state.velocity[axis, where] = 1.1 * sign * limit
+    x, y = simulation.scene.positions[where]
+    with pytest.raises(RunError, match=rf"near \({x:g}, {y:g}\) m"):
+        watch.observe(simulation, none)
+
+
 def test_a_speed_ends_the_run_before_its_energy_is_no_number(spalling) -> None:
     planned = plan(spalling())  # a load moves it, whose effect no wave bounds
     simulation = Simulation(planned.scene, planned.time_step)

@@ -52,6 +52,27 @@ def test_frequencies_of_a_sampled_pulse(tmp_path: Path) -> None:
     assert 2.79 / 0.5 <= wave.highest_frequency() <= 2.80 / 0.5 + 0.25
 
 
+def test_a_record_that_ends_in_motion_counts_to_its_last_sample(tmp_path: Path) -> None:
+    # two equal samples 1 s apart: |V| is 2|cos πf|, and f·|V| of the bins, 1/16 Hz, is largest where πf·tan πf is next
+    # to 1, from f = 0.274 Hz down to 0.25 Hz; of the first one alone |V| would be the same at all frequencies
+    wave = record(tmp_path, "0.0 1.0\n1.0 1.0\n")
+
+    assert wave.dominant_frequency() == pytest.approx(0.25, rel=1e-12)
+
+
+def test_frequencies_do_not_suffer_from_a_long_line(tmp_path: Path) -> None:
+    frequency, step = 25.0, 0.002
+    t = np.append(step * np.arange(61), 1.0)
+    a = np.square(np.pi * (frequency * t - 1.5))
+    ricker = (1.0 - 2.0 * a) * np.exp(-a)
+    wave = record(tmp_path, "\n".join(f"{a!r} {b!r}" for a, b in zip(t.tolist(), ricker.tolist(), strict=True)))
+
+    # of Ricker's wavelet |V| ~ x² exp(1 − x²), x = F/f, falls below 1 % at 2.764, and f·|V| is largest at x² = 3/2.
+    # Bins are 1/8 Hz, and of |V| 1e-8 is lost at either end; the samples' step is told by most of them, not by the last
+    assert wave.dominant_frequency() == pytest.approx(np.sqrt(1.5) * frequency, abs=0.125)
+    assert wave.highest_frequency() == pytest.approx(2.764 * frequency, abs=0.125)
+
+
 def test_commas_separate_the_columns_of_a_csv_file(tmp_path: Path) -> None:
     path = tmp_path / "gauge.csv"
     path.write_text("# time,stress\n0,0.5\n1, -2\n")

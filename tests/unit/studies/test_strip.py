@@ -1,0 +1,53 @@
+"""The pulse that a calibration sends, and how long it waits for its peak."""
+
+import numpy as np
+import pytest
+
+from dembound.case.disks import DiskCase
+from dembound.case.model import as_kind
+from dembound.studies.calibration import calibrate
+from dembound.studies.strip import calibration_pulse
+
+
+@pytest.fixture
+def case(bar):
+    """Makes cases: the bar free to move across, with keys changed."""
+
+    def make(changes: dict) -> DiskCase:
+        return as_kind(bar({"motion.held": ["rotation"], **changes}), DiskCase, "is no case of disks")
+
+    return make
+
+
+def test_a_pulse_is_as_long_as_the_wave_of_its_own_kind(case) -> None:
+    waves = {
+        "pulse": {"type": "cosine", "amplitude": 0.5, "period": 0.01},
+        "shake": {"type": "ricker", "amplitude": -0.2, "frequency": 25.0},
+    }
+    left = {"type": "velocity", "wave_p": "pulse", "wave_s": "shake"}
+    both = case({"wave": waves, "boundary.left": left})
+    found = {motion: calibration_pulse(both, "right", motion) for motion in ("p", "s")}
+
+    # the dominant frequencies are 1/T = 100 Hz and that of the wavelet's crest; 1/f rounds once
+    assert [found[motion].amplitude for motion in ("p", "s")] == [0.5, 0.2]
+    assert [found[motion].period for motion in ("p", "s")] == pytest.approx([0.01, 0.04], rel=1e-15)
+
+
+@pytest.mark.parametrize(("motion", "speed"), [("p", 1000.0), ("s", 1000.0 / np.sqrt(2.0))])
+def test_without_a_usable_wave_a_pulse_is_two_hundred_diameters_long(case, motion: str, speed: float) -> None:
+    step = case({"wave": {"pulse": {"type": "constant", "amplitude": 0.5}}})
+
+    # disks of 0.5 m; rotations are held, so that shear springs of half the stiffness carry S waves. The speeds are
+    # square roots of sums of a few springs
+    assert calibration_pulse(step, "right", motion).period == pytest.approx(200.0 * 0.5 / speed, rel=1e-12)
+
+
+@pytest.mark.parametrize(("side", "travel"), [("right", 0.0175), ("left", 0.0)])
+def test_a_pass_goes_on_for_a_tenth_of_the_pulse_after_its_peak_is_due(bar, side: str, travel: float) -> None:
+    step = 1e-4
+    long = bar({"wave.pulse.period": 0.05, "run.time_step": step})
+    found = calibrate(long, side, tolerance=2.0)
+
+    # the peak leaves the opposite end at T/2 and takes L/c through 17.5 m at 1000 m/s; an input side lets it in itself.
+    # A whole number of steps may round to either side
+    assert found.steps == pytest.approx((travel + (0.5 + 0.1) * 0.05) / step, abs=1.0)
