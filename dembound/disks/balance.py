@@ -45,7 +45,6 @@ class Balance:
         self._scene, self._steady, self._datum, self._across = scene, steady, datum, across
         self._of_ended = 0.0
         self._ended = np.zeros(scene.count, dtype=np.bool_)
-        self._broken_before = np.zeros(scene.count, dtype=np.int64)
         self._torn = np.zeros(scene.count, dtype=np.bool_)
 
     def work(self, displacement: np.ndarray) -> float:
@@ -71,7 +70,9 @@ class Balance:
 
     def count_breaks_from(self, parts: Sequence[DiskPart]) -> None:
         """Take the bonds that are broken by now as no sign of debris; parts make up the body."""
-        self._broken_before = _broken_bonds(parts)
+        for part in parts:
+            assert part.contacts is not None
+            part.contacts.note_cracks()
 
     def end_on_debris(
         self, parts: Sequence[DiskPart], displacement: np.ndarray, velocity: np.ndarray, step: float, load: np.ndarray
@@ -83,7 +84,7 @@ class Balance:
         those after a step (s). load (3, n), all steady forces, loses what ends; what keeps coming through a seam is
         taken off by its constant part.
         """
-        self._torn |= _broken_bonds(parts) > self._broken_before  # every break is looked at, so none is missed
+        self._torn |= _freshly_torn(parts)  # every break is looked at in its step, so none is missed
         loose = np.zeros(len(self._ended), dtype=np.bool_)
         for part in parts:
             body = part.nodes
@@ -145,16 +146,16 @@ class Balance:
 _FIXED = ("steady", "datum", "across")
 """What a balance is made of beside its forces."""
 
-_EVOLVING = ("ended", "broken_before", "torn")
+_EVOLVING = ("ended", "torn")
 """What it keeps of particles that have come off."""
 
 _FOLLOWING = ("twin", "arm", "force", "steady", "extra")
 """The columns of its followers that change."""
 
 
-def _broken_bonds(parts: Sequence[DiskPart]) -> np.ndarray:
-    """Number (n,) of broken bonds of every particle."""
-    return np.concatenate([part.contacts.broken_bonds() for part in parts if part.contacts is not None])
+def _freshly_torn(parts: Sequence[DiskPart]) -> np.ndarray:
+    """Particles (n,) bool with a bond that has broken since cracks were last written down."""
+    return np.concatenate([part.contacts.freshly_torn() for part in parts if part.contacts is not None])
 
 
 def mean_rotations(scene: DiskBody, moved: np.ndarray) -> dict[str, float]:

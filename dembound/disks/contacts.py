@@ -245,10 +245,9 @@ class ContactList:
         wraps = np.divide(vectors - inside, periods, out=np.zeros_like(inside), where=periods > 0.0)
         return np.rint(wraps).astype(np.int64)
 
-    def broken_bonds(self) -> np.ndarray:
-        """Number (m,) of broken bonds of every particle among the listed pairs."""
-        state = self.arrays.state
-        return self._counted((state == TENSION) | (state == SHEAR))
+    def freshly_torn(self) -> np.ndarray:
+        """Particles (m,) bool with a bond that has broken since cracks were last written down."""
+        return self._counted(self.arrays.cracked >= 0) > 0
 
     def coordination(self) -> np.ndarray:
         """Number (m,) of intact bonds and pushing contacts of every particle, from the pairs' last forces."""

@@ -178,7 +178,8 @@ def isolate(parts: tuple[DiskPart, ...], particles: list[int]) -> None:
     """Break all bonds of some particles, and none other."""
     for part in parts:
         pairs = part.pairs
-        pairs.state[np.isin(pairs.first, particles) | np.isin(pairs.second, particles)] = TENSION
+        broken = np.isin(pairs.first, particles) | np.isin(pairs.second, particles)
+        pairs.state[broken], pairs.cracked[broken] = TENSION, 1
 
 
 def test_forces_end_on_what_has_broken_away_and_there_alone(scene) -> None:
@@ -261,7 +262,7 @@ def test_a_break_is_remembered_when_its_pair_has_left_the_list(scene) -> None:
     contacts = parts[0].contacts
     assert contacts is not None
     contacts.search(u)
-    assert contacts.broken_bonds()[corner] == 0
+    assert not contacts.freshly_torn()[corner]
     balance.end_on_debris(parts, u, v, STEP, load)
     assert not balance.force[:, corner].any()
 
@@ -330,3 +331,31 @@ def test_what_keeps_coming_through_a_seam_is_taken_off(scene) -> None:
     # what comes through turns no more with the body
     turn_forces(balance.followers, u, v, load, STEP)
     np.testing.assert_allclose(load[:, ended], (steady - across)[:, ended], rtol=0.0, atol=1e-15)
+
+
+def test_a_break_counts_where_an_older_one_has_left_the_list(scene) -> None:
+    body = scene()
+    parts, (balance, steady) = parts_of(body), balance_of(body)
+    corner, load = at(body, 0.25, 0.25), steady + balance.force
+    right, top = at(body, 0.75, 0.25), at(body, 0.25, 0.75)
+    u, v = np.zeros((3, body.count)), np.zeros((3, body.count))
+    contacts = parts[0].contacts
+    assert contacts is not None
+
+    def break_bond_to(other: int) -> None:
+        pairs = contacts.arrays
+        ends = np.sort(np.stack([pairs.first, pairs.second]).astype(np.int64), axis=0)
+        broken = (ends == np.sort([corner, other])[:, None]).all(axis=0)
+        assert broken.sum() == 1
+        pairs.state[broken], pairs.cracked[broken] = TENSION, 1
+
+    break_bond_to(right)
+    balance.count_breaks_from(parts)
+    u[0, corner] = -0.5  # it opens further, so that the search drops the pair that broke before
+    contacts.search(u)
+    balance.end_on_debris(parts, u, v, STEP, load)
+    assert balance.force[:, corner].any()
+    break_bond_to(top)
+    contacts.arrays.force[...] = 0.0
+    balance.end_on_debris(parts, u, v, STEP, load)
+    assert not balance.force[:, corner].any()

@@ -333,8 +333,8 @@ def test_what_balances_ends_on_what_has_broken_away(scene, why: int, ends: bool)
         system = DiskSystem(body, STEP, start, load=load)
         state = begun(system, start.displacement)
         pairs, loose = system.parts[0].pairs, 0
-        pairs.state[(pairs.first == loose) | (pairs.second == loose)] = TENSION
-        pairs.force[(pairs.first == loose) | (pairs.second == loose)] = 0.0
+        broken = (pairs.first == loose) | (pairs.second == loose)
+        pairs.state[broken], pairs.cracked[broken], pairs.force[broken] = TENSION, 1, 0.0
         force, steady = system.balance.force.copy(), system.steady.copy()
         assert force[:, loose].all()
         system.react(why, 1, state)

@@ -188,6 +188,30 @@ def test_a_slow_grip_strains_the_body_to_its_strength(bar) -> None:
         assert [each for each in found if "stress" in each] == weak * [said]
 
 
+def test_a_grip_strains_the_body_along_its_own_normal(bar) -> None:
+    # 0.19 s of 1 µm/s on a height of 1 m; over the length of 10 m it were a tenth of that
+    slow = {"wave.pulse": {"type": "constant", "amplitude": 1e-6}, "run.duration": 0.19, "motion.held": []}
+    grip = {"boundary": {"bottom": {"type": "velocity", "wave_p": "pulse"}, "top": {"type": "fixed"}}}
+    found = warned(bar({**BREAKABLE, **slow, **grip}))
+    said = "wave.pulse: its stress ρc²u/L is 475 Pa, 0.0095 % of material.pb_ten, 5e+06 Pa: Pa and MPa?"
+    assert [each for each in found if "stress" in each] == [said]
+
+
+@pytest.mark.parametrize(("side", "axis"), [("left", 0), ("bottom", 1)])
+def test_a_wave_is_as_strong_as_its_speed_across_its_side(bar, side: str, axis: int) -> None:
+    moduli = {"density": 2500.0, "law": "linearpbond", "emod": 1.25e9, "pb_emod": 1.25e9, "pb_ten": 1e9}
+    packing = {key: DENSE[key] for key in ("packing", "monitor")}
+    driven = {"boundary": {side: {"type": "viscous_input", "wave_p": "pulse"}}, "motion.held": []}
+    case = bar({**packing, **SLOW, **driven, "material": moduli, "wave.pulse.amplitude": 1e-3})
+    tensor = plan(case).scene.ground.material_tensor
+    speeds = [float(np.sqrt(tensor[each, each] / 2500.0)) for each in (0, 1)]
+
+    # a random brick is not as stiff along x as along y
+    assert abs(speeds[1] / speeds[0] - 1.0) > 1e-3
+    (found,) = (each for each in warned(case) if "stress" in each)
+    assert found.startswith(f"wave.pulse: its stress ρcv is {2500.0 * speeds[axis] * 1e-3:g} Pa, ")
+
+
 RANDOM = {**DENSE, "boundary.left": {"type": "viscous_input", "wave_p": "pulse", "beta_p": 0.7, "beta_s": 0.7}}
 
 

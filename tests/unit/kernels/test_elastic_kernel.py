@@ -265,14 +265,14 @@ def test_no_step_begins_outside_the_elastic_law(bodies: Bodies, stepped, random_
     close(v, states[done][1])
 
 
-def test_a_supported_node_that_spins_faster_than_all_others_ends_the_law(
+def test_a_supported_node_that_begins_to_spin_ends_the_law_at_once(
     bodies: Bodies, stepped, random_pairs, behind
 ) -> None:
     part = slice(PARTICLES, 2 * PARTICLES)
-    model = stepped(2 * PARTICLES, 40, TIME_STEP, loaded=False)
+    model = stepped(2 * PARTICLES, 5, TIME_STEP, loaded=False)
     assert model.nodes[-1] >= PARTICLES
     model.push[:] = 0.0
-    model.push[:, -1, 2] = 5.0  # rad/s, prescribed
+    model.push[:, -1, 2] = 60.0  # rad/s, prescribed
     watch = watched(bodies, random_pairs)
     watch = watch._replace(limits=watch.limits._replace(tension=0.5))  # bonds that bend break soon
     arms = np.concatenate([np.zeros(PARTICLES), watch.arms])
@@ -283,12 +283,8 @@ def test_a_supported_node_that_spins_faster_than_all_others_ends_the_law(
 
     room = np.array([slack(then, later.contacts, later.limits) for then, _, _ in states])
     assert why == LAW_ENDS
-    assert 0 < done < 40
-    # until then no other node has moved as far as would ask for a look
-    others = np.delete(np.array([after for _, _, after in states[:done]]), model.nodes[-1], axis=2)
-    reach = np.hypot(*others[:, :2].transpose(1, 0, 2)) + 1.1 * np.abs(others[:, 2])
-    assert 2.0 * TIME_STEP * reach.max(axis=1).sum() < room[0]
-    assert done == np.argmax(room < 0.0)
+    # it spins from the first step on, before anything else moves: its speed of before that step says nothing
+    assert done == np.argmax(room < 0.0) == 1
     close(u, states[done][0])
     close(v, states[done][1])
 
