@@ -76,11 +76,15 @@ def _about(case: Case) -> Iterator[None]:
 def preflight(case: Case) -> None:
     """Find what would stop a case later, as far as it can be found cheaply.
 
-    Builds the scene, whose brick is then cached, and compares a given time step with the stability limit. Raises
-    CaseError and PackingError.
+    Builds the scene, whose brick is then cached, and where the step is found quickly plans the run, see `plan`,
+    whose errors it raises.
     """
+    kind = kind_of(case)
+    if kind.is_planned_quickly(case):
+        plan(case)
+        return
     with _about(case):
-        kind_of(case).preflight(case)
+        kind.build(case)
 
 
 def warnings_before(planned: Plan) -> list[str]:

@@ -45,9 +45,9 @@ class Bars(Kind[BarCase, BarScene]):
         """Time step and stability limit (s)."""
         return choose_step(scene)
 
-    def preflight(self, case: BarCase) -> None:
-        """All of it, as a bar is built at once."""
-        self.choose_step(self.build(case))
+    def is_planned_quickly(self, case: BarCase) -> bool:
+        """Always, as the step limit of a bar is found at once."""
+        return True
 
     def begin(self, scene: BarScene, time_step: float, on_look: OnLook) -> Beginning:
         """At rest as built."""

@@ -107,11 +107,9 @@ class Kind(ABC, Generic[C, S]):
         Raises CaseError and PackingError for what would stop a run later, before anything is written.
         """
 
-    def preflight(self, case: C) -> None:
-        """Find what would stop a case later, as far as it can be found cheaply; raises CaseError and PackingError."""
-        scene = self.build(case)
-        if case.run.time_step != "auto":
-            self.choose_step(scene)
+    def is_planned_quickly(self, case: C) -> bool:
+        """Whether planning a run of a case takes no long search for the stability limit; here where a step is given."""
+        return case.run.time_step != "auto"
 
     @abstractmethod
     def choose_step(self, scene: S) -> tuple[float, float]:

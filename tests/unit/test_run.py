@@ -416,3 +416,11 @@ def test_a_bars_step_above_the_limit_is_refused_before_anything_is_written(spall
 
     assert caught.value.source == "spalling"
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("kind", ["bar", "spalling"])
+def test_preflight_finds_a_run_that_would_never_end(request, kind: str) -> None:
+    step = {"bar": {"run.time_step": 1e-12}, "spalling": {}}[kind]
+    case = request.getfixturevalue(kind)({"run.duration": 1e9, **step})
+    with pytest.raises(CaseError, match=r"run\.duration: takes .* must take no more than"):
+        preflight(case)

@@ -8,6 +8,7 @@ from dembound.bar.kind import Bars
 from dembound.case.bar import STARTER
 from dembound.errors import CaseError
 from dembound.kinds import loads
+from dembound.run import preflight
 
 
 def test_a_bar_begins_at_rest_as_built(spalling) -> None:
@@ -26,8 +27,8 @@ def test_a_bar_begins_at_rest_as_built(spalling) -> None:
 
 def test_what_would_stop_a_run_is_found_before_it(spalling) -> None:
     with pytest.raises(CaseError, match=r"run\.courant"):
-        Bars().preflight(spalling({"run.courant": 2.0}))
-    Bars().preflight(spalling())
+        preflight(spalling({"run.courant": 2.0}))
+    preflight(spalling())
 
 
 def test_a_short_trial_shows_a_whole_run(spalling) -> None:

@@ -8,6 +8,7 @@ from dembound.disks.kind import Disks
 from dembound.disks.static import settle
 from dembound.errors import CaseError
 from dembound.kinds import loads
+from dembound.run import preflight
 
 HANGING = {
     "wave.pulse.start": 1.0,
@@ -92,8 +93,8 @@ def test_the_stage_before_an_excavation_is_told_of_the_disks_that_are_left(bar) 
 )
 def test_what_would_stop_a_run_is_found_before_it(bar, changes: dict, said: str) -> None:
     with pytest.raises(CaseError, match=said):
-        Disks().preflight(bar(changes))
-    Disks().preflight(bar())
+        preflight(bar(changes))
+    preflight(bar())
 
 
 @pytest.mark.parametrize(
