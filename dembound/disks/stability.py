@@ -33,8 +33,8 @@ def step_limit(scene: DiskScene, tolerance: float = TOLERANCE, damp: float | Non
 
     ω_max² is the largest eigenvalue of M⁻¹K of the assembled scene, found by Lanczos iteration on M^(-1/2) K
     M^(-1/2) with held and prescribed components taken out; centred dashpots do not change it. The start vector is
-    fixed, so the step is the same in every run. Under a history-dependent law ω_max² counts 1.4 times where contacts
-    may open (`OPENING`), and the limit also holds for loose disks.
+    fixed, so the step is the same in every run. Under a history-dependent law the limit also holds for loose disks, and
+    ω_max² counts 1.4 times where contacts may open (`OPENING`).
 
     Raises RunError when the iteration does not converge.
     """
@@ -67,7 +67,7 @@ def step_limit(scene: DiskScene, tolerance: float = TOLERANCE, damp: float | Non
         largest *= 1.0 + tolerance  # it was found too small, by less than its residual
     if scene.has_history:
         opens = scene.ground.moduli.emod > 0.0
-        largest = max(largest / OPENING if opens else largest, _loose_eigenvalue(scene))
+        largest = max(largest, _loose_eigenvalue(scene)) / (OPENING if opens else 1.0)
     damp = scene.case.material.damp if damp is None else damp
     return float(2.0 / np.sqrt(largest * (1.0 + damp))) if largest > 0.0 else np.inf
 

@@ -40,8 +40,9 @@ class Patch(Triggered):
 
     def answer(self, bonds: Bonds, u: np.ndarray) -> str:
         """A zone around every spring that has asked; one that grows grows by half, so that it seldom has to."""
+        zones = bonds.zones  # those before any of them grows: what one spring makes does not depend on the others
         for k in bonds.asking(u):
-            grown = max((last - first for first, last in bonds.zones if first <= k + 1 and k <= last), default=0)
+            grown = max((last - first for first, last in zones if first <= k + 1 and k < last), default=0)
             beyond = max(self.reach * self.horizon, grown // 2)
             bonds.cover(int(k) - beyond, int(k) + 2 + beyond)
         return f"finite differences and peridynamics, m = {self.horizon}"

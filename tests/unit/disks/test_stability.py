@@ -7,7 +7,7 @@ import pytest
 
 from dembound.boundaries.support import SupportBuilder
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.stability import TOLERANCE, choose_step, step_limit
+from dembound.disks.stability import OPENING, TOLERANCE, choose_step, step_limit
 from dembound.errors import CaseError
 
 MASS = 2500.0 * 0.5**2
@@ -118,7 +118,7 @@ def test_the_smallest_disks_of_loose_ground_may_come_to_lie_together(bar, fric: 
 
     # of the hexagonal lattice of equal disks ω² = 6k_n/m where only normal springs act, when neighbouring rows move
     # against each other, and 24k_s/m where all disks turn alike; k_n = k_s = emod. Equal disks of the mean mass, half
-    # as much again as the least, would come to less
+    # as much again as the least, would come to less. Loose disks open and close their contacts
     least = float(scene.mass.min())
     assert float(scene.mass.mean()) > 1.5 * least
-    assert step_limit(scene) <= 2.0 / np.sqrt(most * 1e9 / least)
+    assert step_limit(scene) <= 2.0 / np.sqrt(most * 1e9 / least / OPENING) * (1.0 + 1e-12)  # rounding

@@ -128,7 +128,7 @@ def test_a_patch_grows_from_where_its_edge_asks() -> None:
     assert bonds.zones == [(20, 51)]
 
 
-@pytest.mark.parametrize(("beyond", "zone"), [(-1, (11, 41)), (0, (10, 41)), (2, (14, 41))], ids=str)
+@pytest.mark.parametrize(("beyond", "zone"), [(-1, (11, 41)), (0, (10, 41)), (1, (15, 41)), (2, (14, 41))], ids=str)
 def test_a_patch_grows_alike_to_the_left_and_to_the_right(beyond: int, zone: tuple[int, int]) -> None:
     found = method("patch", horizon=2, reach=2)
     zones = []
