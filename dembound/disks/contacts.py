@@ -7,10 +7,11 @@ import numpy as np
 from dembound.case.disks.material import Material
 from dembound.disks.ground import Ground
 from dembound.disks.neighbours import near_pairs, pair_keys
+from dembound.disks.palette import brick_lines, limits_of, shared_lines
 from dembound.kernels import contacts as kernel
 from dembound.kernels.common import CHUNKS
-from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED
-from dembound.kernels.tables import Contacts, Limits
+from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
+from dembound.kernels.tables import Contacts
 from dembound.laws import pair_lines
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.state import Arrays
@@ -19,18 +20,6 @@ from dembound.packings.tiling import Assembly
 SKIN = 0.05
 """Pairs are listed while their gap is below this share of the mean diameter: they are looked for anew once a particle
 has moved by half of it."""
-
-
-def limits_of(material: Material) -> Limits:
-    """Where contacts and bonds of a material give way; the elastic law never does."""
-    unbreakable = material.law == "elastic"
-    return Limits(
-        friction=float(material.fric),
-        tension=np.inf if unbreakable or material.pb_ten is None else material.pb_ten,
-        cohesion=np.inf if unbreakable or material.pb_coh is None else material.pb_coh,
-        tan_fa=float(np.tan(np.radians(material.pb_fa))) if material.pb_coh is not None else 0.0,
-        geometry=REFERENCE if unbreakable else {"updated": UPDATED, "reference": BONDED}[material.geometry],
-    )
 
 
 @dataclass(frozen=True)
@@ -84,7 +73,7 @@ class ContactList:
         self.searches = self.limits.geometry != REFERENCE
         self.skin = SKIN * ground.brick.mean_diameter
         self.origin = np.zeros((2, len(assembly.radii)))
-        self.bonds = _brick_lines(ground, gaps_close=self.searches, locked_in=self.locked_in)
+        self.bonds = brick_lines(ground, gaps_close=self.searches, locked_in=self.locked_in)
         first, second = assembly.pairs.T.astype(np.int64)
         pairs = Pairs(first, second, self.images(first, second, self.bonds[assembly.kind, :2]), assembly.kind)
         bonded = np.full(len(first), INTACT if ground.moduli.pb_emod > 0.0 else NONE, dtype=np.uint8)
@@ -147,7 +136,7 @@ class ContactList:
         lines = pair_lines(
             self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
         )
-        lines, line_of_new = _shared(lines, self.skin)
+        lines, line_of_new = shared_lines(lines, self.skin)
         # lines of earlier searches that are still in use move up behind the brick's own
         own = len(self.bonds)
         used, line = np.unique(old.kind[kept], return_inverse=True)
@@ -329,7 +318,7 @@ def plain_contacts(ground: Ground, assembly: Assembly, begin: int = 0) -> Contac
         first=first,
         second=second,
         kind=assembly.kind.astype(np.uint32),
-        palette=_brick_lines(ground, gaps_close=False, locked_in=0.0),
+        palette=brick_lines(ground, gaps_close=False, locked_in=0.0),
         state=np.full(len(first), bonded, dtype=np.uint8),
         shear=nothing,
         slip=nothing,
@@ -339,35 +328,3 @@ def plain_contacts(ground: Ground, assembly: Assembly, begin: int = 0) -> Contac
         start=first[:0],
         end=first[:0],
     )
-
-
-def _brick_lines(ground: Ground, *, gaps_close: bool, locked_in: float) -> np.ndarray:
-    """Palette lines (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
-
-    The words are those of `pair_lines`.
-    """
-    brick = ground.brick
-    first, second = brick.radii[brick.pairs].T
-    lines = pair_lines(
-        ground.moduli,
-        first,
-        second,
-        brick.vectors,
-        bonded=ground.moduli.pb_emod > 0.0,
-        gaps_close=gaps_close,
-        locked_in=locked_in,
-    )
-    half = lines.copy()
-    half[:, 5:10] *= 0.5  # stiffnesses
-    half[:, 10:] *= 2.0  # and areas and sections with them, so that stresses stay
-    return np.vstack([lines, half])
-
-
-def _shared(lines: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
-    """Palette lines (p, 12) of pairs without those that are equal but for rounding, and each pair's line (b,).
-
-    Pairs at the same place of different bricks then share a line; length (m) is what rounding is small against.
-    """
-    places = np.round(lines[:, :5] / (1e-6 * length))
-    _, first, line_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
-    return lines[first], line_of.reshape(-1)

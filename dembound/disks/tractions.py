@@ -3,7 +3,7 @@
 import numpy as np
 
 from dembound.disks.balance import mean_rotations
-from dembound.disks.contacts import limits_of
+from dembound.disks.palette import limits_of
 from dembound.disks.scene import DiskScene
 from dembound.kernels.contacts import UPDATED
 

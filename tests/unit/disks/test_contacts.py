@@ -5,9 +5,9 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from dembound.disks.contacts import ContactList, limits_of, plain_contacts
+from dembound.disks.contacts import ContactList, plain_contacts
 from dembound.disks.scene import DiskScene, build
-from dembound.kernels.contacts import BONDED, INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED, note_places
+from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION, note_places
 
 WRAP = {"type": "periodic"}
 SIDES = {
@@ -308,17 +308,6 @@ def test_arms_reach_to_the_contacts_and_to_the_ends_of_the_bonds(scene, share: f
     # no longer than the longer of disk and bond, and half a gap
     gaps = max(float(body.ground.brick.gaps.max()), 0.0)
     np.testing.assert_allclose(contacts.arms, max(share, 1.0) * radii, atol=0.5 * gaps * (1.0 + 1e-12), rtol=0.0)
-
-
-def test_limits_are_those_of_the_material(scene) -> None:
-    strength = {"material.pb_ten": 1e6, "material.pb_coh": 2e6, "material.pb_fa": 45.0, "material.fric": 0.5}
-    limits = limits_of(scene(**strength).case.material)
-    assert (limits.friction, limits.tension, limits.cohesion, limits.geometry) == (0.5, 1e6, 2e6, UPDATED)
-    assert limits.tan_fa == pytest.approx(1.0, rel=1e-15)
-    assert limits_of(scene(**{"material.geometry": "reference"}).case.material).geometry == BONDED
-
-    unbreakable = limits_of(scene().case.material)
-    assert (unbreakable.tension, unbreakable.cohesion, unbreakable.tan_fa) == (np.inf, np.inf, 0.0)
 
 
 def test_the_elastic_law_has_its_contacts_and_looks_for_no_others(scene) -> None:

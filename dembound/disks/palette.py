@@ -1,0 +1,53 @@
+"""What the history-dependent law reads of a contact: its line of the palette, and where it gives way."""
+
+import numpy as np
+
+from dembound.case.disks.material import Material
+from dembound.disks.ground import Ground
+from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
+from dembound.kernels.tables import Limits
+from dembound.laws import pair_lines
+
+
+def limits_of(material: Material) -> Limits:
+    """Where contacts and bonds of a material give way; the elastic law never does."""
+    unbreakable = material.law == "elastic"
+    return Limits(
+        friction=float(material.fric),
+        tension=np.inf if unbreakable or material.pb_ten is None else material.pb_ten,
+        cohesion=np.inf if unbreakable or material.pb_coh is None else material.pb_coh,
+        tan_fa=float(np.tan(np.radians(material.pb_fa))) if material.pb_coh is not None else 0.0,
+        geometry=REFERENCE if unbreakable else {"updated": UPDATED, "reference": BONDED}[material.geometry],
+    )
+
+
+def brick_lines(ground: Ground, *, gaps_close: bool, locked_in: float) -> np.ndarray:
+    """Palette lines (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
+
+    The words are those of `pair_lines`.
+    """
+    brick = ground.brick
+    first, second = brick.radii[brick.pairs].T
+    lines = pair_lines(
+        ground.moduli,
+        first,
+        second,
+        brick.vectors,
+        bonded=ground.moduli.pb_emod > 0.0,
+        gaps_close=gaps_close,
+        locked_in=locked_in,
+    )
+    half = lines.copy()
+    half[:, 5:10] *= 0.5  # stiffnesses
+    half[:, 10:] *= 2.0  # and areas and sections with them, so that stresses stay
+    return np.vstack([lines, half])
+
+
+def shared_lines(lines: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Palette lines (p, 12) of pairs without those that are equal but for rounding, and each pair's line (b,).
+
+    Pairs at the same place of different bricks then share a line; length (m) is what rounding is small against.
+    """
+    places = np.round(lines[:, :5] / (1e-6 * length))
+    _, first, line_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
+    return lines[first], line_of.reshape(-1)
