@@ -10,7 +10,7 @@ SPEED = 100.0
 
 
 @pytest.mark.parametrize("geometry", ["updated", "reference"])
-@pytest.mark.parametrize("stress", [-5e6, 0.3e6])
+@pytest.mark.parametrize("stress", [-4e6, 0.3e6])
 def test_a_corner_torn_off_gains_no_speed(lab, stress, geometry):
     """Known failure: forces that go on tear at disks of 0.5 m with 800 m/s² per MPa."""
     material = {"law": "linearpbond", "fric": 0.5, "pb_ten": 2e6, "pb_coh": 3e6, "geometry": geometry}
