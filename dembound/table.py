@@ -1,9 +1,15 @@
 """The base of every table of a case file: frozen, and without unknown keys; and the kinds of values they share."""
 
 import re
-from typing import Annotated, Any
+import warnings
+from collections.abc import Iterable
+from functools import cache
+from importlib.metadata import entry_points
+from typing import Annotated, Any, TypeVar, Union
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+T = TypeVar("T")
 
 
 class Table(BaseModel):
@@ -23,6 +29,36 @@ def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:
     limits : pydantic constraints (``gt``, ``ge``, ``lt``, ``le``, ``min_length`` …).
     """
     return Field(default, description=help, json_schema_extra={"unit": unit}, **limits)
+
+
+def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tuple[type[T], ...]:
+    """These types of tables, and those that other installed packages register under the entry point group `group`.
+
+    One that cannot be imported, or is not derived from `base`, is left out with a Python warning.
+    """
+    found = list(types)
+    for entry in _registered().select(group=group):
+        try:
+            table = entry.load()
+        except Exception as error:  # whatever another package may raise
+            warnings.warn(f"{group}: {entry.name} ({entry.value}) cannot be imported: {error}", stacklevel=2)
+            continue
+        if isinstance(table, type) and issubclass(table, base):
+            found.append(table)
+        else:
+            warnings.warn(f"{group}: {entry.name} ({entry.value}) is not derived from {base.__name__}", stacklevel=2)
+    return tuple(found)
+
+
+@cache
+def _registered() -> Any:
+    """What all installed packages register."""
+    return entry_points()
+
+
+def one_of(key: str, types: Iterable[type[Any]]) -> Any:
+    """The annotation of a table that is of one of several types, told apart by the literal at `key`."""
+    return Annotated[Union[tuple(types)], Field(discriminator=key)]  # noqa: UP007  # of types known only now
 
 
 def _serves_as_file_name(name: str) -> str:

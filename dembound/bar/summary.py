@@ -8,7 +8,6 @@ import numpy as np
 from dembound.bar.fracture import spalls
 from dembound.bar.part import BarPart
 from dembound.bar.scene import BarScene
-from dembound.boundaries.viscous import Dashpots
 from dembound.gauge.estimates import pull_back_strength
 from dembound.motion.trackers import Run
 from dembound.results.reader import open_record
@@ -61,11 +60,8 @@ def describe_bar(scene: BarScene) -> dict[str, float | None]:
 
 def describe_end(scene: BarScene, side: str) -> dict[str, Any]:
     """One end in numbers: its type, and β of a dashpot."""
-    table = scene.case.boundary.get(side)
-    described: dict[str, Any] = {"type": table.type if table is not None else "free"}
-    if isinstance(table, Dashpots):
-        described["beta_p"] = table.beta_p
-    return described
+    table = scene.case.side(side)
+    return {"type": table.type} | ({"beta_p": table.factors["p"]} if table.factors else {})
 
 
 def _largest_stresses(record: Path) -> dict[str, dict[str, float]]:

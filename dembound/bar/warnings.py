@@ -9,9 +9,7 @@ import numpy as np
 
 from dembound.bar.facts import PERCENT, cells_of_waves
 from dembound.bar.scene import BarScene
-from dembound.boundaries import OPPOSITE, Free, Velocity
-from dembound.boundaries.driven import Driven
-from dembound.boundaries.viscous import Dashpots
+from dembound.boundaries import OPPOSITE, normal_axis
 from dembound.case.bar import BarCase
 from dembound.case.magnitudes import grip_stress, stress_warnings, time_warnings
 from dembound.results.reader import open_record
@@ -49,7 +47,7 @@ def _too_few_cells(case: BarCase, time_step: float) -> Iterator[str]:
 def _dashpots_at_soft_ends(case: BarCase) -> Iterator[str]:
     """Dashpots at ends too soft for them."""
     for side, table in case.boundary.items():
-        if case.method.soft_ends and isinstance(table, Dashpots):
+        if case.method.soft_ends and table.factors:
             yield (
                 f"boundary.{side}: stands at a soft end of peridynamics and returns a part of every wave; "
                 "give method.corrected_ends = true"
@@ -65,15 +63,13 @@ def stress_beside_strength(case: BarCase) -> Iterator[str]:
     stresses = {
         f"load.{load.name}": ("its pressure", abs(load.pressure) * case.wave[load.wave].peak()) for load in case.load
     }
-    for table in case.boundary.values():
-        if not isinstance(table, Driven) or table.wave_p is None:
-            continue
-        wave = case.wave[table.wave_p]
-        if isinstance(table, Velocity):
+    for side, waves in case.driving.items():
+        wave = case.wave[waves["p"]]
+        if 0 in case.side(side).prescribed(normal_axis(side)):
             found = grip_stress(wave, bar.density, bar.speed, bar.length, case.run.duration, strength)
         else:
             found = "its stress ρcv", bar.density * bar.speed * wave.peak()
-        stresses[f"wave.{table.wave_p}"] = found
+        stresses[f"wave.{waves['p']}"] = found
     key = "bar.strength" if bar.critical_stretch is None else "bar.critical_stretch"
     yield from stress_warnings(stresses, strength, key)
 
@@ -81,7 +77,7 @@ def stress_beside_strength(case: BarCase) -> Iterator[str]:
 def ends_too_soon(case: BarCase) -> Iterator[str]:
     """A run that is over before the wave is back from the free end, where the bar could spall."""
     far = OPPOSITE.get(case.loaded)
-    if far is None or not isinstance(case.boundary.get(far, Free(type="free")), Free):
+    if far is None or not case.side(far).is_free:
         return
     if np.isinf(case.bar.breaking_stretch):
         return
@@ -122,20 +118,19 @@ def _crest_and_break(case: BarCase) -> tuple[float | None, float | None]:
 
 def _waves_of(case: BarCase) -> list[str]:
     """Names of the waves at the one end that is loaded or driven."""
-    driven = [table.wave_p for table in case.boundary.values() if isinstance(table, Driven) and table.wave_p]
-    return [load.wave for load in case.load] + driven
+    return [load.wave for load in case.load] + [waves["p"] for waves in case.driving.values()]
 
 
 def _pressure(case: BarCase, time: np.ndarray) -> np.ndarray:
     """Pressure (Pa), of the shape of times (s), of the wave that sets out from the loaded end."""
-    table = case.boundary.get(case.loaded)
-    share = 1.0 / (1.0 + table.beta_p) if isinstance(table, Dashpots) else 1.0  # the dashpot takes the rest
+    table = case.side(case.loaded)
+    share = 1.0 / (1.0 + table.factors.get("p", 0.0))  # the dashpot takes the rest
     pressure = np.zeros_like(time)
     for load in case.load:
         pressure += share * load.pressure * case.wave[load.wave].velocity(time)
-    if isinstance(table, Driven) and table.wave_p:
+    if "p" in table.waves:
         inwards = 1.0 if case.loaded == "left" else -1.0
-        pressure += inwards * case.bar.density * case.bar.speed * case.wave[table.wave_p].velocity(time)
+        pressure += inwards * case.bar.density * case.bar.speed * case.wave[table.waves["p"]].velocity(time)
     return pressure
 
 

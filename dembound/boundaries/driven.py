@@ -1,11 +1,16 @@
 """What all wave-driven sides have in common: which named wave moves them in which direction."""
 
+from collections.abc import Iterator, Mapping
+from typing import Any
+
 from pydantic import model_validator
 
-from dembound.table import Table, quantity
+from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.sides import Motion, axis_of_motion
+from dembound.table import quantity
 
 
-class Driven(Table):
+class Driven(Boundary):
     """A side that names its waves by type: P moves along the side's normal, S across it.
 
     Positive velocities point along +x and +y whatever the side. Both may be given at once.
@@ -19,6 +24,20 @@ class Driven(Table):
         if self.wave_p is None and self.wave_s is None:
             raise ValueError("names no wave; give wave_p (along the normal), wave_s (across it) or both")
         return self
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """Waves along a direction in which nothing can move."""
+        yield from super().problems(side, tables)
+        held = tables["motion"].held if tables.get("motion") else ()
+        for motion in self.waves:
+            if (direction := "xy"[axis_of_motion(side, motion)]) in held:
+                yield f"boundary.{side}.wave_{motion}: drives {direction}, which motion.held holds for every particle"
+
+    @property
+    def waves(self) -> Mapping[Motion, str]:
+        """The waves named."""
+        named: dict[Motion, str | None] = {"p": self.wave_p, "s": self.wave_s}
+        return {motion: name for motion, name in named.items() if name is not None}
 
     def waves_by_axis(self, normal_axis: int) -> tuple[str | None, str | None]:
         """Wave names for x and y motion, given the axis of the side's normal."""

@@ -1,16 +1,15 @@
 """A free side: nothing pushes. It is also what a side without a table is."""
 
-from collections.abc import Mapping
-from typing import Literal
+from typing import ClassVar, Literal
 
-from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
-from dembound.table import Table
+from dembound.boundaries.boundary import Boundary
 
 
-class Free(Table):
+class Free(Boundary):
     """No support; an arriving wave is reflected with the motion doubled."""
 
-    type: Literal["free"] = "free"
+    for_bars: ClassVar[bool] = True
+    for_static: ClassVar[bool] = True
+    is_free: ClassVar[bool] = True
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
-        """Add nothing."""
+    type: Literal["free"] = "free"

@@ -5,17 +5,21 @@ same seam, moment included: static part and motion at once, nothing to calibrate
 on the velocity relative to the twin absorb what the body sends out.
 """
 
-from collections.abc import Mapping
-from typing import Literal
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
+from dembound.boundaries.sides import normal_axis
 from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
 from dembound.boundaries.viscous import Dashpots, Viscous
 
 
 class FreeField(Dashpots):
     """The column's seam forces, and F = −βρcD·(v − v_ff), v_ff the velocity of the particle's twin in the column."""
+
+    needs_column: ClassVar[bool] = True
+    beyond_dashpots: ClassVar[str] = "free-field sides without their column"
 
     type: Literal["free_field"]
 
@@ -24,6 +28,15 @@ class FreeField(Dashpots):
         if self.half_mass:
             raise ValueError("half_mass: is not for a free-field side, whose other half stands in the column")
         return self
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """A side along which no column can stand."""
+        yield from super().problems(side, tables)
+        if normal_axis(side) == 1:
+            yield (
+                f'boundary.{side}.type: "{self.type}" is for left and right; '
+                "its column stands upright and ends where the body does"
+            )
 
     def dashpots_alone(self) -> Viscous:
         """The viscous side with the same dashpots."""

@@ -9,12 +9,11 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.support import Edge
-from dembound.boundaries.viscous import Dashpots
-from dembound.table import Table
 
 
-def mass_factor(count: int, edges: Mapping[str, Edge], boundary: Mapping[str, Table]) -> np.ndarray:
+def mass_factor(count: int, edges: Mapping[str, Edge], boundary: Mapping[str, Boundary]) -> np.ndarray:
     """Factor (n,) of the mass and moment of inertia of all `count` particles.
 
     A half for the particles of every side with ``half_mass``, so a quarter where two of them meet.
@@ -26,16 +25,19 @@ def mass_factor(count: int, edges: Mapping[str, Edge], boundary: Mapping[str, Ta
     return factor
 
 
-def half_edges(edges: Mapping[str, Edge], boundary: Mapping[str, Table]) -> Iterator[Edge]:
+def half_edges(edges: Mapping[str, Edge], boundary: Mapping[str, Boundary]) -> Iterator[Edge]:
     """The sides whose particles are half cells."""
     for side, edge in edges.items():
-        table = boundary.get(side)
-        if isinstance(table, Dashpots) and table.half_mass:
+        if side in boundary and boundary[side].half_cells:
             yield edge
 
 
 def half_contacts(
-    first: np.ndarray, second: np.ndarray, vectors: np.ndarray, edges: Mapping[str, Edge], boundary: Mapping[str, Table]
+    first: np.ndarray,
+    second: np.ndarray,
+    vectors: np.ndarray,
+    edges: Mapping[str, Edge],
+    boundary: Mapping[str, Boundary],
 ) -> np.ndarray:
     """Which contacts (b,) bool run along a side of half cells, between particles first and second (b,).
 

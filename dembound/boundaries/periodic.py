@@ -1,16 +1,26 @@
 """A periodic side: the scene goes on with its own opposite side. Sides come in pairs."""
 
-from collections.abc import Mapping
-from typing import Literal
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Literal
 
-from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
-from dembound.table import Table
+from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.sides import OPPOSITE, normal_axis
 
 
-class Periodic(Table):
+class Periodic(Boundary):
     """Bonds run on across the seam; the tiling makes them, no support is needed."""
+
+    is_periodic: ClassVar[bool] = True
 
     type: Literal["periodic"]
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
-        """Add nothing: the seam bonds already hold the side."""
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """An opposite side that is something else, and a column that would have no ends."""
+        sides, opposite = tables["boundary"], OPPOSITE[side]
+        missing = opposite not in sides
+        if missing or (sides[opposite] and not sides[opposite].is_periodic):
+            yield f'boundary.{side}.type: is "{self.type}", so boundary.{opposite} must be periodic too'
+        beside = [name for name, table in sides.items() if table and table.needs_column]
+        if beside and normal_axis(side) == 1:
+            other = f"boundary.{beside[0]}"
+            yield f'boundary.{side}.type: is "{self.type}", but beside {other} stands a column with two ends'

@@ -1,16 +1,22 @@
 """A roller: the side slides along itself, but neither leaves its plane nor enters it."""
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import ClassVar, Literal
 
+from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
-from dembound.table import Table
 
 
-class Roller(Table):
+class Roller(Boundary):
     """A smooth rigid wall: no motion along the side's normal; sliding and turning are free."""
 
+    for_static: ClassVar[bool] = True
+
     type: Literal["roller"]
+
+    def prescribed(self, normal_axis: int) -> tuple[int, ...]:
+        """The motion along the normal."""
+        return (normal_axis,)
 
     def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
         """Prescribe zero velocity along the normal."""

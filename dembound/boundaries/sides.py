@@ -1,6 +1,11 @@
-"""The four sides of a scene, and the axis of their normals."""
+"""The four sides of a scene, the axis of their normals, and how waves move them."""
+
+from typing import Literal
 
 SIDES = ("left", "right", "bottom", "top")
+
+Motion = Literal["p", "s"]
+"""Kind of wave: P moves particles along the normal of the side it meets, S across it."""
 
 OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 """Side -> the side across the scene."""
@@ -9,3 +14,8 @@ OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 def normal_axis(side: str) -> int:
     """Axis of a side's normal: 0 for left and right, 1 for bottom and top."""
     return 0 if side in ("left", "right") else 1
+
+
+def axis_of_motion(side: str, motion: Motion) -> int:
+    """Axis along which a wave moves the particles of a side it meets at right angles."""
+    return normal_axis(side) if motion == "p" else 1 - normal_axis(side)

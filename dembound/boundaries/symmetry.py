@@ -1,13 +1,13 @@
 """A plane of symmetry: the body goes on as its own mirror image."""
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import ClassVar, Literal
 
+from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
-from dembound.table import Table
 
 
-class Symmetry(Table):
+class Symmetry(Boundary):
     """Every edge disk touches its own mirror image and is bonded to it.
 
     The mirror stands half a disk diameter outside the disk's centre. The image of (u_n, u_s, θ) is (−u_n, u_s, −θ):
@@ -16,6 +16,8 @@ class Symmetry(Table):
     −2k_b·θ. That is exact where the edge disks stand in one row, as in pattern A; elsewhere each disk has a mirror
     of its own.
     """
+
+    is_mirror: ClassVar[bool] = True
 
     type: Literal["symmetry"]
 

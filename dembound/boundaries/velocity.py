@@ -1,16 +1,28 @@
 """A driven side: the velocity of its particles is prescribed."""
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import ClassVar, Literal
 
+from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Driven
+from dembound.boundaries.fixed import Fixed
 from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
 
 
 class Velocity(Driven):
     """A rigid grip that moves with the waves named; the component without a wave is held, rotation is free."""
 
+    for_bars: ClassVar[bool] = True
+
     type: Literal["velocity"]
+
+    def prescribed(self, normal_axis: int) -> tuple[int, ...]:
+        """Both displacements."""
+        return (0, 1)
+
+    def at_rest(self) -> Boundary:
+        """A rigid wall."""
+        return Fixed(type="fixed")
 
     def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
         """Prescribe v = wave(t) along each named direction and v = 0 along the other."""

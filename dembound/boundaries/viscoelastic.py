@@ -4,21 +4,25 @@ Z eqs 13-18. For waves that spread from a source at distance L, springs of α_n 
 across it stand for the medium beyond besides the dashpots. G is given as a modulus, or is that of the medium.
 """
 
-from collections.abc import Mapping
-from typing import Literal
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
 
+from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Driven
+from dembound.boundaries.sides import normal_axis
 from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
 from dembound.boundaries.viscous import Dashpots, Viscous, ViscousInput
 from dembound.errors import CaseError
-from dembound.table import Table, quantity
+from dembound.table import quantity
 
 
-class Springs(Table):
+class Springs(Boundary):
     """A side with springs: stiffness α·G/L·D per edge particle of diameter D (Z eqs 14, 17)."""
+
+    beyond_dashpots: ClassVar[str] = "viscoelastic sides without their springs"
 
     alpha_n: float = quantity(1.0, unit="1", help="factor α_n of the springs along the side's normal", ge=0.0)
     alpha_s: float = quantity(0.5, unit="1", help="factor α_s of the springs across the side's normal", ge=0.0)
@@ -40,6 +44,17 @@ class Springs(Table):
         if (self.distance is None) == (self.source is None):
             raise ValueError("must have exactly one of distance and source, which say how far away waves begin")
         return self
+
+    def describe(self, edge: Edge, medium: Medium) -> dict[str, Any]:
+        """Factors α, modulus G (Pa) and distances L (m) of the springs, too."""
+        distances = self.distances(edge)
+        return super().describe(edge, medium) | {
+            "alpha_n": self.alpha_n,
+            "alpha_s": self.alpha_s,
+            "shear_modulus": self.shear_modulus(medium),
+            "distance_min": distances.min(),
+            "distance_max": distances.max(),
+        }
 
     def stiffnesses(self, edge: Edge, medium: Medium) -> np.ndarray:
         """Spring constants αGD/L (2, k) in N/m of the edge's particles along x and y.
@@ -79,7 +94,7 @@ class Viscoelastic(Dashpots, Springs):
 
     def dashpots_alone(self) -> Viscous:
         """The same side with its dashpots alone."""
-        return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields)))
+        return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
 
 
 class ViscoelasticInput(Dashpots, Springs, Driven):
@@ -89,6 +104,16 @@ class ViscoelasticInput(Dashpots, Springs, Driven):
     """
 
     type: Literal["viscoelastic_input"]
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """Springs that differ along a side on which a free-field column stands, too."""
+        yield from super().problems(side, tables)
+        beside = [name for name, table in tables["boundary"].items() if table and table.needs_column]
+        if beside and normal_axis(side) == 1 and self.source is not None:
+            yield (
+                f"boundary.{side}.source: makes springs differ along the side, and the column beside "
+                f"boundary.{beside[0]} with them; give distance"
+            )
 
     def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
         """Dashpots and springs, plus the forces that make the incident wave pass."""
@@ -102,5 +127,5 @@ class ViscoelasticInput(Dashpots, Springs, Driven):
 
     def dashpots_alone(self) -> ViscousInput:
         """The same side with its dashpots alone."""
-        shared = {*Dashpots.model_fields, *Driven.model_fields}
+        shared = {*Dashpots.model_fields, *Driven.model_fields} - {"type"}
         return ViscousInput(type="viscous_input", **self.model_dump(include=shared))

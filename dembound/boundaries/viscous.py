@@ -4,22 +4,45 @@ Z eqs 3-6. A dashpot of constant βρcD per edge particle of diameter D stands f
 β_P along the normal, c = c_s with β_S across it. β repairs what uneven disks do to ΣD; `dembound calibrate` finds it.
 """
 
-from collections.abc import Mapping
-from typing import Literal
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Driven
+from dembound.boundaries.sides import Motion
 from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
-from dembound.table import Table, quantity
+from dembound.table import quantity
 
 
-class Dashpots(Table):
+class Dashpots(Boundary):
     """A side with dashpots: their two calibration factors, and how much mass they stand at."""
 
     beta_p: float = quantity(1.0, unit="1", help="factor of the P dashpots, along the side's normal", ge=0.0)
     beta_s: float = quantity(1.0, unit="1", help="factor of the S dashpots, across the side's normal", ge=0.0)
     half_mass: bool = quantity(False, unit="1", help="whether the side's particles are half cells")
+
+    @property
+    def factors(self) -> Mapping[Motion, float]:
+        """Of P and of S waves."""
+        return {"p": self.beta_p, "s": self.beta_s}
+
+    @property
+    def half_cells(self) -> bool:
+        """As the table says."""
+        return self.half_mass
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """Half cells on a side whose particles do not stand in one row."""
+        yield from super().problems(side, tables)
+        packing = tables.get("packing")
+        if self.half_mass and packing and not packing.has_regular_edges:
+            yield (f"boundary.{side}.half_mass: needs sides of disks in one row; pattern {packing.pattern} has none")
+
+    def describe(self, edge: Edge, medium: Medium) -> dict[str, Any]:
+        """The factors, and whether masses are halved."""
+        return {**super().describe(edge, medium), "half_mass": self.half_mass}
 
     def dampings(self, edge: Edge, medium: Medium) -> np.ndarray:
         """Dashpot constants βρcD (2, k) in N·s/m of the edge's particles along x and y (Z eq. 4)."""
@@ -28,6 +51,8 @@ class Dashpots(Table):
 
 class Viscous(Dashpots):
     """Absorbs: F = −βρcD·v (Z eq. 4)."""
+
+    for_bars: ClassVar[bool] = True
 
     type: Literal["viscous"]
 
@@ -40,7 +65,13 @@ class Viscous(Dashpots):
 class ViscousInput(Dashpots, Driven):
     """Absorbs and lets a wave in: F = −βρcD·v + 2βρcD·v_i (Z eq. 6), v_i the incident wave's velocity."""
 
+    for_bars: ClassVar[bool] = True
+
     type: Literal["viscous_input"]
+
+    def at_rest(self) -> Boundary:
+        """The same dashpots without a wave."""
+        return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
 
     def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
         """The absorbing dashpots, plus the force that makes the incident wave pass."""

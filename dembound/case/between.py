@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from dembound.boundaries import Boundary
 from dembound.case.output import Output
 from dembound.case.run import Run
 from dembound.case.sentences import choices, show
@@ -14,6 +15,13 @@ def unknown_waves(named: Iterable[tuple[str, str]], waves: Mapping[str, object])
         if name not in waves:
             defined = f"defined: {choices(name, waves)}" if waves else "none is defined"
             yield f"{place}: {show(name)} is not a wave of this case; {defined}"
+
+
+def driving_waves(sides: Mapping[str, Boundary | None]) -> Iterator[tuple[str, str]]:
+    """Keys of sides that name a wave, each with the name it gives."""
+    for side, table in sides.items():
+        for motion, name in table.waves.items() if table else ():
+            yield f"boundary.{side}.wave_{motion}", name
 
 
 def repeated_names(key: str, tables: Sequence[Any]) -> Iterator[str]:

@@ -5,7 +5,6 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from dembound.boundaries.driven import Driven
 from dembound.case import Case
 from dembound.waves import Constant, Record, Wave
 
@@ -41,9 +40,8 @@ SAMPLES = 1001
 
 def waves_used(case: Case) -> set[str]:
     """Names of the waves that drive boundaries or are the time factor of loads."""
-    driven = [table for table in case.boundary.values() if isinstance(table, Driven)]
-    names = {name for table in driven for name in (table.wave_p, table.wave_s)} | {load.wave for load in case.load}
-    return {name for name in names if name is not None}
+    driving = {name for waves in case.driving.values() for name in waves.values()}
+    return driving | {load.wave for load in case.load if load.wave is not None}
 
 
 def time_warnings(case: Case, time_step: float, travel: float) -> Iterator[str]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
-from dembound.boundaries import BoundaryTable
+from dembound.boundaries import BoundaryTable, Free, Motion
 from dembound.case.output import Output
 from dembound.case.run import Run
 from dembound.errors import CaseError
@@ -41,6 +41,17 @@ class Case:
     text: str = field(compare=False, repr=False)
     folder: Path = field(compare=False)
 
+    def side(self, name: str) -> BoundaryTable:
+        """The table of a side; one that is absent is free."""
+        return self.boundary.get(name, FREE)
+
+    @property
+    def driving(self) -> dict[str, dict[Motion, str]]:
+        """The waves that drive sides: side -> kind of wave -> name."""
+        return {side: dict(table.waves) for side, table in self.boundary.items() if table.waves}
+
+
+FREE = Free()
 
 K = TypeVar("K", bound=Case)
 

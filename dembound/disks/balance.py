@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from dembound.boundaries import OPPOSITE, FreeField, Periodic
+from dembound.boundaries import OPPOSITE
 from dembound.disks.body import DiskBody
 from dembound.disks.part import DiskPart
 from dembound.kernels.follower import GONE, side_rotations
@@ -167,7 +167,7 @@ def mean_rotations(scene: DiskBody, moved: np.ndarray) -> dict[str, float]:
 
 def _body_sides(scene: DiskBody) -> dict[str, np.ndarray]:
     """The particles of each side of a body that can turn: not of a free-field column, nor of what is periodic."""
-    if any(isinstance(table, Periodic) for table in scene.case.boundary.values()):
+    if any(table.is_periodic for table in scene.case.boundary.values()):
         return {}
     first = 0 if scene.seam is None else scene.seam.count
     sides = {side: edge.nodes[edge.nodes >= first] for side, edge in scene.edges.items()}
@@ -215,7 +215,7 @@ def _side_numbers(scene: DiskBody, sides: dict[str, np.ndarray]) -> tuple[np.nda
     if scene.seam is not None:
         left = scene.assembly.positions[scene.seam.node, 0] < 0.5 * scene.size[0]
         for side, near in (("left", left), ("right", ~left)):
-            if isinstance(scene.case.boundary.get(side), FreeField) and side in sides:
+            if scene.case.side(side).needs_column and side in sides:
                 pushed[side] = np.union1d(sides[side], scene.seam.node[near])
     node = np.unique(np.concatenate([np.zeros(0, np.int64), *pushed.values()]))
     number = np.full((2, len(node)), -1)

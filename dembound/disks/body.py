@@ -136,7 +136,7 @@ class DiskBody(Scene):
     @property
     def has_history(self) -> bool:  # type: ignore[override]  # a constant of other kinds
         """Whether the scene's law is history-dependent: contacts that open and slide, bonds that break."""
-        return self.case.material.law != "elastic"
+        return self.ground.law.has_history
 
     def contact_lists(self) -> dict[str, ContactList]:
         """The pairs of each part, without history."""
@@ -145,7 +145,7 @@ class DiskBody(Scene):
     def _contact_list(self, name: str, nodes: slice) -> ContactList:
         """The pairs of one part."""
         wide, high = self.assembly.size.tolist()
-        periodic = (is_periodic(self.case, "left"), is_periodic(self.case, "bottom"))
+        periodic = (self.case.side("left").is_periodic, self.case.side("bottom").is_periodic)
         along_x, along_y = (length if wraps else None for length, wraps in zip((wide, high), periodic, strict=True))
         held = None
         if self.seam is not None and name == "column":
@@ -159,8 +159,3 @@ def parts_of(count: int, seam: Seam | None) -> dict[str, slice]:
     if seam is None:
         return {"body": slice(0, count)}
     return {"column": slice(0, seam.count), "body": slice(seam.count, count)}
-
-
-def is_periodic(case: DiskCase, side: str) -> bool:
-    """Whether a side of a case is periodic."""
-    return side in case.boundary and case.boundary[side].type == "periodic"

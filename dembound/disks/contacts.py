@@ -12,7 +12,6 @@ from dembound.kernels import contacts as kernel
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
 from dembound.kernels.tables import Contacts
-from dembound.laws import pair_lines
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.state import Arrays
 from dembound.packings.tiling import Assembly
@@ -133,7 +132,7 @@ class ContactList:
         first, second = near[fresh].T
         between = self.assembly.positions[second] - self.assembly.positions[first]
         vectors = between + image[fresh] * [length or 0.0 for length in self.periods]
-        lines = pair_lines(
+        lines = self.ground.law.pair_lines(
             self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
         )
         lines, line_of_new = shared_lines(lines, self.skin)

@@ -110,7 +110,7 @@ def _static_facts(case: DiskCase) -> dict[str, str]:
     acting = [load.name for load in case.load if load.wave is None]
     if static.stress is not None:
         acting.append("σ_xx, σ_yy, σ_xy = {:.3g}, {:.3g}, {:.3g} MPa".format(*(s / 1e6 for s in static.stress)))
-    if case.material.law != "elastic" and case.material.locked_in:
+    if case.material.locked_in:
         acting.append("the locked-in stress")
     sides = ", ".join(f"{side} {table.type}" for side, table in static.boundary.items()) or "all free"
     return {

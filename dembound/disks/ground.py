@@ -14,7 +14,7 @@ from scipy.sparse.linalg import splu
 
 from dembound.case.disks.material import Material
 from dembound.errors import CaseError
-from dembound.laws import LAWS, Moduli, Stiffness, lattice_moduli
+from dembound.laws import LAWS, Law, Moduli, Stiffness, lattice_moduli
 from dembound.packings.brick import Brick
 
 GRADIENTS = ("xx", "yy", "xy", "yx")
@@ -35,21 +35,21 @@ class Ground:
     brick : the packed periodic body.
     density : bulk density, kg/m³.
     moduli : micro-parameters in use, after any scaling to a wave speed.
-    law : name of the bond law.
+    law : the bond law.
     held : components (0 x, 1 y, 2 rotation) no particle moves in.
     """
 
     brick: Brick
     density: float
     moduli: Moduli
-    law: str
+    law: Law
     held: tuple[int, ...] = ()
 
     @cached_property
     def stiffness(self) -> Stiffness:
         """Constants of the brick's contacts."""
         first, second = self.brick.radii[self.brick.pairs].T
-        return LAWS[self.law](self.moduli, first, second, np.hypot(*self.brick.vectors.T))
+        return self.law.stiffness(self.moduli, first, second, np.hypot(*self.brick.vectors.T))
 
     @cached_property
     def mass(self) -> np.ndarray:
@@ -73,7 +73,7 @@ class Ground:
         if self.moduli.pb_emod == 0.0:
             return 0.0
         first, second = self.brick.radii[self.brick.pairs].T
-        bonds = LAWS[self.law](replace(self.moduli, emod=0.0), first, second, np.hypot(*self.brick.vectors.T))
+        bonds = self.law.stiffness(replace(self.moduli, emod=0.0), first, second, np.hypot(*self.brick.vectors.T))
         alone = homogenise(self.brick, bonds, tuple(component for component in self.held if component == 2))
         return min(float(alone[axis, axis] / self.material_tensor[axis, axis]) for axis in (0, 1))
 
@@ -128,7 +128,7 @@ def _scaled(brick: Brick, material: Material, held: Iterable[str]) -> Ground:
         brick=brick,
         density=material.density,
         moduli=nominal_moduli(material),
-        law=material.law,
+        law=LAWS[material.law],
         held=tuple(AXES[name] for name in held),
     )
     if material.p_wave_speed is None or material.match == "lattice":

@@ -18,6 +18,7 @@ from dembound.disks.static import Settled, settle
 from dembound.disks.summary import asked_stress, describe_static, summarise_disks
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
+from dembound.laws import LAWS
 from dembound.motion.kind import Beginning, Kind, OnLook, Stage
 from dembound.motion.trackers import Run
 from dembound.plot.field import FieldName
@@ -67,7 +68,7 @@ class Disks(Kind[DiskCase, DiskScene]):
     def not_estimated(self, case: DiskCase) -> str:
         """The static stage, and a law that takes over later."""
         later = ["the static stage"] * (case.static is not None)
-        if case.material.law != "elastic" and case.material.elastic_start:
+        if LAWS[case.material.law].has_history and case.material.elastic_start:
             later.append(f"what {case.material.law} takes longer once it begins")
         return f", without {' and '.join(later)}" if later else ""
 

@@ -1,11 +1,7 @@
 """How well a side's dashpots match the packing, from its homogenised stiffness alone; no wave is run."""
 
-from typing import Literal
-
+from dembound.boundaries import Motion
 from dembound.disks.scene import DiskScene, boundary_medium
-
-Motion = Literal["p", "s"]
-"""Kinds of plane waves: P moves along a side's normal, S across it."""
 
 
 def homogenised_beta(scene: DiskScene, side: str, motion: Motion) -> float:

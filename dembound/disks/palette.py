@@ -6,12 +6,12 @@ from dembound.case.disks.material import Material
 from dembound.disks.ground import Ground
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
 from dembound.kernels.tables import Limits
-from dembound.laws import pair_lines
+from dembound.laws import LAWS
 
 
 def limits_of(material: Material) -> Limits:
-    """Where contacts and bonds of a material give way; the elastic law never does."""
-    unbreakable = material.law == "elastic"
+    """Where contacts and bonds of a material give way; those of a law without history never do."""
+    unbreakable = not LAWS[material.law].has_history
     return Limits(
         friction=float(material.fric),
         tension=np.inf if unbreakable or material.pb_ten is None else material.pb_ten,
@@ -28,7 +28,7 @@ def brick_lines(ground: Ground, *, gaps_close: bool, locked_in: float) -> np.nda
     """
     brick = ground.brick
     first, second = brick.radii[brick.pairs].T
-    lines = pair_lines(
+    lines = ground.law.pair_lines(
         ground.moduli,
         first,
         second,

@@ -18,23 +18,21 @@ from dembound.motion.state import Arrays, State
 from dembound.packings.column import Seam as ColumnSeam
 from dembound.packings.tiling import Assembly
 
-ELASTIC, BONDED = "elastic", "linearpbond"
-
 
 class DiskPart(Part):
-    """Disks under the elastic law (kernels/elastic.py) or the history-dependent one (kernels/bonded.py).
+    """Disks under a linear law (kernels/elastic.py) or a history-dependent one (kernels/bonded.py).
 
     Parameters
     ----------
     name : what the state calls it.
     ground : brick and material.
     assembly : its disks and their contacts.
-    rows : the same contacts as the elastic law takes them.
-    contacts : its pairs with their history; None where the elastic law is the material's own.
+    rows : the same contacts as a linear law takes them.
+    contacts : its pairs with their history; None where the material's law has none.
 
     Attributes
     ----------
-    law_name : "elastic" or "linearpbond".
+    uses_history : whether the history-dependent law is in use; before, a linear one stands for it.
     stops_at_breaks : whether the loop returns after a step in which a bond of it broke.
     """
 
@@ -44,19 +42,24 @@ class DiskPart(Part):
         self.assembly = assembly
         self.nodes = slice(rows.begin, rows.begin + len(assembly.radii))
         self.contacts = contacts
-        self.law_name = ELASTIC
+        self.uses_history = False
         self.stops_at_breaks = False
         self.rows = rows
         self._fastest, self._way = np.zeros(CHUNKS), np.zeros(2)
         self._damped, self._lost = np.zeros((CHUNKS, 2)), np.zeros((CHUNKS, 2))
 
+    @property
+    def law_name(self) -> str:  # type: ignore[override]  # an attribute of other parts
+        """What reports call the law in use."""
+        return self.ground.law.name if self.uses_history else self.ground.law.linear
+
     def law(self) -> NamedTuple:
-        """The bundle of the law in use; a law with a history watches the elastic one in its place."""
+        """The bundle of the law in use; a history-dependent law watches a linear one in its place."""
         links, contacts = Links(self.rows, self._fastest, self._damped), self.contacts
         if contacts is None:
             return links
         listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skin)
-        if self.law_name == ELASTIC:
+        if not self.uses_history:
             return WatchedLinks(links, *listed, contacts.arms, self._way)
         return Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
 
@@ -75,7 +78,7 @@ class DiskPart(Part):
         """Energy (J) in contacts and in bonds at displacements (3, n)."""
         if self.contacts is None:
             return strain_energy(displacement, self._plain_contacts, REFERENCE)
-        geometry = REFERENCE if self.law_name == ELASTIC else self.contacts.limits.geometry
+        geometry = self.contacts.limits.geometry if self.uses_history else REFERENCE
         return strain_energy(displacement, self.contacts.arrays, geometry)
 
     def take_cracks(self, steps: int) -> Cracks:
@@ -84,24 +87,24 @@ class DiskPart(Part):
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
         """Under the history-dependent law the intact bonds and pushing contacts of every disk."""
-        if self.contacts is None or self.law_name == ELASTIC:
+        if self.contacts is None or not self.uses_history:
             return {}
         return {"coordination": (self.contacts.coordination(), "1")}
 
     def memory(self) -> Arrays:
-        """The law in use, and the pairs."""
+        """Whether the law in use has a history, and the pairs."""
         pairs = {} if self.contacts is None else self.contacts.memory()
-        return {"law": np.array(self.law_name), **pairs}
+        return {"uses_history": np.array(self.uses_history), **pairs}
 
     def recall(self, memory: Arrays) -> None:
         """Take over what `memory` has returned in another run of the same case."""
-        self.law_name = str(memory["law"])
+        self.uses_history = bool(memory["uses_history"])
         if self.contacts is not None:
             self.contacts.recall(memory)
 
     @property
     def pairs(self) -> Contacts:
-        """Its pairs as the kernels read them, without history where the elastic law is the material's own."""
+        """Its pairs as the kernels read them, without history where the material's law has none."""
         return self._plain_contacts if self.contacts is None else self.contacts.arrays
 
     @cached_property
@@ -136,7 +139,7 @@ class FreeFieldSeam(Tie):
         counts[np.searchsorted(supported, seam.node)] = seam.many
         start = np.zeros(len(supported) + 1, dtype=np.uint32)
         np.cumsum(counts, out=start[1:])
-        if self.column.law_name == ELASTIC:
+        if not self.column.uses_history:
             near, line = seam.near.astype(np.uint32), self._line.astype(np.uint32)
             return Seam(seam.twin[supported], start, near, line, self.column.rows.palette)
         assert self.column.contacts is not None

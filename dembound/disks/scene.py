@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from dembound.boundaries import FreeField, Periodic
+from dembound.boundaries import Periodic
 from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
 from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
 from dembound.case.disks import DiskCase
 from dembound.case.disks.monitor import FREE_FIELD
-from dembound.disks.body import DiskBody, is_periodic, parts_of
+from dembound.disks.body import DiskBody, parts_of
 from dembound.disks.edges import edges_beside_column, find_edges, left_of
 from dembound.disks.ground import Ground, make_ground, nominal_moduli
 from dembound.disks.loads import drive
@@ -19,7 +19,6 @@ from dembound.disks.rows import contact_rows
 from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.holes import Hole
-from dembound.laws import LAWS
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
 from dembound.packings.tiling import Assembly, tile
@@ -58,7 +57,7 @@ def build(case: DiskCase) -> DiskScene:
     Raises PackingError when the brick cannot be made or nothing of it is left, CaseError when nothing of a side is.
     """
     ground = ground_of(case)
-    periodic = (is_periodic(case, "left"), is_periodic(case, "bottom"))
+    periodic = (case.side("left").is_periodic, case.side("bottom").is_periodic)
     body = tile(ground.brick, case.packing.copies, periodic)
     edges = find_edges(body, periodic)
     first, later = (tuple(hole for hole in case.hole if hole.stage == stage) for stage in ("before", "after"))
@@ -120,7 +119,7 @@ def ground_of(case: DiskCase) -> Ground:
 
 
 def _free_field_sides(case: DiskCase) -> tuple[str, ...]:
-    return tuple(side for side, table in case.boundary.items() if isinstance(table, FreeField))
+    return tuple(side for side, table in case.boundary.items() if table.needs_column)
 
 
 def _hollowed(
@@ -180,7 +179,7 @@ def boundary_medium(case: DiskCase, ground: Ground, axis: int) -> Medium:
         s_speed = float(np.sqrt(ground.material_tensor[s_gradient, s_gradient] / ground.density))
 
     def mirror_stiffness(diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        between = LAWS[ground.law](ground.moduli, 0.5 * diameters, 0.5 * diameters, diameters)
+        between = ground.law.stiffness(ground.moduli, 0.5 * diameters, 0.5 * diameters, diameters)
         return between.normal, between.bending
 
     return Medium(ground.density, p_speed, s_speed, mirror_stiffness)

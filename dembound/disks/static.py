@@ -9,11 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dembound.boundaries import FreeField
 from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.case.disks.static import Static
 from dembound.disks.contacts import ContactList
-from dembound.disks.part import BONDED, ELASTIC
 from dembound.disks.scene import DiskScene, boundary_medium, column_alone
 from dembound.disks.stability import step_limit
 from dembound.disks.system import DiskSystem, Start
@@ -136,7 +134,7 @@ def _settle(
     unbalanced = np.hypot(*(forces + scene.steady_load)[:2])
     held = body.held
     return Settled(
-        start=Start(displacement, system.contacts, system.law_name == BONDED),
+        start=Start(displacement, system.contacts, system.uses_history),
         steps=simulation.state.step,
         ratio=rest.ratio,
         carried=float(unbalanced[held].mean()) if held.any() else 0.0,
@@ -219,7 +217,7 @@ class _UntilAtRest(Tracker):
 
     def _contact_forces(self, displacement: np.ndarray) -> np.ndarray:
         """Contact forces and moments (3, n) now, under the elastic law with what was locked in."""
-        if self._system.law_name == ELASTIC:
+        if not self._system.uses_history:
             for pairs in self._contacts.values():
                 pairs.push(displacement, reference=True)
         return self._system.last_forces(self._contacts)
@@ -264,7 +262,7 @@ class _StaticScene:
     def __init__(self, scene: DiskScene, static: Static, tractions: np.ndarray | None) -> None:
         case = scene.case
         builder = SupportBuilder(held=scene.ground.held)
-        free_field = {side: table for side, table in case.boundary.items() if isinstance(table, FreeField)}
+        free_field = {side: table for side, table in case.boundary.items() if table.needs_column}
         for side, table in (free_field | dict(static.boundary)).items():
             if side in scene.edges:
                 edge = scene.edges[side]

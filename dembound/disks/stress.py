@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from dembound.disks.body import DiskBody
-from dembound.disks.part import ELASTIC, DiskPart
+from dembound.disks.part import DiskPart
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import REFERENCE, push
 from dembound.kernels.tables import Contacts, Limits
@@ -23,7 +23,7 @@ def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np
     displacement (3, n) m and rad. Under the history-dependent law its forces are those at the beginning of the last
     step.
     """
-    stress = particle_stress(scene, part.pairs, displacement, elastic=part.law_name == ELASTIC)
+    stress = particle_stress(scene, part.pairs, displacement, elastic=not part.uses_history)
     return stress[part.nodes]
 
 

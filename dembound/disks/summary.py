@@ -4,8 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from dembound.boundaries.support import Edge
-from dembound.boundaries.viscoelastic import Springs
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.disks.static import Settled
 from dembound.motion.trackers import Run
@@ -71,14 +69,11 @@ def describe_packing(scene: DiskScene) -> dict[str, Any]:
 
 
 def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
-    """One side in numbers: type, particles, diameters (m), ΣD/H, the factors β and whether masses are halved.
-
-    Of springs their factors α, modulus G (Pa) and distances L (m).
-    """
+    """One side in numbers: type, particles, diameters (m), ΣD/H, and what its table has to say."""
     edge = scene.edges[side]
-    table = scene.case.boundary.get(side)
+    table, medium = scene.case.side(side), boundary_medium(scene.case, scene.ground, edge.axis)
     described: dict[str, Any] = {
-        "type": table.type if table is not None else "free",
+        "type": table.type,
         "particles": len(edge.nodes),
         "length": edge.length,
         "diameter_min": edge.diameters.min(),
@@ -86,22 +81,7 @@ def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
         "diameter_max": edge.diameters.max(),
         "cover": edge.cover,
     }
-    for key in ("beta_p", "beta_s", "half_mass"):
-        if hasattr(table, key):
-            described[key] = getattr(table, key)
-    return described | (_describe_springs(scene, edge, table) if isinstance(table, Springs) else {})
-
-
-def _describe_springs(scene: DiskScene, edge: Edge, springs: Springs) -> dict[str, float]:
-    """Springs of a side in numbers."""
-    distances = springs.distances(edge)
-    return {
-        "alpha_n": springs.alpha_n,
-        "alpha_s": springs.alpha_s,
-        "shear_modulus": springs.shear_modulus(boundary_medium(scene.case, scene.ground, edge.axis)),
-        "distance_min": distances.min(),
-        "distance_max": distances.max(),
-    }
+    return described | table.describe(edge, medium)
 
 
 def _describe_edge(scene: DiskScene, run: Run, side: str) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 from dembound.disks.balance import Balance
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts import ContactList
-from dembound.disks.part import BONDED, DiskPart, FreeFieldSeam
+from dembound.disks.part import DiskPart, FreeFieldSeam
 from dembound.disks.rotation import turn_as_a_whole, turns_freely
 from dembound.disks.stress import part_stress
 from dembound.kernels.common import BROKE, LAW_ENDS, LIST_ENDS
@@ -110,7 +110,7 @@ class DiskSystem(System):
         """Change the law where contacts are about to leave the elastic one; end what balances pieces that came off."""
         if why == LAW_ENDS:
             self._switch(state)
-        elif self.balance is not None and self.law_name == BONDED and why in (BROKE, LIST_ENDS):
+        elif self.balance is not None and self.uses_history and why in (BROKE, LIST_ENDS):
             self.balance.end_on_debris(self.parts, state.displacement, state.velocity, self._time_step, self.steady)
         super().react(why, steps, state)
 
@@ -124,8 +124,13 @@ class DiskSystem(System):
         return force
 
     @property
+    def uses_history(self) -> bool:
+        """Whether the history-dependent law is in use."""
+        return all(part.uses_history for part in self.parts)
+
+    @property
     def contacts(self) -> dict[str, ContactList]:
-        """The pairs of each part by name, none where the elastic law is the material's own."""
+        """The pairs of each part by name, none where the material's law has no history."""
         return {part.name: part.contacts for part in self.parts if part.contacts is not None}
 
     def last_forces(self, contacts: Mapping[str, ContactList]) -> np.ndarray:
@@ -195,7 +200,7 @@ class DiskSystem(System):
             turn_as_a_whole(self.scene, state.displacement, state.velocity, state.datum)
         self._adopt(state.displacement, fresh)
         for part in self.parts:
-            part.law_name = BONDED
+            part.uses_history = True
         self._watch_breaks()
         if self.balance is not None:
             self.balance.count_breaks_from(self.parts)
@@ -209,7 +214,7 @@ class DiskSystem(System):
             steady, step = self.steady.copy(), self._time_step
             state.work[:, 4] -= turn_forces(self.turning, state.displacement, state.velocity, steady, step)
         state.switch_velocity = state.velocity.copy()
-        state.laws.append((BONDED, state.step))
+        state.laws.append((self.law_name, state.step))
 
     def _adopt(self, displacement: np.ndarray, fresh: bool) -> None:
         """Let contacts without history take over from the elastic law at displacements (3, n)."""
@@ -224,7 +229,7 @@ class DiskSystem(System):
 
     def _follow(self) -> None:
         """Let balancing forces turn with their sides where the law in use follows the motion."""
-        follows = self.law_name == BONDED and self._is_updated
+        follows = self.uses_history and self._is_updated
         self.turning = self.balance.followers if self.balance is not None and follows else None
 
     @property

@@ -9,12 +9,10 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from dembound.boundaries import SIDES, Periodic, Velocity
-from dembound.boundaries.driven import Driven
-from dembound.boundaries.viscous import Dashpots
+from dembound.boundaries import SIDES, axis_of_motion
 from dembound.case.disks.load import Load
 from dembound.case.magnitudes import grip_stress, stress_warnings, time_warnings
-from dembound.disks.matching import Motion, homogenised_beta, reflected
+from dembound.disks.matching import homogenised_beta, reflected
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.results.reader import open_record
 from dembound.results.warnings import still_moving
@@ -34,9 +32,6 @@ LARGEST_PULL = 3.5
 The mean is the bonds' share of the stiffness times the locked-in pressure; the largest of 1,900 bonds was 2.8 to 3.5
 times that (three bricks, radius ratio 1.5).
 """
-
-MOTIONS: tuple[Motion, ...] = ("p", "s")
-"""Kinds of waves that a side's two factors are for."""
 
 SPEED_ERROR = 0.1
 """Share by which a packing's own P-wave speed may differ from the one asked for."""
@@ -71,7 +66,7 @@ def _steady_without_static(scene: DiskScene) -> Iterator[str]:
 def _locked_in(scene: DiskScene) -> Iterator[str]:
     """Locked-in stress that the bonds cannot bear where it relaxes."""
     material = scene.case.material
-    cut = any(not isinstance(scene.case.boundary.get(side), Periodic) for side in SIDES)
+    cut = not all(scene.case.side(side).is_periodic for side in SIDES)
     if material.locked_in is None or material.pb_ten is None or not cut:
         return
     pulled = LARGEST_PULL * scene.ground.bond_share * material.locked_in
@@ -123,15 +118,12 @@ def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
 def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str, float]]:
     """Of every wave on every side it drives its table, what its largest stress is in words, and in Pa."""
     for edge in scene.edges.values():
-        table = scene.case.boundary.get(edge.side)
-        if not isinstance(table, Driven):
-            continue
+        table = scene.case.side(edge.side)
+        grips = set(table.prescribed(edge.axis))
         medium, length = boundary_medium(scene.case, scene.ground, edge.axis), float(scene.size[edge.axis])
-        for name, speed in ((table.wave_p, medium.p_wave_speed), (table.wave_s, medium.s_wave_speed)):
-            if name is None:
-                continue
-            wave = scene.case.wave[name]
-            if isinstance(table, Velocity):
+        for motion, name in table.waves.items():
+            wave, speed = scene.case.wave[name], medium.p_wave_speed if motion == "p" else medium.s_wave_speed
+            if axis_of_motion(edge.side, motion) in grips:
                 yield (
                     f"wave.{name}",
                     *grip_stress(wave, medium.density, speed, length, scene.case.run.duration, strength),
@@ -156,21 +148,18 @@ def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
 def _default_factors(scene: DiskScene) -> Iterator[str]:
     """Sides whose dashpots nobody has adjusted, on packings that need other factors."""
     for side in scene.edges:
-        table = scene.case.boundary.get(side)
-        if not isinstance(table, Dashpots):
-            continue
-        matched = {motion: homogenised_beta(scene, side, motion) for motion in MOTIONS}
-        shares = {motion: abs(reflected(getattr(table, f"beta_{motion}"), matched[motion])) for motion in MOTIONS}
+        table = scene.case.side(side)
+        matched = {motion: homogenised_beta(scene, side, motion) for motion in table.factors}
+        shares = {motion: abs(reflected(factor, matched[motion])) for motion, factor in table.factors.items()}
         wrong = [
             motion
-            for motion in MOTIONS
+            for motion in table.factors
             if f"beta_{motion}" not in table.model_fields_set and shares[motion] > REFLECTED  # nan where it is held
         ]
         if wrong:
             waves = " and ".join(f"{100.0 * shares[motion]:.2g} % of {motion.upper()}" for motion in wrong)
             factors = " and ".join(
-                f"beta_{motion} = {getattr(table, f'beta_{motion}'):g} (the packing has {matched[motion]:.3g})"
-                for motion in wrong
+                f"beta_{motion} = {table.factors[motion]:g} (the packing has {matched[motion]:.3g})" for motion in wrong
             )
             yield (
                 f"boundary.{side}: reflects {waves} waves with the default {factors}; "
@@ -195,9 +184,7 @@ def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
 
 def _axes_in_use(scene: DiskScene) -> list[int]:
     """x, and y if waves go there: through bottom or top, or from loads."""
-    vertical = any(
-        isinstance(scene.case.boundary.get(edge.side), Driven) for edge in scene.edges.values() if edge.axis == 1
-    )
+    vertical = any(scene.case.side(edge.side).waves for edge in scene.edges.values() if edge.axis == 1)
     return [0, 1] if vertical or scene.case.load else [0]
 
 
@@ -223,8 +210,7 @@ def strong_waves(scene: DiskScene) -> dict[str, str]:
     pressure = _confinement(scene)
     if pressure is None:
         return {}
-    sides = [table for table in scene.case.boundary.values() if isinstance(table, Driven)]
-    driving = {name for table in sides for name in (table.wave_p, table.wave_s)}
+    driving = {name for waves in scene.case.driving.values() for name in waves.values()}
     medium = boundary_medium(scene.case, scene.ground, axis=0)
     impedance = medium.density * medium.p_wave_speed
     stresses = {name: impedance * wave.peak() for name, wave in scene.case.wave.items() if name in driving}
@@ -237,10 +223,10 @@ def strong_waves(scene: DiskScene) -> dict[str, str]:
 
 def _confinement(scene: DiskScene) -> float | None:
     """Pressure (Pa) that keeps contacts closed at the start of the run; None where only the static stage makes it."""
-    static, material = scene.case.static, scene.case.material
+    static = scene.case.static
     if static is not None:
         return None if static.stress is None else 0.0 - 0.5 * (static.stress[0] + static.stress[1])
-    return scene.ground.packed_pressure if material.law == "elastic" else 0.0
+    return 0.0 if scene.has_history else scene.ground.packed_pressure
 
 
 def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: Path) -> list[str]:

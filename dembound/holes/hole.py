@@ -13,6 +13,7 @@ Box = tuple[float, float, float, float]
 class Hole(Table, ABC):
     """A place without particles: those centred in it are taken out, and so are those this severs from the body."""
 
+    type: str
     name: FileName = quantity(..., unit="1", help="name of the hole in messages")
     stage: Literal["before", "after"] = quantity(
         "before",

@@ -1,10 +1,16 @@
-"""Bond laws: how contacts push. A new law is one file and its name in the list below."""
+"""Bond laws of disks: how contacts push.
 
-from dembound.laws.elastic import Moduli, Stiffness, elastic_stiffness
-from dembound.laws.linearpbond import pair_lines
+A new law is one file and its class's name in the list below; another package registers its own under the entry point
+group ``dembound.laws``.
+"""
+
+from dembound.laws.elastic import Elastic
+from dembound.laws.law import Law, Moduli, Springs, Stiffness
+from dembound.laws.linearpbond import LinearPBond
 from dembound.laws.moduli import lattice_moduli
+from dembound.table import with_registered
 
-LAWS = {"elastic": elastic_stiffness, "linearpbond": elastic_stiffness}
-"""Law name in a case file -> stiffness of its contacts at rest."""
+LAWS: dict[str, Law] = {law.name: law() for law in with_registered("dembound.laws", Law, (Elastic, LinearPBond))}
+"""Name in a case file -> law."""
 
-__all__ = ["LAWS", "Moduli", "Stiffness", "elastic_stiffness", "lattice_moduli", "pair_lines"]
+__all__ = ["LAWS", "Elastic", "Law", "LinearPBond", "Moduli", "Springs", "Stiffness", "lattice_moduli"]

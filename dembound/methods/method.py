@@ -11,6 +11,8 @@ from dembound.table import Table
 class Method(Table, ABC):
     """How the nodes of a bar are bonded, and what becomes of the bonds when they are stretched."""
 
+    type: str
+
     @property
     @abstractmethod
     def name(self) -> str:

@@ -1,6 +1,6 @@
 """What every packing table has in common."""
 
-from typing import Annotated, Self
+from typing import Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
 
@@ -10,6 +10,11 @@ from dembound.packings.dense import Recipe, radius_range
 from dembound.table import Table, quantity
 
 Extent = tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]]
+Count = tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
+
+TYPED = 1e-6
+"""What a size may differ from whole bricks, relative: it is typed with six digits, as 5.19615 m for 3√3 m."""
+
 # Confining stress over contact modulus where the case names none: 4.5 contacts per disk, and eight times the
 # stress ρcv of a wave of 0.5 m/s at 1000 m/s.
 PRESSURE = 8e-3
@@ -19,9 +24,20 @@ PRESSURES = (5e-4, 0.1)
 
 
 class Packing(Table):
-    """A scene filled with whole bricks of disks."""
+    """A scene filled with whole bricks of disks, its extent given in metres or in bricks.
 
-    size: Extent = quantity(unit="m", help="width and height of the scene")
+    Attributes
+    ----------
+    packed_under_stress : whether a brick's contacts were packed under stress, which takes contacts with a stiffness.
+    has_regular_edges : whether the disks of each side stand in one row, so that they can be half cells.
+    """
+
+    packed_under_stress: ClassVar[bool] = False
+    has_regular_edges: ClassVar[bool] = False
+
+    pattern: str
+    size: Extent | None = quantity(None, unit="m", help="width and height of the scene, whole bricks")
+    bricks: Count | None = quantity(None, unit="1", help="number of bricks along x and y, instead of size")
     radius: float = quantity(unit="m", help="disk radius (mean radius of a random packing)", gt=0.0)
 
     @property
@@ -36,14 +52,31 @@ class Packing(Table):
     @property
     def copies(self) -> tuple[int, int]:
         """Number of bricks along x and y."""
+        if self.bricks is not None:
+            return self.bricks
+        assert self.size is not None
         width, height = (round(whole / part) for whole, part in zip(self.size, self.brick_size, strict=True))
         return width, height
 
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Width and height of the scene in metres."""
+        if self.size is not None:
+            return self.size
+        (across, up), (width, height) = self.copies, self.brick_size
+        return across * width, up * height
+
+    def with_copies(self, across: int, up: int) -> Self:
+        """The packing with other numbers of bricks along x and y."""
+        return self.model_copy(update={"size": None, "bricks": (across, up)})
+
     @model_validator(mode="after")
     def _whole_bricks(self) -> Self:
-        for whole, part in zip(self.size, self.brick_size, strict=True):
+        if (self.size is None) == (self.bricks is None):
+            raise ValueError("must have exactly one of size (m) and bricks (numbers), which say how large the scene is")
+        for whole, part in zip(self.extent, self.brick_size, strict=True):
             number = whole / part
-            if number < 1.0 - 1e-9 or abs(number - round(number)) > 1e-9 * number:
+            if number < 1.0 - TYPED or abs(number - round(number)) > TYPED * number:
                 below, above = part * int(number), part * (int(number) + 1)
                 would = f"{below:.10g} or {above:.10g}" if below > 0.0 else f"{above:.10g}"
                 raise ValueError(
@@ -54,6 +87,8 @@ class Packing(Table):
 
 class DensePacking(Packing):
     """A random dense packing in a periodic brick, packed under an isotropic pressure."""
+
+    packed_under_stress: ClassVar[bool] = True
 
     radius_ratio: float = quantity(unit="1", help="largest over smallest radius", ge=1.0, le=4.0)
     brick: Extent = quantity(unit="m", help="width and height of the periodic brick")

@@ -1,7 +1,7 @@
 """Pattern C: a random core framed by straight rows of equal disks."""
 
 from dataclasses import asdict
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -17,6 +17,8 @@ class EdgedBrick(DensePacking):
 
     The rows share the disk at the origin and are held on their lines while the core is packed around them.
     """
+
+    has_regular_edges: ClassVar[bool] = True
 
     pattern: Literal["C"] = "C"
     edge_radius: float = quantity(

@@ -1,6 +1,6 @@
 """Pattern A: equal disks on a square lattice."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -10,6 +10,8 @@ from dembound.packings.brick import Brick
 
 class Square(Packing):
     """Equal disks, one to a square cell, touching their four neighbours without force (Z section 2.3.1)."""
+
+    has_regular_edges: ClassVar[bool] = True
 
     pattern: Literal["A"] = "A"
 

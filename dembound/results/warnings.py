@@ -5,7 +5,6 @@ from collections.abc import Iterator
 import h5py
 import numpy as np
 
-from dembound.boundaries.viscous import Dashpots
 from dembound.case.magnitudes import period_of, waves_used
 from dembound.motion.scene import Scene
 
@@ -63,7 +62,7 @@ def _braked(scene: Scene, pieces: np.ndarray) -> set[int]:
     """
     if scene.damp > 0.0:
         return set(range(scene.count))
-    sides = [edge for side, edge in scene.edges.items() if isinstance(scene.case.boundary.get(side), Dashpots)]
+    sides = [edge for side, edge in scene.edges.items() if scene.case.side(side).factors]
     ends = np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in sides)])
     return set(np.flatnonzero(np.isin(pieces, pieces[ends])).tolist())
 

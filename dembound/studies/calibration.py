@@ -17,14 +17,14 @@ import h5py
 import numpy as np
 
 from dembound import __version__
-from dembound.boundaries import OPPOSITE, Viscous, ViscousInput, normal_axis
+from dembound.boundaries import OPPOSITE, Boundary, Motion, axis_of_motion, normal_axis
 from dembound.case.disks import DiskCase
-from dembound.disks.matching import Motion, homogenised_beta
+from dembound.disks.matching import homogenised_beta
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError, RunError
 from dembound.motion.simulation import Simulation
-from dembound.studies.strip import AFTER, axis_of_motion, calibration_pulse, linear_medium, strip_of, whole_of
+from dembound.studies.strip import AFTER, calibration_pulse, linear_medium, strip_of, whole_of
 from dembound.waves import Cosine
 
 Method = Literal["impedance", "ratio", "homogenised"]
@@ -147,7 +147,7 @@ def calibrate(
         side=side,
         motion=motion,
         method=method,
-        kind="input" if isinstance(table, ViscousInput) else "absorbing",
+        kind="input" if table.waves else "absorbing",
         incident=pulse.peak(),
         shortened=[*shortened, *left_out],
     )
@@ -156,7 +156,7 @@ def calibrate(
     if method == "homogenised":
         found.result = homogenised_beta(scene, side, motion)
         return found
-    beta = getattr(table, found.factor) if start is None else start
+    beta = table.factors[motion] if start is None else start
     if not 0.0 < beta < np.inf:
         raise CaseError([f"boundary.{side}.{found.factor}: is {beta:g}, must be above 0 to start a calibration"])
     time_step, _ = choose_step(scene)  # β does not change it: centred dashpots cost no stability
@@ -202,21 +202,17 @@ def _travel(scene: DiskScene, side: str, motion: Motion) -> float:
     return float(scene.assembly.size[axis]) / scene.ground.wave_speeds(axis)[0 if motion == "p" else 1]
 
 
-def _dashpots(case: DiskCase, side: str) -> Viscous | ViscousInput:
-    table = case.boundary.get(side)
-    if not isinstance(table, Viscous | ViscousInput):
-        has = "free" if table is None else table.type
-        usable = [name for name, t in case.boundary.items() if isinstance(t, Viscous | ViscousInput)]
-        raise CaseError(
-            [f"boundary.{side}: is {has}, only viscous sides can be calibrated; here: {', '.join(usable) or 'none'}"]
-        )
+def _dashpots(case: DiskCase, side: str) -> Boundary:
+    table = case.side(side)
+    if not table.factors:
+        usable = ", ".join(name for name, other in case.boundary.items() if other.factors) or "none"
+        raise CaseError([f"boundary.{side}: is {table.type}, only viscous sides can be calibrated; here: {usable}"])
     return table
 
 
 def _default_motion(case: DiskCase, side: str) -> Motion:
     """S where the normal motion is held, or where only S waves run between this side and the opposite one."""
-    ends = [case.boundary.get(end) for end in (side, OPPOSITE[side])]
-    driven = {motion for motion in ("p", "s") for end in ends if getattr(end, f"wave_{motion}", None)}
+    driven = {motion for end in (side, OPPOSITE[side]) for motion in case.side(end).waves}
     held = "xy"[normal_axis(side)] in case.motion.held
     return "s" if held or driven == {"s"} else "p"
 

@@ -11,12 +11,12 @@ import h5py
 import numpy as np
 
 from dembound import __version__
-from dembound.boundaries import Free, Symmetry
 from dembound.case.disks import DiskCase
 from dembound.case.disks.load import Load
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
+from dembound.laws import LAWS
 from dembound.results.reader import replacing
 
 ISOTROPY = 1e-6
@@ -109,17 +109,17 @@ def _line_load(scene: DiskScene) -> LineLoad:
     _must_be_on_top(scene, node, f"load.{load.name}.position")
     x, factor = float(scene.assembly.positions[node, 0]), 1.0
     for side, plane in (("left", 0.0), ("right", float(scene.assembly.size[0]))):
-        if isinstance(case.boundary.get(side), Symmetry) and node in scene.edges[side].nodes:
+        if case.side(side).is_mirror and node in scene.edges[side].nodes:
             x, factor = plane, 2.0
     return LineLoad(x, -factor * load.force[1], load.wave)
 
 
 def _yielding(case: DiskCase) -> Iterator[str]:
     """What makes the body other than a linear half-space below a free surface."""
-    if case.material.law != "elastic":
+    if LAWS[case.material.law].has_history:
         yield f'material.law: is "{case.material.law}", must be "elastic"; the solution is that of a linear solid'
-    top = case.boundary.get("top", Free())
-    if not isinstance(top, Free):
+    top = case.side("top")
+    if not top.is_free:
         yield f'boundary.top.type: is "{top.type}", must be "free", the surface of the half-space'
 
 

@@ -8,25 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from dembound.boundaries import (
-    OPPOSITE,
-    BoundaryTable,
-    Fixed,
-    Free,
-    FreeField,
-    Periodic,
-    Velocity,
-    Viscoelastic,
-    ViscoelasticInput,
-    Viscous,
-    ViscousInput,
-    normal_axis,
-)
-from dembound.boundaries.viscous import Dashpots
+from dembound.boundaries import OPPOSITE, Motion, Periodic, Velocity, normal_axis
 from dembound.case.disks import DiskCase
-from dembound.disks.matching import Motion
 from dembound.disks.scene import ground_of
 from dembound.errors import CaseError
+from dembound.laws import LAWS
 from dembound.waves import Cosine
 
 PULSE = "calibration"
@@ -38,17 +24,11 @@ AFTER = 0.1
 """How long a pass goes on after the peak is due at the side, in pulse lengths T: the peak may be a little late."""
 
 
-def axis_of_motion(side: str, motion: Motion) -> int:
-    """Axis along which a wave moves the particles of a side it meets at right angles."""
-    return normal_axis(side) if motion == "p" else 1 - normal_axis(side)
-
-
 def _waves_of(case: DiskCase, motion: Motion) -> Iterator[str]:
     """Names of the waves that drive this kind of motion, then of all others."""
     for table in case.boundary.values():
-        name = getattr(table, f"wave_{motion}", None)
-        if name is not None:
-            yield name
+        if motion in table.waves:
+            yield table.waves[motion]
     yield from case.wave
 
 
@@ -72,20 +52,14 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
     Springs reflect whatever β is; seam forces of a column come and go with the wave; holes scatter; loads, a static
     stage and a history-dependent law add what is no wave's.
     """
-    springs = any(isinstance(table, Viscoelastic | ViscoelasticInput) for table in case.boundary.values())
-    columns = any(isinstance(table, FreeField) for table in case.boundary.values())
-    boundary = {
-        side: table.dashpots_alone() if isinstance(table, Viscoelastic | ViscoelasticInput | FreeField) else table
-        for side, table in case.boundary.items()
-    }
-    material = case.material.model_copy(update={"law": "elastic"})
+    boundary = {side: table.dashpots_alone() for side, table in case.boundary.items()}
+    material = case.material.model_copy(update={"law": LAWS[case.material.law].linear})
     left_out = {
-        "viscoelastic sides without their springs": springs,
-        "free-field sides without their column": columns,
+        **{table.beyond_dashpots: True for table in case.boundary.values() if table.beyond_dashpots},
         "no holes": bool(case.hole),
         "no static stage": case.static is not None,
         "no loads": bool(case.load),
-        "the elastic law": case.material.law != material.law,
+        f"the {material.law} law": case.material.law != material.law,
     }
     plain = replace(case, boundary=boundary, material=material, static=None, hole=(), load=())
     return plain, [sentence for sentence, applies in left_out.items() if applies]
@@ -93,21 +67,13 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
 
 def _driven(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> DiskCase:
     """The case with the pulse as its only wave: sent from the opposite side, or let in by the side itself."""
-    wave = {"wave_p": None, "wave_s": None, f"wave_{motion}": PULSE}
-    boundary = {name: _at_rest(table) for name, table in case.boundary.items()}
+    boundary = {name: table.at_rest() for name, table in case.boundary.items()}
     table = case.boundary[side]
-    if isinstance(table, ViscousInput):
-        boundary[side] = table.model_copy(update=wave)
+    if table.waves:
+        boundary[side] = table.driven_by({motion: PULSE})
     else:
-        boundary[OPPOSITE[side]] = Velocity(type="velocity", **wave)
+        boundary[OPPOSITE[side]] = Velocity.model_validate({"type": "velocity", f"wave_{motion}": PULSE})
     return replace(case, boundary=boundary, wave={PULSE: pulse}, monitor=())
-
-
-def _at_rest(table: BoundaryTable) -> BoundaryTable:
-    """The boundary without its waves."""
-    if isinstance(table, ViscousInput):
-        return Viscous(type="viscous", **table.model_dump(include=set(Dashpots.model_fields)))
-    return Fixed(type="fixed") if isinstance(table, Velocity) else table
 
 
 def _least_length(case: DiskCase, axis: int, motion: Motion, pulse: Cosine) -> float:
@@ -118,7 +84,7 @@ def _least_length(case: DiskCase, axis: int, motion: Motion, pulse: Cosine) -> f
 def whole_of(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[DiskCase, list[str]]:
     """The whole scene, if it is long enough to calibrate on."""
     axis = normal_axis(side)
-    least, length = _least_length(case, axis, motion, pulse), case.packing.size[axis]
+    least, length = _least_length(case, axis, motion, pulse), case.packing.extent[axis]
     if length < least:
         raise CaseError(
             [f"--full: the scene is {length:g} m long, echoes need {least:.4g} m to come late enough; leave it out"]
@@ -133,19 +99,18 @@ def strip_of(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[
     bricks, brick = list(case.packing.copies), case.packing.brick_size
     bricks[axis] = max(1, int(np.ceil(_least_length(case, axis, motion, pulse) / brick[axis])))
     shortened = [
-        f"a strip of {bricks[axis] * brick[axis]:g} m, the scene has {case.packing.size[axis]:g} m",
+        f"a strip of {bricks[axis] * brick[axis]:g} m, the scene has {case.packing.extent[axis]:g} m",
         "each pass ends once the peak has left the side",
     ]
     lateral = ("bottom", "top") if axis == 0 else ("left", "right")
-    tables = [case.boundary.get(name) for name in lateral]
-    plane = "xy"[1 - axis] in case.motion.held and all(t is None or isinstance(t, Free) for t in tables)
+    tables = [case.side(name) for name in lateral]
+    plane = "xy"[1 - axis] in case.motion.held and all(table.is_free for table in tables)
     if not plane:
         case = replace(case, boundary={**case.boundary, **{name: Periodic(type="periodic") for name in lateral}})
-        if bricks[1 - axis] > 1 or not all(isinstance(t, Periodic) for t in tables):
+        if bricks[1 - axis] > 1 or not all(table.is_periodic for table in tables):
             shortened.append("one brick wide and periodic sideways")
         bricks[1 - axis] = 1
-    size = (bricks[0] * brick[0], bricks[1] * brick[1])
-    return replace(case, packing=case.packing.model_copy(update={"size": size})), shortened
+    return replace(case, packing=case.packing.with_copies(bricks[0], bricks[1])), shortened
 
 
 def _speed_of(case: DiskCase, axis: int, motion: Motion) -> float:

@@ -1,12 +1,12 @@
 """Waves: named velocity histories that drive sides, or time factors of loads, one type a file.
 
-A new type is one file and its class's name in the list below.
+A new type is one file and its class's name in the list below; another package registers its own under the entry point
+group ``dembound.waves``.
 """
 
-from typing import Annotated
+from typing import TYPE_CHECKING
 
-from pydantic import Field
-
+from dembound.table import one_of, with_registered
 from dembound.waves.constant import Constant
 from dembound.waves.cosine import Cosine
 from dembound.waves.record import Record
@@ -16,9 +16,23 @@ from dembound.waves.spline import CubicSpline
 from dembound.waves.triangle import Triangle
 from dembound.waves.wave import Wave
 
-WaveTable = Annotated[
-    Cosine | CubicSpline | Triangle | Ricker | SineBurst | Constant | Record, Field(discriminator="type")
-]
-"""Any wave table of a case file, told apart by its ``type``."""
+TYPES = with_registered("dembound.waves", Wave, (Cosine, CubicSpline, Triangle, Ricker, SineBurst, Constant, Record))
+"""All types of waves."""
 
-__all__ = ["Constant", "Cosine", "CubicSpline", "Record", "Ricker", "SineBurst", "Triangle", "Wave", "WaveTable"]
+if TYPE_CHECKING:
+    WaveTable = Wave
+else:
+    WaveTable = one_of("type", TYPES)
+
+__all__ = [
+    "TYPES",
+    "Constant",
+    "Cosine",
+    "CubicSpline",
+    "Record",
+    "Ricker",
+    "SineBurst",
+    "Triangle",
+    "Wave",
+    "WaveTable",
+]

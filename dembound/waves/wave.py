@@ -25,6 +25,7 @@ class Wave(Table, ABC):
     As the factor of a load its values are pure numbers.
     """
 
+    type: str
     start: float = quantity(0.0, unit="s", help="time at which the wave begins", ge=0.0)
 
     @abstractmethod

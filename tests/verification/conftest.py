@@ -11,7 +11,6 @@ import tomli_w
 from dembound.bar.scene import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
 from dembound.case import Case
-from dembound.disks.body import is_periodic
 from dembound.disks.edges import find_edges
 from dembound.disks.ground import make_ground
 from dembound.disks.rows import contact_rows
@@ -127,7 +126,7 @@ class Lab:
     def tiled(self, brick: Brick, copies: tuple[int, int], **words: Any) -> DiskScene:
         """Copies (along x, along y) of a brick made by hand; the words are those of `case`."""
         case = self.case("A", (self.diameter, self.diameter), **words)
-        periodic = (is_periodic(case, "left"), is_periodic(case, "bottom"))
+        periodic = (case.side("left").is_periodic, case.side("bottom").is_periodic)
         ground = make_ground(brick, case.material, case.motion.held)
         assembly = tile(brick, copies, periodic)
         edges, rows = find_edges(assembly, periodic), (contact_rows(assembly, ground),)

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-from dembound.boundaries.driven import Driven
 from dembound.case.bar.bar import Bar
 from dembound.case.bar.load import BarLoad
 from dembound.case.bar.monitor import BarMonitor
@@ -29,6 +28,5 @@ class BarCase(Case):
     @property
     def loaded(self) -> str:
         """The end that loads act on or a wave drives: "left", "right", "both" or "none"."""
-        driven = {side for side, table in self.boundary.items() if isinstance(table, Driven)}
-        ends = driven | {load.side for load in self.load}
+        ends = self.driving.keys() | {load.side for load in self.load}
         return "both" if len(ends) > 1 else next(iter(ends), "none")

@@ -3,13 +3,11 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from dembound.boundaries import Fixed, Velocity
-from dembound.boundaries.driven import Driven
-from dembound.boundaries.viscous import Dashpots
+from dembound.boundaries import normal_axis
 from dembound.case.bar.bar import Bar
 from dembound.case.bar.load import BarLoad
 from dembound.case.bar.run import BarRun
-from dembound.case.between import repeated_names, steps_too_long, unknown_waves
+from dembound.case.between import driving_waves, repeated_names, steps_too_long, unknown_waves
 from dembound.case.sentences import numbered
 from dembound.methods import Method
 
@@ -20,13 +18,10 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
     `tables` has the fields of `BarCase` as keys; a table that is invalid on its own is None and left out. given : the
     file's data.
     """
-    driven = [
-        (f"boundary.{side}.wave_p", end.wave_p)
-        for side, end in tables["boundary"].items()
-        if isinstance(end, Driven) and end.wave_p is not None
-    ]
     loaded = [(f"{place}.wave", load.wave) for place, load in numbered("load", tables["load"])]
-    yield from unknown_waves([*driven, *loaded], tables["wave"])
+    yield from unknown_waves([*driving_waves(tables["boundary"]), *loaded], tables["wave"])
+    for side, end in tables["boundary"].items():
+        yield from end.problems(side, tables) if end else ()
     yield from _across_the_bar(tables["boundary"])
     yield from _loaded_but_held(tables["boundary"], tables["load"])
     for key in ("load", "monitor"):
@@ -49,12 +44,12 @@ def _courant_too_large(bar: Bar, run: BarRun) -> Iterator[str]:
 
 def _across_the_bar(ends: Mapping[str, Any]) -> Iterator[str]:
     """What only sides of disks have: motion across, and a choice of half masses."""
-    for side, end in ends.items():
-        if isinstance(end, Driven) and end.wave_s is not None:
+    for side, end in ((side, end) for side, end in ends.items() if end):
+        if "s" in end.waves:
             yield f"boundary.{side}.wave_s: moves across the bar, which moves along itself alone; use wave_p"
-        if isinstance(end, Dashpots) and "beta_s" in end.model_fields_set:
+        if "beta_s" in end.model_fields_set:
             yield f"boundary.{side}.beta_s: is for waves across, and a bar moves along itself alone; use beta_p"
-        if isinstance(end, Dashpots) and end.half_mass:
+        if end.half_cells:
             yield f"boundary.{side}.half_mass: is for disks; end nodes of a bar have half a mass in any case"
 
 
@@ -62,7 +57,7 @@ def _loaded_but_held(ends: Mapping[str, Any], loads: Sequence[BarLoad | None]) -
     """Loads on an end whose motion is prescribed, which would feel nothing of them."""
     for place, load in numbered("load", loads):
         end = ends.get(load.side)
-        if isinstance(end, Fixed | Velocity):
+        if end and 0 in end.prescribed(normal_axis(load.side)):
             yield (
                 f'{place}.side: is "{load.side}", whose motion boundary.{load.side} prescribes ("{end.type}"); '
                 "must be an end that can give way"

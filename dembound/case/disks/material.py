@@ -1,16 +1,22 @@
 """The ``[material]`` table."""
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import model_validator
 
+from dembound.laws import LAWS
 from dembound.table import Table, quantity
 
 WAVE_SPEED_KEYS = ("match", "contact_share")
 MODULI_KEYS = ("emod", "pb_emod")
 STRENGTH_KEYS = ("pb_ten", "pb_coh")
 HISTORY_KEYS = (*STRENGTH_KEYS, "pb_fa", "locked_in", "geometry", "elastic_start")
-"""Keys of the law that remembers what contacts and bonds went through."""
+"""Keys of history-dependent laws."""
+
+if TYPE_CHECKING:
+    LawName = str
+else:
+    LawName = Literal[tuple(LAWS)]
 
 
 class Material(Table):
@@ -45,7 +51,7 @@ class Material(Table):
     fric: float = quantity(0.0, unit="1", help="friction coefficient of the contacts", ge=0.0)
     pb_rmul: float = quantity(1.0, unit="1", help="bond radius over the smaller disk's radius", gt=0.0)
     damp: float = quantity(0.0, unit="1", help="local damping coefficient; 0 for waves", ge=0.0, lt=1.0)
-    law: Literal["elastic", "linearpbond"] = quantity("elastic", unit="1", help="how contacts and bonds push")
+    law: LawName = quantity("elastic", unit="1", help="how contacts and bonds push")
     pb_ten: float | None = quantity(
         None, unit="Pa", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0
     )
@@ -68,7 +74,7 @@ class Material(Table):
     @model_validator(mode="after")
     def _consistent(self) -> "Material":
         problems = self._problems_with_moduli() if self.p_wave_speed is None else self._problems_with_speed()
-        problems += self._problems_with_strength() if self.law == "linearpbond" else self._problems_without_history()
+        problems += self._problems_with_strength() if LAWS[self.law].has_history else self._problems_without_history()
         if problems:
             raise ValueError("\n".join(problems))
         return self
@@ -97,9 +103,8 @@ class Material(Table):
 
     def _problems_without_history(self) -> list[str]:
         """Keys that mean nothing to a law without history."""
-        return [
-            f'{key}: is only allowed with law = "linearpbond"' for key in HISTORY_KEYS if key in self.model_fields_set
-        ]
+        needed = " or ".join(f'"{name}"' for name, law in LAWS.items() if law.has_history)
+        return [f"{key}: is only allowed with law = {needed}" for key in HISTORY_KEYS if key in self.model_fields_set]
 
     def _problems_with_strength(self) -> list[str]:
         """Mistakes in the strength of the bonds."""

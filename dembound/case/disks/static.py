@@ -1,15 +1,15 @@
 """The ``[static]`` table and the tables of its sides."""
 
 from collections.abc import Mapping
-from typing import Annotated
+from typing import TYPE_CHECKING
 
-from pydantic import Field
+from dembound.boundaries import TYPES, Boundary
+from dembound.table import Table, one_of, quantity
 
-from dembound.boundaries import Fixed, Free, Roller
-from dembound.table import Table, quantity
-
-StaticSide = Annotated[Free | Fixed | Roller, Field(discriminator="type")]
-"""Any table of a side during the static stage, told apart by its ``type``."""
+if TYPE_CHECKING:
+    StaticSide = Boundary
+else:
+    StaticSide = one_of("type", [table for table in TYPES if table.for_static])
 
 
 class Static(Table):

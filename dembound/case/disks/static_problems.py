@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from dembound.boundaries import SIDES, BoundaryTable, Fixed, FreeField, Periodic, Roller, normal_axis
+from dembound.boundaries import SIDES, BoundaryTable, normal_axis
 from dembound.case.disks.load import Load
 from dembound.case.disks.material import Material
 from dembound.case.disks.motion import Motion
@@ -17,11 +17,12 @@ def static_problems(
 ) -> Iterator[str]:
     """Check the static stage; a table or an entry that is invalid on its own is None."""
     for side in static.boundary:
-        if isinstance(boundaries.get(side), Periodic):
+        if (table := boundaries.get(side)) and table.is_periodic:
             yield f"static.boundary.{side}: is not allowed, as boundary.{side} is periodic"
     if static.stress is not None:
-        for kind, name in ((Periodic, "periodic"), (FreeField, "free-field")):
-            if any(isinstance(table, kind) for table in boundaries.values()):
+        sides = [table for table in boundaries.values() if table]
+        for trait, name in (("is_periodic", "periodic"), ("needs_column", "free-field")):
+            if any(getattr(table, trait) for table in sides):
                 yield f"static.stress: cannot be applied to {name} sides"
         yield from _unreachable_stress(static, static.stress)
     if material and None not in loads:
@@ -47,7 +48,7 @@ def _nothing_to_settle(static: Static, loads: Sequence[Load | None], material: M
 
 def _unheld_loads(static: Static, boundaries: Sides, loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:
     """Steady loads that would push the body, or the free-field column beside it, away."""
-    beside = any(isinstance(table, FreeField) for table in boundaries.values())
+    beside = any(table.needs_column for table in boundaries.values() if table)
     for place, load in numbered("load", loads):
         if load.wave is not None:
             continue
@@ -69,4 +70,4 @@ def _holds(static: Static, sides: Sequence[str], motion: Motion, axis: int) -> b
 def _stands(static: Static, side: str, axis: int) -> bool:
     """Whether the particles of a side cannot move along an axis during the stage."""
     table = static.boundary.get(side)
-    return isinstance(table, Fixed) or (isinstance(table, Roller) and normal_axis(side) == axis)
+    return table is not None and axis in table.prescribed(normal_axis(side))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.contacts import ContactList
-from dembound.disks.part import BONDED, ELASTIC, DiskPart
+from dembound.disks.part import DiskPart
 from dembound.disks.scene import DiskScene, build, column_alone
 from dembound.disks.system import DiskSystem
 from dembound.kernels import elastic, loop
@@ -13,6 +13,8 @@ from dembound.kernels.common import BROKE, DONE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.contacts import INTACT, SHEAR, slack
 from dembound.kernels.tables import Body, Links, Log, Seam, SeamEnds, Supports
 from dembound.motion.state import State
+
+ELASTIC, BONDED = "elastic", "linearpbond"
 
 STEP = 1e-4
 FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
@@ -36,7 +38,7 @@ def scene(bar):
 def part_of(body: DiskScene, law: str = ELASTIC) -> DiskPart:
     """The only part of a scene without a column, as built, under a law."""
     (part,) = DiskSystem(body, STEP).parts
-    part.law_name = law
+    part.uses_history = law == BONDED
     return part
 
 
@@ -178,7 +180,7 @@ def test_a_part_beside_another_moves_as_it_would_alone(scene, law: str) -> None:
     beside = scene(**WITH_HISTORY, boundary=FREE_FIELD)
     alone = {"column": column_alone(beside), "body": scene(**WITH_HISTORY)}
     for part in DiskSystem(beside, STEP).parts:
-        part.law_name = law
+        part.uses_history = law == BONDED
         single, start, speed = part_of(alone[part.name], law), shaken(beside, 1e-5), shaken(beside, 1e-3)
         u, v = start.copy(), speed.copy()
         alone_u, alone_v = (np.ascontiguousarray(values[:, part.nodes]) for values in (start, speed))
@@ -251,7 +253,7 @@ def test_each_law_of_the_column_has_a_seam_of_its_own(scene) -> None:
     assert column.name == "column"
     assert np.array_equal(tie.nodes, system.scene.seam.node)
     assert isinstance(tie.bundle(tie.nodes), Seam)
-    column.law_name = BONDED
+    column.uses_history = True
     assert isinstance(tie.bundle(tie.nodes), SeamEnds)
 
 
@@ -274,7 +276,7 @@ def test_across_the_seam_both_laws_push_alike_as_long_as_nothing_gives_way(scene
 def test_rows_of_the_seam_stand_at_its_nodes_among_all_that_are_supported(scene, law: str) -> None:
     system = DiskSystem(scene(**TOUGH, boundary=FREE_FIELD), STEP)
     (tie,), contacts, u = system.ties, system.contacts["column"], shaken(system.scene, 1e-6)
-    system.parts[0].law_name = law
+    system.parts[0].uses_history = law == BONDED
     contacts.push(u)
     supported = np.union1d(tie.nodes, np.arange(0, system.scene.count, 3))
     bundle = tie.bundle(supported)

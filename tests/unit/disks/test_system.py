@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from dembound.disks.contacts import ContactList
-from dembound.disks.part import BONDED, ELASTIC
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.system import DiskSystem, Start
 from dembound.kernels.common import BROKE, DONE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.contacts import TENSION
 from dembound.motion.state import State
+
+ELASTIC, BONDED = "elastic", "linearpbond"
 
 STEP = 1e-4
 EPS = np.finfo(float).eps

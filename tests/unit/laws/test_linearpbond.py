@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.laws import Moduli, elastic_stiffness, pair_lines
+from dembound.laws import LAWS, Moduli
 
 MODULI = Moduli(emod=6e9, pb_emod=3e9, kratio=2.0, pb_kratio=3.0, pb_rmul=0.5, fric=0.4)
 RADII = np.array([0.2, 0.2, 0.2]), np.array([0.4, 0.4, 0.4])
@@ -12,7 +12,7 @@ VECTORS = np.array([[0.3, 0.4], [0.0, -0.6], [0.65, 0.0]])
 
 
 def lines(**words: float) -> np.ndarray:
-    return pair_lines(MODULI, *RADII, VECTORS, **{"bonded": True, **words})
+    return LAWS["linearpbond"].pair_lines(MODULI, *RADII, VECTORS, **{"bonded": True, **words})
 
 
 def test_the_columns_are_those_of_the_law() -> None:
@@ -35,7 +35,7 @@ def test_of_a_locked_in_stress_overlaps_push_by_their_part(part: float) -> None:
 
 def test_disks_that_touch_but_for_rounding_touch() -> None:
     ahead = np.array([[0.6 * (1.0 + 1e-12), 0.0]])
-    (line,) = pair_lines(MODULI, *(radii[:1] for radii in RADII), ahead, bonded=True)
+    (line,) = LAWS["linearpbond"].pair_lines(MODULI, *(radii[:1] for radii in RADII), ahead, bonded=True)
 
     assert line[3] == line[2]
 
@@ -57,7 +57,7 @@ def test_pairs_without_bonds_have_no_bond_stiffness() -> None:
 
 def test_at_rest_a_pair_is_as_stiff_as_under_the_elastic_law() -> None:
     found = lines(gaps_close=False)
-    elastic = elastic_stiffness(MODULI, *RADII, np.hypot(*VECTORS.T))
+    elastic = LAWS["elastic"].stiffness(MODULI, *RADII, np.hypot(*VECTORS.T))
 
     np.testing.assert_allclose(found[:, 5] + found[:, 7], elastic.normal, rtol=1e-15)
     np.testing.assert_allclose(found[:, 6] + found[:, 8], elastic.shear, rtol=1e-15)

@@ -1,0 +1,85 @@
+"""What every boundary type has in common: what a case, a scene and a study may ask of a side."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Self
+
+from dembound.boundaries.sides import Motion
+from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
+from dembound.table import Table
+
+
+class Boundary(Table):
+    """A side's table: the base of all types.
+
+    A type is a subclass with a literal `type`, its keys, and the recipe `support`. Below is what else is asked of a
+    side; each answer has a default, that of a side that does nothing of the kind.
+
+    Attributes
+    ----------
+    for_bars : whether an end of a bar may have this type.
+    for_static : whether a side may have it during the static stage, in which no wave runs.
+    is_free : whether nothing pushes.
+    is_periodic : whether the body goes on with its own opposite side.
+    is_mirror : whether the body goes on as its own mirror image.
+    needs_column : whether a free-field column stands beyond the side, and may move with the waves that pass there.
+    beyond_dashpots : what `dashpots_alone` leaves out, in words for reports.
+    """
+
+    for_bars: ClassVar[bool] = False
+    for_static: ClassVar[bool] = False
+    is_free: ClassVar[bool] = False
+    is_periodic: ClassVar[bool] = False
+    is_mirror: ClassVar[bool] = False
+    needs_column: ClassVar[bool] = False
+    beyond_dashpots: ClassVar[str] = ""
+
+    type: str
+
+    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+        """Fill rows of the support table for the particles of an edge; by default none.
+
+        medium is what the side stands for, waves those of the case by name.
+        """
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """Mistakes that show only beside other tables, one line each; this one is that of `side`.
+
+        tables : those of the case by name, None for one that is invalid; ``boundary`` has the sides'.
+        """
+        yield from ()
+
+    def prescribed(self, normal_axis: int) -> tuple[int, ...]:
+        """Components (0 x, 1 y, 2 rotation) whose motion the side prescribes, given the axis of its normal."""
+        return ()
+
+    @property
+    def waves(self) -> Mapping[Motion, str]:
+        """The waves that drive the side: kind -> name; by default none."""
+        return {}
+
+    @property
+    def factors(self) -> Mapping[Motion, float]:
+        """The factors β of the side's dashpots: kind of wave -> β; by default it has none."""
+        return {}
+
+    @property
+    def half_cells(self) -> bool:
+        """Whether the side's particles are half cells, see half_mass.py."""
+        return False
+
+    def driven_by(self, waves: Mapping[Motion, str]) -> Self:
+        """The side, which some wave drives, under other waves: kind -> name."""
+        keys = {f"wave_{motion}": waves.get(motion) for motion in ("p", "s")}
+        return self.model_copy(update=keys)
+
+    def at_rest(self) -> "Boundary":
+        """The side without its waves."""
+        return self.driven_by({}) if self.waves else self
+
+    def dashpots_alone(self) -> "Boundary":
+        """What plane waves at normal incidence meet that β is to be found for: without springs and columns."""
+        return self
+
+    def describe(self, edge: Edge, medium: Medium) -> dict[str, Any]:
+        """The side in numbers for reports: key -> value, SI units."""
+        return {f"beta_{motion}": factor for motion, factor in self.factors.items()}

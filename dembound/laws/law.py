@@ -1,0 +1,130 @@
+"""What every bond law of disks can answer, from the springs of its contacts."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Moduli:
+    """Micro-parameters under their PFC names: emod, pb_emod in Pa; kratio, pb_kratio, pb_rmul, fric pure numbers."""
+
+    emod: float
+    pb_emod: float
+    kratio: float = 1.0
+    pb_kratio: float = 1.0
+    pb_rmul: float = 1.0
+    fric: float = 0.0
+
+
+@dataclass(frozen=True)
+class Springs:
+    """Contact and bond of pairs apart, (b,) each: stiffnesses in N/m and N·m/rad, bond area (m) and radius (m)."""
+
+    contact_normal: np.ndarray
+    contact_shear: np.ndarray
+    bond_normal: np.ndarray
+    bond_shear: np.ndarray
+    bending: np.ndarray
+    area: np.ndarray
+    bond_radius: np.ndarray
+
+
+@dataclass(frozen=True)
+class Stiffness:
+    """Constants of contacts, (b,) each: normal and shear in N/m, bending in N·m/rad, arms in m."""
+
+    normal: np.ndarray
+    shear: np.ndarray
+    bending: np.ndarray
+    arm_i: np.ndarray
+    arm_j: np.ndarray
+
+
+class Law(ABC):
+    """How contacts and bonds push: the springs that a law's forces, energies, wave speeds and step limit come from.
+
+    Attributes
+    ----------
+    name : what `material.law` calls it.
+    has_history : whether contacts open, slide and break (kernels/contacts.py); else forces are linear (elastic.py).
+    """
+
+    name: ClassVar[str]
+    has_history: ClassVar[bool] = False
+
+    @property
+    def linear(self) -> str:
+        """Name of the law without history that is as stiff at rest; a history-dependent law names one."""
+        return self.name
+
+    @abstractmethod
+    def springs(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray) -> Springs:
+        """Springs of closed, bonded contacts between disks of radii (b,) m."""
+
+    def stiffness(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray, distance: np.ndarray) -> Stiffness:
+        """Stiffnesses of contacts between disks of radii (b,) m whose centres are `distance` (b,) m apart.
+
+        Contact and bond together; across a gap the bond alone. The arms run to the middle of the overlap or gap and
+        add up to the distance, so moments balance.
+        """
+        pair = self.springs(moduli, radius_i, radius_j)
+        closed = touching(radius_i, radius_j, distance)
+        return Stiffness(
+            normal=np.where(closed, pair.contact_normal, 0.0) + pair.bond_normal,
+            shear=np.where(closed, pair.contact_shear, 0.0) + pair.bond_shear,
+            bending=pair.bending,
+            arm_i=(distance + radius_i - radius_j) / 2.0,
+            arm_j=(distance + radius_j - radius_i) / 2.0,
+        )
+
+    def pair_lines(
+        self,
+        moduli: Moduli,
+        radius_i: np.ndarray,
+        radius_j: np.ndarray,
+        vectors: np.ndarray,
+        *,
+        bonded: bool,
+        gaps_close: bool = True,
+        locked_in: float = 0.0,
+    ) -> np.ndarray:
+        """Constants (b, 12) of pairs, in the columns that kernels/contacts.py explains.
+
+        Parameters
+        ----------
+        moduli : micro-parameters.
+        radius_i, radius_j : (b,) m.
+        vectors : (b, 2) m, from i to j at the start.
+        bonded : whether the pairs have bonds.
+        gaps_close : whether pairs with a gap have a contact that pushes once it closes; laws without history have none.
+        locked_in : part of the overlaps that pushes from the start; with 0 overlapping disks just touch.
+        """
+        distance = np.hypot(*vectors.T)
+        pair = self.springs(moduli, radius_i, radius_j)
+        closed = touching(radius_i, radius_j, distance)
+        acts = closed | gaps_close
+        overlap = np.maximum(radius_i + radius_j - distance, 0.0)
+        has_bond = float(bonded)
+        return np.column_stack(
+            [
+                vectors,
+                distance,
+                np.where(closed, distance + locked_in * overlap, radius_i + radius_j),
+                (radius_i - radius_j) / 2.0,
+                np.where(acts, pair.contact_normal, 0.0),
+                np.where(acts, pair.contact_shear, 0.0),
+                has_bond * pair.bond_normal,
+                has_bond * pair.bond_shear,
+                has_bond * pair.bending,
+                1.0 / pair.area,
+                1.5 / pair.bond_radius**2,  # R̄/J
+            ]
+        )
+
+
+def touching(radius_i: np.ndarray, radius_j: np.ndarray, distance: np.ndarray) -> np.ndarray:
+    """Which disks (b,) bool touch or overlap, rounding forgiven; all in m."""
+    return distance <= (radius_i + radius_j) * (1.0 + 1e-9)
