@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from dembound.bar.lattice import carrying_lattice
 from dembound.bar.scene import BarScene
 from dembound.bar.summary import describe_bar, describe_end
 from dembound.case.bar import BarCase
 from dembound.case.bar.bar import Bar
 from dembound.case.magnitudes import waves_used
-from dembound.exact.dispersion import cells_per_wavelength, courant_limit
+from dembound.exact.dispersion import cells_per_wavelength
 
 ERROR = 0.01
 """Error of the phase speed that the shortest wavelength may have without a warning."""
@@ -40,7 +41,7 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
         )
     for name, node in scene.monitors.items():
         facts[f"monitor {name}"] = f"node {node} at {scene.positions[node, 0]:.4g} m"
-    for name, (cells, needed) in cells_of_waves(case, time_step).items():
+    for name, (cells, needed) in cells_of_waves(scene, time_step).items():
         facts[f"wave {name}"] = (
             f"{cells:.3g} cells in its shortest wavelength, {needed:.3g} needed for an error of {PERCENT}"
         )
@@ -61,15 +62,16 @@ def _strength_in_words(bar: Bar) -> str:
     return f"{stretch * bar.modulus / 1e6:.4g} MPa, critical stretch {stretch:.4g}"
 
 
-def cells_of_waves(case: BarCase, time_step: float) -> dict[str, tuple[float, float]]:
+def cells_of_waves(scene: BarScene, time_step: float) -> dict[str, tuple[float, float]]:
     """Of every wave in use the cells in its shortest wavelength, and how many keep the error of its speed below ERROR.
 
     The shortest wavelength is that of the wave's highest frequency.
     """
-    horizon = case.method.carrying_horizon
-    courant = min(_courant(case, time_step), courant_limit(horizon))
-    needed = cells_per_wavelength(horizon, courant, ERROR)
-    spacing = case.bar.length / case.bar.cells
+    row = carrying_lattice(scene, time_step)
+    courant = min(row.courant, row.courant_limit)
+    needed = cells_per_wavelength(row.horizon, courant, ERROR, shares=row.shares)
+    spacing = row.spacing
+    case = scene.case
     used = waves_used(case)
     fading = {name: wave.highest_frequency() for name, wave in case.wave.items() if name in used}
     return {name: (case.bar.speed / (f * spacing) if f > 0.0 else np.inf, needed) for name, f in fading.items()}

@@ -59,7 +59,7 @@ class Bars(Kind[BarCase, BarScene]):
 
     def warnings_before(self, scene: BarScene, time_step: float) -> list[str]:
         """What is known before the run."""
-        return bar_warnings(scene.case, time_step)
+        return bar_warnings(scene, time_step)
 
     def warnings_after(self, scene: BarScene, summary: Mapping[str, Any], record: Path) -> list[str]:
         """What the run has shown."""

@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 
 from dembound.bar.facts import PERCENT, cells_of_waves
+from dembound.bar.lattice import carrying_lattice
 from dembound.bar.scene import BarScene
 from dembound.boundaries import OPPOSITE, normal_axis
 from dembound.case.bar import BarCase
@@ -22,21 +23,22 @@ MOMENTS = 500
 """Moments, and places beside the free end, at which tension is looked for."""
 
 
-def bar_warnings(case: BarCase, time_step: float) -> list[str]:
+def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
     """All of them, one line each; time_step in s."""
+    case = scene.case
     times = list(time_warnings(case, time_step, case.bar.length / case.bar.speed))
     return [
-        *_too_few_cells(case, time_step),
+        *_too_few_cells(scene, time_step),
         *(times or ends_too_soon(case)),  # waves of odd times may spoil the latter
         *_dashpots_at_soft_ends(case),
         *stress_beside_strength(case),
     ]
 
 
-def _too_few_cells(case: BarCase, time_step: float) -> Iterator[str]:
+def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:
     """Waves too short for the nodes."""
-    finer = "" if case.method.carrying_horizon == 1 else " or method.horizon"
-    for name, (cells, needed) in cells_of_waves(case, time_step).items():
+    finer = "" if carrying_lattice(scene, time_step).horizon == 1 else " or method.horizon"
+    for name, (cells, needed) in cells_of_waves(scene, time_step).items():
         if cells < needed:
             yield (
                 f"wave.{name}: has {cells:.3g} cells in its shortest wavelength, fewer than the {needed:.3g} that keep "

@@ -10,7 +10,7 @@ from rich.table import Table
 
 from dembound.cli.app import PICTURE, Settings, app, load_case, out, writable
 from dembound.errors import CaseError
-from dembound.exact.dispersion import Lattice, Speed, cells_per_wavelength, courant_limit
+from dembound.exact.dispersion import Lattice, Speed, cells_per_wavelength
 from dembound.plot.dispersion import Points, name, plot_dispersion
 from dembound.plot.style import save
 from dembound.studies.dispersion import lattices, lattices_of, measure, write_table
@@ -88,7 +88,7 @@ def _overview(shown: Sequence[Lattice]) -> Table:
     """Courant numbers, their limits, and how many spacings a wavelength needs."""
     overview = Table(*HEADS, title="Spacings per wavelength from which on waves run within 1 % of c")
     for lattice in shown:
-        limit = courant_limit(lattice.horizon)
+        limit = lattice.courant_limit
         sizes = (str(lattice.horizon), f"{lattice.spacing:g}", f"{lattice.time_step:g}")
         needed = (_needed(lattice, "phase"), _needed(lattice, "group"))
         overview.add_row(*sizes, f"{lattice.courant:.4f}", f"{limit:.4f}", *needed)
@@ -99,7 +99,7 @@ def _needed(lattice: Lattice, of: Speed) -> str:
     """Spacings per wavelength for 1 %, in words."""
     if not lattice.stable:
         return "unstable"
-    return f"{cells_per_wavelength(lattice.horizon, lattice.courant, of=of):.1f}"
+    return f"{cells_per_wavelength(lattice.horizon, lattice.courant, of=of, shares=lattice.shares):.1f}"
 
 
 def _simulated(shown: Sequence[Lattice]) -> list[Points]:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 ROUNDING = 1e-12
 """What sin(ωΔt/2) may differ from 1 by rounding: a step at the limit itself is stable."""
@@ -37,14 +37,18 @@ class Lattice:
     spacing : Δx, m.
     time_step : Δt, s; 0 stands for exact integration in time.
     wave_speed : c of long waves, m/s.
+    shares : (m,) of the stress under uniform strain that bonds of one, two … spacings carry; they add up to 1. By
+        default those of L's bonds, 2w_p p/m².
 
-    Raises ValueError for a horizon below 1, a spacing or speed that is not positive, and a negative step.
+    Raises ValueError for a horizon below 1, a spacing or speed that is not positive, a negative step, and shares that
+    are not m or do not add up to 1.
     """
 
     horizon: int
     spacing: float
     time_step: float
     wave_speed: float
+    shares: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         if self.horizon < 1:
@@ -53,6 +57,8 @@ class Lattice:
             raise ValueError(f"spacing ({self.spacing} m) and wave speed ({self.wave_speed} m/s) must be positive")
         if not 0.0 <= self.time_step < math.inf:
             raise ValueError(f"time step ({self.time_step} s) must not be negative")
+        if self.shares is not None and (len(self.shares) != self.horizon or abs(sum(self.shares) - 1.0) > 1e-9):
+            raise ValueError(f"shares ({self.shares}) must be {self.horizon} numbers that add up to 1")
 
     @property
     def courant(self) -> float:
@@ -62,7 +68,12 @@ class Lattice:
     @property
     def stable(self) -> bool:
         """Whether no wave grows."""
-        return self.courant <= courant_limit(self.horizon) * (1.0 + ROUNDING)
+        return self.courant <= self.courant_limit * (1.0 + ROUNDING)
+
+    @property
+    def courant_limit(self) -> float:
+        """Largest Courant number with which no wave grows, see the function of that name."""
+        return courant_limit(self.horizon, self.shares)
 
     @property
     def shortest(self) -> float:
@@ -90,7 +101,10 @@ class Lattice:
         root = self._root(half)
         square = (self.courant * half * root) ** 2
         cosine = np.sqrt(np.where(square < 1.0 - ROUNDING, 1.0 - square, np.nan))
-        slope = np.sinc(self.horizon * half / np.pi) ** 2 * np.cos(half) / np.sinc(half / np.pi)
+        if self.shares is None:
+            slope = np.sinc(self.horizon * half / np.pi) ** 2 * np.cos(half) / np.sinc(half / np.pi)
+        else:  # the sum that has no closed form
+            slope = sum(share * np.sinc(2 * p * half / np.pi) for p, share in enumerate(self.shares, start=1))
         return self.wave_speed * slope / (root * cosine)
 
     def _half_angle(self, wavenumber: np.ndarray | float) -> np.ndarray:
@@ -99,34 +113,64 @@ class Lattice:
 
     def _root(self, half: np.ndarray) -> np.ndarray:
         """√q / (θ/2), which is 1 for long waves, at half angles θ/2."""
-        square = sum(w * p * np.sinc(p * half / np.pi) ** 2 for p, w in enumerate(_weights(self.horizon), start=1))
-        return np.sqrt(2.0 * square) / self.horizon
+        return np.sqrt(_square(half, self.horizon, self.shares))
 
 
-def courant_limit(horizon: int) -> float:
+def _square(half: np.ndarray, horizon: int, shares: tuple[float, ...] | None) -> np.ndarray:
+    """Q / (θ/2)², which is 1 for long waves, at half angles θ/2."""
+    if shares is not None:
+        return sum((share * np.sinc(p * half / np.pi) ** 2 for p, share in enumerate(shares, start=1)), 0.0 * half)
+    square = sum(w * p * np.sinc(p * half / np.pi) ** 2 for p, w in enumerate(_weights(horizon), start=1))
+    return 2.0 * square / horizon**2
+
+
+def courant_limit(horizon: int, shares: tuple[float, ...] | None = None) -> float:
     """Largest ν = cΔt/Δx with which no wave grows: m/√(2 Σ w_p/p over odd p ≤ m).
 
     That is where ν²q reaches 1. The largest q is that of the shortest wave, kΔx = π, whether m is odd or even (see
     above; for even m the curvature of q vanishes there as well). 1 for m = 1, √2 for 2, 1.964 for 3, 5.289 for 10.
+
+    With shares other than L's, see `Lattice`, the largest q is looked for among all waves.
     """
+    if shares is not None:
+        return _searched_limit(horizon, shares)
     odd = np.arange(1, horizon + 1, 2)
     return float(horizon / np.sqrt(2.0 * np.sum(_weights(horizon)[::2] / odd)))
 
 
-def cells_per_wavelength(horizon: int, courant: float, error: float = 0.01, of: Speed = "phase") -> float:
+def _searched_limit(horizon: int, shares: tuple[float, ...]) -> float:
+    """1/√q of the wave, of any length, that has the largest q."""
+
+    def less(half: float) -> float:
+        return -float(half**2 * _square(np.array(half), horizon, shares))
+
+    half = np.linspace(0.0, 0.5 * np.pi, SAMPLES * horizon)
+    most = int(np.argmax(half**2 * _square(half, horizon, shares)))
+    around = half[max(most - 1, 0)], half[min(most + 1, len(half) - 1)]
+    found = minimize_scalar(less, bounds=around, method="bounded", options={"xatol": 1e-12})
+    return float(1.0 / np.sqrt(-min(found.fun, less(half[most]))))
+
+
+def cells_per_wavelength(
+    horizon: int,
+    courant: float,
+    error: float = 0.01,
+    of: Speed = "phase",
+    shares: tuple[float, ...] | None = None,
+) -> float:
     """Spacings per wavelength from which on a wave runs at the speed c but for a relative `error`, or less.
 
     All longer waves keep to it, too. `of` says whose speed: the crests' (phase) or the energy's (group). To the
     leading order the phase speed is c(1 − (kΔx)²((m²+1)/2 − ν²)/24), the group's deviates three times as much. A bar
-    without error, as with m = 1 and ν = 1, needs the 2 cells that any wave has.
+    without error, as with m = 1 and ν = 1, needs the 2 cells that any wave has. shares : see `Lattice`.
 
     Raises ValueError for a ν above its limit and an error that is not between 0 and 1.
     """
     if not 0.0 < error < 1.0:
         raise ValueError(f"error ({error}) must be between 0 and 1")
-    lattice = Lattice(horizon, spacing=1.0, time_step=courant, wave_speed=1.0)
+    lattice = Lattice(horizon, spacing=1.0, time_step=courant, wave_speed=1.0, shares=shares)
     if not lattice.stable:
-        raise ValueError(f"Courant number ({courant}) must not be above {courant_limit(horizon):.6g}, its limit")
+        raise ValueError(f"Courant number ({courant}) must not be above {lattice.courant_limit:.6g}, its limit")
     speed = lattice.phase_velocity if of == "phase" else lattice.group_velocity
 
     def excess(wavenumber: np.ndarray | float) -> np.ndarray:
@@ -137,6 +181,12 @@ def cells_per_wavelength(horizon: int, courant: float, error: float = 0.01, of: 
     if not beyond.size:
         return 2.0
     return float(2.0 * np.pi / brentq(excess, tried[beyond[0] - 1], tried[beyond[0]], rtol=1e-12))
+
+
+def usual_shares(horizon: int) -> tuple[float, ...]:
+    """Shares (m,) of the stress under uniform strain that L's bonds of one, two … spacings carry: 2w_p p/m²."""
+    lengths = np.arange(1, horizon + 1)
+    return tuple((2.0 * _weights(horizon) * lengths / horizon**2).tolist())
 
 
 def _weights(horizon: int) -> np.ndarray:

@@ -46,10 +46,11 @@ class Rod:
         volumes[[0, -1]] *= 0.5
         return volumes
 
-    def bond_rows(self, horizon: int) -> np.ndarray:
+    def bond_rows(self, horizon: int, influence: np.ndarray | None = None) -> np.ndarray:
         """Stiffness (m, n) N/m of all peridynamic bonds there can be: c_m V_i V_{i+p} w_p/(pΔx) (L eqs 4, 8 and 9).
 
-        Row p − 1 has the bonds between i and i + p.
+        Row p − 1 has the bonds between i and i + p. influence : (m,) factors of the micromodulus c_m by length of the
+        bonds, scaled so that Young's modulus stays; by default it is the same for all.
         """
         rows = np.zeros((horizon, self.count))
         if horizon > 0:
@@ -58,7 +59,16 @@ class Rod:
             c_m = micromodulus(self.modulus, horizon * self.spacing, 1, self.section)
             both = self.volumes[first] * self.volumes[second]
             rows[apart - 1, first] = c_m * both * family.factor / (apart * self.spacing)
+        if influence is not None:
+            rows *= np.reshape(influence, (horizon, 1)) * (1.0 / _influenced(horizon, influence))
         return rows
+
+
+def _influenced(horizon: int, influence: np.ndarray) -> float:
+    """Young's modulus over the bar's own when the micromodulus is multiplied by influence (m,)."""
+    weights = np.arange(1.0, horizon + 1.0)
+    weights[-1] *= 0.5  # half of an outermost node's volume lies within the horizon
+    return float(np.sum(np.asarray(influence) * weights) / weights.sum())
 
 
 class Bonds:
@@ -70,6 +80,7 @@ class Bonds:
     horizon : m of the zones; 0: there are none, and springs ask when they reach the critical stretch.
     complement : whether local springs carry what bonds leave; else a plane has either.
     ask_at : share of the critical stretch at which local springs ask.
+    influence : (m,) factors of the micromodulus by length of the bonds, see `Rod.bond_rows`.
 
     Attributes
     ----------
@@ -78,13 +89,21 @@ class Bonds:
     zones : (first, one beyond last) node of every zone, from left to right.
     """
 
-    def __init__(self, rod: Rod, horizon: int, *, complement: bool = True, ask_at: float = 1.0) -> None:
+    def __init__(
+        self,
+        rod: Rod,
+        horizon: int,
+        *,
+        complement: bool = True,
+        ask_at: float = 1.0,
+        influence: np.ndarray | None = None,
+    ) -> None:
         self.rod = rod
         self.horizon = horizon
         self.complement = complement
         self.ask_at = ask_at
         self.zones: list[tuple[int, int]] = []
-        self._rows = rod.bond_rows(horizon)
+        self._rows = rod.bond_rows(horizon, influence)
         planes = rod.count - 1
         self.spring = np.full(planes, rod.spring)
         self.bond = np.zeros_like(self._rows)
@@ -113,6 +132,19 @@ class Bonds:
         left[(np.abs(left) < TINY) | (self.spring_broken >= 0)] = 0.0
         self.spring[:] = self.rod.spring * left
         self._set_limits(covered)
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """Shares of the stress under uniform strain that bonds of one, two … spacings carry in the middle of the bar.
+
+        Local springs are of one spacing. As many as the longest bonds there; see `exact.dispersion.Lattice`.
+        """
+        middle = self.rod.count // 2
+        stiffness = np.zeros(max(self.horizon, 1))
+        stiffness[: self.horizon] = self.bond[:, middle - self.horizon // 2] if self.horizon else 0.0
+        stiffness[0] += self.spring[middle]
+        shares = stiffness * np.arange(1, len(stiffness) + 1) ** 2 / self.rod.spring
+        return tuple(np.trim_zeros(shares, "b").tolist())
 
     def soften_ends(self) -> None:
         """Halve the springs at both ends, as half volumes do in peridynamics with m = 1."""

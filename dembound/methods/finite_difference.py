@@ -23,11 +23,6 @@ class FiniteDifference(Method):
         """1: local springs."""
         return 1
 
-    @property
-    def carrying_horizon(self) -> int:
-        """1: local springs."""
-        return 1
-
     def begin(self, rod: Rod) -> Bonds:
         """Whole local springs, which ask at the critical stretch."""
         return Bonds(rod, horizon=0)

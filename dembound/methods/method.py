@@ -24,11 +24,6 @@ class Method(Table, ABC):
         """The largest horizon (in spacings) it ever uses; 1 for local springs."""
 
     @property
-    @abstractmethod
-    def carrying_horizon(self) -> int:
-        """The horizon that carries waves where nothing is about to break."""
-
-    @property
     def soft_ends(self) -> bool:
         """Whether the bar is ever softer near its ends than elsewhere."""
         return False

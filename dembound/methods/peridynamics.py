@@ -31,11 +31,6 @@ class Peridynamics(Method):
         return self.horizon
 
     @property
-    def carrying_horizon(self) -> int:
-        """The horizon m."""
-        return self.horizon
-
-    @property
     def soft_ends(self) -> bool:
         """Where they are not corrected."""
         return not self.corrected_ends

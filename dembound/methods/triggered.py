@@ -14,8 +14,3 @@ class Triggered(Method):
     def largest_horizon(self) -> int:
         """The horizon m."""
         return self.horizon
-
-    @property
-    def carrying_horizon(self) -> int:
-        """1: local springs carry waves to where something breaks."""
-        return 1

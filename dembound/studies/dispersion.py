@@ -2,12 +2,14 @@
 
 import csv
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
 import numpy as np
 import tomli_w
 
+from dembound.bar.lattice import lattice_of
 from dembound.bar.scene import build_bar
 from dembound.bar.stability import choose_step
 from dembound.case import Case
@@ -16,8 +18,9 @@ from dembound.case.bar.bar import LARGEST, SMALLEST
 from dembound.case.model import as_kind
 from dembound.case.reader import loads
 from dembound.errors import CaseError
-from dembound.exact.dispersion import Lattice, courant_limit
-from dembound.methods.bonds import Bonds
+from dembound.exact.dispersion import Lattice, usual_shares
+from dembound.methods import Peridynamics
+from dembound.methods.bonds import Bonds, Rod
 from dembound.motion.simulation import Simulation
 from dembound.results.reader import replacing
 
@@ -67,7 +70,7 @@ def lattices(
         raise CaseError(problems)
     made = [Lattice(*numbers, wave_speed) for numbers in product(horizons, spacings, time_steps)]
     if not any(lattice.stable for lattice in made):
-        limit = max(courant_limit(lattice.horizon) * lattice.spacing / wave_speed for lattice in made)
+        limit = max(lattice.courant_limit * lattice.spacing / wave_speed for lattice in made)
         raise CaseError([f"--time-step: is {min(time_steps):g} s, must not be above the stability limit {limit:.6g} s"])
     return made
 
@@ -80,13 +83,8 @@ def lattices_of(case: Case) -> list[Lattice]:
     bar = as_kind(case, BarCase, "bar: is missing; only the dispersion of bars is known")
     scene = build_bar(bar)
     time_step, _ = choose_step(scene)
-    horizons = sorted({_horizon(bonds) for bonds in bar.method.stages(scene.rod)})
-    return [Lattice(horizon, scene.rod.spacing, time_step, bar.bar.speed) for horizon in horizons]
-
-
-def _horizon(bonds: Bonds) -> int:
-    """Horizon of peridynamic bonds in spacings; local springs alone have 1."""
-    return max(1, int(np.count_nonzero(bonds.bond.any(axis=1))))
+    found = {lattice_of(bonds, time_step, bar.bar.speed) for bonds in bar.method.stages(scene.rod)}
+    return sorted(found, key=lambda lattice: (lattice.horizon, lattice.shares or ()))
 
 
 def measure(lattice: Lattice, wavenumbers: np.ndarray) -> np.ndarray:
@@ -110,10 +108,21 @@ def _frequency(lattice: Lattice, wavenumber: float) -> float:
     return float(2.0 * np.arcsin(sine) / lattice.time_step)
 
 
+class _Bonded(Peridynamics):
+    """Peridynamics whose bonds carry given shares of the stress, see `Lattice`."""
+
+    shares: tuple[float, ...]
+
+    def begin(self, rod: Rod) -> Bonds:
+        """All bonds."""
+        influence = np.divide(self.shares, usual_shares(self.horizon))
+        bonds = Bonds(rod, self.horizon, complement=False, influence=influence)
+        bonds.cover(0, rod.count)
+        return bonds
+
+
 def _endless(lattice: Lattice) -> BarCase:
-    """A bar whose ends are not heard of in its middle for STEPS steps."""
-    central = {"type": "finite_difference"}
-    peridynamic = {"type": "peridynamics", "horizon": lattice.horizon}
+    """A bar so long that nothing comes from its ends to its middle within STEPS steps."""
     tables = {
         "bar": {
             "length": 2 * lattice.horizon * STEPS * lattice.spacing,
@@ -121,11 +130,14 @@ def _endless(lattice: Lattice) -> BarCase:
             "density": 1.0,
             "wave_speed": lattice.wave_speed,
         },
-        "method": central if lattice.horizon == 1 else peridynamic,
+        "method": {"type": "finite_difference"},
         "run": {"duration": STEPS * lattice.time_step, "time_step": lattice.time_step},
     }
-    case = loads(tomli_w.dumps(tables), (SCHEMA,), Path(), "endless")
-    return as_kind(case, BarCase, "is no bar")
+    case = as_kind(loads(tomli_w.dumps(tables), (SCHEMA,), Path(), "endless"), BarCase, "is no bar")
+    if lattice.horizon == 1:
+        return case
+    shares = lattice.shares or usual_shares(lattice.horizon)
+    return replace(case, method=_Bonded(type="peridynamics", horizon=lattice.horizon, shares=shares))
 
 
 def write_table(rows: Sequence[Lattice], path: Path) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.bar.facts import cells_of_waves
+from dembound.bar.scene import build_bar
 from dembound.bar.warnings import bar_warnings, ends_too_soon, stress_beside_strength
 from dembound.exact.bar import triangle_spall
 
@@ -21,16 +22,16 @@ def of_key(key: str, warnings: list[str]) -> list[str]:
 
 
 def test_a_bar_that_spalls_is_not_warned_of(spalling) -> None:
-    assert bar_warnings(spalling(EXACT), 2.5e-5) == []
+    assert bar_warnings(build_bar(spalling(EXACT)), 2.5e-5) == []
 
 
 @pytest.mark.parametrize(("share", "warned"), [(0.99, True), (1.01, False)])
 def test_waves_too_short_for_the_nodes_are_warned_of(spalling, share: float, warned: bool) -> None:
-    _, needed = cells_of_waves(spalling(), 0.8 * 2.5e-5)["hit"]
+    _, needed = cells_of_waves(build_bar(spalling()), 0.8 * 2.5e-5)["hit"]
     half = 0.5 * 5.363 * share * needed * 2.5e-5  # 5.363 is what 5.36 comes to for an even triangle
     case = spalling({**UNBROKEN, "wave.hit.rise": half, "wave.hit.fall": half, "run.courant": 0.8})
 
-    warnings = bar_warnings(case, 0.8 * 2.5e-5)
+    warnings = bar_warnings(build_bar(case), 0.8 * 2.5e-5)
     assert [warning.split(":")[0] for warning in warnings] == warned * ["wave.hit"]
     if warned:
         assert f"fewer than the {needed:.3g}" in warnings[0]
@@ -43,7 +44,7 @@ def test_only_waves_in_use_can_be_too_short(spalling) -> None:
     ends = {"boundary.left": entrance, "method.corrected_ends": True}
     case = spalling({**LONG, **ends, "wave.in": short, "wave.spare": short})
 
-    warnings = bar_warnings(case, 2e-5)
+    warnings = bar_warnings(build_bar(case), 2e-5)
     assert len([warning for warning in warnings if "cells" in warning]) == 1
     assert {warning.split(":")[0] for warning in warnings} == {"wave.in"}
 
@@ -56,7 +57,7 @@ def test_only_a_horizon_can_be_made_smaller(spalling) -> None:
         {"type": "patch", "horizon": 3},
     ):
         case = spalling({"method": method, "wave.hit.rise": 1e-6, "wave.hit.fall": 1e-6})
-        (warning,) = [each for each in bar_warnings(case, 1e-7) if "cells" in each]
+        (warning,) = [each for each in bar_warnings(build_bar(case), 1e-7) if "cells" in each]
         assert warning.endswith("take a smaller bar.spacing")
 
 
@@ -76,12 +77,12 @@ def test_dashpots_at_soft_ends_are_warned_of(spalling, method: dict, warned: boo
     ends = {"left": {"type": "viscous_input", "wave_p": "hit"}, "right": {"type": "viscous"}}
     case = spalling({**UNBROKEN, "method": method, "boundary": ends, **LONG})
 
-    warnings = bar_warnings(case, 2e-5)
+    warnings = bar_warnings(build_bar(case), 2e-5)
     assert [warning.split(":")[0] for warning in warnings] == warned * ["boundary.left", "boundary.right"]
     assert all(warning.endswith("give method.corrected_ends = true") for warning in warnings)
     # without dashpots nothing has to be absorbed
     ends = {"left": {"type": "fixed"}, "right": {"type": "free"}}
-    assert bar_warnings(spalling({"method": method, "boundary": ends, "load": []}), 2e-5) == []
+    assert bar_warnings(build_bar(spalling({"method": method, "boundary": ends, "load": []})), 2e-5) == []
 
 
 @pytest.mark.parametrize(("unit", "warned"), [(1.0, False), (1e6, True)])
@@ -96,28 +97,28 @@ def test_a_record_in_microseconds_is_warned_of(spalling, tmp_path, unit: float, 
         "wave.hit: reaches 1.4e-05 % of its peak, which comes at 500 s, within the run of 0.0015 s; "
         "are all times in s and lengths in m?"
     )
-    assert bar_warnings(case, 2.5e-5) == warned * [said]
+    assert bar_warnings(build_bar(case), 2.5e-5) == warned * [said]
 
 
 def test_a_wave_is_compared_with_the_way_along_the_bar(spalling) -> None:
     # 1 m at 1000 m/s; a period of 0.11 s
     slow = {"wave.hit.rise": 0.1, "wave.hit.fall": 0.01, "run.duration": 0.2}
     said = "wave.hit: has a period of 0.11 s, 110 times its way through the scene, 0.001 s"
-    assert [warning[: len(said)] for warning in bar_warnings(spalling(slow), 2.5e-5)] == [said]
+    assert [warning[: len(said)] for warning in bar_warnings(build_bar(spalling(slow)), 2.5e-5)] == [said]
 
 
 @pytest.mark.parametrize(("pressure", "said"), [(808.0, None), (-792.0, "792 Pa, 0.0099 % of")])
 def test_a_weak_load_beside_the_strength(spalling, pressure: float, said: str | None) -> None:
     load = {"name": "blow", "pressure": pressure, "wave": "hit"}
     expected = [] if said is None else [f"load.blow: its pressure is {said} bar.strength, 8e+06 Pa: Pa and MPa?"]
-    assert of_key("load.blow", bar_warnings(spalling({"load": [load]}), 2.5e-5)) == expected
+    assert of_key("load.blow", bar_warnings(build_bar(spalling({"load": [load]})), 2.5e-5)) == expected
 
 
 @pytest.mark.parametrize(("pressure", "warned"), [(7.92e9, False), (8.08e9, True)])
 def test_a_load_far_beyond_the_strength(spalling, pressure: float, warned: bool) -> None:
     load = {"name": "blow", "pressure": pressure, "wave": "hit"}
     said = "load.blow: its pressure is 8.08e+09 Pa, 1,010 times bar.strength, 8e+06 Pa: Pa and MPa?"
-    assert bar_warnings(spalling({**EXACT, "load": [load]}), 2.5e-5) == warned * [said]
+    assert bar_warnings(build_bar(spalling({**EXACT, "load": [load]})), 2.5e-5) == warned * [said]
 
 
 def test_waves_at_ends_beside_the_strength(spalling) -> None:
@@ -133,7 +134,7 @@ def test_waves_at_ends_beside_the_strength(spalling) -> None:
 
 def test_a_bar_that_cannot_break_has_no_strength_to_compare_with(spalling) -> None:
     load = {"name": "blow", "pressure": 1e-9, "wave": "hit"}
-    assert bar_warnings(spalling({**UNBROKEN, **EXACT, "load": [load], "run.duration": 1e-3}), 2.5e-5) == []
+    assert bar_warnings(build_bar(spalling({**UNBROKEN, **EXACT, "load": [load], "run.duration": 1e-3})), 2.5e-5) == []
 
 
 def ends_at(duration: float, changes: dict | None = None):

@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 from dembound.exact import Lattice, cells_per_wavelength, courant_limit
+from dembound.exact.dispersion import usual_shares
 
 HORIZONS = [1, 2, 3, 4, 5, 8, 10]
 
@@ -146,6 +147,32 @@ def test_small_errors_follow_the_leading_term(horizon: int, of, times: float) ->
     assert cells_per_wavelength(horizon, courant, error, of) == pytest.approx(expected, rel=12.0 * error)
 
 
+@pytest.mark.parametrize("horizon", HORIZONS)
+def test_shares_of_the_usual_bonds_make_no_difference(horizon: int) -> None:
+    shares = usual_shares(horizon)
+    courant = 0.9 * courant_limit(horizon)
+    usual, given = lattice(horizon, courant), Lattice(horizon, 1.0, courant, 1.0, shares)
+    phase = np.linspace(0.0, 3.1, 200)
+
+    # sums of m terms of order 1; of the group velocity the closed form vanishes where the sum has its rounding
+    np.testing.assert_allclose(given.frequency(phase), usual.frequency(phase), rtol=1e-13 * horizon)
+    np.testing.assert_allclose(given.group_velocity(phase), usual.group_velocity(phase), atol=1e-13 * horizon)
+    assert given.courant_limit == pytest.approx(courant_limit(horizon), rel=1e-12)
+    assert cells_per_wavelength(horizon, courant, shares=shares) == pytest.approx(
+        cells_per_wavelength(horizon, courant), rel=1e-10
+    )
+
+
+def test_bonds_of_two_spacings_alone_are_a_bar_of_twice_the_spacing() -> None:
+    double, single = Lattice(2, 1.0, 1.5, 1.0, (0.0, 1.0)), Lattice(1, 2.0, 1.5, 1.0)
+    wavenumber = np.linspace(0.0, 1.5, 50)
+
+    # its waves of four spacings are the first to grow, not those of two
+    assert double.courant_limit == pytest.approx(2.0, rel=1e-12)
+    np.testing.assert_allclose(double.frequency(wavenumber), single.frequency(wavenumber), rtol=1e-14)
+    np.testing.assert_allclose(double.group_velocity(wavenumber), single.group_velocity(wavenumber), rtol=1e-12)
+
+
 @pytest.mark.parametrize("of", ["phase", "group"])
 def test_a_bar_without_error_needs_two_cells(of) -> None:
     assert cells_per_wavelength(1, 1.0, of=of) == 2.0
@@ -155,6 +182,9 @@ def test_what_makes_no_sense_is_refused() -> None:
     for numbers in ((0, 1.0, 1.0, 1.0), (1, 0.0, 1.0, 1.0), (1, 1.0, -1.0, 1.0), (1, 1.0, 1.0, np.inf)):
         with pytest.raises(ValueError, match="must"):
             Lattice(*numbers)
+    for shares in ((1.0,), (0.4, 0.5)):
+        with pytest.raises(ValueError, match="shares"):
+            Lattice(2, 1.0, 1.0, 1.0, shares)
     with pytest.raises(ValueError, match=r"Courant number \(1.01\) must not be above 1"):
         cells_per_wavelength(1, 1.01)
     with pytest.raises(ValueError, match="error"):

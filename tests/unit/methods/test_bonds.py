@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from dembound.exact.dispersion import usual_shares
 from dembound.methods.bonds import Bonds, Rod
 
 EPS = np.finfo(float).eps
@@ -55,6 +56,25 @@ def test_bonds_are_those_of_the_law(horizon: int) -> None:
         halves[[0, -1]] = 0.5
         np.testing.assert_allclose(rows[p - 1, : COUNT - p], stiffness * halves, rtol=8 * EPS)
         assert not rows[p - 1, COUNT - p :].any()
+
+
+@pytest.mark.parametrize("horizon", [1, 3, 4])
+def test_another_micromodulus_leaves_youngs_modulus(horizon: int) -> None:
+    influence = 1.0 - np.arange(1, horizon + 1) / (horizon + 1.0)  # of a cone
+    bonds = zoned(horizon, (0, COUNT), complement=False, influence=influence)
+
+    np.testing.assert_allclose(stress(bonds)[horizon:-horizon], 1.0, rtol=32 * EPS)
+    usual = ROD.bond_rows(horizon)[:, 20]
+    np.testing.assert_allclose(bonds.bond[:, 20] / usual, influence * bonds.bond[0, 20] / usual[0] / influence[0])
+
+
+@pytest.mark.parametrize("horizon", [1, 2, 3, 5])
+def test_shares_of_the_stress_are_those_of_the_middle(horizon: int) -> None:
+    everywhere, at_the_end = zoned(horizon, (0, COUNT)), zoned(horizon, (0, horizon + 3))
+
+    np.testing.assert_allclose(everywhere.shares, usual_shares(horizon), rtol=32 * EPS)
+    assert sum(everywhere.shares) == pytest.approx(1.0, rel=32 * EPS)
+    assert at_the_end.shares == Bonds(ROD, 0).shares == (1.0,)
 
 
 def test_without_a_horizon_there_are_springs_alone() -> None:
