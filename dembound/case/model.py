@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
-from dembound.boundaries import BoundaryTable, Free, Motion
+from dembound.boundaries import Boundary, Free, Motion
 from dembound.case.output import Output
 from dembound.case.run import Run
 from dembound.errors import CaseError
-from dembound.waves import WaveTable
+from dembound.waves import Wave
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,8 +31,8 @@ class Case:
     """
 
     title: str
-    boundary: Mapping[str, BoundaryTable]
-    wave: Mapping[str, WaveTable]
+    boundary: Mapping[str, Boundary]
+    wave: Mapping[str, Wave]
     load: tuple[Any, ...]
     monitor: tuple[Any, ...]
     run: Run
@@ -41,7 +41,7 @@ class Case:
     text: str = field(compare=False, repr=False)
     folder: Path = field(compare=False)
 
-    def side(self, name: str) -> BoundaryTable:
+    def side(self, name: str) -> Boundary:
         """The table of a side; one that is absent is free."""
         return self.boundary.get(name, FREE)
 

@@ -8,7 +8,7 @@ from pydantic import TypeAdapter
 
 from dembound.boundaries import SIDES
 from dembound.case.model import Case
-from dembound.waves import WaveTable
+from dembound.case.types import WaveTable
 
 Tables = Mapping[str, Any]
 """The tables of a case by name; one that is invalid is None."""

@@ -13,8 +13,9 @@ from scipy.sparse import coo_matrix, csc_matrix, diags
 from scipy.sparse.linalg import splu
 
 from dembound.case.disks.material import Material
+from dembound.case.types import LAWS
 from dembound.errors import CaseError
-from dembound.laws import LAWS, Law, Moduli, Stiffness, lattice_moduli
+from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
 from dembound.packings.brick import Brick
 
 GRADIENTS = ("xx", "yy", "xy", "yx")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from dembound.case.disks import SCHEMA, STARTER, DiskCase
+from dembound.case.types import LAWS
 from dembound.disks.facts import disk_facts
 from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
 from dembound.disks.outcome import disk_outcome
@@ -18,7 +19,6 @@ from dembound.disks.static import Settled, settle
 from dembound.disks.summary import asked_stress, describe_static, summarise_disks
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
-from dembound.laws import LAWS
 from dembound.motion.kind import Beginning, Kind, OnLook, Stage
 from dembound.motion.trackers import Run
 from dembound.plot.field import FieldName

@@ -3,10 +3,10 @@
 import numpy as np
 
 from dembound.case.disks.material import Material
+from dembound.case.types import LAWS
 from dembound.disks.ground import Ground
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
 from dembound.kernels.tables import Limits
-from dembound.laws import LAWS
 
 
 def limits_of(material: Material) -> Limits:

@@ -13,10 +13,10 @@ import numpy as np
 from dembound import __version__
 from dembound.case.disks import DiskCase
 from dembound.case.disks.load import Load
+from dembound.case.types import LAWS
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
-from dembound.laws import LAWS
 from dembound.results.reader import replacing
 
 ISOTROPY = 1e-6

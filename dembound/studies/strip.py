@@ -10,9 +10,9 @@ import numpy as np
 
 from dembound.boundaries import OPPOSITE, Motion, Periodic, Velocity, normal_axis
 from dembound.case.disks import DiskCase
+from dembound.case.types import LAWS
 from dembound.disks.scene import ground_of
 from dembound.errors import CaseError
-from dembound.laws import LAWS
 from dembound.waves import Cosine
 
 PULSE = "calibration"

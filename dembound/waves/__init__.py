@@ -1,12 +1,8 @@
 """Waves: named velocity histories that drive sides, or time factors of loads, one type a file.
 
-A new type is one file and its class's name in the list below; another package registers its own under the entry point
-group ``dembound.waves``.
+A new type is one file and its class's name in `TYPES`; another package registers its own, see case/types.py.
 """
 
-from typing import TYPE_CHECKING
-
-from dembound.table import one_of, with_registered
 from dembound.waves.constant import Constant
 from dembound.waves.cosine import Cosine
 from dembound.waves.record import Record
@@ -16,13 +12,8 @@ from dembound.waves.spline import CubicSpline
 from dembound.waves.triangle import Triangle
 from dembound.waves.wave import Wave
 
-TYPES = with_registered("dembound.waves", Wave, (Cosine, CubicSpline, Triangle, Ricker, SineBurst, Constant, Record))
+TYPES = (Cosine, CubicSpline, Triangle, Ricker, SineBurst, Constant, Record)
 """All types of waves."""
-
-if TYPE_CHECKING:
-    WaveTable = Wave
-else:
-    WaveTable = one_of("type", TYPES)
 
 __all__ = [
     "TYPES",
@@ -34,5 +25,4 @@ __all__ = [
     "SineBurst",
     "Triangle",
     "Wave",
-    "WaveTable",
 ]

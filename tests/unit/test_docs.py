@@ -6,7 +6,6 @@ from typing import get_args
 import pytest
 
 from dembound import errors
-from dembound.boundaries import BarEndTable, BoundaryTable
 from dembound.case.bar.bar import Bar
 from dembound.case.bar.load import BarLoad
 from dembound.case.bar.monitor import BarMonitor
@@ -15,17 +14,14 @@ from dembound.case.disks.load import Load
 from dembound.case.disks.material import Material
 from dembound.case.disks.monitor import Monitor
 from dembound.case.disks.motion import Motion
-from dembound.case.disks.static import Static, StaticSide
+from dembound.case.disks.static import Static
 from dembound.case.output import Output
 from dembound.case.run import Run
+from dembound.case.types import BarEndTable, BoundaryTable, HoleTable, MethodTable, PackingTable, StaticSide, WaveTable
 from dembound.cli.app import EXIT_CODES
 from dembound.exact import cells_per_wavelength, courant_limit
-from dembound.holes import HoleTable
 from dembound.kinds import load
-from dembound.methods import MethodTable
-from dembound.packings import PackingTable
 from dembound.run import SECTIONS
-from dembound.waves import WaveTable
 
 ROOT = Path(__file__).parents[2]
 REFERENCE = ROOT / "docs" / "case_file.md"

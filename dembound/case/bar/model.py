@@ -7,7 +7,7 @@ from dembound.case.bar.load import BarLoad
 from dembound.case.bar.monitor import BarMonitor
 from dembound.case.bar.run import BarRun
 from dembound.case.model import Case
-from dembound.methods import MethodTable
+from dembound.methods import Method
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,7 +20,7 @@ class BarCase(Case):
     """
 
     bar: Bar
-    method: MethodTable
+    method: Method
     load: tuple[BarLoad, ...]
     monitor: tuple[BarMonitor, ...]
     run: BarRun

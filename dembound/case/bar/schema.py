@@ -2,7 +2,6 @@
 
 from pydantic import TypeAdapter
 
-from dembound.boundaries import BarEndTable
 from dembound.case.bar.bar import Bar
 from dembound.case.bar.load import BarLoad
 from dembound.case.bar.model import BarCase
@@ -11,7 +10,7 @@ from dembound.case.bar.problems import bar_problems
 from dembound.case.bar.run import BarRun
 from dembound.case.output import Output
 from dembound.case.schema import Schema
-from dembound.methods import MethodTable
+from dembound.case.types import BarEndTable, MethodTable
 
 SCHEMA = Schema(
     case=BarCase,

@@ -13,7 +13,7 @@ def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
     """Check the holes; a table or an entry that is invalid on its own is None. has_static: whether there is a stage."""
     for place, hole in numbered("hole", tables["hole"]):
         if tables["packing"]:
-            yield from _outside(place, hole, tables["packing"].size)
+            yield from _outside(place, hole, tables["packing"].extent)
         if hole.stage == "after" and not has_static:
             yield f'{place}.stage: is "after", but the case has no [static] stage to come after'
         for key in ("load", "monitor"):

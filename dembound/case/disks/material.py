@@ -1,10 +1,10 @@
 """The ``[material]`` table."""
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from pydantic import model_validator
 
-from dembound.laws import LAWS
+from dembound.case.types import LAWS, LawName
 from dembound.table import Table, quantity
 
 WAVE_SPEED_KEYS = ("match", "contact_share")
@@ -12,11 +12,6 @@ MODULI_KEYS = ("emod", "pb_emod")
 STRENGTH_KEYS = ("pb_ten", "pb_coh")
 HISTORY_KEYS = (*STRENGTH_KEYS, "pb_fa", "locked_in", "geometry", "elastic_start")
 """Keys of history-dependent laws."""
-
-if TYPE_CHECKING:
-    LawName = str
-else:
-    LawName = Literal[tuple(LAWS)]
 
 
 class Material(Table):

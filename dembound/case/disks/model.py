@@ -8,8 +8,8 @@ from dembound.case.disks.monitor import Monitor
 from dembound.case.disks.motion import Motion
 from dembound.case.disks.static import Static
 from dembound.case.model import Case
-from dembound.holes import HoleTable
-from dembound.packings import PackingTable
+from dembound.holes import Hole
+from dembound.packings import Packing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,10 +23,10 @@ class DiskCase(Case):
     hole : in the order of the file.
     """
 
-    packing: PackingTable
+    packing: Packing
     material: Material
     motion: Motion
     static: Static | None
-    hole: tuple[HoleTable, ...]
+    hole: tuple[Hole, ...]
     load: tuple[Load, ...]
     monitor: tuple[Monitor, ...]

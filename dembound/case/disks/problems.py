@@ -11,7 +11,7 @@ from dembound.case.disks.monitor import Monitor
 from dembound.case.disks.motion import Motion
 from dembound.case.disks.static_problems import static_problems
 from dembound.case.sentences import numbered, show
-from dembound.packings import PackingTable
+from dembound.packings import Packing
 
 
 def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Iterator[str]:
@@ -53,7 +53,7 @@ def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[s
                 yield f"{place}.{load.key}: acts along {'xy'[axis]}, which motion.held holds for every particle"
 
 
-def _nothing_to_pack_with(material: Material, packing: PackingTable) -> Iterator[str]:
+def _nothing_to_pack_with(material: Material, packing: Packing) -> Iterator[str]:
     """Contacts without stiffness, asked to hold a packing under stress."""
     key = "contact_share" if material.emod is None else "emod"
     if packing.packed_under_stress and getattr(material, key) == 0.0:

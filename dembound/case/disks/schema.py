@@ -2,19 +2,17 @@
 
 from pydantic import TypeAdapter
 
-from dembound.boundaries import BoundaryTable
 from dembound.case.disks.load import Load
 from dembound.case.disks.material import Material
 from dembound.case.disks.model import DiskCase
 from dembound.case.disks.monitor import Monitor
 from dembound.case.disks.motion import Motion
 from dembound.case.disks.problems import problems_between
-from dembound.case.disks.static import Static, StaticSide
+from dembound.case.disks.static import Static
 from dembound.case.output import Output
 from dembound.case.run import Run
 from dembound.case.schema import Schema
-from dembound.holes import HoleTable
-from dembound.packings import PackingTable
+from dembound.case.types import BoundaryTable, HoleTable, PackingTable, StaticSide
 
 SCHEMA = Schema(
     case=DiskCase,

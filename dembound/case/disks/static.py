@@ -1,15 +1,9 @@
 """The ``[static]`` table and the tables of its sides."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-from dembound.boundaries import TYPES, Boundary
-from dembound.table import Table, one_of, quantity
-
-if TYPE_CHECKING:
-    StaticSide = Boundary
-else:
-    StaticSide = one_of("type", [table for table in TYPES if table.for_static])
+from dembound.case.types import StaticSide
+from dembound.table import Table, quantity
 
 
 class Static(Table):

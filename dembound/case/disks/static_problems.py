@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from dembound.boundaries import SIDES, BoundaryTable, normal_axis
+from dembound.boundaries import SIDES, Boundary, normal_axis
 from dembound.case.disks.load import Load
 from dembound.case.disks.material import Material
 from dembound.case.disks.motion import Motion
 from dembound.case.disks.static import Static
 from dembound.case.sentences import numbered
 
-Sides = Mapping[str, BoundaryTable | None]
+Sides = Mapping[str, Boundary | None]
 
 
 def static_problems(

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from dembound.laws import LAWS, Elastic, Moduli, Stiffness
+from dembound.case.types import LAWS
+from dembound.laws import Elastic, Moduli, Stiffness
 
 ROUNDING = 1e-14
 """Relative: a handful of operations of 1.1e-16 each."""

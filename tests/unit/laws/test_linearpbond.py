@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.laws import LAWS, Moduli
+from dembound.case.types import LAWS
+from dembound.laws import Moduli
 
 MODULI = Moduli(emod=6e9, pb_emod=3e9, kratio=2.0, pb_kratio=3.0, pb_rmul=0.5, fric=0.4)
 RADII = np.array([0.2, 0.2, 0.2]), np.array([0.4, 0.4, 0.4])

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
+from dembound.case.types import PackingTable
 from dembound.errors import CaseError
-from dembound.packings import EdgedBrick, PackingTable, RandomBrick, Square
+from dembound.packings import EdgedBrick, RandomBrick, Square
 from dembound.packings import random_brick as random_module
 
 B = {"pattern": "B", "size": [20.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [10.0, 10.0]}

@@ -1,0 +1,36 @@
+"""All types that tables of a case file may be of: the package's own and those that other packages register.
+
+Another package names its types under the entry point groups below; each module of it may import from the packages of
+the same names and from `dembound.table`.
+"""
+
+from typing import TYPE_CHECKING, Literal
+
+from dembound import boundaries, holes, laws, methods, packings, waves
+from dembound.boundaries import Boundary
+from dembound.holes import Hole
+from dembound.laws import Law
+from dembound.methods import Method
+from dembound.packings import Packing
+from dembound.table import one_of, with_registered
+from dembound.waves import Wave
+
+BOUNDARIES = with_registered("dembound.boundaries", Boundary, boundaries.TYPES)
+HOLES = with_registered("dembound.holes", Hole, holes.TYPES)
+METHODS = with_registered("dembound.methods", Method, methods.TYPES)
+PACKINGS = with_registered("dembound.packings", Packing, packings.TYPES)
+WAVES = with_registered("dembound.waves", Wave, waves.TYPES)
+
+LAWS: dict[str, Law] = {law.name: law() for law in with_registered("dembound.laws", Law, laws.TYPES)}
+"""Name in a case file -> law."""
+
+BoundaryTable, HoleTable, MethodTable = one_of("type", BOUNDARIES), one_of("type", HOLES), one_of("type", METHODS)
+PackingTable, WaveTable = one_of("pattern", PACKINGS), one_of("type", WAVES)
+BarEndTable = one_of("type", [table for table in BOUNDARIES if table.for_bars])
+
+if TYPE_CHECKING:
+    StaticSide = Boundary
+    LawName = str
+else:
+    StaticSide = one_of("type", [table for table in BOUNDARIES if table.for_static])
+    LawName = Literal[tuple(LAWS)]

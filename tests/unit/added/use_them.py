@@ -1,0 +1,129 @@
+"""Run cases of the added types, in a process that has found them installed; prints what comes out as JSON."""
+
+import json
+import sys
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+with warnings.catch_warnings(record=True) as said:
+    warnings.simplefilter("always")
+    import dembound.kinds as kinds
+
+from dembound.bar.facts import cells_of_waves
+from dembound.case.types import BOUNDARIES
+from dembound.errors import CaseError
+from dembound.motion.energy import Ledger
+from dembound.motion.simulation import Simulation
+from dembound.run import plan
+from dembound.studies.calibration import calibrate
+from dembound.studies.dispersion import lattices_of, measure
+
+GROUND = """
+[packing]
+pattern = "A"
+size = [20.0, 5.0]
+radius = 0.25
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+law = "linear"
+[boundary.left]
+type = "other_input"
+wave_s = "bell"
+[boundary.right]
+type = "viscous"
+[wave.bell]
+type = "gauss"
+amplitude = 0.5
+width = 0.004
+[run]
+duration = 0.03
+"""
+BAR = """
+[bar]
+length = 1.0
+spacing = 0.01
+density = 2500.0
+wave_speed = 2000.0
+[method]
+type = "cone"
+horizon = 3
+[boundary.left]
+type = "velocity"
+wave_p = "bell"
+[wave.bell]
+type = "gauss"
+amplitude = 0.5
+width = 2e-5
+[run]
+duration = 1e-4
+"""
+
+
+def case(text: str, **changes: object):
+    """A case, changed."""
+    made = kinds.loads(text)
+    return kinds.with_changes(made, changes) if changes else made
+
+
+def stepped(made) -> dict:
+    """Steps of a case, and how well its books close."""
+    planned = plan(made)
+    run = Simulation(planned.scene, planned.time_step)
+    ledger = Ledger(run, 1)
+    run.track(ledger)
+    run.run(200)
+    largest = max(entry.kinetic for entry in ledger.entries)
+    stored = planned.scene.ground.stiffness
+    return {
+        "law": run.state.laws,
+        "count": planned.scene.count,
+        "error": max(abs(entry.error) for entry in ledger.entries) / largest,
+        "rotation": float(np.abs(run.state.velocity[2]).max()),
+        "bending": float(stored.bending.max()),
+        "extent": planned.scene.size.tolist(),
+        "stiffness": planned.scene.ground.material_tensor.tolist(),
+    }
+
+
+def refusal(text: str, **changes: object) -> list[str]:
+    """The mistakes of a case."""
+    try:
+        case(text, **changes)
+    except CaseError as error:
+        return list(error.problems)
+    return []
+
+
+shaft = {"type": "diamond", "name": "shaft", "centre": [12.0, 2.5], "half": 1.2}
+periodic = {"type": "periodic"}
+strip = {"boundary.bottom": periodic, "boundary.top": periodic, "packing.size": [20.0, 2.0], "motion.held": ["x"]}
+sent = case(GROUND, **strip, **{"boundary.left.beta_s": 0.9})
+hexagons = {"packing.pattern": "hexagonal", "material.law": "elastic"}
+full = calibrate(sent, "right", full=True)
+lattices = lattices_of(case(BAR))
+wavenumbers = lattices[0].shortest * np.array([0.2, 0.5, 0.9])
+bar = plan(case(BAR)).scene
+json.dump(
+    {
+        "types": [table.__name__ for table in BOUNDARIES],
+        "warnings": [str(each.message) for each in said],
+        "linear": stepped(case(GROUND, hole=[shaft])),
+        "hexagonal": stepped(case(GROUND, **hexagons, **{"packing.size": [5.0, 5.19615]})),
+        "counted": stepped(case(GROUND.replace("size = [20.0, 5.0]", "bricks = [8, 3]"), **hexagons)),
+        "not whole": refusal(GROUND, **hexagons),
+        "half cells": refusal(GROUND, **hexagons, **{"packing.size": [5.0, 5.19615], "boundary.right.half_mass": True}),
+        "unknown": refusal(GROUND, **{"boundary.left.type": "quarter_input"}),
+        "across": refusal(GROUND, **{"motion.held": ["y"]}),
+        "calibrated": [full.kind, full.result, full.ratio[-1]],
+        "let in": calibrate(sent, "left").kind,
+        "frequencies": measure(lattices[0], wavenumbers).tolist(),
+        "formula": lattices[0].frequency(wavenumbers).tolist(),
+        "usual": replace(lattices[0], shares=None).frequency(wavenumbers).tolist(),
+        "limit": [bar.step_limit(), lattices[0].courant_limit * lattices[0].spacing / 2000.0],
+        "cells": cells_of_waves(bar, 1e-7)["bell"][1],
+    },
+    sys.stdout,
+)
