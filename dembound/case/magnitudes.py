@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from dembound.case import Case
-from dembound.waves import Constant, Record, Wave
+from dembound.waves import Wave
 
 FAR = 1000.0
 """Ratio of two times from which on one of them is probably in another unit.
@@ -58,7 +58,7 @@ def time_warnings(case: Case, time_step: float, travel: float) -> Iterator[str]:
 
 def _too_long(wave: Wave, duration: float, travel: float) -> Iterator[str]:
     """In which respect a wave is far too long; times in s."""
-    length, period = wave.duration() - wave.start, period_of(wave)
+    length, period = wave.duration() - wave.start, wave.dominant_period()
     reached = _share_reached(wave, duration)
     if reached < SMALL_PART:
         yield (
@@ -67,28 +67,22 @@ def _too_long(wave: Wave, duration: float, travel: float) -> Iterator[str]:
         )
     if FAR * duration < length < math.inf:
         yield f"lasts {length:g} s, {length / duration:,.0f} times the run of {duration:g} s"
-    if period > SLOW * travel and not isinstance(wave, Constant):  # a slow grip strains a body evenly
+    if period > SLOW * travel and not wave.stays:  # a slow grip strains a body evenly
         yield f"has a period of {period:g} s, {period / travel:,.0f} times its way through the scene, {travel:.3g} s"
 
 
 def _too_short(wave: Wave, duration: float, time_step: float, travel: float) -> Iterator[str]:
     """In which respect a wave is far too short; times in s. A constant is not: a short rise is a sudden load."""
-    if isinstance(wave, Constant):
+    if wave.stays:
         return
     length = wave.duration() - wave.start
-    period = length if isinstance(wave, Record) else period_of(wave)
+    period = wave.time_scale()
     if period < FEWEST_STEPS * time_step:
         yield f"has a period of {period:g} s, {period / time_step:.2g} time steps of {time_step:.4g} s"
     if FAR * length < duration:
         yield f"lasts {length:g} s, and the run of {duration:g} s is {duration / length:,.0f} times as long"
     if FAR * period < travel:
         yield f"has a period of {period:g} s, 1/{travel / period:,.0f} of its way through the scene, {travel:.3g} s"
-
-
-def period_of(wave: Wave) -> float:
-    """One over a wave's dominant frequency, s; 0 for a step."""
-    frequency = wave.dominant_frequency()
-    return 1.0 / frequency if frequency > 0.0 else math.inf
 
 
 def _share_reached(wave: Wave, duration: float) -> float:

@@ -1,6 +1,5 @@
 """Cases made from other cases: the same TOML with some keys changed."""
 
-import os
 import tomllib
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
@@ -14,7 +13,6 @@ from dembound.case.reader import loads
 from dembound.case.schema import Schema
 from dembound.case.sentences import unknown
 from dembound.errors import CaseError
-from dembound.waves import Record
 
 
 def with_changes(case: Case, changes: Mapping[str, Any], schemas: Sequence[Schema]) -> Case:
@@ -45,9 +43,7 @@ def to_toml(case: Case, folder: Path | None = None) -> str:
     """
     here, there = case.folder.resolve(), (folder or case.folder).resolve()
     moved = {
-        f"wave.{name}.path": Path(os.path.relpath(here / wave.path, there)).as_posix()
-        for name, wave in case.wave.items()
-        if isinstance(wave, Record) and not Path(wave.path).is_absolute() and here != there
+        f"wave.{name}.{key}": path for name, wave in case.wave.items() for key, path in wave.moved(here, there).items()
     }
     return _changed(case.text, moved) if moved else case.text
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import h5py
 import numpy as np
 
-from dembound.case.magnitudes import period_of, waves_used
+from dembound.case.magnitudes import waves_used
 from dembound.motion.scene import Scene
 
 MOVING = 0.2
@@ -38,7 +38,7 @@ def still_moving(scene: Scene, duration: float, file: h5py.File, pieces: np.ndar
         if scene.monitors[name] in braked and name in scene.places
     }
     peaks = {name: float(np.abs(velocity).max()) for name, velocity in histories.items()}
-    period = max((period_of(scene.case.wave[name]) for name in waves_used(scene.case)), default=0.0)
+    period = max((scene.case.wave[name].dominant_period() for name in waves_used(scene.case)), default=0.0)
     lately = max(LATELY, min(0.5, 0.5 * period / duration))
     moving = {}
     for name, velocity in histories.items():

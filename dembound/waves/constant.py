@@ -1,7 +1,7 @@
 """A velocity that is switched on and stays."""
 
 import math
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -15,6 +15,8 @@ class Constant(Shape):
 
     The ramp's acceleration is one Hann lobe, so velocity and acceleration are continuous. rise = 0 is a step.
     """
+
+    stays: ClassVar[bool] = True
 
     type: Literal["constant"]
     rise: float = quantity(0.0, unit="s", help="length of the smooth ramp to the full velocity", ge=0.0)

@@ -1,5 +1,6 @@
 """A measured or computed velocity history, read from a text file."""
 
+import os
 import warnings
 from pathlib import Path
 from typing import Literal
@@ -66,6 +67,16 @@ class Record(Wave):
     def duration(self) -> float:
         """Time from which the wave is over, s: that of the last line."""
         return self.start + self._times[-1]
+
+    def time_scale(self) -> float:
+        """Its length: single samples may vary much faster."""
+        return self.duration() - self.start
+
+    def moved(self, here: Path, there: Path) -> dict[str, str]:
+        """The file's relative path."""
+        if Path(self.path).is_absolute() or here == there:
+            return {}
+        return {"path": Path(os.path.relpath(here / self.path, there)).as_posix()}
 
     def dominant_frequency(self) -> float:
         """Frequency at which the *acceleration's* amplitude spectrum is largest, Hz.

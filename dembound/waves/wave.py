@@ -1,7 +1,9 @@
 """What every wave can answer, and what the waves given by a formula have in common."""
 
+import math
 from abc import ABC, abstractmethod
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import AfterValidator
@@ -23,7 +25,13 @@ class Wave(Table, ABC):
     """A velocity history that is at rest before `start` and known at every time.
 
     As the factor of a load its values are pure numbers.
+
+    Attributes
+    ----------
+    stays : whether the velocity, once it is there, stays for good.
     """
+
+    stays: ClassVar[bool] = False
 
     type: str
     start: float = quantity(0.0, unit="s", help="time at which the wave begins", ge=0.0)
@@ -59,6 +67,19 @@ class Wave(Table, ABC):
         It is what particle spacing and time step have to carry. The spectrum is the velocity's unless the
         type says otherwise.
         """
+
+    def dominant_period(self) -> float:
+        """One over the dominant frequency, s; 0 for a step, infinite where nothing oscillates."""
+        frequency = self.dominant_frequency()
+        return 1.0 / frequency if frequency > 0.0 else math.inf
+
+    def time_scale(self) -> float:
+        """Time (s) in which the wave does what it is about; by default its period."""
+        return self.dominant_period()
+
+    def moved(self, here: Path, there: Path) -> dict[str, str]:
+        """Keys that name files relative to the folder `here`, with what they read in `there`; by default none."""
+        return {}
 
 
 class Shape(Wave):

@@ -7,7 +7,7 @@ import pytest
 from pydantic import ValidationError
 
 from dembound.boundaries import (
-    BoundaryTable,
+    Boundary,
     Fixed,
     Free,
     Periodic,
@@ -52,7 +52,7 @@ class Ramp:
 WAVES: Mapping[str, Incident] = {"push": Ramp(1.0), "shake": Ramp(10.0)}
 
 
-def rows(table: BoundaryTable, side: str) -> Supports:
+def rows(table: Boundary, side: str) -> Supports:
     """What a boundary table makes of a side of two particles, 5 and 6."""
     builder = SupportBuilder()
     table.support(Edge(side, np.array([5, 6]), POSITIONS, DIAMETERS, 1.5), MEDIUM, WAVES, builder)
@@ -67,7 +67,7 @@ def column(supports: Supports, name: str, component: int) -> np.ndarray:
 
 @pytest.mark.parametrize("side", ["left", "top"])
 @pytest.mark.parametrize("table", [Free(), Periodic(type="periodic")])
-def test_free_and_periodic_sides_push_nothing(table: BoundaryTable, side: str) -> None:
+def test_free_and_periodic_sides_push_nothing(table: Boundary, side: str) -> None:
     assert len(rows(table, side)) == 0
 
 
