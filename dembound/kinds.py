@@ -32,6 +32,11 @@ def with_changes(case: Case, changes: Mapping[str, Any]) -> Case:
     return writer.with_changes(case, changes, SCHEMAS)
 
 
+def checked(case: Case) -> Case:
+    """The case, its tables checked as if they had been read from a file; errors as `load`."""
+    return case if case.is_checked else loads(case.text, case.folder, case.name)
+
+
 def kind_of(case: Case) -> Kind[Any, Any]:
     """What kind of body a case is of."""
     return next(kind for kind in KINDS if isinstance(case, kind.schema.case))

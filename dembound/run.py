@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.case import Case
 from dembound.errors import CaseError, DemboundError, RunError
-from dembound.kinds import kind_of
+from dembound.kinds import checked, kind_of
 from dembound.motion.clock import Clock
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Beginning, Plan, StalledError
@@ -49,9 +49,11 @@ class Progress:
 def plan(case: Case, clock: Clock | None = None) -> Plan:
     """Build the scene and choose the step; clock counts the time as that of "build".
 
-    Raises PackingError for an impossible brick and CaseError for a load that hits no particle, a material without
+    Raises PackingError for an impossible brick, and CaseError for a case that was not read from a file and would not
+    be accepted there, a load that hits no particle, a material without
     stiffness, a step above the stability limit and one so small that the run would never end.
     """
+    case = checked(case)
     kind = kind_of(case)
     with _about(case), (clock or Clock()).of("build"):
         scene = kind.build(case)

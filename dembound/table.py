@@ -2,7 +2,7 @@
 
 import re
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib.metadata import entry_points
 from typing import Annotated, Any, TypeVar, Union
@@ -16,6 +16,24 @@ class Table(BaseModel):
     """One TOML table. Unknown keys are refused, so a mistyped key never goes unnoticed."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    def given(self) -> dict[str, Any]:
+        """The keys that have been given, as a TOML file has them; what tells types apart always stands there."""
+        keys = [name for name in type(self).model_fields if name in self.model_fields_set | TOLD_APART_BY]
+        return {name: as_toml(getattr(self, name)) for name in keys if getattr(self, name) is not None}
+
+
+TOLD_APART_BY = {"type", "pattern"}
+"""Keys whose literal says of which type a table is."""
+
+
+def as_toml(value: Any) -> Any:
+    """Tables, and tuples or mappings of tables, as dictionaries and lists of what a TOML file holds."""
+    if isinstance(value, Table):
+        return value.given()
+    if isinstance(value, Mapping):
+        return {name: as_toml(inner) for name, inner in value.items()}
+    return [as_toml(inner) for inner in value] if isinstance(value, tuple | list) else value
 
 
 def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:

@@ -57,7 +57,7 @@ def _read(text: str, folder: Path, name: str, source: str, schemas: Sequence[Sch
     tables = reader.read(data)
     if reader.problems:
         raise CaseError(reader.problems, source)
-    return schema.case(**tables, name=name, text=text, folder=folder)
+    return schema.case(**tables, name=name, folder=folder, text=text, checked=tables)
 
 
 def _of_no_kind(schemas: Sequence[Schema]) -> str:

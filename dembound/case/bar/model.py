@@ -21,8 +21,8 @@ class BarCase(Case):
 
     bar: Bar
     method: Method
-    load: tuple[BarLoad, ...]
-    monitor: tuple[BarMonitor, ...]
+    load: tuple[BarLoad, ...] = ()
+    monitor: tuple[BarMonitor, ...] = ()
     run: BarRun
 
     @property

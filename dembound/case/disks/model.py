@@ -1,6 +1,6 @@
 """A case of bonded disks: all tables of one file."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from dembound.case.disks.load import Load
 from dembound.case.disks.material import Material
@@ -25,8 +25,8 @@ class DiskCase(Case):
 
     packing: Packing
     material: Material
-    motion: Motion
-    static: Static | None
-    hole: tuple[Hole, ...]
-    load: tuple[Load, ...]
-    monitor: tuple[Monitor, ...]
+    motion: Motion = field(default_factory=Motion)
+    static: Static | None = None
+    hole: tuple[Hole, ...] = ()
+    load: tuple[Load, ...] = ()
+    monitor: tuple[Monitor, ...] = ()

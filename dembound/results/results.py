@@ -1,0 +1,120 @@
+"""The results of a run as arrays, for Python: the same names as in ``run.h5`` (docs/results.md)."""
+
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.results.reader import energy_of, laws_of, open_record
+
+
+class Arrays(Mapping[str, np.ndarray]):
+    """The datasets of one group of a record, each read when it is asked for.
+
+    Attributes
+    ----------
+    attributes : what else is known of the group, such as ``time`` of a snapshot in s.
+    """
+
+    def __init__(self, record: Path, group: h5py.Group) -> None:
+        self._record, self._group = record, group.name
+        self._names = [name for name, item in group.items() if isinstance(item, h5py.Dataset)]
+        self.attributes: dict[str, Any] = {name: _plain(value) for name, value in group.attrs.items()}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """The array of a name, in SI units; raises KeyError, which names those there are."""
+        if name not in self._names:
+            raise KeyError(f"{self._group} has no {name}; it has {', '.join(self._names)}")
+        with open_record(self._record) as file:
+            return file[self._group][name][:]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __repr__(self) -> str:
+        return f"<{self._group}: {', '.join(self._names)}>"
+
+    def unit(self, name: str) -> str:
+        """The unit of an array."""
+        with open_record(self._record) as file:
+            return str(file[self._group][name].attrs.get("unit", ""))
+
+
+class Results:
+    """A folder of results, such as ``results/quickstart``.
+
+    Parameters
+    ----------
+    folder : the folder, or its ``run.h5``; that of a run that failed, ``<name>.partial``, too.
+
+    Attributes
+    ----------
+    folder : where everything is.
+    attributes : name, kind, time_step, steps, size … of the run, see docs/results.md.
+    particles : reference positions and the like, one row per particle (of a bar, node).
+    histories : of every monitor ``time`` (k,), ``displacement`` and ``velocity`` (k, 3), of a bar ``stress`` (k,).
+    boundaries : of every side its particles and their peak velocities.
+    snapshots : in the order of time: ``displacement``, ``velocity`` (n, 3) and more; ``attributes["time"]`` in s.
+    cracks : ``time``, ``position``, ``particles``, ``shear`` of the bonds that broke.
+
+    Raises CaseError when there is no record that can be read.
+    """
+
+    def __init__(self, folder: Path | str) -> None:
+        path = Path(folder)
+        self._record = path if path.suffix == ".h5" else path / "run.h5"
+        self.folder = self._record.parent
+        with open_record(self._record) as file:
+            self.attributes: dict[str, Any] = {name: _plain(value) for name, value in file.attrs.items()}
+            self.particles = Arrays(self._record, file["particles"])
+            self.histories = self._arrays(file, "histories")
+            self.boundaries = self._arrays(file, "boundaries")
+            self.snapshots = list(self._arrays(file, "snapshots").values())
+            self.cracks = Arrays(self._record, file["cracks"])
+            self.laws: list[tuple[str, float]] = laws_of(file)
+
+    def __repr__(self) -> str:
+        return f"<Results of {self.name}: {len(self.histories)} histories, {len(self.snapshots)} snapshots>"
+
+    @property
+    def name(self) -> str:
+        """The case's name."""
+        return str(self.attributes["name"])
+
+    @property
+    def case(self) -> str:
+        """The TOML text of the case, for `dembound.loads`."""
+        return str(self.attributes["case"])
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What ``summary.json`` holds; raises CaseError for a run that is not complete, which has none."""
+        path = self.folder / "summary.json"
+        if not path.is_file():
+            raise CaseError([f"{path}: is missing, the run is not complete"])
+        found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        return found
+
+    @property
+    def energy(self) -> dict[str, np.ndarray]:
+        """The columns (k,) of the energy ledger, and ``relative_error``; raises CaseError where there is none."""
+        with open_record(self._record) as file:
+            return energy_of(file)
+
+    def _arrays(self, file: h5py.File, name: str) -> dict[str, Arrays]:
+        """The groups within a group of the record."""
+        return {key: Arrays(self._record, group) for key, group in file.get(name, {}).items()}
+
+
+def _plain(value: Any) -> Any:
+    """An attribute as Python has it."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return value.item() if isinstance(value, np.generic) else value
