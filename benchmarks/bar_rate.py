@@ -18,7 +18,7 @@ from timing import median_time
 from dembound.bar.fracture import spalls
 from dembound.bar.scene import build_bar
 from dembound.bar.stability import choose_step
-from dembound.case.bar import BarCase
+from dembound.casefile.bar import BarCase
 from dembound.kinds import loads
 from dembound.motion.simulation import Simulation
 

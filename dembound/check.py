@@ -2,10 +2,10 @@
 
 import time
 
-from dembound.case import Case
+from dembound.casefile import Case
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
-from dembound.run import plan, warnings_before
+from dembound.running import plan, warnings_before
 
 TRIAL_STEPS, TRIALS = 20, 3
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from dembound.bar.kind import Bars
-from dembound.case import Case, reader, writer
+from dembound.casefile import Case, reader, writer
 from dembound.disks.kind import Disks
 from dembound.motion.kind import Kind
 from dembound.results.reader import open_record

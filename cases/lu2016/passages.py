@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from records import case_of, history, markdown, name_of
 
-from dembound.case.bar import BarCase
+from dembound.casefile.bar import BarCase
 from dembound.exact import bar_stress
 
 

@@ -9,13 +9,13 @@ import h5py
 import numpy as np
 from matplotlib.axes import Axes
 
-from dembound.case.bar import BarCase
+from dembound.casefile.bar import BarCase
 from dembound.exact import triangle_spall
 from dembound.kinds import loads
 from dembound.laws.peridynamic import CRACKED
 from dembound.motion.simulation import Simulation
 from dembound.plot.style import COLOURS, REFERENCE
-from dembound.run import plan
+from dembound.running import plan
 
 MILLI, MEGA = 1e-3, 1e6
 

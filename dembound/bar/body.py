@@ -9,7 +9,7 @@ import numpy as np
 
 from dembound.bar.banded import is_stable, largest_stable_step
 from dembound.boundaries.support import Edge, Supports
-from dembound.case.bar import BarCase
+from dembound.casefile.bar import BarCase
 from dembound.methods.bonds import Bonds, Rod
 from dembound.motion.scene import Scene
 

@@ -5,9 +5,9 @@ import numpy as np
 from dembound.bar.lattice import carrying_lattice
 from dembound.bar.scene import BarScene
 from dembound.bar.summary import describe_bar, describe_end
-from dembound.case.bar import BarCase
-from dembound.case.bar.bar import Bar
-from dembound.case.magnitudes import waves_used
+from dembound.casefile.bar import BarCase
+from dembound.casefile.bar.bar import Bar
+from dembound.casefile.magnitudes import waves_used
 from dembound.exact.dispersion import cells_per_wavelength
 
 ERROR = 0.01

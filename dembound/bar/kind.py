@@ -15,7 +15,7 @@ from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step
 from dembound.bar.summary import summarise_bar
 from dembound.bar.warnings import bar_warnings, warnings_after_bar
-from dembound.case.bar import SCHEMA, STARTER, BarCase
+from dembound.casefile.bar import SCHEMA, STARTER, BarCase
 from dembound.motion.kind import Beginning, Kind, OnLook
 from dembound.motion.trackers import Run
 from dembound.plot.bar import plot_bar, plot_bar_field

@@ -8,7 +8,7 @@ import numpy as np
 from dembound.bar.body import BarBody
 from dembound.bar.part import BarPart
 from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
-from dembound.case.bar import BarCase
+from dembound.casefile.bar import BarCase
 from dembound.methods.bonds import Rod
 from dembound.motion.part import System
 

@@ -11,8 +11,8 @@ from dembound.bar.facts import PERCENT, cells_of_waves
 from dembound.bar.lattice import carrying_lattice
 from dembound.bar.scene import BarScene
 from dembound.boundaries import OPPOSITE, normal_axis
-from dembound.case.bar import BarCase
-from dembound.case.magnitudes import grip_stress, stress_warnings, time_warnings
+from dembound.casefile.bar import BarCase
+from dembound.casefile.magnitudes import grip_stress, stress_warnings, time_warnings
 from dembound.results.reader import open_record
 from dembound.results.warnings import still_moving
 

@@ -1,6 +1,6 @@
 """Boundary types: each file holds one type's TOML table and its recipe for the support table.
 
-A new type is one file and its class's name in `TYPES`; another package registers its own, see case/types.py.
+A new type is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """
 
 from dembound.boundaries.boundary import Boundary

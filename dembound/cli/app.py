@@ -13,9 +13,9 @@ from rich.console import Console
 
 from dembound import __version__
 from dembound.boundaries import SIDES
-from dembound.case import Case
-from dembound.case.disks import DiskCase
-from dembound.case.model import as_kind
+from dembound.casefile import Case
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.model import as_kind
 from dembound.errors import CaseError, DemboundError
 from dembound.kinds import load, with_changes
 from dembound.results.reader import require_folder

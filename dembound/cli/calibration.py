@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from dembound.case import to_toml
+from dembound.casefile import to_toml
 from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, out, use_threads
 from dembound.kinds import with_changes
 from dembound.plot.convergence import plot_convergence

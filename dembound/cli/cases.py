@@ -10,8 +10,8 @@ from rich.table import Table
 
 from dembound import IMPORT_BEGAN
 from dembound.boundaries.support import Edge
-from dembound.case.bar import STARTER as BAR_STARTER
-from dembound.case.disks import STARTER
+from dembound.casefile.bar import STARTER as BAR_STARTER
+from dembound.casefile.disks import STARTER
 from dembound.check import check
 from dembound.cli.app import (
     PICTURE,
@@ -34,7 +34,7 @@ from dembound.errors import CaseError
 from dembound.kinds import kind_of
 from dembound.plot.packing import plot_brick, plot_patterns
 from dembound.plot.style import save
-from dembound.run import preflight, run_case
+from dembound.running import preflight, run_case
 from dembound.studies.half_space import write_exact
 
 RIGHT = Side("right")

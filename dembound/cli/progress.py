@@ -9,7 +9,7 @@ from rich.progress import Progress as RichProgress
 
 from dembound.cli.app import err
 from dembound.motion.trackers import Run
-from dembound.run import Progress
+from dembound.running import Progress
 
 INTERVAL = 10.0
 """Seconds from one line to the next."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Supports
-from dembound.case.disks import DiskCase
+from dembound.casefile.disks import DiskCase
 from dembound.disks.contacts import ContactList
 from dembound.disks.ground import Ground
 from dembound.disks.loads import steady

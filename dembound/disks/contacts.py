@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from dembound.case.disks.material import Material
+from dembound.casefile.disks.material import Material
 from dembound.disks.ground import Ground
 from dembound.disks.neighbours import near_pairs, pair_keys
 from dembound.disks.palette import brick_lines, limits_of, shared_lines

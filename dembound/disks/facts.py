@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from dembound.case.disks import DiskCase
+from dembound.casefile.disks import DiskCase
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.summary import describe_packing, describe_side

@@ -12,8 +12,8 @@ import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, diags
 from scipy.sparse.linalg import splu
 
-from dembound.case.disks.material import Material
-from dembound.case.types import LAWS
+from dembound.casefile.disks.material import Material
+from dembound.casefile.types import LAWS
 from dembound.errors import CaseError
 from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
 from dembound.packings.brick import Brick

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from dembound.case.disks import SCHEMA, STARTER, DiskCase
-from dembound.case.types import LAWS
+from dembound.casefile.disks import SCHEMA, STARTER, DiskCase
+from dembound.casefile.types import LAWS
 from dembound.disks.facts import disk_facts
 from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
 from dembound.disks.outcome import disk_outcome

@@ -3,8 +3,8 @@
 import numpy as np
 
 from dembound.boundaries.support import SupportBuilder
-from dembound.case.disks import DiskCase
-from dembound.case.disks.load import Load
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.load import Load
 from dembound.errors import CaseError
 from dembound.packings.tiling import Assembly
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from dembound.case.disks.material import Material
-from dembound.case.types import LAWS
+from dembound.casefile.disks.material import Material
+from dembound.casefile.types import LAWS
 from dembound.disks.ground import Ground
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
 from dembound.kernels.tables import Limits

@@ -9,8 +9,8 @@ from scipy.spatial import cKDTree
 from dembound.boundaries import Periodic
 from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
 from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
-from dembound.case.disks import DiskCase
-from dembound.case.disks.monitor import FREE_FIELD
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.body import DiskBody, parts_of
 from dembound.disks.edges import edges_beside_column, find_edges, left_of
 from dembound.disks.ground import Ground, make_ground, nominal_moduli

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.boundaries.support import SupportBuilder, Supports
-from dembound.case.disks.static import Static
+from dembound.casefile.disks.static import Static
 from dembound.disks.contacts import ContactList
 from dembound.disks.scene import DiskScene, boundary_medium, column_alone
 from dembound.disks.stability import step_limit

@@ -10,8 +10,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from dembound.boundaries import SIDES, axis_of_motion
-from dembound.case.disks.load import Load
-from dembound.case.magnitudes import grip_stress, stress_warnings, time_warnings
+from dembound.casefile.disks.load import Load
+from dembound.casefile.magnitudes import grip_stress, stress_warnings, time_warnings
 from dembound.disks.matching import homogenised_beta, reflected
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.results.reader import open_record

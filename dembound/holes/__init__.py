@@ -1,6 +1,6 @@
 """Holes: each file holds one shape's TOML table and says which positions lie in it.
 
-A new shape is one file and its class's name in `TYPES`; another package registers its own, see case/types.py.
+A new shape is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """
 
 from dembound.holes.circle import Circle

@@ -1,6 +1,6 @@
 """Bond laws of disks: how contacts push.
 
-A new law is one file and its class's name in `TYPES`; another package registers its own, see case/types.py.
+A new law is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """
 
 from dembound.laws.elastic import Elastic

@@ -1,6 +1,6 @@
 """Methods for bars: each file holds one method's TOML table, how its bonds begin, and how they answer stretch.
 
-A new method is one file and its class's name in `TYPES`; another package registers its own, see case/types.py.
+A new method is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """
 
 from dembound.methods.finite_difference import FiniteDifference

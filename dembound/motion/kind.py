@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
-from dembound.case import Case
-from dembound.case.schema import Schema
+from dembound.casefile import Case
+from dembound.casefile.schema import Schema
 from dembound.errors import RunError
 from dembound.motion.cracks import Cracks
 from dembound.motion.part import System

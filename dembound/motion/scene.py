@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from dembound.boundaries.support import Edge, Supports
-from dembound.case import Case
+from dembound.casefile import Case
 from dembound.motion.part import System
 
 RUNAWAY = 1e4

@@ -1,6 +1,6 @@
 """Where the disks are: one table and one file per pattern, and the tiling that makes a scene of a brick.
 
-A new pattern is one file and its class's name in `TYPES`; another package registers its own, see case/types.py.
+A new pattern is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """
 
 from dembound.packings.base import Packing

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import h5py
 import numpy as np
 
-from dembound.case.magnitudes import waves_used
+from dembound.casefile.magnitudes import waves_used
 from dembound.motion.scene import Scene
 
 MOVING = 0.2

@@ -18,7 +18,7 @@ import numpy as np
 
 from dembound import __version__
 from dembound.boundaries import OPPOSITE, Boundary, Motion, axis_of_motion, normal_axis
-from dembound.case.disks import DiskCase
+from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import homogenised_beta
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step

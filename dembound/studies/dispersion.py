@@ -12,11 +12,11 @@ import tomli_w
 from dembound.bar.lattice import lattice_of
 from dembound.bar.scene import build_bar
 from dembound.bar.stability import choose_step
-from dembound.case import Case
-from dembound.case.bar import SCHEMA, BarCase
-from dembound.case.bar.bar import LARGEST, SMALLEST
-from dembound.case.model import as_kind
-from dembound.case.reader import loads
+from dembound.casefile import Case
+from dembound.casefile.bar import SCHEMA, BarCase
+from dembound.casefile.bar.bar import LARGEST, SMALLEST
+from dembound.casefile.model import as_kind
+from dembound.casefile.reader import loads
 from dembound.errors import CaseError
 from dembound.exact.dispersion import Lattice, usual_shares
 from dembound.methods import Peridynamics

@@ -11,9 +11,9 @@ import h5py
 import numpy as np
 
 from dembound import __version__
-from dembound.case.disks import DiskCase
-from dembound.case.disks.load import Load
-from dembound.case.types import LAWS
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.load import Load
+from dembound.casefile.types import LAWS
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement

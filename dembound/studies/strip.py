@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from dembound.boundaries import OPPOSITE, Motion, Periodic, Velocity, normal_axis
-from dembound.case.disks import DiskCase
-from dembound.case.types import LAWS
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.types import LAWS
 from dembound.disks.scene import ground_of
 from dembound.errors import CaseError
 from dembound.waves import Cosine

@@ -1,6 +1,6 @@
 """Waves: named velocity histories that drive sides, or time factors of loads, one type a file.
 
-A new type is one file and its class's name in `TYPES`; another package registers its own, see case/types.py.
+A new type is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """
 
 from dembound.waves.constant import Constant

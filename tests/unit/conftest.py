@@ -8,14 +8,14 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.case import Case
-from dembound.case.disks import STARTER
+from dembound.casefile import Case
+from dembound.casefile.disks import STARTER
 from dembound.kinds import loads, with_changes
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
 from dembound.results.recorder import Histories, Recorder, Snapshots
-from dembound.run import plan
+from dembound.running import plan
 
 CASE = """
 [packing]

@@ -5,7 +5,7 @@ import pytest
 from dembound.bar.facts import bar_facts
 from dembound.check import check
 from dembound.disks.facts import disk_facts
-from dembound.run import plan, warnings_before
+from dembound.running import plan, warnings_before
 
 
 def test_facts_are_those_of_the_run_and_of_the_scene(bar) -> None:

@@ -15,11 +15,11 @@ import pytest
 import tomli_w
 
 from dembound import __version__, cli
-from dembound.case.bar import BarCase
+from dembound.casefile.bar import BarCase
 from dembound.cli.progress import Lines, progress_of
 from dembound.kinds import load
 from dembound.motion.simulation import Simulation
-from dembound.run import plan
+from dembound.running import plan
 
 
 @dataclass

@@ -6,22 +6,30 @@ from typing import get_args
 import pytest
 
 from dembound import errors
-from dembound.case.bar.bar import Bar
-from dembound.case.bar.load import BarLoad
-from dembound.case.bar.monitor import BarMonitor
-from dembound.case.bar.run import BarRun
-from dembound.case.disks.load import Load
-from dembound.case.disks.material import Material
-from dembound.case.disks.monitor import Monitor
-from dembound.case.disks.motion import Motion
-from dembound.case.disks.static import Static
-from dembound.case.output import Output
-from dembound.case.run import Run
-from dembound.case.types import BarEndTable, BoundaryTable, HoleTable, MethodTable, PackingTable, StaticSide, WaveTable
+from dembound.casefile.bar.bar import Bar
+from dembound.casefile.bar.load import BarLoad
+from dembound.casefile.bar.monitor import BarMonitor
+from dembound.casefile.bar.run import BarRun
+from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.material import Material
+from dembound.casefile.disks.monitor import Monitor
+from dembound.casefile.disks.motion import Motion
+from dembound.casefile.disks.static import Static
+from dembound.casefile.output import Output
+from dembound.casefile.run import Run
+from dembound.casefile.types import (
+    BarEndTable,
+    BoundaryTable,
+    HoleTable,
+    MethodTable,
+    PackingTable,
+    StaticSide,
+    WaveTable,
+)
 from dembound.cli.app import EXIT_CODES
 from dembound.exact import cells_per_wavelength, courant_limit
 from dembound.kinds import load
-from dembound.run import SECTIONS
+from dembound.running import SECTIONS
 
 ROOT = Path(__file__).parents[2]
 REFERENCE = ROOT / "docs" / "case_file.md"

@@ -10,7 +10,7 @@ import tomli_w
 
 from dembound.bar.scene import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
-from dembound.case import Case
+from dembound.casefile import Case
 from dembound.disks.edges import find_edges
 from dembound.disks.ground import make_ground
 from dembound.disks.rows import contact_rows

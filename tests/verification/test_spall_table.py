@@ -13,7 +13,7 @@ import pytest
 from dembound.bar.fracture import spalls
 from dembound.kinds import load
 from dembound.motion.simulation import Simulation
-from dembound.run import plan
+from dembound.running import plan
 
 CASES = Path(__file__).parents[2] / "cases" / "lu2016"
 PRINTED = np.genfromtxt(CASES / "table1.csv", delimiter=",", names=True, skip_header=1)

@@ -12,11 +12,11 @@ with warnings.catch_warnings(record=True) as said:
     import dembound.kinds as kinds
 
 from dembound.bar.facts import cells_of_waves
-from dembound.case.types import BOUNDARIES
+from dembound.casefile.types import BOUNDARIES
 from dembound.errors import CaseError
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
-from dembound.run import plan
+from dembound.running import plan
 from dembound.studies.calibration import calibrate
 from dembound.studies.dispersion import lattices_of, measure
 

@@ -8,7 +8,7 @@ from dembound.bar.scene import build_bar
 from dembound.bar.warnings import bar_warnings
 from dembound.check import check
 from dembound.exact.dispersion import cells_per_wavelength, courant_limit
-from dembound.run import plan
+from dembound.running import plan
 
 PULSE = 5.36 / 4e-4
 """Where the spectrum of the even triangle of 0.4 ms has faded, Hz: 5.36 over its length."""

@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from dembound.bar.kind import Bars
-from dembound.case.bar import STARTER
+from dembound.casefile.bar import STARTER
 from dembound.errors import CaseError
 from dembound.kinds import loads
-from dembound.run import preflight
+from dembound.running import preflight
 
 
 def test_a_bar_begins_at_rest_as_built(spalling) -> None:

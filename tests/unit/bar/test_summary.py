@@ -17,7 +17,7 @@ from dembound.motion.kind import Beginning, Plan
 from dembound.motion.simulation import Simulation
 from dembound.results.recorder import Histories, Recorder
 from dembound.results.summary import summarise
-from dembound.run import plan
+from dembound.running import plan
 
 ENDS = {"boundary.left": {"type": "fixed"}, "boundary.right": {"type": "viscous", "beta_p": 0.9}, "load": []}
 

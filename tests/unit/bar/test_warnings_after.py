@@ -10,7 +10,7 @@ import pytest
 
 from dembound.bar.scene import build_bar
 from dembound.bar.warnings import warnings_after_bar
-from dembound.run import run_case
+from dembound.running import run_case
 
 
 @pytest.fixture

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from dembound.case import Case
+from dembound.casefile import Case
 from dembound.disks.facts import disk_facts
 from dembound.disks.kind import Disks
-from dembound.run import plan, warnings_before
+from dembound.running import plan, warnings_before
 
 SLOW = {"wave.pulse.period": 0.5, "run.duration": 0.5}
 """A wave far longer than the bar, nothing about which is to be warned of."""

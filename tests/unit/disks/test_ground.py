@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.case.disks.material import Material
+from dembound.casefile.disks.material import Material
 from dembound.disks.ground import Ground, homogenise, make_ground, nominal_moduli
 from dembound.errors import CaseError
 from dembound.packings.brick import Brick

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from dembound.case.disks import STARTER
+from dembound.casefile.disks import STARTER
 from dembound.disks.kind import Disks
 from dembound.disks.static import settle
 from dembound.errors import CaseError
 from dembound.kinds import loads
-from dembound.run import preflight
+from dembound.running import preflight
 
 HANGING = {
     "wave.pulse.start": 1.0,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.case.disks.load import Load
+from dembound.casefile.disks.load import Load
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import build
 from dembound.errors import CaseError

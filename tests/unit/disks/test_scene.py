@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
-from dembound.case import Case
+from dembound.casefile import Case
 from dembound.disks.scene import DiskScene, boundary_medium, build, with_boundaries
 from dembound.errors import CaseError, PackingError
 from dembound.kernels.elastic import contact_forces

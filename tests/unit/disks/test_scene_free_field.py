@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.case import Case
+from dembound.casefile import Case
 from dembound.disks.scene import DiskScene, build, column_alone, with_boundaries
 from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError

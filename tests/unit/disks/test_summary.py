@@ -9,7 +9,7 @@ from dembound.disks.scene import build
 from dembound.disks.static import settle
 from dembound.disks.summary import asked_stress, describe_packing, describe_side, describe_static, summarise_disks
 from dembound.motion.simulation import Simulation
-from dembound.run import plan
+from dembound.running import plan
 
 
 def test_the_packing_is_described_where_a_motion_is_held(bar) -> None:

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from dembound.case import Case
+from dembound.casefile import Case
 from dembound.disks.ground import Ground
 from dembound.disks.scene import build
 from dembound.disks.warnings import disk_warnings, particles_per_wavelength
-from dembound.run import plan
+from dembound.running import plan
 from dembound.waves.spectrum import HANN_FADE
 
 SLOW = {"wave.pulse.period": 0.5, "run.duration": 0.5}

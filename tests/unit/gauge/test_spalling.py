@@ -10,7 +10,7 @@ from dembound.gauge.readings import Gauge, Told, read_free_end, read_gauge
 from dembound.gauge.spalling import evaluate
 from dembound.motion.simulation import Simulation
 from dembound.results.recorder import Recorder
-from dembound.run import plan
+from dembound.running import plan
 
 TIME = 1e-6 * np.arange(400)
 FREE_END = TIME, np.interp(np.arange(400), [0, 100, 140, 240, 270], [0.0, 0.0, 10.0, 4.0, 8.0])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.case.types import LAWS
+from dembound.casefile.types import LAWS
 from dembound.laws import Elastic, Moduli, Stiffness
 
 ROUNDING = 1e-14

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.case.types import LAWS
+from dembound.casefile.types import LAWS
 from dembound.laws import Moduli
 
 MODULI = Moduli(emod=6e9, pb_emod=3e9, kratio=2.0, pb_kratio=3.0, pb_rmul=0.5, fric=0.4)

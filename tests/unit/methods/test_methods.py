@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from dembound.case.types import MethodTable
+from dembound.casefile.types import MethodTable
 from dembound.methods.bonds import Rod
 
 ROD = Rod(61, spacing=0.25, section=0.5, modulus=2e9, critical_stretch=1e-3)

@@ -13,7 +13,7 @@ from dembound.errors import RunError
 from dembound.motion.scene import FASTEST
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import Every, Tracker
-from dembound.run import plan
+from dembound.running import plan
 
 NOBODY = np.zeros(0, dtype=np.int64)
 MASS = 2500.0 * 0.5**2

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from dembound.case.types import PackingTable
+from dembound.casefile.types import PackingTable
 from dembound.errors import CaseError
 from dembound.packings import EdgedBrick, RandomBrick, Square
 from dembound.packings import random_brick as random_module

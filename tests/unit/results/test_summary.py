@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dembound.case import Case
+from dembound.casefile import Case
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.results.recorder import Histories, Recorder
 from dembound.results.summary import arrival, summarise
-from dembound.run import plan
+from dembound.running import plan
 
 SECONDS = {"build": 0.25, "step": 2.0, "record": 0.5}
 

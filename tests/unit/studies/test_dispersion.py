@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dembound.case.disks import STARTER
+from dembound.casefile.disks import STARTER
 from dembound.errors import CaseError
 from dembound.exact import Lattice, courant_limit
 from dembound.kinds import loads, with_changes

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.case.disks import DiskCase
-from dembound.case.model import as_kind
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.model import as_kind
 from dembound.studies.calibration import calibrate
 from dembound.studies.strip import calibration_pulse
 

@@ -1,0 +1,81 @@
+"""Mistakes in a bar's case that show only when tables are looked at together."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from dembound.boundaries import normal_axis
+from dembound.casefile.bar.bar import Bar
+from dembound.casefile.bar.load import BarLoad
+from dembound.casefile.bar.run import BarRun
+from dembound.casefile.cross_checks import driving_waves, repeated_names, steps_too_long, unknown_waves
+from dembound.casefile.messages import numbered
+from dembound.methods import Method
+
+
+def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[str]:
+    """Check the tables of a bar's case against each other.
+
+    `tables` has the fields of `BarCase` as keys; a table that is invalid on its own is None and left out. given : the
+    file's data.
+    """
+    loaded = [(f"{place}.wave", load.wave) for place, load in numbered("load", tables["load"])]
+    yield from unknown_waves([*driving_waves(tables["boundary"]), *loaded], tables["wave"])
+    for side, end in tables["boundary"].items():
+        yield from end.problems(side, tables) if end else ()
+    yield from _across_the_bar(tables["boundary"])
+    yield from _loaded_but_held(tables["boundary"], tables["load"])
+    for key in ("load", "monitor"):
+        yield from repeated_names(key, tables[key])
+    if bar := tables["bar"]:
+        yield from _beyond_the_bar(bar, tables)
+        if tables["method"]:
+            yield from _horizon_too_long(bar, tables["method"])
+    if tables["run"]:
+        yield from steps_too_long(tables["run"], tables["output"])
+        if bar:
+            yield from _courant_too_large(bar, tables["run"])
+
+
+def _courant_too_large(bar: Bar, run: BarRun) -> Iterator[str]:
+    """A step by its Courant number that the run is over before."""
+    if run.courant is not None and (step := run.courant * bar.spacing / bar.speed) > run.duration:
+        yield f"run.courant: makes a step of {step:g} s, must be at most run.duration, {run.duration:g} (s)"
+
+
+def _across_the_bar(ends: Mapping[str, Any]) -> Iterator[str]:
+    """What only sides of disks have: motion across, and a choice of half masses."""
+    for side, end in ((side, end) for side, end in ends.items() if end):
+        if "s" in end.waves:
+            yield f"boundary.{side}.wave_s: moves across the bar, which moves along itself alone; use wave_p"
+        if "beta_s" in end.model_fields_set:
+            yield f"boundary.{side}.beta_s: is for waves across, and a bar moves along itself alone; use beta_p"
+        if end.half_cells:
+            yield f"boundary.{side}.half_mass: is for disks; end nodes of a bar have half a mass in any case"
+
+
+def _loaded_but_held(ends: Mapping[str, Any], loads: Sequence[BarLoad | None]) -> Iterator[str]:
+    """Loads on an end whose motion is prescribed, which would feel nothing of them."""
+    for place, load in numbered("load", loads):
+        end = ends.get(load.side)
+        if end and 0 in end.prescribed(normal_axis(load.side)):
+            yield (
+                f'{place}.side: is "{load.side}", whose motion boundary.{load.side} prescribes ("{end.type}"); '
+                "must be an end that can give way"
+            )
+
+
+def _beyond_the_bar(bar: Bar, tables: Mapping[str, Any]) -> Iterator[str]:
+    """Gauges and loads that lie where no node is."""
+    for place, monitor in numbered("monitor", tables["monitor"]):
+        if monitor.position > bar.length:
+            yield f"{place}.position: is {monitor.position:g}, must be at most bar.length, {bar.length:g} (m)"
+    loads: Sequence[tuple[str, BarLoad]] = list(numbered("load", tables["load"]))
+    for place, load in loads:
+        if load.nodes > bar.cells + 1:
+            yield f"{place}.nodes: is {load.nodes}, must be at most {bar.cells + 1}, the nodes of the bar"
+
+
+def _horizon_too_long(bar: Bar, method: Method) -> Iterator[str]:
+    """Families longer than the bar."""
+    if 2 * method.largest_horizon > bar.cells:
+        yield f"method.horizon: is {method.largest_horizon}, must be at most {bar.cells // 2}, half the bar's spacings"

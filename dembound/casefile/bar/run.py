@@ -1,0 +1,20 @@
+"""The ``[run]`` table of a bar."""
+
+from pydantic import model_validator
+
+from dembound.casefile.run import Run
+from dembound.table import quantity
+
+
+class BarRun(Run):
+    """How long a bar lives and how finely time is cut; its step may be given by the Courant number."""
+
+    courant: float | None = quantity(None, unit="1", help="Courant number ν = cΔt/Δx, instead of a time step", gt=0.0)
+
+    @model_validator(mode="after")
+    def _one_step(self) -> "BarRun":
+        if self.courant is not None and self.time_step != "auto":
+            raise ValueError("courant: is not allowed together with time_step")
+        if self.courant is not None and "safety" in self.model_fields_set:
+            raise ValueError("safety: is for an automatic time step, courant gives it")
+        return self

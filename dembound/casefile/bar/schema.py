@@ -1,0 +1,30 @@
+"""What the case file of a bar consists of."""
+
+from pydantic import TypeAdapter
+
+from dembound.casefile.bar.bar import Bar
+from dembound.casefile.bar.load import BarLoad
+from dembound.casefile.bar.model import BarCase
+from dembound.casefile.bar.monitor import BarMonitor
+from dembound.casefile.bar.problems import bar_problems
+from dembound.casefile.bar.run import BarRun
+from dembound.casefile.output import Output
+from dembound.casefile.schema import Schema
+from dembound.casefile.types import BarEndTable, MethodTable
+
+SCHEMA = Schema(
+    case=BarCase,
+    noun="a bar",
+    new="dembound new --bar",
+    marks=("bar", "method"),
+    tables={
+        "bar": TypeAdapter(Bar),
+        "method": TypeAdapter(MethodTable),
+        "run": TypeAdapter(BarRun),
+        "output": TypeAdapter(Output),
+    },
+    side=TypeAdapter(BarEndTable),
+    sides=("left", "right"),
+    lists={"load": TypeAdapter(BarLoad), "monitor": TypeAdapter(BarMonitor)},
+    problems=bar_problems,
+)

@@ -1,0 +1,41 @@
+"""Mistakes between tables that cases of disks and of bars share."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from dembound.boundaries import Boundary
+from dembound.casefile.messages import choices, show
+from dembound.casefile.output import Output
+from dembound.casefile.run import Run
+
+
+def unknown_waves(named: Iterable[tuple[str, str]], waves: Mapping[str, object]) -> Iterator[str]:
+    """Keys that name a wave the case does not define; named: each key with the name it gives."""
+    for place, name in named:
+        if name not in waves:
+            defined = f"defined: {choices(name, waves)}" if waves else "none is defined"
+            yield f"{place}: {show(name)} is not a wave of this case; {defined}"
+
+
+def driving_waves(sides: Mapping[str, Boundary | None]) -> Iterator[tuple[str, str]]:
+    """Keys of sides that name a wave, each with the name it gives."""
+    for side, table in sides.items():
+        for motion, name in table.waves.items() if table else ():
+            yield f"boundary.{side}.wave_{motion}", name
+
+
+def repeated_names(key: str, tables: Sequence[Any]) -> Iterator[str]:
+    """Holes, loads or monitors whose results would overwrite one another."""
+    first: dict[str, int] = {}
+    for number, table in enumerate(tables, start=1):
+        if table and first.setdefault(table.name, number) != number:
+            yield f"{key}[{number}].name: {show(table.name)} is taken by {key}[{first[table.name]}]"
+
+
+def steps_too_long(run: Run, output: Output | None) -> Iterator[str]:
+    """Intervals that the run is over before."""
+    if run.time_step != "auto" and run.time_step > run.duration:
+        yield f"run.time_step: is {run.time_step:g}, must be at most run.duration, {run.duration:g} (s)"
+    for key in ("history_interval", "energy_interval"):
+        if output and (interval := getattr(output, key)) > run.duration:
+            yield f"output.{key}: is {interval:g}, must be at most run.duration, {run.duration:g} (s)"

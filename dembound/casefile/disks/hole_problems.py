@@ -1,0 +1,34 @@
+"""Mistakes of holes that show only beside the other tables."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from dembound.casefile.messages import numbered, show
+from dembound.holes import Hole
+
+
+def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
+    """Check the holes; a table or an entry that is invalid on its own is None. has_static: whether there is a stage."""
+    for place, hole in numbered("hole", tables["hole"]):
+        if tables["packing"]:
+            yield from _outside(place, hole, tables["packing"].extent)
+        if hole.stage == "after" and not has_static:
+            yield f'{place}.stage: is "after", but the case has no [static] stage to come after'
+        for key in ("load", "monitor"):
+            yield from _places_in_it(place, hole, key, tables[key])
+
+
+def _outside(place: str, hole: Hole, size: tuple[float, float]) -> Iterator[str]:
+    """A hole that takes nothing away."""
+    x0, y0, x1, y1 = hole.box
+    if x1 <= 0.0 or y1 <= 0.0 or x0 >= size[0] or y0 >= size[1]:
+        yield f"{place}: lies outside the scene, [0, 0] to {show(size)} (m)"
+
+
+def _places_in_it(place: str, hole: Hole, key: str, tables: Any) -> Iterator[str]:
+    """Loads or monitors whose particles would be gone."""
+    for where, table in numbered(key, tables):
+        if table.position is not None and hole.contains(np.array([table.position]))[0]:
+            yield f"{where}.position: lies in {place}; must be where particles are left"

@@ -1,0 +1,113 @@
+"""The ``[material]`` table."""
+
+from typing import Literal
+
+from pydantic import model_validator
+
+from dembound.casefile.types import LAWS, LawName
+from dembound.table import Table, quantity
+
+WAVE_SPEED_KEYS = ("match", "contact_share")
+MODULI_KEYS = ("emod", "pb_emod")
+STRENGTH_KEYS = ("pb_ten", "pb_coh")
+HISTORY_KEYS = (*STRENGTH_KEYS, "pb_fa", "locked_in", "geometry", "elastic_start")
+"""Keys of history-dependent laws."""
+
+
+class Material(Table):
+    """What the particles are made of: bulk density, and contact and bond properties in PFC's words.
+
+    Stiffness is given either by the wave speed wanted (Z eqs 9-11) or by the two moduli. The law "elastic" has no
+    history; "linearpbond" is PFC's linear contact, without tension and with Coulomb friction, plus a parallel bond
+    that breaks for good.
+    """
+
+    density: float = quantity(..., unit="kg/m³", help="bulk density: mass over scene area", gt=0.0)
+    p_wave_speed: float | None = quantity(None, unit="m/s", help="P-wave speed the moduli are made to give", gt=0.0)
+    match: Literal["lattice", "assembly"] = quantity(
+        "lattice",
+        unit="1",
+        help="what shall have that speed: the square lattice of Z eq. 11, or the packing itself along x",
+    )
+    contact_share: float = quantity(
+        0.5,
+        unit="1",
+        help="the contacts' share α_c of the stiffness (Z eq. 9); bonds have the rest",
+        ge=0.0,
+        le=1.0,
+    )
+    s_wave_speed: float | None = quantity(
+        None, unit="m/s", help="S-wave speed for the boundaries; absent: the packing's own", gt=0.0
+    )
+    emod: float | None = quantity(None, unit="Pa", help="modulus E_c of the contacts", ge=0.0)
+    pb_emod: float | None = quantity(None, unit="Pa", help="modulus Ē_c of the parallel bonds", ge=0.0)
+    kratio: float = quantity(1.0, unit="1", help="normal over shear stiffness of the contacts", gt=0.0)
+    pb_kratio: float = quantity(1.0, unit="1", help="normal over shear stiffness of the bonds", gt=0.0)
+    fric: float = quantity(0.0, unit="1", help="friction coefficient of the contacts", ge=0.0)
+    pb_rmul: float = quantity(1.0, unit="1", help="bond radius over the smaller disk's radius", gt=0.0)
+    damp: float = quantity(0.0, unit="1", help="local damping coefficient; 0 for waves", ge=0.0, lt=1.0)
+    law: LawName = quantity("elastic", unit="1", help="how contacts and bonds push")
+    pb_ten: float | None = quantity(
+        None, unit="Pa", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0
+    )
+    pb_coh: float | None = quantity(None, unit="Pa", help="cohesion of the bonds; absent: unbreakable in shear", gt=0.0)
+    pb_fa: float = quantity(0.0, unit="degrees", help="friction angle of the bonds", ge=0.0, lt=90.0)
+    locked_in: float | None = quantity(
+        None, unit="Pa", help="pressure that contacts carry before the static stage; absent: they just touch", gt=0.0
+    )
+    geometry: Literal["updated", "reference"] = quantity(
+        "updated",
+        unit="1",
+        help="whether normals and arms follow the motion or intact bonds keep those of the start",
+    )
+    elastic_start: bool = quantity(
+        True,
+        unit="1",
+        help="whether the faster elastic law serves until a contact opens, slips or closes or a bond yields",
+    )
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Material":
+        problems = self._problems_with_moduli() if self.p_wave_speed is None else self._problems_with_speed()
+        problems += self._problems_with_strength() if LAWS[self.law].has_history else self._problems_without_history()
+        if problems:
+            raise ValueError("\n".join(problems))
+        return self
+
+    def _problems_with_speed(self) -> list[str]:
+        """Mistakes of a material given by its P-wave speed."""
+        problems = [
+            f"{key}: is not allowed together with p_wave_speed, which gives the moduli"
+            for key in MODULI_KEYS
+            if getattr(self, key) is not None
+        ]
+        if self.s_wave_speed is not None and self.p_wave_speed is not None and self.s_wave_speed >= self.p_wave_speed:
+            problems.append(f"s_wave_speed: is {self.s_wave_speed:g}, must be less than p_wave_speed")
+        return problems
+
+    def _problems_with_moduli(self) -> list[str]:
+        """Mistakes of a material without a P-wave speed."""
+        missing = [key for key in MODULI_KEYS if getattr(self, key) is None]
+        if len(missing) == 2:
+            return ["p_wave_speed: is missing; give either p_wave_speed or both emod and pb_emod"]
+        problems = [f"{key}: is missing; emod and pb_emod go together" for key in missing]
+        for key in WAVE_SPEED_KEYS:
+            if key in self.model_fields_set:
+                problems.append(f"{key}: is only allowed together with p_wave_speed")
+        return problems
+
+    def _problems_without_history(self) -> list[str]:
+        """Keys that mean nothing to a law without history."""
+        needed = " or ".join(f'"{name}"' for name, law in LAWS.items() if law.has_history)
+        return [f"{key}: is only allowed with law = {needed}" for key in HISTORY_KEYS if key in self.model_fields_set]
+
+    def _problems_with_strength(self) -> list[str]:
+        """Mistakes in the strength of the bonds."""
+        problems = []
+        if "pb_fa" in self.model_fields_set and self.pb_coh is None:
+            problems.append("pb_fa: is only allowed together with pb_coh, the strength it adds to")
+        no_bonds = "pb_emod = 0" if self.pb_emod == 0.0 else "contact_share = 1" if self.contact_share == 1.0 else None
+        if no_bonds:
+            given = [key for key in STRENGTH_KEYS if getattr(self, key) is not None]
+            problems += [f"{key}: is the strength of bonds, but {no_bonds} leaves none" for key in given]
+        return problems

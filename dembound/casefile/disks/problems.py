@@ -1,0 +1,75 @@
+"""Mistakes that show only when tables are looked at together."""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Any
+
+from dembound.casefile.cross_checks import driving_waves, repeated_names, steps_too_long, unknown_waves
+from dembound.casefile.disks.hole_problems import hole_problems
+from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.material import Material
+from dembound.casefile.disks.monitor import Monitor
+from dembound.casefile.disks.motion import Motion
+from dembound.casefile.disks.static_problems import static_problems
+from dembound.casefile.messages import numbered, show
+from dembound.packings import Packing
+
+
+def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Iterator[str]:
+    """Check the tables of a case against each other.
+
+    `tables` has the fields of `Case` as keys. A table that is invalid on its own is None, and so is an
+    invalid entry of `boundary`, `wave`, `hole`, `load` or `monitor`: checks that would need it are left out.
+    `given` are the keys that the file has, valid or not.
+    """
+    named = [(f"{place}.wave", load.wave) for place, load in numbered("load", tables["load"]) if load.wave is not None]
+    yield from unknown_waves([*driving_waves(tables["boundary"]), *named], tables["wave"])
+    for side, table in tables["boundary"].items():
+        yield from table.problems(side, tables) if table else ()
+    if tables["motion"]:
+        yield from _loaded_but_held(tables["load"], tables["motion"])
+        if tables["material"]:
+            yield from _nothing_to_match(tables["material"], tables["motion"])
+    if tables["packing"] and tables["material"]:
+        yield from _nothing_to_pack_with(tables["material"], tables["packing"])
+    for key in ("hole", "load", "monitor"):
+        yield from repeated_names(key, tables[key])
+    for key in ("load", "monitor"):
+        if tables["packing"]:
+            yield from _places_outside(key, tables[key], tables["packing"].extent)
+    yield from hole_problems(tables, "static" in given)
+    if tables["material"] and tables["material"].locked_in and "static" not in given:
+        yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must come to rest in [static]"
+    if tables["static"]:
+        yield from static_problems(*(tables[key] for key in ("static", "boundary", "load", "material", "motion")))
+    if tables["run"]:
+        yield from steps_too_long(tables["run"], tables["output"])
+
+
+def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:
+    """Loads along a direction in which nothing can move."""
+    for place, load in numbered("load", loads):
+        for axis in load.axes:
+            if "xy"[axis] in motion.held:
+                yield f"{place}.{load.key}: acts along {'xy'[axis]}, which motion.held holds for every particle"
+
+
+def _nothing_to_pack_with(material: Material, packing: Packing) -> Iterator[str]:
+    """Contacts without stiffness, asked to hold a packing under stress."""
+    key = "contact_share" if material.emod is None else "emod"
+    if packing.packed_under_stress and getattr(material, key) == 0.0:
+        yield f"material.{key}: is 0, but contacts hold pattern {packing.pattern} under stress; must be greater than 0"
+
+
+def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
+    """A wave speed asked of a packing in which no P wave can run."""
+    if material.match == "assembly" and {"x", "y"} <= set(motion.held):
+        yield 'material.match: is "assembly", but motion.held holds x and y, so the packing has no P-wave speed'
+
+
+def _places_outside(key: str, tables: Sequence[Load | Monitor | None], size: tuple[float, float]) -> Iterator[str]:
+    """Loads or monitors that lie where no particle can be."""
+    for place, table in numbered(key, tables):
+        for where in ("position", "region"):
+            values = getattr(table, where, None) or ()
+            if not all(0.0 <= value <= size[i % 2] for i, value in enumerate(values)):
+                yield f"{place}.{where}: is {show(values)}, must be in the scene, [0, 0] to {show(size)} (m)"

@@ -1,0 +1,33 @@
+"""What the case file of bonded disks consists of."""
+
+from pydantic import TypeAdapter
+
+from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.material import Material
+from dembound.casefile.disks.model import DiskCase
+from dembound.casefile.disks.monitor import Monitor
+from dembound.casefile.disks.motion import Motion
+from dembound.casefile.disks.problems import problems_between
+from dembound.casefile.disks.static import Static
+from dembound.casefile.output import Output
+from dembound.casefile.run import Run
+from dembound.casefile.schema import Schema
+from dembound.casefile.types import BoundaryTable, HoleTable, PackingTable, StaticSide
+
+SCHEMA = Schema(
+    case=DiskCase,
+    noun="disks",
+    new="dembound new",
+    marks=("packing",),
+    tables={
+        "packing": TypeAdapter(PackingTable),
+        "material": TypeAdapter(Material),
+        "motion": TypeAdapter(Motion),
+        "run": TypeAdapter(Run),
+        "output": TypeAdapter(Output),
+    },
+    side=TypeAdapter(BoundaryTable),
+    staged={"static": (TypeAdapter(Static), TypeAdapter(StaticSide))},
+    lists={"hole": TypeAdapter(HoleTable), "load": TypeAdapter(Load), "monitor": TypeAdapter(Monitor)},
+    problems=problems_between,
+)

@@ -1,0 +1,23 @@
+"""The ``[static]`` table and the tables of its sides."""
+
+from collections.abc import Mapping
+
+from dembound.casefile.types import StaticSide
+from dembound.table import Table, quantity
+
+
+class Static(Table):
+    """The damped stage before the run that brings the body to rest under steady loads and a given stress.
+
+    Its supports stand for the sides until it is over; what they carried then acts on as a constant force.
+    """
+
+    stress: tuple[float, float, float] | None = quantity(
+        None, unit="Pa", help="stress sxx, syy, sxy to reach, tension positive; absent: what the loads make"
+    )
+    ratio: float = quantity(
+        1e-5, unit="1", help="mean unbalanced force over mean contact force at which the stage is over", gt=0.0, lt=1.0
+    )
+    damp: float = quantity(0.7, unit="1", help="local damping coefficient of the stage", gt=0.0, lt=1.0)
+    max_steps: int = quantity(200_000, unit="1", help="steps after which the stage has failed", ge=1)
+    boundary: Mapping[str, StaticSide] = quantity({}, unit="1", help="side -> its support; an absent side is free")

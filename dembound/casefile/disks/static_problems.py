@@ -1,0 +1,73 @@
+"""Mistakes of a static stage that show only beside the other tables."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from dembound.boundaries import SIDES, Boundary, normal_axis
+from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.material import Material
+from dembound.casefile.disks.motion import Motion
+from dembound.casefile.disks.static import Static
+from dembound.casefile.messages import numbered
+
+Sides = Mapping[str, Boundary | None]
+
+
+def static_problems(
+    static: Static, boundaries: Sides, loads: Sequence[Load | None], material: Material | None, motion: Motion | None
+) -> Iterator[str]:
+    """Check the static stage; a table or an entry that is invalid on its own is None."""
+    for side in static.boundary:
+        if (table := boundaries.get(side)) and table.is_periodic:
+            yield f"static.boundary.{side}: is not allowed, as boundary.{side} is periodic"
+    if static.stress is not None:
+        sides = [table for table in boundaries.values() if table]
+        for trait, name in (("is_periodic", "periodic"), ("needs_column", "free-field")):
+            if any(getattr(table, trait) for table in sides):
+                yield f"static.stress: cannot be applied to {name} sides"
+        yield from _unreachable_stress(static, static.stress)
+    if material and None not in loads:
+        yield from _nothing_to_settle(static, loads, material)
+    if motion and None not in static.boundary.values():
+        yield from _unheld_loads(static, boundaries, loads, motion)
+
+
+def _unreachable_stress(static: Static, stress: tuple[float, float, float]) -> Iterator[str]:
+    """Stresses asked for between two sides of which neither gives way."""
+    for axis, (low, high) in enumerate((("left", "right"), ("bottom", "top"))):
+        if stress[axis] != 0.0 and all(_stands(static, side, axis) for side in (low, high)):
+            name = "xy"[axis]
+            yield f"static.stress: has a component along {name}, but {low} and {high} are held there; free one of them"
+
+
+def _nothing_to_settle(static: Static, loads: Sequence[Load | None], material: Material) -> Iterator[str]:
+    """A stage that would end where it begins."""
+    steady = any(load and load.wave is None for load in loads)
+    if not (static.stress or steady or material.locked_in):
+        yield "static: has nothing to settle; give it a stress, give the case a steady load, or the material locked_in"
+
+
+def _unheld_loads(static: Static, boundaries: Sides, loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:
+    """Steady loads that would push the body, or the free-field column beside it, away."""
+    beside = any(table.needs_column for table in boundaries.values() if table)
+    for place, load in numbered("load", loads):
+        if load.wave is not None:
+            continue
+        on_column = beside and load.position is None and load.region is None
+        what, where = ("free-field column", "bottom or top") if on_column else ("body", "a side")
+        for axis in load.axes:
+            if not _holds(static, ("bottom", "top") if on_column else SIDES, motion, axis):
+                yield (
+                    f"static.boundary: nothing holds the {what} along {'xy'[axis]} against {place}; "
+                    f'give {where} "fixed" or "roller"'
+                )
+
+
+def _holds(static: Static, sides: Sequence[str], motion: Motion, axis: int) -> bool:
+    """Whether some sides leave no way to go along an axis; periodic ones leave it, round and round."""
+    return "xy"[axis] in motion.held or any(_stands(static, side, axis) for side in sides)
+
+
+def _stands(static: Static, side: str, axis: int) -> bool:
+    """Whether the particles of a side cannot move along an axis during the stage."""
+    table = static.boundary.get(side)
+    return table is not None and axis in table.prescribed(normal_axis(side))

@@ -1,0 +1,123 @@
+"""Times and stresses so far from what they act on that they are probably in another unit."""
+
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from dembound.casefile import Case
+from dembound.waves import Wave
+
+FAR = 1000.0
+"""Ratio of two times from which on one of them is probably in another unit.
+
+ms for s, or mm for m in a travel time, shift a ratio by this much. Waves commonly last from a few hundredths of the run
+to all of it.
+"""
+
+SLOW = 100.0
+"""Periods over the way through the scene from which on no wave runs there: all of it moves as one.
+
+Common ratios are 0.01 to 10.
+"""
+
+FEWEST_STEPS = 10.0
+"""Steps in a period below which a wave is not carried: samples half a step off lose up to 2.4 % of a cosine's crest."""
+
+SMALL_PART = 0.1
+"""Share of its peak that a wave must reach within the run: less is the foot of a wave that is not seen."""
+
+WEAK, STRONG = 1e-4, 1e3
+"""Stresses over the strength, below and above which one of them is probably in another unit.
+
+Pa for MPa shifts this ratio by 1e6, so that it falls from anything between 0.01 and 100 below the one or above the
+other. A wave at the lower one is in no need of a strength; one at the upper one is of GPa in rock.
+"""
+
+SAMPLES = 1001
+"""Times at which a wave is looked at."""
+
+
+def waves_used(case: Case) -> set[str]:
+    """Names of the waves that drive boundaries or are the time factor of loads."""
+    driving = {name for waves in case.driving.values() for name in waves.values()}
+    return driving | {load.wave for load in case.load if load.wave is not None}
+
+
+def time_warnings(case: Case, time_step: float, travel: float) -> Iterator[str]:
+    """At most one warning for every wave in use: far longer or shorter than the run, the step or the travel time.
+
+    time_step : s. travel : time (s) a wave takes through the scene; nan where none can run.
+    """
+    used = waves_used(case)
+    for name, wave in case.wave.items():
+        doubts = [*_too_long(wave, case.run.duration, travel), *_too_short(wave, case.run.duration, time_step, travel)]
+        if name in used and doubts:
+            yield f"wave.{name}: {doubts[0]}; are all times in s and lengths in m?"
+
+
+def _too_long(wave: Wave, duration: float, travel: float) -> Iterator[str]:
+    """In which respect a wave is far too long; times in s."""
+    length, period = wave.duration() - wave.start, wave.dominant_period()
+    reached = _share_reached(wave, duration)
+    if reached < SMALL_PART:
+        yield (
+            f"reaches {100.0 * reached:.2g} % of its peak, which comes at {wave.peak_time():g} s, "
+            f"within the run of {duration:g} s"
+        )
+    if FAR * duration < length < math.inf:
+        yield f"lasts {length:g} s, {length / duration:,.0f} times the run of {duration:g} s"
+    if period > SLOW * travel and not wave.stays:  # a slow grip strains a body evenly
+        yield f"has a period of {period:g} s, {period / travel:,.0f} times its way through the scene, {travel:.3g} s"
+
+
+def _too_short(wave: Wave, duration: float, time_step: float, travel: float) -> Iterator[str]:
+    """In which respect a wave is far too short; times in s. A constant is not: a short rise is a sudden load."""
+    if wave.stays:
+        return
+    length = wave.duration() - wave.start
+    period = wave.time_scale()
+    if period < FEWEST_STEPS * time_step:
+        yield f"has a period of {period:g} s, {period / time_step:.2g} time steps of {time_step:.4g} s"
+    if FAR * length < duration:
+        yield f"lasts {length:g} s, and the run of {duration:g} s is {duration / length:,.0f} times as long"
+    if FAR * period < travel:
+        yield f"has a period of {period:g} s, 1/{travel / period:,.0f} of its way through the scene, {travel:.3g} s"
+
+
+def _share_reached(wave: Wave, duration: float) -> float:
+    """Largest |velocity| within the run over the largest ever."""
+    if wave.peak_time() <= duration:
+        return 1.0
+    return float(np.abs(wave.velocity(np.linspace(0.0, duration, SAMPLES))).max()) / wave.peak()
+
+
+def grip_stress(
+    wave: Wave, density: float, speed: float, length: float, duration: float, strength: float
+) -> tuple[str, float]:
+    """Largest stress of a grip moved by a wave, in words and in Pa.
+
+    ρcv at once, or ρc²u/L once the body is strained evenly, which it bears up to its strength.
+
+    density : kg/m³. speed : of the waves the grip sends, m/s. length : of the body along their way, m. duration : of
+    the run, s. strength : Pa.
+    """
+    moved = float(np.abs(wave.displacement(np.linspace(0.0, duration, SAMPLES))).max())
+    sudden = density * speed * wave.peak()
+    even = min(density * speed**2 * moved / length, strength)
+    return ("its stress ρcv", sudden) if sudden >= even else ("its stress ρc²u/L", even)
+
+
+def stress_warnings(stresses: Mapping[str, tuple[str, float]], strength: float, key: str) -> Iterator[str]:
+    """Stresses many times the strength, or the largest of all where it is a tiny part of the strength.
+
+    stresses : table -> what it is in words, and Pa. strength : Pa. key : its own.
+    """
+    against = f"{key}, {strength:g} Pa: Pa and MPa?"
+    for place, (what, stress) in stresses.items():
+        if stress > STRONG * strength:
+            yield f"{place}: {what} is {stress:g} Pa, {stress / strength:,.0f} times {against}"
+    if stresses:
+        place, (what, stress) = max(stresses.items(), key=lambda item: item[1][1])
+        if stress < WEAK * strength:
+            yield f"{place}: {what} is {stress:g} Pa, {100.0 * stress / strength:.2g} % of {against}"

@@ -1,0 +1,88 @@
+"""The case itself: all tables of one file, as far as every kind of body has them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, TypeVar
+
+import tomli_w
+
+from dembound.boundaries import Boundary, Free, Motion
+from dembound.casefile.output import Output
+from dembound.casefile.run import Run
+from dembound.errors import CaseError
+from dembound.table import as_toml
+from dembound.waves import Wave
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """All tables of one case. Those that `kinds.load` and `kinds.loads` make are checked.
+
+    Attributes
+    ----------
+    title : one line for pictures and reports; may be empty.
+    boundary : side -> table, in the order left, right, bottom, top; an absent side is free.
+    wave : name -> table.
+    load, monitor : in the order of the file.
+    run, output : the tables of these names.
+    name : the file's name without folder and ending.
+    folder : where relative paths in the case start.
+    text : the TOML text the case was read from; of a case made otherwise one that says the same.
+    checked : the tables that have been read from `text` and checked against each other, by field.
+
+    Two cases are equal when their tables are; the last four do not count.
+    """
+
+    title: str = ""
+    boundary: Mapping[str, Boundary] = field(default_factory=dict)
+    wave: Mapping[str, Wave] = field(default_factory=dict)
+    load: tuple[Any, ...] = ()
+    monitor: tuple[Any, ...] = ()
+    run: Run
+    output: Output = field(default_factory=Output)
+    name: str = field(default="case", compare=False)
+    folder: Path = field(default=Path(), compare=False)
+    text: str = field(default="", compare=False, repr=False)
+    checked: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not self.is_checked:  # one that `dataclasses.replace` has changed, too
+            given = {name: as_toml(table) for name, table in self.tables.items()}
+            text = tomli_w.dumps({name: table for name, table in given.items() if table not in (None, "", {}, [])})
+            object.__setattr__(self, "text", text)
+            object.__setattr__(self, "checked", None)
+
+    @property
+    def tables(self) -> dict[str, Any]:
+        """The tables, by field."""
+        shared = {each.name for each in fields(Case)}
+        own_first = sorted(fields(self), key=lambda each: each.name in shared)
+        return {each.name: getattr(self, each.name) for each in own_first if each.compare}
+
+    @property
+    def is_checked(self) -> bool:
+        """Whether its tables are still those that have been checked."""
+        checked = self.checked
+        return checked is not None and all(table is checked[name] for name, table in self.tables.items())
+
+    def side(self, name: str) -> Boundary:
+        """The table of a side; one that is absent is free."""
+        return self.boundary.get(name, FREE)
+
+    @property
+    def driving(self) -> dict[str, dict[Motion, str]]:
+        """The waves that drive sides: side -> kind of wave -> name."""
+        return {side: dict(table.waves) for side, table in self.boundary.items() if table.waves}
+
+
+FREE = Free()
+
+K = TypeVar("K", bound=Case)
+
+
+def as_kind(case: Case, kind: type[K], otherwise: str) -> K:
+    """The case, if it is of a kind; else raises CaseError with the message `otherwise`."""
+    if not isinstance(case, kind):
+        raise CaseError([otherwise], case.name)
+    return case

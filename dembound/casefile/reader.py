@@ -1,0 +1,157 @@
+"""From a TOML file to a `Case`, or to the list of everything wrong with it."""
+
+import re
+import tomllib
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+from pydantic_core import to_json
+
+from dembound.casefile.messages import describe, show, unknown
+from dembound.casefile.model import Case
+from dembound.casefile.schema import WAVE, Schema
+from dembound.errors import CaseError
+
+TITLE: TypeAdapter[Any] = TypeAdapter(str)
+
+
+def load(path: Path, schemas: Sequence[Schema]) -> Case:
+    """Read a case file of one of the kinds that schemas are of; see `Schema.marks`.
+
+    Raises
+    ------
+    CaseError
+        With one line per mistake. A file that is absent, not TOML, or of none of these kinds shows only that.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise CaseError(["no such file"], str(path)) from None
+    except UnicodeDecodeError:
+        raise CaseError(["is not a text file in UTF-8"], str(path)) from None
+    except OSError as error:
+        raise CaseError([f"cannot be read: {error.strerror}"], str(path)) from None
+    return _read(text, path.parent, path.stem, str(path), schemas)
+
+
+def loads(text: str, schemas: Sequence[Schema], folder: Path = Path(), name: str = "case") -> Case:
+    """Read a case from TOML text, as if it stood in the file `name` of the folder; errors as `load`."""
+    return _read(text, folder, name, name, schemas)
+
+
+def _read(text: str, folder: Path, name: str, source: str, schemas: Sequence[Schema]) -> Case:
+    """The case; `source` is how errors call the text."""
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError([_syntax_problem(str(error), text)], source) from None
+    schema = next((schema for schema in schemas if not data.keys().isdisjoint(schema.marks)), None)
+    known = list(dict.fromkeys(key for each in schemas for key in each.keys))  # no mapping
+    if schema is None:
+        strange = [f"{key}: {unknown('table', key, known)}" for key in data if key not in known]
+        raise CaseError([*strange, _of_no_kind(schemas)], source)
+    reader = _Reader(folder, schema)
+    reader.problems = [_stray(key, data, schema, known) for key in data if key not in schema.keys]
+    tables = reader.read(data)
+    if reader.problems:
+        raise CaseError(reader.problems, source)
+    return schema.case(**tables, name=name, folder=folder, text=text, checked=tables)
+
+
+def _of_no_kind(schemas: Sequence[Schema]) -> str:
+    """What is wrong with a file that does not say what its case is of."""
+    kinds = " nor ".join(f"[{schema.marks[0]}] ({schema.noun})" for schema in schemas)
+    return f"has neither {kinds}; {' and '.join(f'`{schema.new}`' for schema in schemas)} write a case to start from"
+
+
+def _syntax_problem(message: str, text: str) -> str:
+    """Tomllib's message with the line first: ``line 7: … in: period = fast``."""
+    place = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)$", message)
+    if not place:
+        return message
+    what = message[: place.start()]
+    if not place[1]:
+        return f"at the end: {what}"
+    return f"line {place[1]}: {what}, in: {text.splitlines()[int(place[1]) - 1].strip()}"
+
+
+def _stray(key: str, data: Mapping[str, Any], schema: Schema, known: Collection[str]) -> str:
+    """Say that a table has no place in a case of this kind; known : the tables of all kinds."""
+    if key not in known:
+        return f"{key}: {unknown('table', key, schema.keys)}"
+    mark = next(mark for mark in schema.marks if mark in data)
+    return (
+        f"{key}: has no place here, as [{mark}] makes this a case of {schema.noun}; allowed: {', '.join(schema.keys)}"
+    )
+
+
+class _Reader:
+    """Validates table by table, so that a mistake in one hides none in the others."""
+
+    def __init__(self, folder: Path, schema: Schema) -> None:
+        self.folder = folder
+        self.schema = schema
+        self.problems: list[str] = []
+
+    def read(self, data: Mapping[str, Any]) -> dict[str, Any]:
+        """The fields of a case, None for what is invalid; notes all problems."""
+        schema = self.schema
+        tables = {"title": self._valid("title", data.get("title", ""), TITLE)}
+        for key, kind in schema.tables.items():
+            tables[key] = self._valid(key, data.get(key, {}), kind)
+        tables["wave"] = self._named("wave", data.get("wave", {}), WAVE)
+        tables["boundary"] = self._sides("boundary", data.get("boundary", {}), schema.side, schema.sides)
+        for key, kinds in schema.staged.items():
+            tables[key] = self._staged(key, data[key], *kinds) if key in data else None
+        for key, kind in schema.lists.items():
+            tables[key] = self._numbered(key, data.get(key, []), kind)
+        self.problems += schema.problems(tables, data)
+        return tables
+
+    def _valid(self, path: str, raw: object, kind: TypeAdapter[Any]) -> Any | None:
+        """The validated table; None, and its mistakes noted, if it is invalid.
+
+        Strict JSON takes a list for a tuple and a whole number for a float, but no text or bool for a number.
+        """
+        try:
+            json = to_json(raw, inf_nan_mode="constants")
+            return kind.validate_json(json, strict=True, context={"folder": self.folder})
+        except ValidationError as error:
+            self.problems += describe(error, path, raw, kind.json_schema())
+            return None
+
+    def _named(self, path: str, raw: object, kind: TypeAdapter[Any]) -> dict[str, Any]:
+        """A table of named tables."""
+        if not isinstance(raw, Mapping):
+            self.problems.append(f"{path}: is {show(raw)}, must be made of tables [{path}.NAME]")
+            return {}
+        return {name: self._valid(f"{path}.{name}", table, kind) for name, table in raw.items()}
+
+    def _sides(self, path: str, raw: object, kind: TypeAdapter[Any], sides: tuple[str, ...]) -> dict[str, Any]:
+        """The tables of sides, in the order of the sides."""
+        if isinstance(raw, Mapping):
+            strange = [name for name in raw if name not in sides]
+            self.problems += [f"{path}.{name}: {unknown('side', name, sides)}" for name in strange]
+            raw = {side: raw[side] for side in sides if side in raw}
+        return self._named(path, raw, kind)
+
+    def _staged(self, path: str, raw: object, kind: TypeAdapter[Any], side: TypeAdapter[Any]) -> Any | None:
+        """A table with sides of its own. They are validated one by one, and an invalid one is None in it."""
+        if not isinstance(raw, Mapping):
+            return self._valid(path, raw, kind)
+        sides = self._sides(f"{path}.boundary", raw.get("boundary", {}), side, self.schema.sides)
+        table = self._valid(path, {key: value for key, value in raw.items() if key != "boundary"}, kind)
+        return table and table.model_copy(update={"boundary": sides})
+
+    def _numbered(self, key: str, raw: object, kind: TypeAdapter[Any]) -> tuple[Any, ...]:
+        """The tables of a list, counted from 1 in error texts."""
+        if not isinstance(raw, list):
+            self.problems.append(f"{key}: is {show(raw)}, must be made of tables [[{key}]]")
+            return ()
+        paths = []
+        for number, table in enumerate(raw, start=1):
+            named = isinstance(table, Mapping) and isinstance(table.get("name"), str)
+            paths.append(f"{key}[{number}, {table['name']}]" if named else f"{key}[{number}]")
+        return tuple(self._valid(path, table, kind) for path, table in zip(paths, raw, strict=True))

@@ -1,0 +1,52 @@
+"""What the case file of one kind of body consists of."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic import TypeAdapter
+
+from dembound.boundaries import SIDES
+from dembound.casefile.model import Case
+from dembound.casefile.types import WaveTable
+
+Tables = Mapping[str, Any]
+"""The tables of a case by name; one that is invalid is None."""
+
+WAVE: TypeAdapter[Any] = TypeAdapter(WaveTable)
+
+
+@dataclass(frozen=True)
+class Schema:
+    """The tables of one kind of case, by the names of its fields.
+
+    Attributes
+    ----------
+    case : the class of such cases.
+    noun : "disks" or the like, for messages.
+    new : the command that writes such a case.
+    marks : tables of which a file of this kind has at least one, and a file of a kind named later has none.
+    tables : those there is one of.
+    side : what stands in [boundary.SIDE]; sides : the sides there are.
+    lists : those there are any number of.
+    problems : mistakes that show only when tables are looked at together, from them and the file's data.
+    staged : those that may be absent and have sides of their own: the table, and what stands in its boundary.SIDE.
+    """
+
+    case: type[Case]
+    noun: str
+    new: str
+    marks: tuple[str, ...]
+    tables: Mapping[str, TypeAdapter[Any]]
+    side: TypeAdapter[Any]
+    lists: Mapping[str, TypeAdapter[Any]]
+    problems: Callable[[Tables, Mapping[str, Any]], Iterator[str]]
+    sides: tuple[str, ...] = SIDES
+    staged: Mapping[str, tuple[TypeAdapter[Any], TypeAdapter[Any]]] = field(default_factory=dict)
+
+    @property
+    def keys(self) -> list[str]:
+        """All that may stand at the top level of a file, in the order messages name it."""
+        last = ("run", "output")
+        first = [key for key in self.tables if key not in last]
+        return ["title", *first, "boundary", *self.staged, "wave", *self.lists, *last]

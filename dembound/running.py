@@ -1,0 +1,229 @@
+"""One case, from tables to a folder of results."""
+
+import json
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from dembound.casefile import Case
+from dembound.errors import CaseError, DemboundError, RunError
+from dembound.kinds import checked, kind_of
+from dembound.motion.clock import Clock
+from dembound.motion.energy import Ledger
+from dembound.motion.kind import Beginning, Plan, StalledError
+from dembound.motion.simulation import Simulation
+from dembound.motion.trackers import Run, Tracker
+from dembound.plot.histories import plot_histories
+from dembound.plot.style import save
+from dembound.results.recorder import Histories, Recorder, Snapshots
+from dembound.results.summary import summarise
+from dembound.results.vtk import write_vtu
+
+MOST_STEPS = 1e11
+"""Steps that no run of a few nodes finishes within a day: a mistake in a time."""
+
+ENTRIES = 100
+"""Entries of the energy ledger where the case does not say how often."""
+
+
+SECTIONS = ("import", "compile", "build", "settle", "step", "record", "export", "pictures")
+"""What a run spends its time on, in the order of its summary."""
+
+
+class Progress:
+    """Receives progress and warnings of a run; the default ignores them."""
+
+    def warned(self, message: str) -> None:
+        """Something was probably not meant; said before the first step or when the record is complete."""
+
+    def settling(self, steps: int, ratio: float) -> None:
+        """The static stage has done so many steps and come to a force ratio."""
+
+    def running(self, run: Run, steps: int) -> None:
+        """A block is done, of so many steps in all."""
+
+
+def plan(case: Case, clock: Clock | None = None) -> Plan:
+    """Build the scene and choose the step; clock counts the time as that of "build".
+
+    Raises PackingError for an impossible brick, and CaseError for a case that was not read from a file and would not
+    be accepted there, a load that hits no particle, a material without
+    stiffness, a step above the stability limit and one so small that the run would never end.
+    """
+    case = checked(case)
+    kind = kind_of(case)
+    with _about(case), (clock or Clock()).of("build"):
+        scene = kind.build(case)
+        time_step, limit = kind.choose_step(scene)
+        steps = case.run.duration / time_step
+        if steps > MOST_STEPS:
+            asked = f"takes {steps:.3g} steps of {time_step:.3g} s"
+            raise CaseError([f"run.duration: {asked}, must take no more than {MOST_STEPS:g}"])
+    return Plan(kind, scene, time_step, limit, max(1, int(np.ceil(steps - 1e-9))))
+
+
+@contextmanager
+def _about(case: Case) -> Iterator[None]:
+    """Failures within say which case they are about."""
+    try:
+        yield
+    except DemboundError as error:
+        error.source = case.name
+        raise
+
+
+def preflight(case: Case) -> None:
+    """Find what would stop a case later, as far as it can be found cheaply.
+
+    Builds the scene, whose brick is then cached, and where the step is found quickly plans the run, see `plan`,
+    whose errors it raises.
+    """
+    kind = kind_of(case)
+    if kind.is_planned_quickly(case):
+        plan(case)
+        return
+    with _about(case):
+        kind.build(case)
+
+
+def warnings_before(planned: Plan) -> list[str]:
+    """What the run will do that was probably not meant, one line each."""
+    return planned.kind.warnings_before(planned.scene, planned.time_step)
+
+
+def run_case(
+    case: Case, results: Path, progress: Progress | None = None, seconds: Mapping[str, float] | None = None
+) -> Path:
+    """Run a case and leave ``results/<case name>/``; returns that folder.
+
+    Everything is written to ``<case name>.partial`` first and takes its name when the run is complete, so a
+    finished folder is always whole. A run that fails leaves the partial folder with the histories so far, a static
+    stage that stalls with a snapshot of the state it reached.
+
+    Warnings go to the progress and, all of them, to the summary; seconds are those already spent, by `SECTIONS`.
+
+    Raises the errors of `plan`, and RunError when the static stage does not settle or the motion grows without bound.
+    """
+    clock = Clock()
+    clock.seconds.update(dict.fromkeys(SECTIONS, 0.0) | dict(seconds or {}))
+    with clock.with_compiling():
+        planned, progress = plan(case, clock), progress or Progress()
+        folder, partial = results / case.name, results / f"{case.name}.partial"
+        for old in (folder, partial):
+            _must_be_replaceable(old)
+        if partial.exists():
+            shutil.rmtree(partial)
+        partial.mkdir(parents=True)
+        record = partial / "run.h5"
+        with _about(case), _gone_if_empty(partial):
+            warnings = _passed_on(warnings_before(planned), progress)
+            simulation, beginning = _simulate(planned, record, progress, clock)
+        with clock.of("export"):
+            write_vtu(record, partial / "paraview", planned.kind)
+        with clock.of("pictures"):
+            if case.output.pictures:
+                _draw(planned, partial)
+    summary = summarise(planned, simulation, record, clock.seconds)
+    summary |= planned.kind.summarise(planned.scene, simulation, beginning, record)
+    warnings += _passed_on(planned.kind.warnings_after(planned.scene, summary, record), progress)
+    summary["warnings"] = warnings
+    (partial / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
+    if folder.exists():
+        shutil.rmtree(folder)
+    partial.rename(folder)
+    return folder
+
+
+def _passed_on(warnings: list[str], progress: Progress) -> list[str]:
+    """The same warnings, after the progress has received each."""
+    for warning in warnings:
+        progress.warned(warning)
+    return warnings
+
+
+def _draw(planned: Plan, folder: Path) -> None:
+    """The pictures of a run beside its record: the monitors' velocities, and those of its kind."""
+    record = folder / "run.h5"
+    for name, figure in planned.kind.pictures(record):
+        save(figure, folder / f"{name}.png")
+    if planned.scene.case.monitor:
+        save(plot_histories([record]), folder / "histories.png")
+
+
+def _must_be_replaceable(folder: Path) -> None:
+    """Raise CaseError where a new run would delete something that no run has written."""
+    if folder.exists() and not (folder / "run.h5").is_file() and not _is_empty(folder):
+        raise CaseError([f"{folder}: exists and holds no run, give another --output or --name"])
+
+
+def _is_empty(folder: Path) -> bool:
+    """Whether a path is a folder without anything in it."""
+    return folder.is_dir() and not any(folder.iterdir())
+
+
+@contextmanager
+def _gone_if_empty(folder: Path) -> Iterator[None]:
+    """Where something within fails, do not leave the folder behind with nothing in it."""
+    try:
+        yield
+    finally:
+        if _is_empty(folder):
+            folder.rmdir()
+
+
+def _simulate(planned: Plan, path: Path, progress: Progress, clock: Clock) -> tuple[Simulation, Beginning]:
+    """Begin as the kind of body does, then advance to the end while trackers record it."""
+    scene, case, steps = planned.scene, planned.scene.case, planned.steps
+    with clock.of("settle"):
+        beginning = _begin(planned, path, progress)
+    simulation = Simulation(
+        scene,
+        planned.time_step,
+        list(scene.monitors.values()),
+        system=beginning.system,
+        datum=beginning.datum,
+        clock=clock,
+    )
+    ledger = Ledger(simulation, _steps_between_entries(planned), last=steps - 1)
+    shots = min(max(1, case.output.snapshots), steps)
+    interval = case.output.history_interval
+    with Recorder(path, simulation, planned.step_limit, interval, ledger, beginning.stages) as recorder:
+        snapshots = Snapshots(recorder, [steps * number // shots for number in range(1, shots + 1)])
+        simulation.track(Histories(recorder), ledger, snapshots, _Reports(progress, steps))
+        simulation.run(steps)
+    return simulation, beginning
+
+
+class _Reports(Tracker):
+    """Reports to the progress whenever the loop comes back."""
+
+    name = "reports"
+
+    def __init__(self, progress: Progress, steps: int) -> None:
+        self._progress, self._steps = progress, steps
+
+    def handle(self, run: Run) -> None:
+        """It is never due."""
+
+    def observe(self, run: Run, record: np.ndarray) -> None:
+        """Report."""
+        self._progress.running(run, self._steps)
+
+
+def _begin(planned: Plan, path: Path, progress: Progress) -> Beginning:
+    """Where the run begins; where a stage before it stalls, the record keeps the state it reached."""
+    try:
+        return planned.kind.begin(planned.scene, planned.time_step, progress.settling)
+    except StalledError as stalled:
+        with Recorder(path, stalled.run, planned.step_limit) as recorder:
+            recorder.stalled_snapshot(stalled)
+            raise RunError(f"{stalled}; to see it: dembound plot {path.parent} --field unbalanced") from None
+
+
+def _steps_between_entries(planned: Plan) -> int:
+    """Steps from one entry of the energy ledger to the next."""
+    interval = planned.scene.case.output.energy_interval
+    return max(1, round(interval / planned.time_step) if interval > 0.0 else planned.steps // ENTRIES)

@@ -1,0 +1,426 @@
+"""One case from tables to a folder of results."""
+
+import json
+import time
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.casefile import Case
+from dembound.errors import CaseError, RunError
+from dembound.motion.trackers import Run
+from dembound.plot.scene import plot_scene
+from dembound.running import SECTIONS, Progress, plan, preflight, run_case
+
+GRIP = {"type": "velocity", "wave_p": "pulse"}
+BLOW_UP = {"boundary.left": GRIP, "wave.pulse.amplitude": 1e305}
+"""A motion so large that forces overflow."""
+
+HANGING = {
+    "material.damp": 0.0,
+    "wave.pulse.start": 1.0,
+    "boundary.left": {"type": "fixed"},
+    "boundary.right": {"type": "free"},
+    "load": [{"name": "weight", "acceleration": [9.81, 0.0]}],
+    "static": {"ratio": 1e-6, "boundary": {"left": {"type": "fixed"}}},
+}
+"""The bar hangs from its left end while it settles and after."""
+
+
+def no_numbers_but_finite(constant: str) -> None:
+    raise AssertionError(f"{constant} is not JSON")
+
+
+def summary(folder) -> dict:
+    return json.loads((folder / "summary.json").read_text(), parse_constant=no_numbers_but_finite)
+
+
+def test_the_number_of_steps_covers_the_duration(bar) -> None:
+    planned = plan(bar())
+
+    assert (planned.steps - 1) * planned.time_step < 0.01 <= planned.steps * planned.time_step
+    assert plan(bar({"run.time_step": 1e-4})).steps == 100
+
+
+def test_a_step_above_the_limit_is_refused_before_anything_is_written(bar, tmp_path) -> None:
+    with pytest.raises(CaseError, match=r"run\.time_step"):
+        run_case(bar({"run.time_step": 5e-3}), tmp_path)
+
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_run_leaves_one_whole_folder(bar, tmp_path) -> None:
+    folder = run_case(bar({"output.pictures": True}), tmp_path / "new" / "results")
+
+    assert folder == tmp_path / "new" / "results" / "bar"
+    assert list(folder.parent.iterdir()) == [folder]
+    names = {path.name for path in folder.iterdir()}
+    assert names == {"run.h5", "summary.json", "paraview", "scene.png", "histories.png"}
+    with h5py.File(folder / "run.h5") as file:
+        assert file.attrs["complete"]
+
+
+def test_pictures_are_drawn_only_where_they_are_wanted(bar, tmp_path) -> None:
+    without = run_case(bar(), tmp_path)
+    unwatched = run_case(bar({"output.pictures": True, "monitor": []}, "unwatched"), tmp_path)
+
+    assert not list(without.glob("*.png"))
+    assert [path.name for path in unwatched.glob("*.png")] == ["scene.png"]
+
+
+def test_snapshots_are_evenly_spaced_and_the_last_is_at_the_end(bar, tmp_path) -> None:
+    folder = run_case(bar({"output.snapshots": 4, "run.time_step": 2.5e-4}), tmp_path)
+
+    with h5py.File(folder / "run.h5") as file:
+        times = [group.attrs["time"] for group in file["snapshots"].values()]
+    np.testing.assert_allclose(times, [0.0025, 0.005, 0.0075, 0.01], rtol=1e-12)
+
+
+def test_the_last_state_is_kept_even_without_snapshots(bar, tmp_path) -> None:
+    folder = run_case(bar({"output.snapshots": 0}), tmp_path)
+
+    with h5py.File(folder / "run.h5") as file:
+        (last,) = file["snapshots"].values()
+        assert last.attrs["time"] == pytest.approx(summary(folder)["duration"], rel=1e-15)
+
+
+def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> None:
+    found = summary(run_case(bar({"run.duration": 0.03}), tmp_path))
+
+    assert set(found) == {
+        *(
+            "name",
+            "title",
+            "version",
+            "particles",
+            "contacts",
+            "loose_disks_left_out",
+            "time_step",
+            "step_limit",
+            "steps",
+            "duration",
+        ),
+        *(
+            "wall_time",
+            "seconds",
+            "has_history",
+            "threads",
+            "particle_steps_per_second",
+            "memory_bytes",
+            "packing",
+            "boundaries",
+            "monitors",
+        ),
+        *("laws", "static", "cracks", "energy", "reduced", "warnings"),
+    }
+    assert (found["name"], found["particles"], found["contacts"]) == ("bar", 40, 2 * 19 + 20)
+    assert found["duration"] == pytest.approx(found["steps"] * found["time_step"], rel=1e-15)
+    assert found["particle_steps_per_second"] == pytest.approx(40 * found["steps"] / found["seconds"]["step"])
+    # by hand: ρc_p² shared by contact and bond; rounding and a solve with one unknown
+    assert found["packing"]["C11"] == pytest.approx(2.5e9, rel=1e-12)
+    assert found["packing"]["C66"] == pytest.approx(0.625e9, rel=1e-12)
+    assert found["packing"]["p_wave_speed"] == pytest.approx(1000.0, rel=1e-12)
+    assert found["packing"]["s_wave_speed"] is None
+    assert found["laws"] == [{"law": "elastic", "from": 0.0}]
+    assert found["static"] is None
+    assert found["cracks"] == {"tension": 0, "shear": 0}
+    # the books close to rounding: some 80 steps of sums over 40 particles of 1.1e-16 each
+    assert found["energy"]["relative_error"] < 1e-12
+    assert found["energy"]["outside"] != 0.0
+
+
+def test_the_summary_tells_what_the_time_was_spent_on(bar, tmp_path) -> None:
+    began = time.perf_counter()
+    folder = run_case(bar({**HANGING, "output.pictures": True}), tmp_path, seconds={"import": 1000.0})
+    took = time.perf_counter() - began
+    found = summary(folder)
+
+    assert tuple(found["seconds"]) == SECTIONS
+    assert found["wall_time"] == pytest.approx(sum(found["seconds"].values()), rel=1e-12)
+    assert found["seconds"].pop("import") == 1000.0
+    # what is left out is the summary itself, and folders that are made and renamed
+    assert 0.0 < sum(found["seconds"].values()) <= took
+    assert all(
+        found["seconds"][section] > 0.0 for section in ("build", "settle", "step", "record", "export", "pictures")
+    )
+
+
+def test_what_was_not_done_took_no_time(bar, tmp_path) -> None:
+    seconds = summary(run_case(bar(), tmp_path))["seconds"]
+
+    assert tuple(seconds) == SECTIONS
+    assert seconds["import"] == 0.0
+    assert seconds["settle"] < 0.1 * sum(seconds.values())
+    assert seconds["pictures"] < 0.1 * sum(seconds.values())
+
+
+def test_the_summary_describes_the_sides(bar, tmp_path) -> None:
+    sides = summary(run_case(bar({"run.duration": 0.03, "boundary.right.beta_p": 0.9}), tmp_path))["boundaries"]
+
+    assert {side: described["type"] for side, described in sides.items()} == {
+        "left": "viscous_input",
+        "right": "viscous",
+        "bottom": "free",
+        "top": "free",
+    }
+    right = sides["right"]
+    assert (right["particles"], right["length"], right["cover"]) == (2, 1.0, 1.0)
+    assert (right["beta_p"], right["beta_s"]) == (0.9, 1.0)
+    assert "beta_p" not in sides["top"]
+    assert right["peak_velocity"][0] > 0.4  # of a pulse of 0.5 m/s
+    assert right["peak_velocity"][1] == 0.0
+    assert right["peak_velocity_deviation"][0] < 1e-12  # both disks of the bar's end move alike
+
+
+def test_the_summary_tells_when_the_wave_came(bar, tmp_path) -> None:
+    found = summary(run_case(bar({"run.duration": 0.03}), tmp_path))
+    middle = found["monitors"]["middle"]
+
+    assert middle["component"] == "x"
+    x = middle["position"][0]
+    # half the crest at T/4 and the crest at T/2 after the front, which travels at 1000 m/s. 20 disks per wavelength
+    # delay a wave by (qa)²/24 = 0.4 % of its way, its shorter parts by more; one step is 0.36 ms
+    assert middle["arrival"] == pytest.approx(0.0025 + x / 1000.0, abs=5e-4)
+    assert middle["peak_time"] == pytest.approx(0.005 + x / 1000.0, abs=5e-4)
+    assert middle["peak_velocity"] == pytest.approx(0.5, rel=0.05)
+
+
+class Heard(Progress):
+    """Writes down what it is told."""
+
+    def __init__(self) -> None:
+        self.static: list[tuple[int, float]] = []
+        self.blocks: list[tuple[int, int]] = []
+        self.warnings: list[tuple[str, int]] = []
+
+    def warned(self, message: str) -> None:
+        self.warnings.append((message.split(":")[0], len(self.blocks)))
+
+    def settling(self, steps: int, ratio: float) -> None:
+        self.static.append((steps, ratio))
+
+    def running(self, run: Run, steps: int) -> None:
+        self.blocks.append((run.state.step, steps))
+
+
+def test_progress_is_told_after_every_block(bar, tmp_path) -> None:
+    heard = Heard()
+    run_case(bar({"run.duration": 0.2}), tmp_path, heard)
+
+    done = [steps for steps, _ in heard.blocks]
+    (total,) = {of for _, of in heard.blocks}
+    assert heard.static == []
+    assert done == sorted(done)
+    assert done[-1] == total > 256
+    assert np.diff([0, *done]).max() <= 256
+
+
+def test_warnings_are_told_before_and_after_the_run_and_kept(bar, tmp_path) -> None:
+    heard = Heard()
+    burst = {"type": "sine_burst", "amplitude": 0.5, "frequency": 100.0, "cycles": 4}
+    folder = run_case(bar({"wave.pulse": burst, "run.duration": 0.03}), tmp_path, heard)
+
+    # four cycles of 10 m, for which disks of 0.5 m are coarse; the run sees three
+    (short, before), (moving, after) = heard.warnings
+    assert (short, before) == ("wave.pulse", 0)
+    assert (moving, after) == ("monitor.middle", len(heard.blocks))
+    assert [warning.split(":")[0] for warning in summary(folder)["warnings"]] == [short, moving]
+    assert summary(run_case(bar({"run.duration": 0.4, "wave.pulse.period": 0.07}), tmp_path))["warnings"] == []
+
+
+def test_what_would_stop_a_case_is_foreseen(bar, spalling) -> None:
+    for stopped, said in (
+        (bar({"run.time_step": 5e-3}), "run.time_step"),
+        (spalling({"run.courant": 2.0}), "run.courant"),
+        (bar({"material": {"density": 2500.0, "emod": 1e9, "pb_emod": 0.0}}), "material"),
+    ):
+        with pytest.raises(CaseError, match=said) as caught:
+            preflight(stopped)
+        assert caught.value.source == stopped.name
+    preflight(bar())
+    preflight(spalling())
+
+
+def test_energies_are_entered_a_hundred_times_or_as_often_as_asked(bar, tmp_path) -> None:
+    usual = {"run.time_step": 1e-4, "run.duration": 0.025}
+    for name, changes, wanted in (
+        ("usual", {}, [*np.arange(0.0, 250.0, 2.0), 249.0]),  # and at the last step
+        ("asked", {"output.energy_interval": 1e-3}, [*np.arange(0.0, 250.0, 10.0), 249.0]),
+    ):
+        with h5py.File(run_case(bar({**usual, **changes}, name), tmp_path) / "run.h5") as file:
+            # ten times a step of 1e-4 s, each product rounded
+            np.testing.assert_allclose(file["energy/time"], 1e-4 * np.array(wanted), rtol=1e-15)
+
+
+def test_a_static_stage_is_run_first_and_recorded(bar, tmp_path) -> None:
+    heard = Heard()
+    folder = run_case(bar(HANGING), tmp_path, heard)
+
+    static = summary(folder)["static"]
+    assert heard.static[-1] == (static["steps"], static["ratio"])
+    assert static["ratio"] <= 1e-6 < heard.static[0][1]
+    # 40 disks of 625 kg hang from two; the mean of their weights and of what is left is what the record says
+    assert static["carried"] == pytest.approx(40 * 625.0 * 9.81 / 2, rel=1e-4)
+    assert static["cracks"] == 0
+    with h5py.File(folder / "run.h5") as file:
+        assert file["static"].attrs["steps"] == static["steps"]
+        assert file["static/displacement"].shape == (40, 3)
+        assert file["static/displacement"][:, 0].max() > 0.0
+        # histories and snapshots count from where the stage ended
+        assert np.abs(file["snapshots/0000/displacement"][:, 0]).max() < 1e-6 * file["static/displacement"][:, 0].max()
+
+
+NICHE = {"name": "niche", "type": "rectangle", "corners": [6.0, 0.5, 8.0, 1.1], "stage": "after"}
+"""Four disks of the upper row."""
+
+
+def test_an_excavation_is_recorded_with_what_was_before(bar, tmp_path) -> None:
+    heard = Heard()
+    folder = run_case(bar({**HANGING, "hole": [NICHE]}), tmp_path, heard)
+
+    static = summary(folder)["static"]
+    before = static["before"]
+    assert before["before"] is None
+    assert {(stage["steps"], stage["ratio"]) for stage in (before, static)} <= set(heard.static)
+    for stage, disks in ((before, 40), (static, 36)):
+        assert stage["carried"] == pytest.approx(disks * 625.0 * 9.81 / 2, rel=1e-4)
+    with h5py.File(folder / "run.h5") as file:
+        assert file["static/before"].attrs["steps"] == before["steps"]
+        x, y = file["particles/position"][:].T
+        assert not ((x > 6.0) & (x < 8.0) & (y > 0.5)).any()
+        first, last = (file[f"{stage}/displacement"][:, 0] for stage in ("static/before", "static"))
+        assert first.shape == last.shape == (36,)
+        # with four weights less to carry, the bar springs back where only that has changed
+        assert np.all(last[(x > 0.5) & (x < 5.5)] < first[(x > 0.5) & (x < 5.5)])
+
+
+def test_cracks_before_an_excavation_are_recorded_where_they_were(bar, tmp_path) -> None:
+    weak = {"material.law": "linearpbond", "material.pb_ten": 0.3 * 19 * 625.0 * 9.81 / 0.5}
+    held = {"boundary.right": {"type": "fixed"}, "static.boundary.right": {"type": "fixed"}}
+    near = {**NICHE, "corners": [1.0, 0.5, 2.0, 1.1]}
+    folder = run_case(bar({**HANGING, **held, **weak, "hole": [near]}), tmp_path)
+
+    found = summary(folder)
+    assert found["static"]["before"]["cracks"] > 0
+    with h5py.File(folder / "run.h5") as file:
+        cracks, places = file["cracks"], file["particles/position"][:]
+        assert len(cracks["time"]) == found["cracks"]["tension"] > 0
+        # bonds of 0.5 m along x, whose disks have moved by strains of 1e-4 of the bar
+        middle = places[cracks["particles"][:]].mean(axis=1)
+        np.testing.assert_allclose(cracks["position"][:], middle, rtol=0.0, atol=1e-3)
+        apart = np.diff(places[cracks["particles"][:]], axis=1)[:, 0]
+        np.testing.assert_allclose(np.hypot(*apart.T), 0.5, rtol=1e-12)
+
+
+def test_a_run_that_fails_leaves_a_partial_folder_with_what_there_was(bar, tmp_path) -> None:
+    with pytest.raises(RunError, match="grew without bound"):
+        run_case(bar(BLOW_UP), tmp_path)
+
+    assert [path.name for path in tmp_path.iterdir()] == ["bar.partial"]
+    with h5py.File(tmp_path / "bar.partial" / "run.h5") as file:
+        assert not file.attrs["complete"]
+
+
+def test_a_static_stage_that_fails_does_not_stand_in_the_way_of_the_next_run(bar, tmp_path) -> None:
+    with pytest.raises(RunError, match="static stage") as caught:
+        run_case(bar({**HANGING, "static.ratio": 1e-12, "static.max_steps": 1}), tmp_path)
+    assert caught.value.source == "bar"
+    assert str(caught.value).endswith(f"; to see it: dembound plot {tmp_path / 'bar.partial'} --field unbalanced")
+    # the state it reached is kept to be looked at
+    with h5py.File(tmp_path / "bar.partial" / "run.h5") as file:
+        assert not file.attrs["complete"]
+        (snapshot,) = file["snapshots"].values()
+        assert snapshot["unbalanced"].shape == (len(file["particles/radius"]), 2)
+        assert np.abs(snapshot["unbalanced"][:]).max() > 0.0
+    plot_scene(tmp_path / "bar.partial" / "run.h5", field="unbalanced")
+
+    run_case(bar(HANGING), tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["bar"]
+
+
+@pytest.mark.parametrize("wave", [{}, {"wave": "pulse"}])
+def test_a_load_beside_all_particles_is_found_before_anything_is_written(bar, tmp_path, wave: dict) -> None:
+    between = {"name": "push", "force": [1.0, 0.0], "region": [3.01, 0.3, 3.02, 0.31], **wave}
+    with pytest.raises(CaseError, match="no particle is centred"):
+        run_case(bar({"load": [between]}), tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def finished_then_failed(bar, tmp_path) -> Case:
+    run_case(bar(), tmp_path)
+    with pytest.raises(RunError):
+        run_case(bar(BLOW_UP), tmp_path)
+    return bar()
+
+
+def test_earlier_results_outlive_a_run_that_fails(bar, tmp_path) -> None:
+    finished_then_failed(bar, tmp_path)
+
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bar", "bar.partial"]
+    assert summary(tmp_path / "bar")["steps"] == 29
+
+
+def test_a_new_run_takes_the_place_of_what_earlier_ones_left(bar, tmp_path) -> None:
+    case = finished_then_failed(bar, tmp_path)
+    (tmp_path / "bar" / "scene.png").write_text("old")
+    run_case(case, tmp_path)
+
+    assert [path.name for path in tmp_path.iterdir()] == ["bar"]
+    assert not (tmp_path / "bar" / "scene.png").exists()
+
+
+def test_the_same_case_gives_the_same_bits(bar, tmp_path) -> None:
+    histories = []
+    for name in ("one", "other"):
+        with h5py.File(run_case(bar(name=name), tmp_path) / "run.h5") as file:
+            histories.append(file["histories/middle/velocity"][:])
+
+    assert np.array_equal(*histories)
+
+
+def test_a_bar_is_run_from_its_tables_to_a_folder(spalling, tmp_path) -> None:
+    changes = {"output.pictures": True, "output.snapshots": 3, "method": {"type": "patch", "horizon": 3, "reach": 1}}
+    folder = run_case(spalling({**changes, "run.courant": 0.9}), tmp_path)
+
+    names = {path.name for path in folder.iterdir()}
+    assert names == {"run.h5", "summary.json", "paraview", "scene.png", "histories.png", "histories_stress.png"}
+    found = summary(folder)
+    assert found["steps"] == 67  # 60/0.9
+    assert found["courant"] == pytest.approx(0.9, rel=1e-12)
+    assert len(found["spalls"]) > 0
+    assert len(found["laws"]) == 2
+    with h5py.File(folder / "run.h5") as file:
+        assert file.attrs["complete"]
+        assert [len(group["damage"]) for group in file["snapshots"].values()] == [41, 41, 41]
+        assert file["histories/gauge/stress"].shape == (67,)
+
+
+def test_blocks_of_a_bar_are_longer(spalling, tmp_path) -> None:
+    heard = Heard()
+    quiet = {"run.duration": 0.1, "output.pictures": False, "output.energy_interval": 0.1, "output.snapshots": 1}
+    run_case(spalling(quiet), tmp_path, heard)
+
+    # the first step and the last are entered in the ledger, and stand alone
+    assert [done for done, _ in heard.blocks] == [1, 2048, 3999, 4000]
+
+
+def test_a_run_that_would_never_end_is_refused(spalling) -> None:
+    with pytest.raises(CaseError, match=r"^run.duration: takes \S+ steps of \S+ s, must take no more than 1e\+11$"):
+        plan(spalling({"run.courant": 1e-300}))
+
+
+def test_a_bars_step_above_the_limit_is_refused_before_anything_is_written(spalling, tmp_path) -> None:
+    with pytest.raises(CaseError, match=r"run\.courant: is 2, must not be above 1\.96") as caught:
+        run_case(spalling({"run.courant": 2.0}), tmp_path)
+
+    assert caught.value.source == "spalling"
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("kind", ["bar", "spalling"])
+def test_preflight_finds_a_run_that_would_never_end(request, kind: str) -> None:
+    step = {"bar": {"run.time_step": 1e-12}, "spalling": {}}[kind]
+    case = request.getfixturevalue(kind)({"run.duration": 1e9, **step})
+    with pytest.raises(CaseError, match=r"run\.duration: takes .* must take no more than"):
+        preflight(case)
