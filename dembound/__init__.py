@@ -1,8 +1,57 @@
-"""dembound: waves in bonded particles, with artificial boundaries that really absorb."""
+"""dembound: waves in bonded particles, with artificial boundaries that really absorb.
+
+From Python: `load`, `case`, `change`, `run`, `calibrate` and `Results`; see `dembound.api` and docs/python.md.
+"""
 
 import time
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
 
 IMPORT_BEGAN = time.perf_counter()
 """When the package began to be imported, for the summary of what a run spent its time on."""
+
+if TYPE_CHECKING:
+    from dembound.api import (
+        Arrays,
+        Calibration,
+        Case,
+        CaseError,
+        DemboundError,
+        PackingError,
+        Progress,
+        Results,
+        RunError,
+        calibrate,
+        case,
+        change,
+        load,
+        loads,
+        run,
+    )
+
+__all__ = [
+    "Arrays",
+    "Calibration",
+    "Case",
+    "CaseError",
+    "DemboundError",
+    "PackingError",
+    "Progress",
+    "Results",
+    "RunError",
+    "calibrate",
+    "case",
+    "change",
+    "load",
+    "loads",
+    "run",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """What `api` has, which is imported with the first of it: the kernels need none of it."""
+    if name in __all__:
+        return getattr(import_module("dembound.api"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

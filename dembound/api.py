@@ -1,0 +1,144 @@
+"""dembound from Python: cases made of tables, runs, and their results as arrays. See docs/python.md."""
+
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+import tomli_w
+
+from dembound import kinds
+from dembound.casefile import Case
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.model import as_kind
+from dembound.errors import CaseError, DemboundError, PackingError, RunError
+from dembound.results.results import Arrays, Results
+from dembound.running import Progress, run_case
+from dembound.studies import calibration
+from dembound.studies.calibration import Calibration
+from dembound.table import Table, as_toml
+
+__all__ = [
+    "Arrays",
+    "Calibration",
+    "Case",
+    "CaseError",
+    "DemboundError",
+    "PackingError",
+    "Progress",
+    "Results",
+    "RunError",
+    "calibrate",
+    "case",
+    "change",
+    "load",
+    "loads",
+    "run",
+]
+
+
+def load(path: Path | str) -> Case:
+    """Read a case file; raises CaseError with one line per mistake."""
+    return kinds.load(Path(path))
+
+
+def loads(text: str, folder: Path | str = ".", name: str = "case") -> Case:
+    """Read a case from TOML text; relative paths in it start in the folder. Errors as `load`."""
+    return kinds.loads(text, Path(folder), name)
+
+
+def case(name: str = "case", folder: Path | str = ".", **tables: Any) -> Case:
+    """Make a case of its tables, as they stand in a case file (docs/case_file.md).
+
+    Keys that are left out have their defaults, and mistakes are those of a file.
+
+    Parameters
+    ----------
+    name : of the results folder.
+    folder : where relative paths in the case start.
+    tables : table -> keys, such as ``packing={"pattern": "A", "size": (100.0, 10.0), "radius": 0.25}``; of sides and
+        waves name -> table, of loads, holes and monitors a list of tables. Values may also be numpy's, paths, tables
+        of another case, and None for a key that is left out.
+
+    Raises CaseError with one line per mistake.
+    """
+    return kinds.loads(tomli_w.dumps(_in_toml_words(tables, "")), Path(folder), name)
+
+
+def change(case: Case, changes: Mapping[str, Any], name: str | None = None) -> Case:
+    """The case with some keys changed, and under another name if one is given; the case itself stays as it is.
+
+    changes : dotted key -> value, as of ``--set``: ``{"boundary.right.beta_p": 0.81, "monitor.P4.position": (1, 2)}``.
+
+    Raises CaseError for keys that lead nowhere, and as `load`.
+    """
+    plain = {key: _in_toml_words(value, key) for key, value in changes.items()}
+    changed = kinds.with_changes(case, plain)
+    return changed if name is None else kinds.loads(changed.text, changed.folder, name)
+
+
+def run(
+    case: Case | Path | str,
+    results: Path | str = "results",
+    *,
+    progress: Progress | None = None,
+    threads: int | None = None,
+) -> Results:
+    """Run a case, or a case file, and leave ``results/<case name>/``, as ``dembound run`` does; returns what is in it.
+
+    Parameters
+    ----------
+    progress : receives progress and warnings; by default warnings are Python's.
+    threads : cores to use; by default as many as there are. Results do not depend on it.
+
+    Raises CaseError, PackingError or RunError: the case cannot be run, its brick not be packed, or the run failed.
+    """
+    chosen = case if isinstance(case, Case) else load(case)
+    before = numba.get_num_threads()
+    numba.set_num_threads(before if threads is None else max(1, min(threads, before)))
+    try:
+        return Results(run_case(chosen, Path(results), progress or _Warns()))
+    finally:
+        numba.set_num_threads(before)
+
+
+def calibrate(case: Case, side: str, **options: Any) -> tuple[Case, Calibration]:
+    """Find the factor β of one side for P or S waves; returns the case with it, and how it was found.
+
+    options : those of `dembound.studies.calibration.calibrate`: motion, method, start, tolerance, full, report.
+
+    Raises CaseError when the side has no dashpots or cannot move that way, RunError when β does not converge.
+    """
+    disks = as_kind(kinds.checked(case), DiskCase, "is the case of a bar; β of disks is calibrated")
+    found = calibration.calibrate(disks, side, **options)
+    return change(case, {f"boundary.{side}.{found.factor}": found.result}), found
+
+
+class _Warns(Progress):
+    """Turns warnings of a run into Python's."""
+
+    def warned(self, message: str) -> None:
+        """Warn."""
+        warnings.warn(message, stacklevel=2)
+
+
+def _in_toml_words(value: Any, place: str) -> Any:
+    """A value as TOML has it; raises CaseError for what it has no word for. place : its key."""
+    if isinstance(value, Table):
+        return as_toml(value)
+    if isinstance(value, Mapping):
+        inner = {str(key): _in_toml_words(each, f"{place}.{key}".lstrip(".")) for key, each in value.items()}
+        return {key: each for key, each in inner.items() if each is not None}
+    if isinstance(value, np.ndarray | np.generic):
+        return _in_toml_words(value.tolist(), place)
+    if isinstance(value, tuple | list):
+        return [_in_toml_words(each, place) for each in value]
+    if isinstance(value, Path):
+        return str(value)
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    raise CaseError(
+        [f"{place}: is of the Python type {type(value).__name__}, must be numbers, text, or tables of them"]
+    )

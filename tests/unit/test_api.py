@@ -1,0 +1,162 @@
+"""dembound from Python: the same cases, checks and results as from files."""
+
+import re
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import tomli_w
+
+import dembound
+from dembound.casefile.output import Output
+from dembound.waves import Cosine
+
+ROOT = Path(__file__).parents[2]
+TABLES = {
+    "packing": {"pattern": "A", "size": (5.0, 1.0), "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": np.float64(1000.0)},
+    "boundary": {"left": {"type": "velocity", "wave_p": "push"}, "right": {"type": "viscous", "beta_p": None}},
+    "wave": {"push": Cosine(type="cosine", amplitude=0.5, period=0.002)},
+    "monitor": [{"name": "middle", "position": np.array([2.6, 0.3])}],
+    "run": {"duration": 0.004},
+    "output": {"pictures": False, "snapshots": 2},
+}
+PLAIN = TABLES | {
+    "packing": {"pattern": "A", "size": [5.0, 1.0], "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
+    "boundary": {"left": {"type": "velocity", "wave_p": "push"}, "right": {"type": "viscous"}},
+    "wave": {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.002}},
+    "monitor": [{"name": "middle", "position": [2.6, 0.3]}],
+}
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory) -> dembound.Results:
+    return dembound.run(dembound.case("small", **TABLES), tmp_path_factory.mktemp("results"))
+
+
+def test_a_case_of_python_s_words_is_that_of_a_file(tmp_path) -> None:
+    path = tmp_path / "small.toml"
+    path.write_text(tomli_w.dumps(PLAIN))
+
+    made, read = dembound.case("small", **TABLES), dembound.load(path)
+    assert made == read == dembound.loads(made.text)
+    assert (made.name, read.name) == ("small", "small")
+
+
+def test_mistakes_are_those_of_a_file() -> None:
+    wrong = {**TABLES, "material": {"density": -1.0}, "runs": {}}
+    with pytest.raises(dembound.CaseError) as python:
+        dembound.case(**wrong)
+    with pytest.raises(dembound.CaseError) as file:
+        dembound.loads(tomli_w.dumps({**PLAIN, "material": {"density": -1.0}, "runs": {}}))
+    assert python.value.problems == file.value.problems
+    assert len(file.value.problems) == 2
+
+    with pytest.raises(dembound.CaseError, match=r"material\.density: is of the Python type complex, must be numbers"):
+        dembound.case(**{**TABLES, "material": {"density": 1j}})
+
+
+def test_a_case_is_changed_into_another(results) -> None:
+    case = dembound.case("small", **TABLES)
+    other = dembound.change(case, {"wave.push.amplitude": np.float32(0.25), "monitor.middle.position": (1, 1)}, "other")
+
+    assert (other.name, other.wave["push"].amplitude, other.monitor[0].position) == ("other", 0.25, (1.0, 1.0))
+    assert case.wave["push"].amplitude == 0.5
+    with pytest.raises(dembound.CaseError, match=r"run\.duration"):
+        dembound.change(case, {"run.duration": 0.0})
+
+
+def test_text_is_true_of_a_case_made_by_replacing_tables() -> None:
+    case = dembound.case(**TABLES)
+    quiet = replace(case, output=Output(snapshots=3), title="quiet")
+
+    assert quiet.text != case.text
+    assert dembound.loads(quiet.text) == quiet
+    assert replace(quiet, title="", output=case.output) == case
+
+
+def test_a_case_made_without_checks_is_checked_before_it_runs(tmp_path) -> None:
+    case = dembound.case(**TABLES)
+    lost = replace(case, wave={})
+    with pytest.raises(dembound.CaseError, match=r'boundary\.left\.wave_p: "push" is not a wave of this case'):
+        dembound.run(lost, tmp_path)
+    # those of the class alone: only what has no default has to be given
+    bare = type(case)(packing=case.packing, material=case.material, run=case.run)
+    assert dembound.loads(bare.text) == bare
+    assert not bare.is_checked
+
+
+def test_results_are_those_of_the_record(results) -> None:
+    with h5py.File(results.folder / "run.h5") as file:
+        for name in ("time", "velocity", "displacement"):
+            assert np.array_equal(results.histories["middle"][name], file["histories/middle"][name][:])
+        assert results.histories["middle"].unit("time") == file["histories/middle/time"].attrs["unit"] == "s"
+        assert results.histories["middle"].attributes["wanted"] == [2.6, 0.3]
+        assert [shot.attributes["time"] for shot in results.snapshots] == [
+            group.attrs["time"] for group in file["snapshots"].values()
+        ]
+        assert np.array_equal(results.snapshots[-1]["velocity"], file["snapshots/0001/velocity"][:])
+        assert set(results.boundaries) == set(file["boundaries"])
+        assert np.array_equal(results.boundaries["right"]["peak_velocity"], file["boundaries/right/peak_velocity"][:])
+        assert results.case == file.attrs["case"]
+    assert results.particles["position"].shape == (20, 2)
+    assert (
+        results.attributes["steps"]
+        == results.summary["steps"]
+        == round(results.energy["time"][-1] / results.attributes["time_step"]) + 1
+    )
+    assert len(results.cracks["time"]) == 0
+    assert results.laws == [("elastic", 0.0)]
+    assert dembound.loads(results.case) == dembound.case(**TABLES)
+    with pytest.raises(KeyError, match="has no stress; it has displacement, time, velocity"):
+        results.histories["middle"]["stress"]
+
+
+def test_folders_that_are_no_results_say_so(tmp_path, results) -> None:
+    with pytest.raises(dembound.CaseError, match="cannot be read"):
+        dembound.Results(tmp_path)
+    alone = tmp_path / "run.h5"
+    alone.write_bytes((results.folder / "run.h5").read_bytes())
+    assert dembound.Results(alone).name == "small"
+    with pytest.raises(dembound.CaseError, match="not complete"):
+        _ = dembound.Results(tmp_path).summary
+
+
+def test_warnings_of_a_run_are_python_s(tmp_path) -> None:
+    slow = dembound.change(dembound.case(**TABLES), {"wave.push.period": 50.0})
+    with pytest.warns(UserWarning, match=r"wave\.push: reaches"):
+        dembound.run(slow, tmp_path)
+
+
+def test_a_side_is_calibrated() -> None:
+    case = dembound.change(dembound.case(**TABLES), {"boundary.right.beta_p": 2.0, "wave.push.period": 0.1})
+    calibrated, found = dembound.calibrate(case, "right")
+
+    assert calibrated.boundary["right"].beta_p == found.result == pytest.approx(1.0, abs=0.02)
+
+
+def test_the_documented_examples_run(tmp_path, monkeypatch, capsys) -> None:
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/python.md").read_text(), flags=re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    names: dict = {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for block in blocks:
+            exec(block, names)
+    said = capsys.readouterr().out.splitlines()
+
+    # half the peak of 1 m/s is there a quarter of the period of 0.08 s after 80 m at 1000 m/s
+    assert float(re.search(r"after ([\d.]+) s", said[0])[1]) == pytest.approx(0.1, abs=0.001)
+    assert said[1:3] == ["0.1 m/s in, 0.100 m/s at 80 m", "1 m/s in, 1.000 m/s at 80 m"]
+    assert said[3].startswith("β_P = ")
+    assert [line.split(":")[0] for line in said[4:]] == ["run.duration", "boundary.right.beta_p"]
+
+
+def test_what_there_is_not_is_no_attribute() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'runs'"):
+        _ = dembound.runs
+    assert all(callable(getattr(dembound, name)) for name in dembound.__all__)
