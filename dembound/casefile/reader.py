@@ -3,6 +3,7 @@
 import re
 import tomllib
 from collections.abc import Collection, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -87,6 +88,12 @@ def _stray(key: str, data: Mapping[str, Any], schema: Schema, known: Collection[
     )
 
 
+@cache
+def _json_schema(kind: TypeAdapter[Any]) -> dict[str, Any]:
+    """What a table may hold, as JSON schema; made once, for that takes ten times as long as reading a case."""
+    return kind.json_schema()
+
+
 class _Reader:
     """Validates table by table, so that a mistake in one hides none in the others."""
 
@@ -119,7 +126,7 @@ class _Reader:
             json = to_json(raw, inf_nan_mode="constants")
             return kind.validate_json(json, strict=True, context={"folder": self.folder})
         except ValidationError as error:
-            self.problems += describe(error, path, raw, kind.json_schema())
+            self.problems += describe(error, path, raw, _json_schema(kind))
             return None
 
     def _named(self, path: str, raw: object, kind: TypeAdapter[Any]) -> dict[str, Any]:

@@ -29,6 +29,11 @@ from scipy.optimize import brentq
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 FEWEST_PANELS = 4
 MOST_PANELS = 2048
+BLOCK = 16384
+"""Values that are worked on at once: as many as stay in a processor's cache, not so few that calls cost more."""
+
+LoadFrom = Callable[..., np.ndarray]
+"""The load felt with a slowness, at all times or at some."""
 
 
 @dataclass(frozen=True)
@@ -111,11 +116,12 @@ def surface_displacement(
     s_arrival = distance / s_wave_speed
     times = np.asarray(times, dtype=float)
 
-    def load_from(p: np.ndarray | float) -> np.ndarray:
-        """Load that is felt at the `times` (k,) with slowness p, (k,) or (n, k)."""
-        return load(np.maximum(times - p * s_arrival, 0.0))
-
     latest = times / s_arrival
+
+    def load_from(p: np.ndarray | float, felt: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Load felt with slowness p, a number, (n, 1) or (n, k'), at those k' of the times that `felt` picks."""
+        return load(np.maximum(times[felt] - p * s_arrival, 0.0))
+
     at_pole = np.where(latest > kernel.pole, load_from(kernel.pole), 0.0)
     whole = _converged(kernel, load_from, latest, at_pole, tolerance)
     return whole / (math.pi * density * s_wave_speed**2)
@@ -136,7 +142,7 @@ def _kernel(p_wave_speed: float, s_wave_speed: float) -> _Kernel:
 
 def _converged(
     kernel: _Kernel,
-    load_from: Callable[[np.ndarray], np.ndarray],
+    load_from: LoadFrom,
     latest: np.ndarray,
     at_pole: np.ndarray,
     tolerance: float,
@@ -165,7 +171,7 @@ def _converged(
 
 def _integral(
     kernel: _Kernel,
-    load_from: Callable[[np.ndarray], np.ndarray],
+    load_from: LoadFrom,
     latest: np.ndarray,
     residue: np.ndarray,
     panels: int,
@@ -178,13 +184,35 @@ def _integral(
     total = np.zeros((2, len(latest)))
     marks = (math.sqrt(kernel.ratio), 1.0, kernel.pole, math.inf)
     for low, high in pairwise(marks):
-        width = np.clip(latest, low, high) - low
-        for panel in range(panels):
-            v = (panel + 0.5 + 0.5 * NODES[:, None]) / panels
-            p = low + width * np.sin(0.5 * math.pi * v) ** 2
-            load = load_from(p)
-            regular = load * kernel.vertical(p) - residue
-            vertical = np.divide(regular, p - kernel.pole, out=np.zeros_like(p), where=p != kernel.pole)
-            slope = WEIGHTS / (2 * panels) * 0.5 * math.pi * np.sin(math.pi * v[:, 0])
-            total += width * np.stack([slope @ (load * kernel.horizontal(p)), slope @ vertical])
+        whole, part = np.flatnonzero(latest >= high), np.flatnonzero((low < latest) & (latest < high))
+        if len(whole) > 0:  # one width for all, and so one kernel
+            total[:, whole] += _piece(kernel, load_from, whole, residue, low, np.array([high - low]), panels)
+        if len(part) > 0:
+            total[:, part] += _piece(kernel, load_from, part, residue, low, latest[part] - low, panels)
     return total
+
+
+def _piece(
+    kernel: _Kernel,
+    load_from: LoadFrom,
+    felt: np.ndarray,
+    residue: np.ndarray,
+    low: float,
+    width: np.ndarray,
+    panels: int,
+) -> np.ndarray:
+    """The part (2, k') of that integral from slowness `low` on, over widths (k',) or (1,), for times `felt` (k',)."""
+    nodes = ((np.arange(panels)[:, None] + 0.5 + 0.5 * NODES) / panels).ravel()
+    slopes = np.tile(WEIGHTS, panels) / (2 * panels) * 0.5 * math.pi * np.sin(math.pi * nodes)
+    total = np.zeros((2, len(felt)))
+    many = max(1, BLOCK // len(felt))
+    for begin in range(0, len(nodes), many):
+        v, slope = nodes[begin : begin + many, None], slopes[begin : begin + many]
+        p = low + width * np.sin(0.5 * math.pi * v) ** 2
+        load = load_from(p, felt)
+        regular = load * kernel.vertical(p) - residue[felt]
+        away = p - kernel.pole
+        total[1] += slope @ np.divide(regular, away, out=np.zeros_like(regular), where=away != 0.0)
+        if low < 1.0:
+            total[0] += slope @ (load * kernel.horizontal(p))
+    return width * total

@@ -25,7 +25,7 @@ Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset of numb
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
@@ -98,12 +98,12 @@ class Recorder:
         begun = state.step - len(record)
         rows = np.arange(-begun % self.stride, len(record), self.stride)
         times = (begun + rows) * step
-        for index, group in enumerate(self._histories):
-            _extend(group["time"], times)
-            _extend(group["displacement"], record[rows, index, :3])
-            _extend(group["velocity"], record[rows, index, 3:6])
-            if "stress" in group:
-                _extend(group["stress"], record[rows, index, 6])
+        for index, history in enumerate(self._histories):
+            _extend(history["time"], times)
+            _extend(history["displacement"], record[rows, index, :3])
+            _extend(history["velocity"], record[rows, index, 3:6])
+            if "stress" in history:
+                _extend(history["stress"], record[rows, index, 6])
         self._append_cracks(self.run.system.take_cracks(state.step), step)
         self.file.flush()
 
@@ -146,36 +146,39 @@ class Recorder:
         for name, (values, unit) in self.run.scene.columns.items():
             _write(group, name, values, unit)
 
-    def _make_histories(self) -> list[h5py.Group]:
+    def _make_histories(self) -> list[dict[str, h5py.Dataset]]:
+        """The datasets of each monitor by name; to look one up in the file costs as much as to extend it."""
         scene = self.run.scene
         histories = self.file.create_group("histories", track_order=True)  # the case's order, not the alphabet's
-        groups = []
+        kept = []
         for name, node in scene.monitors.items():
             group = histories.create_group(name)
             group.attrs["particle"] = node
             group.attrs["position"] = scene.positions[node]
             group.attrs["wanted"] = scene.places.get(name, scene.positions[node])  # a twin was not asked for
             group.attrs["unit"] = "m"
-            for dataset, width, unit in (
-                ("time", (), "s"),
-                ("displacement", (3,), DISPLACEMENT_UNIT),
-                ("velocity", (3,), VELOCITY_UNIT),
-            ):
-                _make(group, dataset, width, "f8", unit)
+            columns = [
+                ("time", (), "f8", "s"),
+                ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
+                ("velocity", (3,), "f8", VELOCITY_UNIT),
+            ]
             if scene.record_width > 6:
-                _make(group, "stress", (), "f8", "Pa")
-            groups.append(group)
-        return groups
+                columns.append(("stress", (), "f8", "Pa"))
+            kept.append(_make(group, columns))
+        return kept
 
-    def _make_cracks(self) -> h5py.Group:
-        group = self.file.create_group("cracks")
-        _make(group, "time", (), "f8", "s")
-        _make(group, "position", (2,), "f8", "m")
-        _make(group, "particles", (2,), "i8", "1")
-        _make(group, "shear", (), "?", "1")
-        return group
+    def _make_cracks(self) -> dict[str, h5py.Dataset]:
+        columns = [
+            ("time", (), "f8", "s"),
+            ("position", (2,), "f8", "m"),
+            ("particles", (2,), "i8", "1"),
+            ("shear", (), "?", "1"),
+        ]
+        return _make(self.file.create_group("cracks"), columns)
 
     def _append_cracks(self, cracks: Cracks, time_step: float) -> None:
+        if len(cracks.step) == 0:
+            return
         _extend(self._cracks["time"], cracks.step * time_step)
         before = 0.5 * self.run.state.datum[:2, cracks.pair].sum(axis=2).T  # of the middle, until the run began
         _extend(self._cracks["position"], cracks.position - before)
@@ -260,9 +263,13 @@ class Snapshots(Tracker):
         self._after(run.state.step)
 
 
-def _make(group: h5py.Group, name: str, width: tuple[int, ...], kind: str, unit: str) -> None:
-    """An empty dataset that rows of this width can be appended to."""
-    group.create_dataset(name, shape=(0, *width), maxshape=(None, *width), dtype=kind).attrs["unit"] = unit
+def _make(group: h5py.Group, columns: Iterable[tuple[str, tuple[int, ...], str, str]]) -> dict[str, h5py.Dataset]:
+    """Empty datasets of a group that rows can be appended to; columns: their names, widths of a row, types, units."""
+    kept = {}
+    for name, width, kind, unit in columns:
+        kept[name] = group.create_dataset(name, shape=(0, *width), maxshape=(None, *width), dtype=kind)
+        kept[name].attrs["unit"] = unit
+    return kept
 
 
 def _write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:
@@ -270,6 +277,8 @@ def _write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:
 
 
 def _extend(dataset: h5py.Dataset, values: np.ndarray) -> None:
+    if len(values) == 0:
+        return
     count = len(dataset)
     dataset.resize(count + len(values), axis=0)
     dataset[count:] = values

@@ -22,12 +22,17 @@ CRACKS = "red"  # told from every disk; black would be lost on those at rest
 
 CORNERS = 24  # of a disk's polygon; a multiple of four, so that it is as wide and as high as the disk
 
-# Without OpenGL, VTK does not raise but crashes, so another process tries first; it says what it would draw in.
+# Without OpenGL, VTK does not raise but crashes, so another process tries first; it says what it would draw in. Without
+# pyvista, which takes longer to import than all of this.
 TRIAL = """
-import pyvista
-plotter = pyvista.Plotter(off_screen=True, window_size=(9, 9))
-plotter.screenshot()
-print(plotter.render_window.GetClassName())
+import vtkmodules.vtkRenderingOpenGL2
+from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+window = vtkRenderWindow()
+window.SetOffScreenRendering(True)
+window.SetSize(9, 9)
+window.AddRenderer(vtkRenderer())
+window.Render()
+print(window.GetClassName())
 """
 
 WINDOWLESS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")  # what VTK draws in where it finds no display

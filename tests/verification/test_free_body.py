@@ -13,8 +13,8 @@ from dembound.disks.static import settle
 from dembound.kernels.contacts import CLOSING
 from dembound.motion.simulation import Simulation
 
-KICK = 3.0
-"""J per metre."""
+KICK = 0.75
+"""J per metre, with which the smallest of these bodies, 50 m² and 125 t, moves at 3.5 mm/s."""
 
 SIDES = {"left": "viscous", "right": "viscous"}
 PRESSURE = 5e6
@@ -57,8 +57,9 @@ LAWS = {
 
 
 def kicked(lab, pattern: str, material: dict, boundary: dict, static: dict | None) -> Simulation:
-    """A body of 20 m × 10 m, settled if it has a static stage, and kicked."""
-    scene = lab.scene(pattern, (20.0, 10.0), held=(), material=material, boundary=boundary, static=static)
+    """A body of 10 m × 5 m, settled if it has a static stage, and kicked."""
+    words = {} if pattern == "A" else {"brick": (5.0, 5.0)}
+    scene = lab.scene(pattern, (10.0, 5.0), held=(), material=material, boundary=boundary, static=static, **words)
     simulation = Simulation(scene, choose_step(scene)[0]) if static is None else lab.settled(scene, settle(scene).start)
     kick(simulation)
     return simulation
@@ -72,7 +73,7 @@ def kicked(lab, pattern: str, material: dict, boundary: dict, static: dict | Non
 )
 @pytest.mark.parametrize("pattern", ["A", "B", "C"])
 def test_a_kicked_body_gains_no_energy(lab, pattern, boundary, static, law):
-    """Without the loss at closing the lattices pass the kick by then."""
+    """Without the loss at closing, at 0.9 of the limit, the free lattice passes the kick under the reference law."""
     assert largest(kicked(lab, pattern, LAWS[law], boundary, static), 2000) < KICK
 
 

@@ -29,7 +29,7 @@ def compare(lab, motion: str, radius_ratio: float, seed: int, brick: float = 10.
         "bottom": "periodic",
         "top": "periodic",
     }
-    length = 10 * brick * np.ceil(20.0 / brick)
+    length = 10 * brick
     case = lab.case(
         "B", (length, brick), held=(), boundary=boundary, wave=lab.pulse(PERIOD),
         radius_ratio=radius_ratio, seed=seed, brick=(brick, brick),

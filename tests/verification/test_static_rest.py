@@ -19,7 +19,8 @@ SIDES = {
 def waiting(lab, pattern, material, changes):
     """A scene whose wave comes only after the test."""
     wave = {"type": "cosine", "amplitude": 0.5, "period": 0.05, "start": 100.0}
-    case = lab.case(pattern, (20.0, 20.0), held=(), boundary=SIDES, wave=wave)
+    brick = {} if pattern == "A" else {"brick": (5.0, 5.0)}
+    case = lab.case(pattern, (10.0, 10.0), held=(), boundary=SIDES, wave=wave, **brick)
     return build(with_changes(case, {**{f"material.{key}": value for key, value in material.items()}, **changes}))
 
 

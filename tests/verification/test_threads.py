@@ -8,7 +8,7 @@ from dembound.disks.stability import step_limit
 from dembound.motion import threads
 from dembound.motion.simulation import Simulation
 
-STEPS = 500
+STEPS = 300
 
 
 @pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="needs two threads")
@@ -22,7 +22,7 @@ def test_same_bits_for_one_and_two_threads(lab, monkeypatch):
         for number in (1, 2):
             numba.set_num_threads(number)
             assert threads.worthwhile_threads(1000) == number
-            scene = lab.scene("B", (60.0, 20.0), brick=(20.0, 20.0), **case)
+            scene = lab.scene("B", (40.0, 10.0), **case)
             simulation = Simulation(scene, 0.9 * step_limit(scene), np.arange(scene.count))
             record = simulation.advance(STEPS)
             results.append((record, simulation.state.displacement, simulation.state.velocity))

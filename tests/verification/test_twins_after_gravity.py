@@ -21,15 +21,17 @@ LAWS = {
 def twins_apart(lab, pattern: str, material: dict) -> float:
     """Largest difference of velocity between a particle and its twin over the largest velocity, in 0.12 s."""
     wave = {"type": "cosine", "amplitude": 0.5, "period": 0.05}
+    brick = {} if pattern == "A" else {"brick": (5.0, 5.0)}
     scene = lab.scene(
         pattern,
-        (20.0, 20.0),
+        (10.0, 10.0),
         held=(),
         material={"fric": 0.6} | material,
         boundary=SIDES,
         wave=wave,
         load=GRAVITY,
         static={"boundary": {"bottom": {"type": "fixed"}}},
+        **brick,
     )
     settled = settle(scene)
     assert settled.column is not None

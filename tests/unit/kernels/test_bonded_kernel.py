@@ -175,7 +175,7 @@ def test_the_work_of_what_turning_adds_has_its_own_column(stepped, random_pairs,
 
 
 def test_no_step_begins_with_a_list_that_is_too_old(stepped, random_pairs, plain, copied) -> None:
-    pairs, model = random_pairs(PARTICLES, PAIRS), stepped(PARTICLES, 200, STEP)
+    pairs, model = random_pairs(PARTICLES, PAIRS), stepped(PARTICLES, 60, STEP)
     _, forces = law_of(plain, copied, pairs, WEAK)
     u, v = start()
     u[:2] *= 0.1
@@ -184,7 +184,7 @@ def test_no_step_begins_with_a_list_that_is_too_old(stepped, random_pairs, plain
 
     far = np.array([moved(then, 0, np.zeros((2, PARTICLES))) for then, _, _ in states])
     assert why == LIST_ENDS
-    assert 1 < done < 200
+    assert 1 < done < 60
     assert done == np.argmax(2.0 * far > 0.3)
     close(u, states[done][0])
     close(v, states[done][1])
@@ -220,6 +220,34 @@ def test_a_supported_node_that_outruns_all_others_ages_the_list(stepped, random_
     assert done == np.argmax(2.0 * far > 2.0) == 4
     close(u, states[done][0])
     close(v, states[done][1])
+
+
+def test_two_bodies_keep_a_history_each(stepped, random_pairs, plain, copied, behind) -> None:
+    pairs, model = random_pairs(PARTICLES, PAIRS), stepped(2 * PARTICLES, 20, STEP, damp=0.3)
+    later = behind(copied(pairs), PARTICLES)
+    plain_laws = [law_of(plain, copied, pairs, WEAK) for _ in range(2)]
+    parts = slice(0, PARTICLES), slice(PARTICLES, None)
+    u, v = np.random.default_rng(5).uniform(-0.1, 0.1, (2, 3, 2 * PARTICLES))
+    states = model.leapfrog(
+        lambda u, v: np.hstack([
+            push(u[:, part], v[:, part]) for (_, push), part in zip(plain_laws, parts, strict=True)
+        ]),
+        u,
+        v,
+    )  # fmt: skip
+    body, supports, log = model.bundles()
+    laws = bonded_law(pairs, WEAK), bonded_law(later, WEAK)
+    done, why = advance(u, np.empty_like(u), v, 0, laws, (), None, body, supports, log)
+
+    assert (done, why) == (20, DONE)
+    close(u, states[-1][0])
+    close(v, states[-1][1])
+    for found, (law, _) in zip((pairs, later), plain_laws, strict=True):
+        assert np.array_equal(found.state, law.arrays.state)
+        assert np.array_equal(found.cracked, law.arrays.cracked)
+        assert found.cracked.max() > 0
+    assert not np.array_equal(pairs.cracked, later.cracked)
+    close(log.work[0, 2:4], sum(law.lost for law, _ in plain_laws))
 
 
 def test_an_old_list_is_not_even_pushed_once(stepped, random_pairs) -> None:

@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
+from dembound.exact import lamb
 from dembound.exact.lamb import surface_displacement
 from dembound.kinds import loads, with_changes
+from dembound.studies import half_space as module
 from dembound.studies.half_space import write_exact
 
 CASE = """
@@ -98,10 +100,41 @@ HAMMER = {"name": "hammer", "force": [0.0, -1000.0], "position": [4.75, 4.75], "
         ({"boundary.top": {"type": "viscous"}}, 'boundary.top.type: is "viscous", must be "free"'),
         ({"load": [{**HAMMER, "position": [0.75, 4.75]}]}, "load: is 0.75 m from the left side and 6 m from a monitor"),
         ({"monitor": [{"name": "under", "position": [4.75, 4.75]}]}, "monitor.under.position: lies under the load"),
-        ({"wave.pulse": {"type": "constant", "amplitude": 1.0, "start": 0.05}}, "wave.pulse: jumps on its way"),
+        ({"wave.pulse": {"type": "constant", "amplitude": 1.0, "start": 0.05}}, "jumps on its way, at 0.05 s"),
     ],
 )
 def test_other_problems_are_refused_and_leave_nothing(tmp_path, changes, message):
     with pytest.raises(CaseError, match=message):
         write_exact(with_changes(loads(CASE), changes), tmp_path / "new" / "run.h5")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("step", "at", "refused"),
+    [
+        (0.02, 0.0773, True),
+        (0.005, 0.0773, False),  # so small that the quadrature may try
+        (0.5, 0.1932, True),
+        (0.5, 0.1934, False),  # from 0.19333 s on, what sets out comes to the monitors, 2 m away, after the end
+    ],
+)
+def test_jumps_are_found_beside_steep_flanks_and_before_the_quadrature(tmp_path, monkeypatch, step, at, refused):
+    # the step follows a pulse of 1 m/s, whose flanks of 0.5 ms change by 0.2 m/s from one of 2000 samples to the next
+    pulse = [(0.0, 0.0), (0.03, 0.0), (0.0305, 1.0), (0.031, 0.0)]
+    samples = [*pulse, (at, 0.0), (np.nextafter(at, 1.0), step), (1.0, 0.0)]
+    np.savetxt(tmp_path / "wave.txt", samples, fmt="%.17g")
+    monkeypatch.setattr(module, "surface_displacement", lambda times, *_: np.zeros((2, len(times))))
+    case = with_changes(loads(CASE, tmp_path), {"wave.pulse": {"type": "file", "path": "wave.txt"}})
+    if refused:
+        with pytest.raises(CaseError, match=rf"wave\.pulse: jumps on its way, at {at:.3g} s; .* continuous load$"):
+            write_exact(case, tmp_path / "run.h5")
+    else:
+        write_exact(case, tmp_path / "run.h5")
+
+
+def test_a_load_whose_quadrature_does_not_settle_is_refused(tmp_path, monkeypatch):
+    # as of one that jumps to and fro between two samples; the pulse takes more than the fewest panels
+    monkeypatch.setattr(lamb, "MOST_PANELS", lamb.FEWEST_PANELS)
+    with pytest.raises(CaseError, match=r"wave\.pulse: is so rough .* continuous load$"):
+        write_exact(loads(CASE), tmp_path / "run.h5")
     assert not list(tmp_path.iterdir())
