@@ -2,6 +2,9 @@
 
 import hashlib
 import os
+import shutil
+import time
+from contextlib import suppress
 from pathlib import Path
 
 import numba
@@ -16,8 +19,25 @@ def sources_digest(folder: Path) -> str:
     return hashlib.sha256(b"".join(path.read_bytes() for path in sorted(folder.glob("*.py")))).hexdigest()[:16]
 
 
+def prune(folder: Path, keep: str, age: float = 7 * 86400.0) -> None:
+    """Remove what was compiled from other states of the sources and has not been used for `age` (s).
+
+    folder : has a folder for each state, named by its digest; keep : the one in use, which is marked as used now.
+    Nothing is raised: another process may be removing the same, or the folder be read-only.
+    """
+    with suppress(OSError):
+        os.utime(folder / keep)
+    with suppress(OSError):
+        for old in folder.iterdir():
+            named = len(old.name) == len(keep) and not set(old.name) - set("0123456789abcdef")
+            if named and old.name != keep and time.time() - old.stat().st_mtime > age:
+                shutil.rmtree(old, ignore_errors=True)
+
+
 # Numba keeps compiled code until the file of the function itself changes. Kernels are built of functions from other
 # files, too, so the code that was compiled from one state of all of them has a folder of its own.
 _HERE = Path(__file__).parent
 _KEPT = Path(numba.config.CACHE_DIR or _HERE / "__pycache__")  # type: ignore[attr-defined]  # from the environment
-numba.config.CACHE_DIR = str(_KEPT / sources_digest(_HERE))  # type: ignore[attr-defined]
+_DIGEST = sources_digest(_HERE)
+prune(_KEPT, _DIGEST)
+numba.config.CACHE_DIR = str(_KEPT / _DIGEST)  # type: ignore[attr-defined]

@@ -1,5 +1,7 @@
 """Where compiled code is kept: never code of other sources than there are."""
 
+import os
+import time
 from pathlib import Path
 
 from dembound import kernels
@@ -20,3 +22,19 @@ def test_a_change_in_any_file_is_another_state(tmp_path) -> None:
     changed = tmp_path / "step.py"
     changed.write_text(changed.read_text().replace("0.5", "0.6", 1))
     assert kernels.sources_digest(tmp_path) != kernels.sources_digest(FOLDER)
+
+
+def test_code_that_has_not_been_used_is_removed(tmp_path) -> None:
+    names = {"now": 16 * "a", "recent": 16 * "b", "old": 16 * "c", "strange": 16 * "z", "longer": 17 * "d"}
+    for name in names.values():
+        (tmp_path / name / "inner").mkdir(parents=True)
+        before = time.time() - 100.0
+        os.utime(tmp_path / name, (before, before))
+    os.utime(tmp_path / names["recent"])
+
+    kernels.prune(tmp_path, names["now"], age=50.0)
+    # what is in use is marked as used; what is not named by a digest is not ours
+    assert {path.name for path in tmp_path.iterdir()} == set(names.values()) - {names["old"]}
+    assert time.time() - (tmp_path / names["now"]).stat().st_mtime < 50.0
+
+    kernels.prune(tmp_path / "absent", names["now"])
