@@ -1,4 +1,4 @@
-"""How a bar is stepped: its bonds as the method laid them, and the method's answers when they are stretched far."""
+"""The part of a bar: its bonds as the method lays them, and changes them when springs are stretched far."""
 
 import numpy as np
 
@@ -49,19 +49,19 @@ class BarPart(Part):
         return self._arrays
 
     def react(self, why: int, steps: int, state: State) -> None:
-        """Let the method answer where a spring has come to its trigger.
+        """Let the method change the bonds where a spring has triggered it.
 
-        Raises RunError where its answer makes the time step unstable.
+        Raises RunError where that makes the time step unstable.
         """
         self.bond_updates += steps * self.bonds.alive
         if why == TRIGGERED:
             u = state.displacement[0]
-            self._answer(u, u - self._step * state.velocity[0], state)
+            self._change_bonds(u, u - self._step * state.velocity[0], state)
 
-    def _answer(self, u: np.ndarray, before: np.ndarray, state: State) -> None:
-        """Let the method answer at displacements u (n,), those a step ago being `before`, and enter what that did."""
+    def _change_bonds(self, u: np.ndarray, before: np.ndarray, state: State) -> None:
+        """Let the method change the bonds at displacements u (n,), a step ago `before`, and book the energy added."""
         stored, alive = self._between(u, before), self.bonds.alive
-        self.law_name = self.scene.case.method.answer(self.bonds, u)
+        self.law_name = self.scene.case.method.on_trigger(self.bonds, u)
         self._arrays = self._lay()
         state.work[:, 4] += self._between(u, before) - stored
         if self.bonds.alive > alive and not self._is_stable():

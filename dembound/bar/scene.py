@@ -7,7 +7,7 @@ import numpy as np
 
 from dembound.bar.body import BarBody
 from dembound.bar.part import BarPart
-from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.bar import BarCase
 from dembound.methods.bonds import Rod
 from dembound.motion.part import System
@@ -39,10 +39,10 @@ def build_bar(case: BarCase) -> BarScene:
     return BarScene(case, rod, positions, edges, _supports(case, rod, edges), monitors)
 
 
-def bar_medium(case: BarCase) -> Medium:
+def bar_medium(case: BarCase) -> BoundaryMedium:
     """What an end stands for: more of the same bar."""
     none = np.zeros(1)
-    return Medium(case.bar.density, case.bar.speed, 0.0, lambda diameters: (none, none))
+    return BoundaryMedium(case.bar.density, case.bar.speed, 0.0, lambda diameters: (none, none))
 
 
 def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge]) -> Supports:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Self
 
 from dembound.boundaries.sides import Motion
-from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import Table
 
 
@@ -35,7 +35,7 @@ class Boundary(Table):
 
     type: str
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """Fill rows of the support table for the particles of an edge; by default none.
 
         medium is what the side stands for, waves those of the case by name.
@@ -80,6 +80,6 @@ class Boundary(Table):
         """What plane waves at normal incidence meet that β is to be found for: without springs and columns."""
         return self
 
-    def describe(self, edge: Edge, medium: Medium) -> dict[str, Any]:
+    def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
         """The side in numbers for reports: key -> value, SI units."""
         return {f"beta_{motion}": factor for motion, factor in self.factors.items()}

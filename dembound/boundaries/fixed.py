@@ -1,10 +1,9 @@
 """A fixed side: its particles neither move nor turn."""
 
-from collections.abc import Mapping
 from typing import ClassVar, Literal
 
 from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 
 
 class Fixed(Boundary):
@@ -19,7 +18,7 @@ class Fixed(Boundary):
         """All three components."""
         return (0, 1, 2)
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """Prescribe zero velocity for all three components."""
         for component in range(3):
             supports.add(edge.nodes, component, prescribed=True)

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Literal
 from pydantic import model_validator
 
 from dembound.boundaries.sides import normal_axis
-from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import Dashpots, Viscous
 
 
@@ -42,7 +42,7 @@ class FreeField(Dashpots):
         """The viscous side with the same dashpots."""
         return Viscous(type="viscous", beta_p=self.beta_p, beta_s=self.beta_s)
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """One dashpot per edge particle and direction, on its velocity relative to its twin."""
         for component, damping in enumerate(self.dampings(edge, medium)):
             supports.add(edge.nodes, component, damping=damping, follow=damping)

@@ -1,10 +1,9 @@
 """A roller: the side slides along itself, but neither leaves its plane nor enters it."""
 
-from collections.abc import Mapping
 from typing import ClassVar, Literal
 
 from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 
 
 class Roller(Boundary):
@@ -18,6 +17,6 @@ class Roller(Boundary):
         """The motion along the normal."""
         return (normal_axis,)
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """Prescribe zero velocity along the normal."""
         supports.add(edge.nodes, edge.axis, prescribed=True)

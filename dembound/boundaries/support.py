@@ -9,7 +9,7 @@ v = Σ drive · signal(t) whatever the forces. A side may meet another at a corn
 rows on the same degree of freedom then add up, and a prescribed one outranks the rest.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -31,8 +31,12 @@ class Incident(Protocol):
         """Particle displacement, m, at the times t, s; same shape as t."""
 
 
+Waves = Mapping[str, Incident]
+"""The waves of a case by name."""
+
+
 @dataclass(frozen=True)
-class Medium:
+class BoundaryMedium:
     """What a side is made to stand for.
 
     density kg/m³, bulk; p_wave_speed, s_wave_speed m/s, nominal; mirror_stiffness: diameters (k,) m -> stiffness of
@@ -75,7 +79,7 @@ class Edge:
         return normal_axis(self.side)
 
     @property
-    def cover(self) -> float:
+    def diameter_sum_ratio(self) -> float:
         """ΣD/H: the summed diameters over the length of the side; 1 for a row of touching equal disks."""
         return float(self.diameters.sum() / self.length)
 

@@ -1,10 +1,9 @@
 """A plane of symmetry: the body goes on as its own mirror image."""
 
-from collections.abc import Mapping
 from typing import ClassVar, Literal
 
 from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 
 
 class Symmetry(Boundary):
@@ -21,7 +20,7 @@ class Symmetry(Boundary):
 
     type: Literal["symmetry"]
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """A spring on the normal motion and one on the rotation of every edge particle."""
         normal, bending = medium.mirror_stiffness(edge.diameters)
         supports.add(edge.nodes, edge.axis, stiffness=2.0 * normal)

@@ -1,12 +1,11 @@
 """A driven side: the velocity of its particles is prescribed."""
 
-from collections.abc import Mapping
 from typing import ClassVar, Literal
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Driven
 from dembound.boundaries.fixed import Fixed
-from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 
 
 class Velocity(Driven):
@@ -24,7 +23,7 @@ class Velocity(Driven):
         """A rigid wall."""
         return Fixed(type="fixed")
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """Prescribe v = wave(t) along each named direction and v = 0 along the other."""
         for component, name in enumerate(self.waves_by_axis(edge.axis)):
             supports.add(

@@ -13,7 +13,7 @@ from pydantic import model_validator
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Driven
 from dembound.boundaries.sides import normal_axis
-from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import Dashpots, Viscous, ViscousInput
 from dembound.errors import CaseError
 from dembound.table import quantity
@@ -45,7 +45,7 @@ class Springs(Boundary):
             raise ValueError("must have exactly one of distance and source, which say how far away waves begin")
         return self
 
-    def describe(self, edge: Edge, medium: Medium) -> dict[str, Any]:
+    def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
         """Factors α, modulus G (Pa) and distances L (m) of the springs, too."""
         distances = self.distances(edge)
         return super().describe(edge, medium) | {
@@ -56,7 +56,7 @@ class Springs(Boundary):
             "distance_max": distances.max(),
         }
 
-    def stiffnesses(self, edge: Edge, medium: Medium) -> np.ndarray:
+    def stiffnesses(self, edge: Edge, medium: BoundaryMedium) -> np.ndarray:
         """Spring constants αGD/L (2, k) in N/m of the edge's particles along x and y.
 
         Raises CaseError when the source lies in one of these particles.
@@ -65,7 +65,7 @@ class Springs(Boundary):
         factors = [along_normal, across] if edge.axis == 0 else [across, along_normal]
         return np.outer(factors, self.shear_modulus(medium) * edge.diameters / self.distances(edge))
 
-    def shear_modulus(self, medium: Medium) -> float:
+    def shear_modulus(self, medium: BoundaryMedium) -> float:
         """G in Pa."""
         if self.young_modulus is None:
             return medium.shear_modulus
@@ -86,7 +86,7 @@ class Viscoelastic(Dashpots, Springs):
 
     type: Literal["viscoelastic"]
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """One dashpot and one spring per edge particle and direction."""
         dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
         for component in range(2):
@@ -115,7 +115,7 @@ class ViscoelasticInput(Dashpots, Springs, Driven):
                 f"boundary.{beside[0]} with them; give distance"
             )
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """Dashpots and springs, plus the forces that make the incident wave pass."""
         dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
         for component, name in enumerate(self.waves_by_axis(edge.axis)):

@@ -12,7 +12,7 @@ import numpy as np
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Driven
 from dembound.boundaries.sides import Motion
-from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import quantity
 
 
@@ -40,11 +40,11 @@ class Dashpots(Boundary):
         if self.half_mass and packing and not packing.has_regular_edges:
             yield (f"boundary.{side}.half_mass: needs sides of disks in one row; pattern {packing.pattern} has none")
 
-    def describe(self, edge: Edge, medium: Medium) -> dict[str, Any]:
+    def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
         """The factors, and whether masses are halved."""
         return {**super().describe(edge, medium), "half_mass": self.half_mass}
 
-    def dampings(self, edge: Edge, medium: Medium) -> np.ndarray:
+    def dampings(self, edge: Edge, medium: BoundaryMedium) -> np.ndarray:
         """Dashpot constants βρcD (2, k) in N·s/m of the edge's particles along x and y (Z eq. 4)."""
         return np.outer(medium.impedances(self.beta_p, self.beta_s, edge.axis), edge.diameters)
 
@@ -56,7 +56,7 @@ class Viscous(Dashpots):
 
     type: Literal["viscous"]
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """One dashpot per edge particle and direction."""
         for component, damping in enumerate(self.dampings(edge, medium)):
             supports.add(edge.nodes, component, damping=damping)
@@ -73,7 +73,7 @@ class ViscousInput(Dashpots, Driven):
         """The same dashpots without a wave."""
         return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
 
-    def support(self, edge: Edge, medium: Medium, waves: Mapping[str, Incident], supports: SupportBuilder) -> None:
+    def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """The absorbing dashpots, plus the force that makes the incident wave pass."""
         names = self.waves_by_axis(edge.axis)
         for component, damping in enumerate(self.dampings(edge, medium)):

@@ -11,11 +11,11 @@ from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.disks import DiskCase
 from dembound.disks.contacts import ContactList
-from dembound.disks.ground import Ground
 from dembound.disks.loads import steady
-from dembound.kernels.tables import Rows
+from dembound.disks.packed_material import PackedMaterial
+from dembound.kernels.tables import NeighbourTable
 from dembound.motion.scene import Scene
-from dembound.motion.threads import worthwhile_threads
+from dembound.motion.threads import thread_count_for
 from dembound.packings.column import Seam
 from dembound.packings.tiling import Assembly
 
@@ -37,9 +37,9 @@ class DiskBody(Scene):
     """
 
     case: DiskCase
-    ground: Ground
+    ground: PackedMaterial
     assembly: Assembly
-    rows: tuple[Rows, ...]
+    rows: tuple[NeighbourTable, ...]
     edges: Mapping[str, Edge]
     supports: Supports
     monitors: Mapping[str, int]
@@ -89,7 +89,7 @@ class DiskBody(Scene):
     @property
     def threads(self) -> int:
         """Threads its steps use."""
-        return worthwhile_threads(self.count)
+        return thread_count_for(self.count)
 
     @property
     def parts(self) -> dict[str, slice]:

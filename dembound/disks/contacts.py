@@ -5,8 +5,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.ground import Ground
 from dembound.disks.neighbours import near_pairs, pair_keys
+from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.palette import brick_lines, limits_of, shared_lines
 from dembound.kernels import contacts as kernel
 from dembound.kernels.common import CHUNKS
@@ -56,7 +56,7 @@ class ContactList:
 
     def __init__(
         self,
-        ground: Ground,
+        ground: PackedMaterial,
         material: Material,
         assembly: Assembly,
         periods: tuple[float | None, float | None],
@@ -87,9 +87,9 @@ class ContactList:
         if self.searches:
             self.search(np.zeros((3, self.nodes.stop)))
 
-    def adopt(self, displacement: np.ndarray) -> None:
+    def start_from_displacements(self, displacement: np.ndarray) -> None:
         """Take over from the elastic law at displacements (3, n): nothing has slid so far."""
-        kernel.adopt(displacement, self.arrays)
+        kernel.start_from_displacements(displacement, self.arrays)
 
     def push(self, displacement: np.ndarray, *, reference: bool = False) -> None:
         """Compute the pairs' own forces at displacements (3, n) reached at rest, and leave them in `arrays`.
@@ -158,7 +158,7 @@ class ContactList:
         )
         self.origin = displacement[:2, self.nodes].copy()
 
-    def inherit(self, other: "ContactList", kept: np.ndarray) -> None:
+    def take_over_subset(self, other: "ContactList", kept: np.ndarray) -> None:
         """Take the pairs, with their history, of a list of more particles, of which this one's are `kept` (m,)."""
         number = np.full(len(other.assembly.radii), -1)
         number[kept] = np.arange(len(kept))
@@ -304,7 +304,7 @@ _KEPT = ("first", "second", "kind", "state", "shear", "slip", "cracked", "force"
 """What of the pairs' arrays their memory holds."""
 
 
-def plain_contacts(ground: Ground, assembly: Assembly, begin: int = 0) -> Contacts:
+def plain_contacts(ground: PackedMaterial, assembly: Assembly, begin: int = 0) -> Contacts:
     """The contacts of the elastic law, without history, forces and rows: what its strain energy takes.
 
     begin : number of the assembly's first particle in the scene.

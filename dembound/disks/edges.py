@@ -25,7 +25,7 @@ def find_edges(assembly: Assembly, periodic: tuple[bool, bool]) -> dict[str, Edg
     return edges
 
 
-def left_of(edge: Edge, kept: np.ndarray) -> Edge:
+def edge_without(edge: Edge, kept: np.ndarray) -> Edge:
     """A side without the particles that are not kept (m,); the others stand for their share of its length."""
     still = np.isin(edge.nodes, kept)
     if not still.any():

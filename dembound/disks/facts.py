@@ -136,7 +136,7 @@ def _side_fact(scene: DiskScene, side: str) -> str:
     half = ", half mass" if facts.get("half_mass") else ""
     return (
         f"{facts['type']}{factors}{half}{_springs_in_words(facts)}; {facts['particles']} particles, "
-        f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['cover']:.4f}"
+        f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['diameter_sum_ratio']:.4f}"
     )
 
 

@@ -14,7 +14,7 @@ def homogenised_beta(scene: DiskScene, side: str, motion: Motion) -> float:
     own = scene.ground.wave_speeds(edge.axis)[index]
     medium = boundary_medium(scene.case, scene.ground, edge.axis)
     nominal = (medium.p_wave_speed, medium.s_wave_speed)[index]
-    return own / nominal / edge.cover
+    return own / nominal / edge.diameter_sum_ratio
 
 
 def reflected(beta: float, matched: float) -> float:

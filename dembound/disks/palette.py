@@ -4,7 +4,7 @@ import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
-from dembound.disks.ground import Ground
+from dembound.disks.packed_material import PackedMaterial
 from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
 from dembound.kernels.tables import Limits
 
@@ -21,7 +21,7 @@ def limits_of(material: Material) -> Limits:
     )
 
 
-def brick_lines(ground: Ground, *, gaps_close: bool, locked_in: float) -> np.ndarray:
+def brick_lines(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
     """Palette lines (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
 
     The words are those of `pair_lines`.

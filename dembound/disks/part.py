@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.disks.contacts import ContactList, plain_contacts
-from dembound.disks.ground import Ground
+from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.rows import palette_of
 from dembound.kernels import bonded, elastic  # their laws have to be known before the loop is compiled
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contacts import REFERENCE, strain_energy
-from dembound.kernels.tables import Bonded, Contacts, Links, Rows, Seam, SeamEnds, WatchedLinks
+from dembound.kernels.tables import Bonded, Contacts, Links, NeighbourTable, Seam, SeamEnds, WatchedLinks
 from dembound.motion.cracks import NO_CRACKS, Cracks
 from dembound.motion.part import Part, Tie
 from dembound.motion.state import Arrays, State
@@ -36,7 +36,9 @@ class DiskPart(Part):
     stops_at_breaks : whether the loop returns after a step in which a bond of it broke.
     """
 
-    def __init__(self, name: str, ground: Ground, assembly: Assembly, rows: Rows, contacts: ContactList | None) -> None:
+    def __init__(
+        self, name: str, ground: PackedMaterial, assembly: Assembly, rows: NeighbourTable, contacts: ContactList | None
+    ) -> None:
         self.name = name
         self.ground = ground
         self.assembly = assembly
@@ -124,7 +126,7 @@ class FreeFieldSeam(Tie):
     def __init__(self, seam: ColumnSeam, column: DiskPart) -> None:
         self.seam = seam
         self.column = column
-        self._line = palette_of(column.ground)[1][2 * seam.kind + seam.second]
+        self._line = palette_of(column.ground)[1][2 * seam.kind + seam.twin_is_second]
         self._ends: tuple[Contacts, np.ndarray] | None = None
 
     @property
@@ -136,11 +138,11 @@ class FreeFieldSeam(Tie):
         """The rows of contacts across the seam, under the law that the column is under."""
         seam = self.seam
         counts = np.zeros(len(supported), dtype=np.uint32)
-        counts[np.searchsorted(supported, seam.node)] = seam.many
+        counts[np.searchsorted(supported, seam.node)] = seam.contact_counts
         start = np.zeros(len(supported) + 1, dtype=np.uint32)
         np.cumsum(counts, out=start[1:])
         if not self.column.uses_history:
-            near, line = seam.near.astype(np.uint32), self._line.astype(np.uint32)
+            near, line = seam.neighbour.astype(np.uint32), self._line.astype(np.uint32)
             return Seam(seam.twin[supported], start, near, line, self.column.rows.palette)
         assert self.column.contacts is not None
         ends = self.ends(self.column.contacts).astype(np.uint32)
@@ -149,7 +151,7 @@ class FreeFieldSeam(Tie):
     def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
         """Forces and moments (3, k) on its nodes at displacements (3, n) under the elastic law."""
         force = np.zeros((len(self.nodes), 3))
-        near, line = self.seam.near.astype(np.uint32), self._line.astype(np.uint32)
+        near, line = self.seam.neighbour.astype(np.uint32), self._line.astype(np.uint32)
         twin = self.seam.twin[self.nodes]
         elastic.seam_forces(Seam(twin, self.seam.start, near, line, self.column.rows.palette), displacement, force)
         return force.T

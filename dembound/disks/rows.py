@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from dembound.disks.ground import Ground
-from dembound.kernels.tables import Rows
+from dembound.disks.packed_material import PackedMaterial
+from dembound.kernels.tables import NeighbourTable
 from dembound.packings.tiling import Assembly
 
 
-def contact_rows(assembly: Assembly, ground: Ground, begin: int = 0) -> Rows:
+def contact_rows(assembly: Assembly, ground: PackedMaterial, begin: int = 0) -> NeighbourTable:
     """Sort the contacts into one row per particle, over a palette of the brick's contact constants.
 
     begin : number of the assembly's first particle in the scene.
@@ -23,10 +23,12 @@ def contact_rows(assembly: Assembly, ground: Ground, begin: int = 0) -> Rows:
     order = np.lexsort((neighbour, owner))
     start = np.zeros(begin + len(assembly.radii) + 1, dtype=np.uint32)
     np.cumsum(np.bincount(owner, minlength=len(assembly.radii)), out=start[begin + 1 :])
-    return Rows(begin, start, (begin + neighbour[order]).astype(np.uint32), kind[order].astype(np.uint32), palette)
+    return NeighbourTable(
+        begin, start, (begin + neighbour[order]).astype(np.uint32), kind[order].astype(np.uint32), palette
+    )
 
 
-def palette_of(ground: Ground) -> tuple[np.ndarray, np.ndarray]:
+def palette_of(ground: PackedMaterial) -> tuple[np.ndarray, np.ndarray]:
     """Palette lines (4b, 6), and the line of contact k seen from its first (2k) and second disk (2k + 1).
 
     Contacts from b on are the brick's with half their stiffness, for sides of half cells.

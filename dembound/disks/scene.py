@@ -8,13 +8,13 @@ from scipy.spatial import cKDTree
 
 from dembound.boundaries import Periodic
 from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
-from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.body import DiskBody, parts_of
-from dembound.disks.edges import edges_beside_column, find_edges, left_of
-from dembound.disks.ground import Ground, make_ground, nominal_moduli
+from dembound.disks.edges import edge_without, edges_beside_column, find_edges
 from dembound.disks.loads import drive
+from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.rows import contact_rows
 from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError
@@ -72,7 +72,7 @@ def build(case: DiskCase) -> DiskScene:
     return replace(_scene(case, ground, body, edges), before=scene, kept=kept)
 
 
-def _scene(case: DiskCase, ground: Ground, assembly: Assembly, edges: Mapping[str, Edge]) -> DiskScene:
+def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Mapping[str, Edge]) -> DiskScene:
     """The scene of a body and its sides, joined to a free-field column where the case has such sides."""
     seam = None
     if sides := _free_field_sides(case):
@@ -112,10 +112,10 @@ def column_alone(scene: DiskScene) -> DiskScene:
     return _scene(alone, scene.ground, column, find_edges(column, (True, False)))
 
 
-def ground_of(case: DiskCase) -> Ground:
+def ground_of(case: DiskCase) -> PackedMaterial:
     """The case's brick, packed or from the cache, with its material."""
     brick = case.packing.pack(nominal_moduli(case.material).emod)
-    return make_ground(brick, case.material, case.motion.held)
+    return make_packed_material(brick, case.material, case.motion.held)
 
 
 def _free_field_sides(case: DiskCase) -> tuple[str, ...]:
@@ -135,7 +135,7 @@ def _hollowed(
         seam = with_column(brick, body, sides)[1]
         if not np.isin(seam.node - seam.count, kept).all():
             raise CaseError([f"hole: reaches the free field of {' or '.join(sides)}, which has no hole"])
-    return left, {side: left_of(edge, kept) for side, edge in edges.items()}, kept
+    return left, {side: edge_without(edge, kept) for side, edge in edges.items()}, kept
 
 
 def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
@@ -161,17 +161,17 @@ def _with_half_contacts(
 
     assembly = replace(assembly, kind=halved(assembly.kind, *assembly.pairs.T))
     if seam is not None:
-        owner = np.repeat(seam.twin[seam.node], seam.many)
-        seam = replace(seam, kind=halved(seam.kind, owner, seam.near))
+        owner = np.repeat(seam.twin[seam.node], seam.contact_counts)
+        seam = replace(seam, kind=halved(seam.kind, owner, seam.neighbour))
     return assembly, seam
 
 
-def boundary_medium(case: DiskCase, ground: Ground, axis: int) -> Medium:
+def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> BoundaryMedium:
     """What a side stands for: the wave speeds the case names, else the packing's own along the side's normal.
 
     axis is that of the normal, 0 (x) or 1 (y): a packing may be stiffer along one than along the other.
     """
-    p_gradient, s_gradient = ((0, 3), (1, 2))[axis]  # of u_n and of u_s along the normal, see ground.GRADIENTS
+    p_gradient, s_gradient = ((0, 3), (1, 2))[axis]  # of u_n and of u_s along the normal, see packed_material.GRADIENTS
     p_speed, s_speed = case.material.p_wave_speed, case.material.s_wave_speed
     if p_speed is None:
         p_speed = float(np.sqrt(ground.material_tensor[p_gradient, p_gradient] / ground.density))
@@ -182,10 +182,10 @@ def boundary_medium(case: DiskCase, ground: Ground, axis: int) -> Medium:
         between = ground.law.stiffness(ground.moduli, 0.5 * diameters, 0.5 * diameters, diameters)
         return between.normal, between.bending
 
-    return Medium(ground.density, p_speed, s_speed, mirror_stiffness)
+    return BoundaryMedium(ground.density, p_speed, s_speed, mirror_stiffness)
 
 
-def _supports(case: DiskCase, ground: Ground, assembly: Assembly, edges: Mapping[str, Edge]) -> Supports:
+def _supports(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Mapping[str, Edge]) -> Supports:
     """All sides' recipes and all driven loads in one table."""
     builder = SupportBuilder(held=ground.held)
     for side, table in case.boundary.items():

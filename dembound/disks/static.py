@@ -97,7 +97,7 @@ def _excavate(scene: DiskScene, before: Start) -> Start:
     for name, pairs in contacts.items():
         there = before.contacts[name]
         kept = scene.kept[(scene.kept >= there.nodes.start) & (scene.kept < there.nodes.stop)] - there.nodes.start
-        pairs.inherit(there, kept)
+        pairs.take_over_subset(there, kept)
     return Start(before.displacement[:, scene.kept], contacts, before.has_history)
 
 

@@ -79,7 +79,7 @@ def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
         "diameter_min": edge.diameters.min(),
         "diameter_mean": edge.diameters.mean(),
         "diameter_max": edge.diameters.max(),
-        "cover": edge.cover,
+        "diameter_sum_ratio": edge.diameter_sum_ratio,
     }
     return described | table.describe(edge, medium)
 

@@ -220,7 +220,7 @@ class DiskSystem(System):
         """Let contacts without history take over from the elastic law at displacements (3, n)."""
         for pairs in self.contacts.values():
             if fresh:
-                pairs.adopt(displacement)
+                pairs.start_from_displacements(displacement)
 
     def _watch_breaks(self) -> None:
         """Let the loop return after a break where balancing forces may have to end."""

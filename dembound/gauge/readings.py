@@ -11,7 +11,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.gauge.estimates import FEWEST
 from dembound.results.reader import open_record
-from dembound.waves.record import read_samples
+from dembound.waves.file_wave import read_samples
 
 FREE = "free"
 """The type of an end that nothing holds."""

@@ -27,18 +27,18 @@ def _plain_reached(u, a, b, limit):
 
 
 @njit(**FAST)
-def _move_plain(u, v, a, b, stiffness, step, spare):
+def _move_plain(u, v, a, b, stiffness, step, u_next):
     """One step of nodes a to b − 1 between springs that are all alike; stiffness: Δt k/m."""
     one = U(1)
     for i in range(U(a), U(b)):
         w = v[i] + stiffness * ((u[i + one] - u[i]) - (u[i] - u[i - one]))
         w = 0.0 if abs(w) <= REST else w
         v[i] = w
-        spare[i] = u[i] + step * w
+        u_next[i] = u[i] + step * w
 
 
 @njit(**FAST)
-def _move_plain_dragged(u, v, a, b, stiffness, keep, step, spare, mean):
+def _move_plain_dragged(u, v, a, b, stiffness, keep, step, u_next, mean):
     """`_move_plain` under attenuation; mean (n,) gets the means of the velocities half a step before and after."""
     one = U(1)
     for i in range(U(a), U(b)):
@@ -46,7 +46,7 @@ def _move_plain_dragged(u, v, a, b, stiffness, keep, step, spare, mean):
         w = 0.0 if abs(w) <= REST else w
         mean[i] = 0.5 * (v[i] + w)
         v[i] = w
-        spare[i] = u[i] + step * w
+        u_next[i] = u[i] + step * w
 
 
 @njit(**FAST)
@@ -102,7 +102,7 @@ def forces(u, mixed, spring, spring_limit, bond, bond_limit, space, force):
 
 
 @njit(**FAST)
-def _plain_ask(u, plain, limit):
+def _plain_triggers(u, plain, limit):
     """Whether a spring that holds a plain node has reached its limit (m)."""
     reached = 0
     for r in range(plain.shape[0]):
@@ -111,10 +111,10 @@ def _plain_ask(u, plain, limit):
 
 
 @njit(**FAST)
-def _asks(u, bonds):
+def _triggers(u, bonds):
     """Whether one of the other springs has reached a limit where the method decides."""
     for k in range(bonds.spring.size):
-        if bonds.asks[k] and bonds.spring[k] > 0.0 and u[k + 1] - u[k] >= bonds.spring_limit[k]:
+        if bonds.triggers[k] and bonds.spring[k] > 0.0 and u[k + 1] - u[k] >= bonds.spring_limit[k]:
             return True
     return False
 
@@ -189,32 +189,32 @@ def stored(u, bonds):
 
 
 @njit(**FAST)
-def _move_mixed(u, v, a, b, mobility, keep, step, spare, mean):
-    """One step of nodes a to b − 1 with their forces in spare (n,), which gets their new displacements."""
+def _move_mixed(u, v, a, b, mobility, keep, step, u_next, mean):
+    """One step of nodes a to b − 1 with their forces in u_next (n,), which gets their new displacements."""
     for i in range(U(a), U(b)):
-        w = keep * v[i] + mobility[i] * spare[i]
+        w = keep * v[i] + mobility[i] * u_next[i]
         w = 0.0 if abs(w) <= REST else w
         mean[i] = 0.5 * (v[i] + w)
         v[i] = w
-        spare[i] = u[i] + step * w
+        u_next[i] = u[i] + step * w
 
 
 @njit(**FAST)
-def _move_unsupported(u, v, plain, stiffness, mixed, mobility, keep, step, spare, mean, nodes, dragged):
+def _move_unsupported(u, v, plain, stiffness, mixed, mobility, keep, step, u_next, mean, nodes, dragged):
     """One step of all nodes but the supported ones (k,)."""
     for r in range(plain.shape[0]):
         a, b = plain[r, 0], plain[r, 1]
         if dragged:
-            _move_plain_dragged(u, v, a, b, stiffness, keep, step, spare, mean)
+            _move_plain_dragged(u, v, a, b, stiffness, keep, step, u_next, mean)
         else:
-            _move_plain(u, v, a, b, stiffness, step, spare)
+            _move_plain(u, v, a, b, stiffness, step, u_next)
     for r in range(mixed.shape[0]):
         first, b = mixed[r, 0], mixed[r, 1]
         for s in range(nodes.size):
             if first <= nodes[s] < b:
-                _move_mixed(u, v, first, nodes[s], mobility, keep, step, spare, mean)
+                _move_mixed(u, v, first, nodes[s], mobility, keep, step, u_next, mean)
                 first = nodes[s] + 1
-        _move_mixed(u, v, first, b, mobility, keep, step, spare, mean)
+        _move_mixed(u, v, first, b, mobility, keep, step, u_next, mean)
 
 
 @njit(cache=True, fastmath=FASTMATH | {"reassoc"}, error_model="numpy")
@@ -243,27 +243,29 @@ def _note_drag(v, mean, before, nodes, drag, step, work):
 
 
 @njit(**FAST)
-def check(bonds, u, spare, v):
-    """Whether a spring has come to where the method decides; leaves the forces in spare.
+def check(bonds, u, u_next, v):
+    """Whether a spring has come to where the method decides; leaves the forces in u_next.
 
-    bonds : see tables.BarBonds; of u, spare and v, which have three rows, a bar uses the first.
+    bonds : see tables.BarBonds; of u, u_next and v, which have three rows, a bar uses the first.
     """
     x = u[0]
     bonds.reached[0] = forces(
-        x, bonds.mixed, bonds.spring, bonds.spring_limit, bonds.bond, bonds.bond_limit, bonds.space, spare[0]
+        x, bonds.mixed, bonds.spring, bonds.spring_limit, bonds.bond, bonds.bond_limit, bonds.space, u_next[0]
     )
-    if bonds.plain_limit < np.inf and _plain_ask(x, bonds.plain, bonds.plain_limit):
+    if bonds.plain_limit < np.inf and _plain_triggers(x, bonds.plain, bonds.plain_limit):
         return TRIGGERED
-    return TRIGGERED if bonds.reached[0] > 0 and _asks(x, bonds) else DONE
+    return TRIGGERED if bonds.reached[0] > 0 and _triggers(x, bonds) else DONE
 
 
 @njit(**FAST)
-def push(bonds, u, spare, v, number, step, work):
-    """Break what has reached its limit, and leave the forces of the rest in spare."""
+def push(bonds, u, u_next, v, number, step, work):
+    """Break what has reached its limit, and leave the forces of the rest in u_next."""
     if bonds.reached[0] > 0:
         work[0, 3] += break_at_limit(number, u[0], v[0], step, bonds)
         work[1, 3] = work[0, 3]
-        forces(u[0], bonds.mixed, bonds.spring, bonds.spring_limit, bonds.bond, bonds.bond_limit, bonds.space, spare[0])
+        forces(
+            u[0], bonds.mixed, bonds.spring, bonds.spring_limit, bonds.bond, bonds.bond_limit, bonds.space, u_next[0]
+        )
     return 0
 
 
@@ -275,14 +277,14 @@ def note(bonds, index, u, log):
 
 
 @njit(**FAST)
-def move(bonds, u, spare, v, body, nodes):
+def move(bonds, u, u_next, v, body, nodes):
     """One step of all nodes but the supported ones."""
     w, before = v[0], bonds.before
     for s in range(nodes.size):
         before[s] = w[nodes[s]]
     dragged = bonds.drag.size > 0
     _move_unsupported(
-        u[0], w, bonds.plain, bonds.plain_push, bonds.mixed, bonds.mobility, bonds.keep, body.step, spare[0],
+        u[0], w, bonds.plain, bonds.plain_push, bonds.mixed, bonds.mobility, bonds.keep, body.step, u_next[0],
         bonds.mean, nodes, dragged,
     )  # fmt: skip
 

@@ -19,7 +19,7 @@ def begin(bonded):
 
 
 @njit(**FAST)
-def check(bonded, u, spare, v):
+def check(bonded, u, u_next, v):
     """Whether a pair may have come into reach that is not listed."""
     way = bonded.way
     if 2.0 * way[0] < way[1]:
@@ -30,7 +30,7 @@ def check(bonded, u, spare, v):
 
 
 @njit(**FAST)
-def push(bonded, u, spare, v, number, step, work):
+def push(bonded, u, u_next, v, number, step, work):
     """Let all pairs push; returns the bonds that broke, if the loop is to stop at them."""
     lost = bonded.lost
     breaks = push_pairs(u, v, step, number, bonded.contacts, bonded.limits, lost)
@@ -43,7 +43,7 @@ def push(bonded, u, spare, v, number, step, work):
 
 
 @njit(**PARALLEL)
-def _move(u, v, contacts, body, spare, fastest, damped):
+def _move(u, v, contacts, body, u_next, fastest, damped):
     """One step of the contacts' particles, see `move_particle`.
 
     fastest (chunks,) gets their speeds, damped (chunks, 2) the work of local damping.
@@ -58,7 +58,7 @@ def _move(u, v, contacts, body, spare, fastest, damped):
         for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
             fx, fy, moment = ends_force(i, force, start, end)
-            taken, up_to = move_particle(i, fx, fy, moment, u, v, body, spare)
+            taken, up_to = move_particle(i, fx, fy, moment, u, v, body, u_next)
             whole += taken
             half += up_to
             most = max(most, v[U(0), i] ** 2 + v[U(1), i] ** 2)
@@ -68,9 +68,9 @@ def _move(u, v, contacts, body, spare, fastest, damped):
 
 
 @njit(**FAST)
-def move(bonded, u, spare, v, body, nodes):
+def move(bonded, u, u_next, v, body, nodes):
     """One step of all particles, see law.move."""
-    _move(u, v, bonded.contacts, body, spare, bonded.fastest, bonded.damped)
+    _move(u, v, bonded.contacts, body, u_next, bonded.fastest, bonded.damped)
 
 
 @njit(**FAST)

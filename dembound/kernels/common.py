@@ -28,7 +28,7 @@ REST = 1e-250
 
 DONE, LIST_ENDS, LAW_ENDS, TRIGGERED, BROKE = 0, 1, 2, 3, 4
 """Why the loop returned: all steps are done; a list of pairs is old; a contact is about to leave the elastic law; a
-spring of a bar has come to where its method has to answer; a bond broke in the last step."""
+spring of a bar has triggered its method; a bond broke in the last step."""
 
 CHUNKS = 128
 """Pieces of the particle or contact range handed to the threads; it has no effect on the result."""

@@ -205,7 +205,7 @@ def sum_forces(contacts, total):
 
 
 @njit(**PARALLEL)
-def adopt(u, contacts):
+def start_from_displacements(u, contacts):
     """Set the pairs' tangential displacements to those of small displacements u (3, n): no closed contact has slid."""
     _, first, second, kind, palette, _, shear, slip, _, _, _, _, _ = contacts
     for p in prange(first.size):

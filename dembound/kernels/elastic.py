@@ -75,7 +75,7 @@ def seam_forces(seam, u, force):
 
 
 @njit(**PARALLEL)
-def _move(u, v, rows, body, spare, fastest, arms, damped):
+def _move(u, v, rows, body, u_next, fastest, arms, damped):
     """One step of the rows' particles, see `move_particle`.
 
     fastest (chunks,) gets surface speeds if there are arms, damped (chunks, 2) the work of local damping.
@@ -90,7 +90,7 @@ def _move(u, v, rows, body, spare, fastest, arms, damped):
         for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
             fx, fy, moment = _row_force(i, i, u, start, neighbour, kind, palette)
-            taken, up_to = move_particle(i, fx, fy, moment, u, v, body, spare)
+            taken, up_to = move_particle(i, fx, fy, moment, u, v, body, u_next)
             whole += taken
             half += up_to
             if watched:
@@ -101,9 +101,9 @@ def _move(u, v, rows, body, spare, fastest, arms, damped):
 
 
 @njit(**FAST)
-def move(links, u, spare, v, body, nodes):
+def move(links, u, u_next, v, body, nodes):
     """One step of all particles, see law.move."""
-    _move(u, v, links.rows, body, spare, links.fastest, links.fastest[:0], links.damped)
+    _move(u, v, links.rows, body, u_next, links.fastest, links.fastest[:0], links.damped)
 
 
 @njit(**FAST)
@@ -121,7 +121,7 @@ def begin_watch(watched):
 
 
 @njit(**FAST)
-def check_watch(watched, u, spare, v):
+def check_watch(watched, u, u_next, v):
     """Whether the step would take a contact out of the elastic law, or a pair into reach that is not listed.
 
     How far every pair is from that is measured again when surfaces have travelled half of it.
@@ -138,10 +138,10 @@ def check_watch(watched, u, spare, v):
 
 
 @njit(**FAST)
-def move_watched(watched, u, spare, v, body, nodes):
+def move_watched(watched, u, u_next, v, body, nodes):
     """One step of all particles, measuring how fast surfaces are."""
     links = watched.links
-    _move(u, v, links.rows, body, spare, links.fastest, watched.arms, links.damped)
+    _move(u, v, links.rows, body, u_next, links.fastest, watched.arms, links.damped)
 
 
 @njit(**FAST)

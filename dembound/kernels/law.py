@@ -1,7 +1,7 @@
-"""What the loop asks of a law, of a tie, and of forces that turn.
+"""What the loop calls of a law, of a tie, and of forces that turn.
 
-Each is a named tuple of arrays (tables.py), and its type decides, when the loop is compiled, which kernels answer. A
-new law is a bundle with its kernels, named with `is_law`; the loop stays as it is.
+Each is a named tuple of arrays (tables.py), and its type decides, when the loop is compiled, which kernels are called.
+A new law is a bundle with its kernels, named with `is_law`; the loop stays as it is.
 """
 
 from typing import Any
@@ -20,17 +20,17 @@ def begin(law):
     """Reset what the law counts within one call of the loop."""
 
 
-def check(law, u, spare, v):
+def check(law, u, u_next, v):
     """Why the loop has to return before this step, DONE if nothing keeps it; changes nothing but work space.
 
-    u, v : (3, n) displacements now, velocities half a step ago; spare : (3, n) work space.
+    u, v : (3, n) displacements now, velocities half a step ago; u_next : (3, n) work space.
     """
 
 
-def push(law, u, spare, v, number, step, work):
+def push(law, u, u_next, v, number, step, work):
     """Compute the forces of displacements u in step `number` of length `step` (s).
 
-    Forces that `move` needs stay in the law's own arrays or in spare. work : (2, 6), see tables.Log. Returns whether
+    Forces that `move` needs stay in the law's own arrays or in u_next. work : (2, 6), see tables.Log. Returns whether
     bonds broke that the loop is to stop for, as a number.
     """
 
@@ -39,8 +39,8 @@ def note(law, index, u, log):
     """Write down what the law knows of the probes beside their motion, in row `index` of log.record."""
 
 
-def move(law, u, spare, v, body, nodes):
-    """Move the law's nodes by a step; spare takes their displacements, of supported ones (k,) their forces."""
+def move(law, u, u_next, v, body, nodes):
+    """Move the law's nodes by a step; u_next takes their displacements, of supported ones (k,) their forces."""
 
 
 def finish(law, v, body, nodes, work):
@@ -76,43 +76,43 @@ def turning_work(turning, v, step):
     """Work (J) of what turning adds in the half step (s) after that, at velocities v (3, n) of its end."""
 
 
-def _of_all(question: Kernel, *, answered: bool) -> Kernel:
-    """The question put to all laws of a tuple in turn; returns the largest answer if they answer with numbers.
+def _of_all(kernel: Kernel, *, returns: bool) -> Kernel:
+    """The function called for all laws of a tuple in turn; returns the largest number where it returns numbers.
 
-    A single law is asked at once: unrolling a loop costs a short bar a tenth of its step.
+    A single law is called directly: unrolling a loop costs a short bar a tenth of its step.
     """
 
-    def ask(laws: Any, *others: Any) -> Any:
+    def call(laws: Any, *others: Any) -> Any:
         """Stands for one of those below."""
 
     def choose(laws: Any, *others: Any) -> Kernel:
         def one(laws, *others):  # type: ignore[no-untyped-def]
-            return question(laws[0], *others)
+            return kernel(laws[0], *others)
 
         def several(laws, *others):  # type: ignore[no-untyped-def]
             for law in literal_unroll(laws):
-                question(law, *others)
+                kernel(law, *others)
 
         def largest(laws, *others):  # type: ignore[no-untyped-def]
-            answer = 0
+            most = 0
             for law in literal_unroll(laws):
-                answer = max(answer, np.int64(question(law, *others)))
-            return answer
+                most = max(most, np.int64(kernel(law, *others)))
+            return most
 
-        return one if len(laws) == 1 else largest if answered else several
+        return one if len(laws) == 1 else largest if returns else several
 
-    overload(ask, jit_options=_UNCACHED, strict=False)(choose)
-    return ask
+    overload(call, jit_options=_UNCACHED, strict=False)(choose)
+    return call
 
 
 _INLINED: Any = {"forceinline": True}
-"""How answers are compiled: into the loop. Handing on all arrays of a bundle costs as much as fifty nodes of a bar."""
+"""How kernels of laws are compiled: into the loop. Passing all arrays of a bundle costs as much as fifty nodes."""
 
 _UNCACHED: Any = {name: value for name, value in FAST.items() if name != "cache"} | _INLINED
 
-begin_all, move_all = _of_all(begin, answered=False), _of_all(move, answered=False)
-check_all, push_all = _of_all(check, answered=True), _of_all(push, answered=True)
-note_all, finish_all = _of_all(note, answered=False), _of_all(finish, answered=False)
+begin_all, move_all = _of_all(begin, returns=False), _of_all(move, returns=False)
+check_all, push_all = _of_all(check, returns=True), _of_all(push, returns=True)
+note_all, finish_all = _of_all(note, returns=False), _of_all(finish, returns=False)
 
 
 @njit(**FAST)
@@ -121,12 +121,12 @@ def _no_begin(law):
 
 
 @njit(**FAST)
-def _no_check(law, u, spare, v):
+def _no_check(law, u, u_next, v):
     return DONE
 
 
 @njit(**FAST)
-def _no_push(law, u, spare, v, number, step, work):
+def _no_push(law, u, u_next, v, number, step, work):
     return 0
 
 

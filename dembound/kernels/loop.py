@@ -22,27 +22,27 @@ from dembound.kernels.step import copy, move_supported, note_after, note_before,
 
 
 @njit(**MAKES)
-def advance(u, spare, v, number, laws, ties, turning, body, supports, log):
+def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
     """Advance by up to supports.drive.shape[0] steps, the first being that of `number`; returns steps done and why.
 
-    u, spare, v : (3, n) displacement now, work space for the next one, velocity half a step ago; u holds the result.
+    u, u_next, v : (3, n) displacement now, work space for the next one, velocity half a step ago; u holds the result.
     laws, ties : tuples of bundles, a law for every part. turning : tables.Followers, or None. The other bundles are
     explained in tables.py.
     """
     k = supports.nodes.size
     pulled, followed = np.zeros((k, 3)), np.zeros((k, 3))
-    done, why = _advance(u, spare, v, number, laws, ties, turning, body, supports, log, pulled, followed)
+    done, why = _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed)
     if done % 2 == 1:
-        copy(spare, u)
+        copy(u_next, u)
     return done, why
 
 
 @njit(**FAST)
-def _advance(u, spare, v, number, laws, ties, turning, body, supports, log, pulled, followed):
-    """The steps themselves, with work space (k, 3) of the supported nodes; the last displacements may be in spare."""
+def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed):
+    """The steps themselves, with work space (k, 3) of the supported nodes; the last displacements may be in u_next."""
     steps = supports.drive.shape[0]
     nodes, work = supports.nodes, log.work
-    here, there = u, spare
+    here, there = u, u_next
     done = steps
     why = np.int64(DONE)
     begin_all(laws)

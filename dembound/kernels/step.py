@@ -25,10 +25,10 @@ def damping_work(v, w, f, b, damp, step):
 
 
 @njit(**FAST, inline="always")
-def move_particle(i, fx, fy, moment, u, v, body, spare):
-    """Move particle i by a step under its contact forces, to which steady loads come; spare takes its displacement.
+def move_particle(i, fx, fy, moment, u, v, body, u_next):
+    """Move particle i by a step under its contact forces, to which steady loads come; u_next takes its displacement.
 
-    Forces on a supported one wait in spare for `move_supported`. Returns the work (J) that local damping took, all of
+    Forces on a supported one wait in u_next for `move_supported`. Returns the work (J) that local damping took, all of
     it and up to the whole step.
     """
     if body.load.shape[1] > 0:
@@ -38,9 +38,9 @@ def move_particle(i, fx, fy, moment, u, v, body, spare):
     whole = 0.0
     half = 0.0
     if body.mobility[i] == 0.0:
-        spare[U(0), i] = fx
-        spare[U(1), i] = fy
-        spare[U(2), i] = moment
+        u_next[U(0), i] = fx
+        u_next[U(1), i] = fy
+        u_next[U(2), i] = moment
     else:
         across = body.free[0] * body.mobility[i]
         up = body.free[1] * body.mobility[i]
@@ -56,9 +56,9 @@ def move_particle(i, fx, fy, moment, u, v, body, spare):
         v[U(0), i] = vx
         v[U(1), i] = vy
         v[U(2), i] = spin
-        spare[U(0), i] = u[U(0), i] + body.step * vx
-        spare[U(1), i] = u[U(1), i] + body.step * vy
-        spare[U(2), i] = u[U(2), i] + body.step * spin
+        u_next[U(0), i] = u[U(0), i] + body.step * vx
+        u_next[U(1), i] = u[U(1), i] + body.step * vy
+        u_next[U(2), i] = u[U(2), i] + body.step * spin
     return whole, half
 
 
@@ -90,8 +90,8 @@ def note_before(step, u, v, probes, record, twin, followed):
 
 
 @njit(**FAST)
-def move_supported(step, u, v, spare, across, followed, supports, body, work):
-    """Move the supported nodes by a step, once all other particles have; spare holds the new displacements.
+def move_supported(step, u, v, u_next, across, followed, supports, body, work):
+    """Move the supported nodes by a step, once all other particles have; u_next holds the new displacements.
 
     For these nodes it holds their contact forces and steady loads before. across (k, 3) are the forces through seams,
     which are the outside's work; followed (k, 3) half the velocity of the nodes' twins before the step. work (2, 6) is
@@ -107,7 +107,7 @@ def move_supported(step, u, v, spare, across, followed, supports, body, work):
         i = U(nodes[s])
         for c in range(3):
             before = v[U(c), i]
-            force = spare[U(c), i]
+            force = u_next[U(c), i]
             total = force + across[s, c] - stiffness[s, c] * u[U(c), i] + drive[s, c]
             drag = 0.0
             if body.damp > 0.0 and mobility[s, c] > 0.0:  # without the dashpots', so that it is as strong as the twin's
@@ -117,7 +117,7 @@ def move_supported(step, u, v, spare, across, followed, supports, body, work):
             w = keep[s, c] * before + mobility[s, c] * (total + drag) + prescribed[s, c] * drive[s, c]
             w = 0.0 if abs(w) <= REST else w
             v[U(c), i] = w
-            spare[U(c), i] = u[U(c), i] + body.step * w
+            u_next[U(c), i] = u[U(c), i] + body.step * w
             push = inertia[s, c] * (w - before) - force - drag
             done += 0.5 * push * (before + w)
             half += 0.5 * push * before

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 
-class Rows(NamedTuple):
+class NeighbourTable(NamedTuple):
     """Contacts of the elastic law, one row per particle, of the particles from number `begin` on.
 
     Row i, that of particle i, is start[i]:start[i + 1] of neighbour (e,) and kind (e,), the latter a line of palette
@@ -165,7 +165,7 @@ class Log(NamedTuple):
 class Links(NamedTuple):
     """The elastic law on the particles that rows are of; fastest (chunks,), damped (chunks, 2) : work space."""
 
-    rows: Rows
+    rows: NeighbourTable
     fastest: np.ndarray
     damped: np.ndarray
 
@@ -211,10 +211,10 @@ class BarBonds(NamedTuple):
     """What holds a bar of n nodes together; horizon m, 0 where there is no peridynamic bond.
 
     spring : (n − 1,) N/m of the local springs between neighbours, 0 where there is none; spring_limit : (n − 1,) m, the
-    elongation at which each breaks, or where it asks (n − 1,) leaves that to the method; bond : (m, n) N/m, row p − 1
+    elongation at which each breaks, or where it triggers (n − 1,) the method; bond : (m, n) N/m, row p − 1
     those between nodes i and i + p; bond_limit : (m,) m, the elongation at which they break. spring_broken (n − 1,),
     bond_broken (m, n) : step in which each broke, −1 for not. plain : (r, 2) ranges of nodes between springs that are
-    all alike and all ask, at plain_limit m; plain_push 1/s : Δt k/m of them, less what attenuation takes; mixed :
+    all alike and all trigger, at plain_limit m; plain_push 1/s : Δt k/m of them, less what attenuation takes; mixed :
     (q, 4) the ranges of all others, with the number of bond lengths there, 0 or m, and whether springs hold them.
     section : m². mobility : (n,) Δt/m, less what attenuation takes, 0 for supported nodes; keep : part of its velocity
     that attenuation leaves a node in a step; drag : (n,) N·s/m of its dashpots, or (0,) for none. space (n + m + 1,),
@@ -223,7 +223,7 @@ class BarBonds(NamedTuple):
 
     spring: np.ndarray
     spring_limit: np.ndarray
-    asks: np.ndarray
+    triggers: np.ndarray
     bond: np.ndarray
     bond_limit: np.ndarray
     spring_broken: np.ndarray

@@ -14,7 +14,7 @@ import numpy as np
 from dembound.kernels.tables import BarBonds
 from dembound.laws.peridynamic import Family, damage, families, micromodulus
 
-_EVOLVING = ("spring", "bond", "spring_broken", "bond_broken", "spring_limit", "asks")
+_EVOLVING = ("spring", "bond", "spring_broken", "bond_broken", "spring_limit", "triggers")
 """The arrays of bonds that change."""
 
 TINY = 1e-12
@@ -77,14 +77,14 @@ class Bonds:
     Parameters
     ----------
     rod : the bar.
-    horizon : m of the zones; 0: there are none, and springs ask when they reach the critical stretch.
+    horizon : m of the zones; 0: there are none, and springs trigger at the critical stretch.
     complement : whether local springs carry what bonds leave; else a plane has either.
-    ask_at : share of the critical stretch at which local springs ask.
+    trigger_ratio : share of the critical stretch at which local springs trigger the method.
     influence : (m,) factors of the micromodulus by length of the bonds, see `Rod.bond_rows`.
 
     Attributes
     ----------
-    spring, spring_limit, asks, spring_broken : (n − 1,) of local springs, bond, bond_broken : (m, n) of bonds; see
+    spring, spring_limit, triggers, spring_broken : (n − 1,) of local springs, bond, bond_broken : (m, n) of bonds; see
         kernels.tables.BarBonds, whose arrays these are.
     zones : (first, one beyond last) node of every zone, from left to right.
     """
@@ -95,13 +95,13 @@ class Bonds:
         horizon: int,
         *,
         complement: bool = True,
-        ask_at: float = 1.0,
+        trigger_ratio: float = 1.0,
         influence: np.ndarray | None = None,
     ) -> None:
         self.rod = rod
         self.horizon = horizon
         self.complement = complement
-        self.ask_at = ask_at
+        self.trigger_ratio = trigger_ratio
         self.zones: list[tuple[int, int]] = []
         self._rows = rod.bond_rows(horizon, influence)
         planes = rod.count - 1
@@ -110,11 +110,11 @@ class Bonds:
         self.spring_broken = np.full(planes, -1)
         self.bond_broken = np.full(self.bond.shape, -1)
         self.spring_limit = np.zeros(planes)
-        self.asks = np.ones(planes, dtype=np.bool_)
-        self._most_covered = self._coverage(self._rows)
+        self.triggers = np.ones(planes, dtype=np.bool_)
+        self._most_carried = self._carried_share(self._rows)
         self._set_limits(np.zeros(planes))
 
-    def cover(self, first: int, last: int) -> None:
+    def add_zone(self, first: int, last: int) -> None:
         """Make nodes first to last − 1 a zone of peridynamics, with what it touches of other zones and near ends."""
         first, last = max(0, first), min(self.rod.count, last)
         first = 0 if first <= self.horizon else first  # no zone leaves a rest at an end shorter than a family
@@ -127,11 +127,11 @@ class Bonds:
             chosen = slice(zone[0], max(zone[0], zone[1] - row - 1))
             whole = self.bond_broken[row, chosen] < 0
             self.bond[row, chosen] = np.where(whole, self._rows[row, chosen], 0.0)
-        covered = self._coverage(np.where(self.laid, self._rows, 0.0))
-        left = 1.0 - covered if self.complement else (covered == 0.0).astype(float)
+        carried = self._carried_share(np.where(self.laid, self._rows, 0.0))
+        left = 1.0 - carried if self.complement else (carried == 0.0).astype(float)
         left[(np.abs(left) < TINY) | (self.spring_broken >= 0)] = 0.0
         self.spring[:] = self.rod.spring * left
-        self._set_limits(covered)
+        self._set_limits(carried)
 
     @property
     def shares(self) -> tuple[float, ...]:
@@ -150,13 +150,13 @@ class Bonds:
         """Halve the springs at both ends, as half volumes do in peridynamics with m = 1."""
         self.spring[[0, -1]] *= 0.5
 
-    def asking(self, u: np.ndarray) -> np.ndarray:
-        """Springs (a,) that have asked at displacements u (n,) m."""
-        return np.flatnonzero(self.asks & (self.spring > 0.0) & (np.diff(u) >= self.spring_limit))
+    def triggered(self, u: np.ndarray) -> np.ndarray:
+        """Springs (a,) that trigger the method at displacements u (n,) m."""
+        return np.flatnonzero(self.triggers & (self.spring > 0.0) & (np.diff(u) >= self.spring_limit))
 
-    def stop_asking(self) -> None:
-        """Let springs break at the critical stretch without asking from now on."""
-        self.asks[:] = False
+    def stop_triggering(self) -> None:
+        """Let springs break at the critical stretch without the method from now on."""
+        self.triggers[:] = False
         self.spring_limit[:] = self._elongation
 
     @property
@@ -232,14 +232,14 @@ class Bonds:
         return BarBonds(
             spring=self.spring,
             spring_limit=self.spring_limit,
-            asks=self.asks,
+            triggers=self.triggers,
             bond=self.bond,
             bond_limit=np.arange(1, self.horizon + 1) * self._elongation,
             spring_broken=self.spring_broken,
             bond_broken=self.bond_broken,
             plain=plain,
             plain_push=(0.5 * (1.0 + keep)) * whole * self.rod.spring,
-            plain_limit=self.ask_at * self._elongation,
+            plain_limit=self.trigger_ratio * self._elongation,
             mixed=mixed,
             section=self.rod.section,
             mobility=(0.5 * (1.0 + keep)) * mobility,
@@ -253,7 +253,7 @@ class Bonds:
 
     def _ranges(self, supported: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Ranges of plain nodes (r, 2); and of others, number of bond lengths and whether springs hold them (q, 4)."""
-        mixed, plain_spring = 1, (self.spring == self.rod.spring) & self.asks
+        mixed, plain_spring = 1, (self.spring == self.rod.spring) & self.triggers
         label = np.full(self.rod.count, mixed)
         label[1:-1][plain_spring[:-1] & plain_spring[1:]] = 0
         label[supported] = mixed
@@ -276,14 +276,14 @@ class Bonds:
         """Elongation (m) of a spring at the critical stretch."""
         return self.rod.critical_stretch * self.rod.spacing
 
-    def _coverage(self, rows: np.ndarray) -> np.ndarray:
+    def _carried_share(self, rows: np.ndarray) -> np.ndarray:
         """Share (n − 1,) of the stress under uniform strain that bonds of stiffness rows (m, n) carry across planes."""
         through = np.zeros(self.rod.count)
         for p, row in enumerate(rows, start=1):
             through += np.convolve(row * p * self.rod.spacing, np.ones(p))[: self.rod.count]  # p of them cross a plane
         return through[:-1] / (self.rod.modulus * self.rod.section)
 
-    def _set_limits(self, covered: np.ndarray) -> None:
+    def _set_limits(self, carried: np.ndarray) -> None:
         """Which springs leave it to the method what becomes of them, and how far each may be stretched."""
-        self.asks[:] = (covered < self._most_covered - TINY) | (self.horizon == 0)
-        self.spring_limit[:] = np.where(self.asks, self.ask_at, 1.0) * self._elongation
+        self.triggers[:] = (carried < self._most_carried - TINY) | (self.horizon == 0)
+        self.spring_limit[:] = np.where(self.triggers, self.trigger_ratio, 1.0) * self._elongation

@@ -24,10 +24,10 @@ class FiniteDifference(Method):
         return 1
 
     def begin(self, rod: Rod) -> Bonds:
-        """Whole local springs, which ask at the critical stretch."""
+        """Whole local springs, which trigger at the critical stretch."""
         return Bonds(rod, horizon=0)
 
-    def answer(self, bonds: Bonds, u: np.ndarray) -> str:
-        """From the first break on every spring is looked at by itself, and none asks."""
-        bonds.stop_asking()
+    def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
+        """From the first break on springs break one by one at the critical stretch, without the method."""
+        bonds.stop_triggering()
         return self.name

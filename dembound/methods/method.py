@@ -1,4 +1,4 @@
-"""What every method for bars can answer."""
+"""The base of all methods for bars."""
 
 from abc import ABC, abstractmethod
 
@@ -37,8 +37,8 @@ class Method(Table, ABC):
         return [self.begin(rod)]
 
     @abstractmethod
-    def answer(self, bonds: Bonds, u: np.ndarray) -> str:
-        """Answer springs that ask at displacements u (n,) m, so that they ask no more.
+    def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
+        """Change the bonds where springs are triggered at displacements u (n,) m, so that these are triggered no more.
 
         Returns what the method does from now on, for reports.
         """

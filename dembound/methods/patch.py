@@ -25,8 +25,8 @@ class Patch(Triggered):
         return "finite differences"
 
     def begin(self, rod: Rod) -> Bonds:
-        """Local springs that ask at the trigger."""
-        return Bonds(rod, self.horizon, complement=True, ask_at=self.trigger)
+        """Local springs that trigger the method at its share of the critical stretch."""
+        return Bonds(rod, self.horizon, complement=True, trigger_ratio=self.trigger)
 
     def stages(self, rod: Rod) -> list[Bonds]:
         """No zone, one in the middle, one at each end, and one all over."""
@@ -35,14 +35,14 @@ class Patch(Triggered):
         stages = [self.begin(rod)]
         for first, last in ((middle, middle + width), (0, width), (rod.count - width, rod.count), (0, rod.count)):
             stages.append(self.begin(rod))
-            stages[-1].cover(first, last)
+            stages[-1].add_zone(first, last)
         return stages
 
-    def answer(self, bonds: Bonds, u: np.ndarray) -> str:
-        """A zone around every spring that has asked; one that grows grows by half, so that it seldom has to."""
+    def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
+        """Lay a zone around every triggered spring; a zone that grows does so by half, so that it seldom has to."""
         zones = bonds.zones  # those before any of them grows: what one spring makes does not depend on the others
-        for k in bonds.asking(u):
+        for k in bonds.triggered(u):
             grown = max((last - first for first, last in zones if first <= k + 1 and k < last), default=0)
             beyond = max(self.reach * self.horizon, grown // 2)
-            bonds.cover(int(k) - beyond, int(k) + 2 + beyond)
+            bonds.add_zone(int(k) - beyond, int(k) + 2 + beyond)
         return f"finite differences and peridynamics, m = {self.horizon}"

@@ -38,9 +38,9 @@ class Peridynamics(Method):
     def begin(self, rod: Rod) -> Bonds:
         """All bonds, and the springs of corrected ends."""
         bonds = Bonds(rod, self.horizon, complement=self.corrected_ends)
-        bonds.cover(0, rod.count)
+        bonds.add_zone(0, rod.count)
         return bonds
 
-    def answer(self, bonds: Bonds, u: np.ndarray) -> str:
-        """No spring asks: those of corrected ends break by themselves."""
+    def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
+        """No spring triggers: those of corrected ends break at the critical stretch."""
         return self.name

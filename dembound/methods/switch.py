@@ -32,8 +32,8 @@ class Switch(Triggered):
         return not self.corrected_ends
 
     def begin(self, rod: Rod) -> Bonds:
-        """Local springs that ask at the trigger; with m = 1 those of the ends are half as stiff."""
-        bonds = Bonds(rod, self.horizon, complement=self.corrected_ends, ask_at=self.trigger)
+        """Local springs that trigger the switch; with m = 1 those of the ends are half as stiff."""
+        bonds = Bonds(rod, self.horizon, complement=self.corrected_ends, trigger_ratio=self.trigger)
         if self.before == "peridynamics" and not self.corrected_ends:
             bonds.soften_ends()
         return bonds
@@ -41,10 +41,10 @@ class Switch(Triggered):
     def stages(self, rod: Rod) -> list[Bonds]:
         """Before and after the switch."""
         after = self.begin(rod)
-        after.cover(0, rod.count)
+        after.add_zone(0, rod.count)
         return [self.begin(rod), after]
 
-    def answer(self, bonds: Bonds, u: np.ndarray) -> str:
+    def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
         """Peridynamics everywhere."""
-        bonds.cover(0, bonds.rod.count)
+        bonds.add_zone(0, bonds.rod.count)
         return f"peridynamics, m = {self.horizon}"

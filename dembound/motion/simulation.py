@@ -65,7 +65,7 @@ class Simulation:
         self.trackers: list[Tracker] = []
         self.track(Watch(scene.block))
         self.stopped = False
-        self._spare = np.zeros((3, scene.count))
+        self._u_next = np.zeros((3, scene.count))
         self._damp = scene.damp if damp is None else damp
         self._supports = NodeSupports(scene, self.system.ties, time_step)
         self._mobility, self._inverse_inertia = time_step / scene.mass, time_step / scene.inertia
@@ -149,7 +149,7 @@ class Simulation:
         log = tables.Log(self.probes, record, self.scene.tracked, state.peaks, state.top_speed, state.work)
         done, why = loop.advance(
             state.displacement,
-            self._spare,
+            self._u_next,
             state.velocity,
             state.step,
             system.laws(),

@@ -9,7 +9,7 @@ PARTICLES_PER_THREAD = 10_000
 """Below this a step takes less than 0.2 ms, and threads would spend much of it waiting for each other."""
 
 
-def worthwhile_threads(particles: int) -> int:
+def thread_count_for(particles: int) -> int:
     """Threads a scene of so many particles uses: at most as many as are allowed."""
     return min(numba.get_num_threads(), max(1, particles // PARTICLES_PER_THREAD))
 
@@ -21,7 +21,7 @@ def threads_for(particles: int) -> Iterator[None]:
     Results do not depend on it.
     """
     allowed = numba.get_num_threads()
-    numba.set_num_threads(worthwhile_threads(particles))
+    numba.set_num_threads(thread_count_for(particles))
     try:
         yield
     finally:

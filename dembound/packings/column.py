@@ -2,7 +2,7 @@
 
 Under waves that arrive vertically, the infinite tiling of a brick moves alike in every brick. A column of one brick,
 closed on itself sideways, moves so too. What the ground beyond a side of the body would push with in that motion is
-what the column's own particles feel across the same seam (Z eq. 21).
+what acts on the column's own particles across the same seam (Z eq. 21).
 """
 
 from dataclasses import dataclass, replace
@@ -28,9 +28,9 @@ class Seam:
     twin : (n,) int64, the column's particle at the same place of the brick; for the column's own, itself.
     node : (k,) int64, particles of the body that have contacts beyond a side, sorted.
     start : (k + 1,) uint32: the contacts of node[s] are start[s]:start[s + 1] of the next three.
-    near : (e,) int64, the column's particle that stands for the neighbour.
+    neighbour : (e,) int64, the column's particle that stands for the neighbour.
     kind : (e,) int64, the contact of the brick.
-    second : (e,) bool, whether the node's twin is the contact's second disk.
+    twin_is_second : (e,) bool, whether the node's twin is the contact's second disk.
     image : (e,) int64, periods of the column from the twin to that neighbour.
     """
 
@@ -39,21 +39,21 @@ class Seam:
     twin: np.ndarray
     node: np.ndarray
     start: np.ndarray
-    near: np.ndarray
+    neighbour: np.ndarray
     kind: np.ndarray
-    second: np.ndarray
+    twin_is_second: np.ndarray
     image: np.ndarray
 
     @property
-    def many(self) -> np.ndarray:
+    def contact_counts(self) -> np.ndarray:
         """Number (k,) of each node's contacts."""
         return self.start[1:].astype(np.int64) - self.start[:-1].astype(np.int64)
 
     def pairs(self, brick: Brick) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """First and second particle (e,) of the column and vectors (e, 2) m of the contacts that nodes have there."""
-        owner = np.repeat(self.twin[self.node], self.many)
-        vectors = brick.vectors[self.kind % len(brick.pairs)] * np.where(self.second, -1.0, 1.0)[:, None]
-        return owner, self.near, vectors
+        owner = np.repeat(self.twin[self.node], self.contact_counts)
+        vectors = brick.vectors[self.kind % len(brick.pairs)] * np.where(self.twin_is_second, -1.0, 1.0)[:, None]
+        return owner, self.neighbour, vectors
 
 
 def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[Assembly, Seam]:
@@ -90,9 +90,9 @@ def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[A
         twin=np.concatenate([np.arange(count), twin]),
         node=node + count,
         start=np.append(start, len(seam["node"])).astype(np.uint32),
-        near=seam["near"],
+        neighbour=seam["neighbour"],
         kind=seam["kind"],
-        second=seam["second"],
+        twin_is_second=seam["twin_is_second"],
         image=seam["image"],
     )
 
@@ -126,7 +126,7 @@ def _seam(
     out = {"left": tile_there[:, 0] < 0, "right": tile_there[:, 0] >= body.copies[0]}
     absent = ~np.isin(_key(tile_there, other, brick), _key(where, body.brick_particle, brick))
     beyond = (near >= 0) & absent & np.logical_or.reduce([out[side] for side in sides])
-    columns = {"node": node, "near": near, "kind": kind, "second": second, "image": image[:, 0]}
+    columns = {"node": node, "neighbour": near, "kind": kind, "twin_is_second": second, "image": image[:, 0]}
     return {name: values[beyond] for name, values in columns.items()}
 
 

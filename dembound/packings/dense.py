@@ -20,7 +20,7 @@ TOUCH = 1e-9  # of the mean radius: row disks that touch exactly have gaps of ro
 
 
 @dataclass(frozen=True)
-class Rows:
+class RegularRows:
     """Disks held in place while the core is packed: positions (h, 2) m, radii (h,) m, member (h, 2) bool."""
 
     positions: np.ndarray
@@ -28,7 +28,7 @@ class Rows:
     member: np.ndarray
 
 
-NO_ROWS = Rows(np.empty((0, 2)), np.empty(0), np.empty((0, 2), bool))
+NO_ROWS = RegularRows(np.empty((0, 2)), np.empty(0), np.empty((0, 2), bool))
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def radius_range(radius: float, radius_ratio: float) -> tuple[float, float]:
     return smallest, radius_ratio * smallest
 
 
-def pack_dense(recipe: Recipe, rows: Rows = NO_ROWS) -> Brick:
+def pack_dense(recipe: Recipe, rows: RegularRows = NO_ROWS) -> Brick:
     """Pack a brick: random start, overlap energy minimised, radii scaled to the stress asked for.
 
     Until the mean core radius comes out within 0.2 %, another start with a better number of disks is tried:
@@ -77,7 +77,7 @@ def pack_dense(recipe: Recipe, rows: Rows = NO_ROWS) -> Brick:
     )
 
 
-def first_count(recipe: Recipe, rows: Rows) -> int:
+def first_count(recipe: Recipe, rows: RegularRows) -> int:
     """Number of core disks expected to fill the box at the pressure asked for."""
     # solid fractions measured at radius ratios 1 to 4 and pressures 5e-4 to 0.1
     solid = (0.832 + 0.005 * recipe.radius_ratio) * (1.0 + 3.0 * recipe.pressure)
@@ -87,7 +87,7 @@ def first_count(recipe: Recipe, rows: Rows) -> int:
     return max(round(room / (math.pi * mean_square)), 1)
 
 
-def pack_count(count: int, recipe: Recipe, rows: Rows, attempt: int) -> Bed:
+def pack_count(count: int, recipe: Recipe, rows: RegularRows, attempt: int) -> Bed:
     """A bed that starts with `count` core disks, in equilibrium at the pressure, without loose disks."""
     rng = np.random.default_rng([recipe.seed, attempt])
     box = np.array(recipe.size)
@@ -114,7 +114,7 @@ def pack_count(count: int, recipe: Recipe, rows: Rows, attempt: int) -> Bed:
     )
 
 
-def finish(bed: Bed, recipe: Recipe, rows: Rows) -> Brick:
+def finish(bed: Bed, recipe: Recipe, rows: RegularRows) -> Brick:
     """The brick of a settled bed: disks in memory order, contacts listed, stress and balance measured."""
     member = np.zeros((len(bed.radii), 2), bool)
     member[: bed.held] = rows.member

@@ -8,7 +8,7 @@ import numpy as np
 from dembound.packings.base import DensePacking
 from dembound.packings.brick import Brick
 from dembound.packings.cache import load_or_pack
-from dembound.packings.dense import Rows, pack_dense
+from dembound.packings.dense import RegularRows, pack_dense
 from dembound.table import quantity
 
 
@@ -52,7 +52,7 @@ class EdgedBrick(DensePacking):
         return load_or_pack(key, lambda: pack_dense(recipe, regular_rows(self.brick, self.edge_radii)))
 
 
-def regular_rows(size: tuple[float, float], edge_radii: tuple[float, float]) -> Rows:
+def regular_rows(size: tuple[float, float], edge_radii: tuple[float, float]) -> RegularRows:
     """The row on y = 0, from the origin on, then the rest of the row on x = 0; neighbours touch exactly.
 
     size (width, height) of the brick and edge_radii (row on x = 0, row on y = 0), in metres.
@@ -64,4 +64,4 @@ def regular_rows(size: tuple[float, float], edge_radii: tuple[float, float]) -> 
         [np.column_stack([lower, np.zeros_like(lower)]), np.column_stack([np.zeros_like(upright), upright])]
     )
     radii = np.concatenate([np.full(len(lower), along_x), np.full(len(upright), along_y)])
-    return Rows(positions, radii, member=positions == 0.0)
+    return RegularRows(positions, radii, member=positions == 0.0)

@@ -211,7 +211,7 @@ class Recorder:
         for side, edge in scene.edges.items():
             group = self.file.create_group(f"boundaries/{side}")
             group.attrs["length"] = edge.length
-            group.attrs["cover"] = edge.cover
+            group.attrs["diameter_sum_ratio"] = edge.diameter_sum_ratio
             _write(group, "particle", edge.nodes, "1")
             _write(group, "position", scene.positions[edge.nodes], "m")
             _write(group, "diameter", edge.diameters, "m")

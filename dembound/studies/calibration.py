@@ -24,7 +24,7 @@ from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError, RunError
 from dembound.motion.simulation import Simulation
-from dembound.studies.strip import AFTER, calibration_pulse, linear_medium, strip_of, whole_of
+from dembound.studies.strip import AFTER, calibration_pulse, full_scene, linear_medium, short_strip
 from dembound.waves import Cosine
 
 Method = Literal["impedance", "ratio", "homogenised"]
@@ -141,7 +141,7 @@ def calibrate(
     motion = motion or _default_motion(case, side)
     _must_move(case, side, motion)
     pulse = calibration_pulse(case, side, motion)
-    strip, shortened = whole_of(plain, side, motion, pulse) if full else strip_of(plain, side, motion, pulse)
+    strip, shortened = full_scene(plain, side, motion, pulse) if full else short_strip(plain, side, motion, pulse)
     found = Calibration(
         case=case,
         side=side,

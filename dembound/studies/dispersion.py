@@ -117,7 +117,7 @@ class _Bonded(Peridynamics):
         """All bonds."""
         influence = np.divide(self.shares, usual_shares(self.horizon))
         bonds = Bonds(rod, self.horizon, complement=False, influence=influence)
-        bonds.cover(0, rod.count)
+        bonds.add_zone(0, rod.count)
         return bonds
 
 

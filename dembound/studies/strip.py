@@ -81,7 +81,7 @@ def _least_length(case: DiskCase, axis: int, motion: Motion, pulse: Cosine) -> f
     return STRIP * _speed_of(case, axis, motion) * pulse.period
 
 
-def whole_of(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[DiskCase, list[str]]:
+def full_scene(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[DiskCase, list[str]]:
     """The whole scene, if it is long enough to calibrate on."""
     axis = normal_axis(side)
     least, length = _least_length(case, axis, motion, pulse), case.packing.extent[axis]
@@ -92,7 +92,7 @@ def whole_of(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[
     return _driven(case, side, motion, pulse), ["each pass ends once the peak has left the side"]
 
 
-def strip_of(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[DiskCase, list[str]]:
+def short_strip(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[DiskCase, list[str]]:
     """The least scene that decides M_out, and sentences that say how it differs from the case's."""
     case = _driven(case, side, motion, pulse)
     axis = normal_axis(side)

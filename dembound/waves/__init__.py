@@ -5,14 +5,14 @@ A new type is one file and its class's name in `TYPES`; another package register
 
 from dembound.waves.constant import Constant
 from dembound.waves.cosine import Cosine
-from dembound.waves.record import Record
+from dembound.waves.file_wave import FileWave
 from dembound.waves.ricker import Ricker
 from dembound.waves.sine_burst import SineBurst
 from dembound.waves.spline import CubicSpline
 from dembound.waves.triangle import Triangle
 from dembound.waves.wave import Wave
 
-TYPES = (Cosine, CubicSpline, Triangle, Ricker, SineBurst, Constant, Record)
+TYPES = (Cosine, CubicSpline, Triangle, Ricker, SineBurst, Constant, FileWave)
 """All types of waves."""
 
 __all__ = [
@@ -20,7 +20,7 @@ __all__ = [
     "Constant",
     "Cosine",
     "CubicSpline",
-    "Record",
+    "FileWave",
     "Ricker",
     "SineBurst",
     "Triangle",

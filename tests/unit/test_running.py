@@ -165,7 +165,7 @@ def test_the_summary_describes_the_sides(bar, tmp_path) -> None:
         "top": "free",
     }
     right = sides["right"]
-    assert (right["particles"], right["length"], right["cover"]) == (2, 1.0, 1.0)
+    assert (right["particles"], right["length"], right["diameter_sum_ratio"]) == (2, 1.0, 1.0)
     assert (right["beta_p"], right["beta_s"]) == (0.9, 1.0)
     assert "beta_p" not in sides["top"]
     assert right["peak_velocity"][0] > 0.4  # of a pulse of 0.5 m/s

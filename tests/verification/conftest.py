@@ -12,7 +12,7 @@ from dembound.bar.scene import BarScene, build_bar
 from dembound.boundaries.support import SupportBuilder
 from dembound.casefile import Case
 from dembound.disks.edges import find_edges
-from dembound.disks.ground import make_ground
+from dembound.disks.packed_material import make_packed_material
 from dembound.disks.rows import contact_rows
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
@@ -116,7 +116,7 @@ class Lab:
         case = self.case("A", (self.diameter, self.diameter), **words)
         nothing = np.zeros_like(bonds), np.zeros((len(radii), 2), bool), np.zeros(3)
         brick = Brick(box, positions, radii, bonds, *nothing, residual_ratio=0.0)
-        ground = make_ground(brick, case.material, case.motion.held)
+        ground = make_packed_material(brick, case.material, case.motion.held)
         twins, kinds = np.arange(len(radii), dtype=np.int32), np.arange(len(bonds), dtype=np.int32)
         assembly = Assembly(positions, radii, twins, bonds.astype(np.int32), kinds, (1, 1), box, box)
         edges = find_edges(assembly, (False, False))
@@ -127,7 +127,7 @@ class Lab:
         """Copies (along x, along y) of a brick made by hand; the words are those of `case`."""
         case = self.case("A", (self.diameter, self.diameter), **words)
         periodic = (case.side("left").is_periodic, case.side("bottom").is_periodic)
-        ground = make_ground(brick, case.material, case.motion.held)
+        ground = make_packed_material(brick, case.material, case.motion.held)
         assembly = tile(brick, copies, periodic)
         edges, rows = find_edges(assembly, periodic), (contact_rows(assembly, ground),)
         return with_boundaries(DiskScene(case, ground, assembly, rows, edges, SupportBuilder().table(), {}), case)

@@ -14,7 +14,7 @@ ALPHA, MODULUS, DISTANCE, PERIOD = 2.5, 0.625e9, 100.0, 0.05
 def test_displacement_decays_with_tau(lab, pattern):
     plain = lab.scene(pattern, (60.0, 10.0), boundary={"bottom": "periodic", "top": "periodic"})
     speed = plain.ground.wave_speeds(0)[0]
-    matched = {side: speed / lab.speed / plain.edges[side].cover for side in ("left", "right")}
+    matched = {side: speed / lab.speed / plain.edges[side].add_zone for side in ("left", "right")}
     scene = lab.scene(
         pattern,
         (60.0, 10.0),
@@ -32,7 +32,7 @@ def test_displacement_decays_with_tau(lab, pattern):
         },
         wave=lab.pulse(PERIOD),
     )
-    tau = 2.0 * lab.density * speed * DISTANCE / (ALPHA * MODULUS * scene.edges["right"].cover)
+    tau = 2.0 * lab.density * speed * DISTANCE / (ALPHA * MODULUS * scene.edges["right"].add_zone)
     middle = np.argsort(np.abs(scene.assembly.positions[:, 0] - 30.0))[:1]
     history = lab.run(scene, middle, 6.0 * tau)
     moved = history.displacement[:, 0, 0]

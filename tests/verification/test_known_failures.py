@@ -34,7 +34,7 @@ def test_whole_outermost_neighbours_are_too_stiff(horizon):
     """Without their half factor Σ p w_p is m(m + 1)/2, and E_eff/E is 1 + 1/m."""
     rod = Rod(NODES, 0.01, 1.0, 20e9, np.inf)
     bonds = Bonds(rod, horizon)
-    bonds.cover(0, NODES)
+    bonds.add_zone(0, NODES)
     strain = 1e-4
     u = strain * rod.spacing * np.arange(NODES)
     stress = rod.modulus * strain * rod.section

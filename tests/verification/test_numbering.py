@@ -9,7 +9,7 @@ from dembound.disks.edges import find_edges
 from dembound.disks.rows import contact_rows
 from dembound.disks.scene import with_boundaries
 from dembound.disks.stability import choose_step
-from dembound.kernels.tables import Rows
+from dembound.kernels.tables import NeighbourTable
 from dembound.motion.simulation import Simulation
 
 STEPS = 1000
@@ -51,7 +51,7 @@ def rows_in_old_order(scene, number):
     counts = np.diff(contacts.start.astype(int))
     start = np.concatenate([[0], np.cumsum(counts[old])])
     entries = np.concatenate([np.arange(contacts.start[i], contacts.start[i + 1]) for i in old])
-    return Rows(
+    return NeighbourTable(
         0,
         start.astype(np.uint32),
         number[contacts.neighbour[entries]].astype(np.uint32),

@@ -34,7 +34,7 @@ class Zones(Patch):
     def begin(self, rod: Rod) -> Bonds:
         bonds = Bonds(rod, self.horizon, complement=self.complement)
         for first, last in self.zones:
-            bonds.cover(first, last)
+            bonds.add_zone(first, last)
         return bonds
 
 

@@ -21,7 +21,7 @@ def test_same_bits_for_one_and_two_threads(lab, monkeypatch):
     try:
         for number in (1, 2):
             numba.set_num_threads(number)
-            assert threads.worthwhile_threads(1000) == number
+            assert threads.thread_count_for(1000) == number
             scene = lab.scene("B", (40.0, 10.0), **case)
             simulation = Simulation(scene, 0.9 * step_limit(scene), np.arange(scene.count))
             record = simulation.advance(STEPS)

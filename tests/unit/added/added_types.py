@@ -37,7 +37,7 @@ class Cone(Peridynamics):
         """All bonds."""
         influence = 1.0 - np.arange(1, self.horizon + 1) / (self.horizon + 1.0)
         bonds = Bonds(rod, self.horizon, complement=self.corrected_ends, influence=influence)
-        bonds.cover(0, rod.count)
+        bonds.add_zone(0, rod.count)
         return bonds
 
 

@@ -15,7 +15,7 @@ PLACES = SPACING * np.arange(COUNT)
 def bonds() -> Bonds:
     """Peridynamics with m = 3 all over."""
     made = Bonds(ROD, 3, complement=False)
-    made.cover(0, COUNT)
+    made.add_zone(0, COUNT)
     return made
 
 
@@ -48,7 +48,7 @@ def test_a_cut_cracks_the_nodes_that_lose_three_tenths(bonds) -> None:
 def test_three_tenths_count_however_they_are_rounded(section: float) -> None:
     rod = Rod(COUNT, SPACING, section, modulus=1e9, critical_stretch=1e-3)
     bonds = Bonds(rod, 3, complement=False)
-    bonds.cover(0, COUNT)
+    bonds.add_zone(0, COUNT)
     cut(bonds, 20, step=7)
 
     # 1.5 of 5 volumes; with these sections the sums come to 0.3, and to the floats above and below it

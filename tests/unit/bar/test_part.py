@@ -136,8 +136,8 @@ def test_breaking_and_changes_of_method_close_the_books(simulation, method: dict
 
 def test_finite_differences_answer_once_then_springs_break_by_themselves(simulation, monkeypatch) -> None:
     answers = []
-    answer = FiniteDifference.answer
-    monkeypatch.setattr(FiniteDifference, "answer", lambda self, *state: answers.append(1) or answer(self, *state))
+    on_trigger = FiniteDifference.on_trigger
+    monkeypatch.setattr(FiniteDifference, "on_trigger", lambda self, *state: answers.append(1) or on_trigger(self, *state))
     # three times the strength and a little, of which three spalls come
     load = {"name": "hit", "pressure": 25e6, "nodes": 3, "wave": "hit"}
     run = simulation(method=METHODS["finite_difference"], load=[load])

@@ -47,7 +47,7 @@ def test_edges_are_the_two_end_nodes(spalling) -> None:
     for side, node, place in (("left", 0, 0.0), ("right", 40, 1.0)):
         assert edges[side].nodes.tolist() == [node]
         assert edges[side].positions.tolist() == [[place, 0.0]]
-        assert edges[side].cover == 1.0
+        assert edges[side].diameter_sum_ratio == 1.0
         assert edges[side].length == pytest.approx(SECTION, rel=2 * EPS)
 
 

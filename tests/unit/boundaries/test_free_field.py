@@ -5,7 +5,7 @@ import pytest
 from pydantic import ValidationError
 
 from dembound.boundaries import Fixed, FreeField, Viscous
-from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 
 DIAMETERS = np.array([0.5, 1.0])
 P, S = 2000.0 * 1000.0 * DIAMETERS, 2000.0 * 500.0 * DIAMETERS
@@ -21,7 +21,7 @@ def rows(*tables: FreeField | Fixed) -> Supports:
     """What tables make of a left side of two particles, 5 and 6."""
     builder = SupportBuilder()
     edge = Edge("left", np.array([5, 6]), np.zeros((2, 2)), DIAMETERS, 1.5)
-    medium = Medium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0, mirror_stiffness=still)
+    medium = BoundaryMedium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0, mirror_stiffness=still)
     for table in tables:
         table.support(edge, medium, {}, builder)
     return builder.table()

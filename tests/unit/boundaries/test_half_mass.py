@@ -24,8 +24,8 @@ KINDS = {
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_sides_that_ask_for_it_halve_their_particles(kind: str) -> None:
-    for asks, factor in ((True, [0.5, 1.0, 0.5, 1.0, 1.0]), (False, [1.0] * 5)):
-        boundary = {"left": KINDS[kind](type=kind, half_mass=asks), "right": Fixed(type="fixed")}
+    for triggers, factor in ((True, [0.5, 1.0, 0.5, 1.0, 1.0]), (False, [1.0] * 5)):
+        boundary = {"left": KINDS[kind](type=kind, half_mass=triggers), "right": Fixed(type="fixed")}
         assert mass_factor(5, EDGES, boundary).tolist() == factor
 
 

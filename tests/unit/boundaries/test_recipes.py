@@ -19,7 +19,7 @@ from dembound.boundaries import (
     Viscous,
     ViscousInput,
 )
-from dembound.boundaries.support import Edge, Incident, Medium, SupportBuilder, Supports
+from dembound.boundaries.support import BoundaryMedium, Edge, Incident, SupportBuilder, Supports
 from dembound.errors import CaseError
 
 
@@ -27,7 +27,7 @@ def mirror_stiffness(diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.full(2, 7.0), 3.0 * diameters
 
 
-MEDIUM = Medium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0, mirror_stiffness=mirror_stiffness)
+MEDIUM = BoundaryMedium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0, mirror_stiffness=mirror_stiffness)
 DIAMETERS = np.array([0.5, 1.0])
 POSITIONS = np.array([[0.25, 4.0], [0.5, 3.0]])
 P = 2000.0 * 1000.0 * DIAMETERS

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.boundaries.support import Edge, Medium, SupportBuilder, Supports
+from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 
 NODES = np.array([4, 2])
 
@@ -20,7 +20,7 @@ def no_mirror(diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return 0.0 * diameters, 0.0 * diameters
 
 
-MEDIUM = Medium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0, mirror_stiffness=no_mirror)
+MEDIUM = BoundaryMedium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0, mirror_stiffness=no_mirror)
 
 
 def row(table: Supports, node: int, component: int) -> int:
@@ -44,7 +44,7 @@ def test_an_edge_knows_its_normal_and_how_much_its_disks_cover(side: str, axis: 
     edge = Edge(side, NODES, positions=np.zeros((2, 2)), diameters=np.array([0.5, 1.0]), length=1.25)
 
     assert edge.axis == axis
-    assert edge.cover == 1.2
+    assert edge.diameter_sum_ratio == 1.2
 
 
 def test_one_row_per_node_sorted_by_node_with_numbers_or_arrays() -> None:

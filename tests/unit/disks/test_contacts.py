@@ -335,7 +335,7 @@ def test_what_is_left_of_a_body_remembers_all_it_went_through(scene, sides: str)
     hollow = scene(sides, hole=[tunnel])
     kept = np.flatnonzero((contacts.assembly.positions[:, None] == hollow.assembly.positions).all(axis=2).any(axis=1))
     left = list_of(hollow)
-    left.inherit(contacts, kept)
+    left.take_over_subset(contacts, kept)
 
     among = np.isin(np.column_stack([old.first, old.second]), kept).all(axis=1)
     new = left.arrays

@@ -57,16 +57,16 @@ def both(lists: dict[str, ContactList], name: str) -> np.ndarray:
 def check_ends(beside: DiskSystem) -> None:
     """Every end is the twin's, at a pair with the neighbour that the seam names, along the brick's own vector."""
     seam, pairs, ends = beside.scene.seam, beside.contacts["column"].arrays, seam_ends(beside)
-    twin, pair, side = np.repeat(seam.twin[seam.node], seam.many), ends >> 1, ends & 1
+    twin, pair, side = np.repeat(seam.twin[seam.node], seam.contact_counts), ends >> 1, ends & 1
     disks = np.stack([pairs.first, pairs.second])[:, pair].astype(np.int64)
     column = np.arange(len(ends))
 
-    assert len(ends) == len(seam.near)
+    assert len(ends) == len(seam.neighbour)
     assert np.array_equal(disks[side, column], twin)
-    assert np.array_equal(disks[1 - side, column], seam.near)
+    assert np.array_equal(disks[1 - side, column], seam.neighbour)
     outward = np.where(side, -1.0, 1.0)[:, None] * pairs.palette[pairs.kind[pair], :2]
     brick = beside.scene.ground.brick
-    expected = np.where(seam.second, -1.0, 1.0)[:, None] * np.tile(brick.vectors, (2, 1))[seam.kind]
+    expected = np.where(seam.twin_is_second, -1.0, 1.0)[:, None] * np.tile(brick.vectors, (2, 1))[seam.kind]
     assert np.array_equal(outward, expected)
 
 
@@ -163,7 +163,7 @@ def test_what_comes_across_the_seam_is_what_the_twins_feel_there(scene) -> None:
     for i, j, (fx, fy, moment_i, moment_j) in zip(*columns, strict=True):
         expected[:, i] += [fx, fy, moment_i]
         expected[:, j] += [-fx, -fy, moment_j]
-    owner, force = np.repeat(seam.node, seam.many), lists["column"].arrays.force
+    owner, force = np.repeat(seam.node, seam.contact_counts), lists["column"].arrays.force
     for node, end in zip(owner, seam_ends(beside), strict=True):
         fx, fy, *moments = force[end >> 1]
         sign = -1.0 if end & 1 else 1.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.boundaries.support import Edge
-from dembound.disks.edges import left_of
+from dembound.disks.edges import edge_without
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 
@@ -13,7 +13,7 @@ EDGE = Edge("right", np.array([2, 3, 5, 7, 11]), np.column_stack([np.full(5, 9.0
 
 
 def test_what_is_left_of_a_side_stands_for_its_own_share_of_the_length() -> None:
-    left = left_of(EDGE, np.array([1, 2, 4, 5, 9, 11]))
+    left = edge_without(EDGE, np.array([1, 2, 4, 5, 9, 11]))
 
     # by diameters: 0.4 + 0.5 + 0.7 of 3.0 m, whatever the number of disks; so every one stands for as much as before,
     # 1.2 of its diameter
@@ -35,9 +35,9 @@ def test_a_side_with_a_frame_is_as_long_as_its_disks_together(bar, bottom: str) 
     more = 0.0 if bottom == "periodic" else 0.5
     lengths = {"left": 8.0 + more, "right": 8.0 + more} | ({} if more == 0.0 else {"bottom": 4.5, "top": 4.5})
     assert {side: edge.length for side, edge in edges.items()} == pytest.approx(lengths, rel=1e-12)
-    assert [edge.cover for edge in edges.values()] == pytest.approx([1.0] * len(edges), rel=1e-12)
+    assert [edge.diameter_sum_ratio for edge in edges.values()] == pytest.approx([1.0] * len(edges), rel=1e-12)
 
 
 def test_a_side_of_which_nothing_is_left_is_refused() -> None:
     with pytest.raises(CaseError, match="hole: leaves nothing of the right side"):
-        left_of(EDGE, np.array([0, 1, 4]))
+        edge_without(EDGE, np.array([0, 1, 4]))

@@ -151,7 +151,7 @@ def test_both_laws_move_a_body_alike_as_long_as_nothing_gives_way(scene) -> None
         u, locked_in = np.zeros((3, body.count)), np.zeros((3, body.count))
         if law == BONDED:
             locked_in = forces_of(part, u)
-            listed(part).adopt(-STEP * v)  # its first push adds this step
+            listed(part).start_from_displacements(-STEP * v)  # its first push adds this step
         assert advance(part, body, 50, u, v.copy(), -locked_in) == (50, DONE)
         moves.append(u)
 
@@ -185,7 +185,7 @@ def test_a_part_beside_another_moves_as_it_would_alone(scene, law: str) -> None:
         u, v = start.copy(), speed.copy()
         alone_u, alone_v = (np.ascontiguousarray(values[:, part.nodes]) for values in (start, speed))
         for each in (part, single):
-            listed(each).adopt(start if each is part else alone_u)
+            listed(each).start_from_displacements(start if each is part else alone_u)
         assert advance(part, beside, 20, u, v) == advance(single, alone[part.name], 20, alone_u, alone_v) == (20, DONE)
         others = np.ones(beside.count, dtype=np.bool_)
         others[part.nodes] = False
@@ -262,7 +262,7 @@ def test_across_the_seam_both_laws_push_alike_as_long_as_nothing_gives_way(scene
     (tie,), contacts, u = system.ties, system.contacts["column"], shaken(system.scene, 1e-6)
     contacts.push(np.zeros_like(u), reference=True)
     locked_in = tie.last_forces(contacts)
-    contacts.adopt(u)
+    contacts.start_from_displacements(u)
     contacts.push(u, reference=True)
     found = tie.elastic_forces(u)
 

@@ -118,7 +118,7 @@ def test_edges_are_the_outer_rows_with_their_lengths(bar) -> None:
     assert list(edges) == ["left", "right", "bottom", "top"]
     assert [len(edge.nodes) for edge in edges.values()] == [2, 2, 20, 20]
     assert [edge.length for edge in edges.values()] == [1.0, 1.0, 10.0, 10.0]
-    assert all(edge.cover == 1.0 for edge in edges.values())
+    assert all(edge.diameter_sum_ratio == 1.0 for edge in edges.values())
 
 
 def test_periodic_sides_have_bonds_across_and_no_edge(bar) -> None:
@@ -252,7 +252,7 @@ def test_a_side_that_a_hole_cuts_stands_for_what_is_left_of_it(bar) -> None:
 
     # four of its eight disks, and nothing of the pit's floor
     assert edge.positions.tolist() == [[x, 3.75] for x in (0.25, 0.75, 3.25, 3.75)]
-    assert (edge.length, edge.cover) == (2.0, 1.0)
+    assert (edge.length, edge.diameter_sum_ratio) == (2.0, 1.0)
 
 
 def test_holes_that_leave_nothing_are_refused(bar) -> None:

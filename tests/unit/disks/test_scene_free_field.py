@@ -120,7 +120,7 @@ def test_the_seam_table_knows_all_supported_nodes(scene: DiskScene) -> None:
 
     assert np.array_equal(nodes, np.union1d(scene.supports.node, scene.seam.node))
     assert np.array_equal(nodes[many > 0], scene.seam.node)
-    assert np.array_equal(many[many > 0], scene.seam.many)
+    assert np.array_equal(many[many > 0], scene.seam.contact_counts)
     assert np.array_equal(table.twin[many > 0], scene.seam.twin[scene.seam.node])
     assert np.array_equal(supports.twin, np.where(nodes < scene.seam.count, -1, scene.seam.twin[nodes]))
     assert not many[nodes < scene.seam.count].any()
@@ -132,7 +132,7 @@ def test_along_half_cells_the_seam_is_of_half_contacts(ground) -> None:
     scene = build(ground(**{"boundary.bottom.half_mass": True}))
     seam, whole = scene.seam, len(scene.ground.brick.pairs)
     halves = scene.edges["bottom"].nodes
-    low = scene.assembly.positions[np.repeat(seam.node, seam.many), 1] == 0.25
+    low = scene.assembly.positions[np.repeat(seam.node, seam.contact_counts), 1] == 0.25
 
     assert 0 < np.count_nonzero(low) < len(low)
     assert np.array_equal(seam.kind >= whole, low)
@@ -184,7 +184,7 @@ def test_a_hole_must_leave_the_ground_that_the_column_meets(ground, pattern: str
     scene = hollow(0.3 * width, 0.7 * width)
     whole = build(ground(pattern))
     assert scene.count < whole.count
-    assert np.array_equal(scene.seam.near, whole.seam.near)
+    assert np.array_equal(scene.seam.neighbour, whole.seam.neighbour)
     for left, right in ((-1.0, 0.1 * width), (0.9 * width, width + 1.0)):
         with pytest.raises(CaseError, match="hole: reaches the free field of left or right, which has no hole"):
             hollow(left, right)

@@ -29,7 +29,7 @@ def test_a_side_is_described_by_its_particles_and_its_keys(bar) -> None:
         "diameter_min": 0.5,
         "diameter_mean": 0.5,
         "diameter_max": 0.5,
-        "cover": 1.0,
+        "diameter_sum_ratio": 1.0,
         "beta_p": 0.9,
         "beta_s": 1.0,
         "half_mass": True,

@@ -80,7 +80,7 @@ def test_elastic_forces_are_those_of_the_pairs_without_what_was_locked_in(scene,
         contacts.push(np.zeros_like(u), reference=True)
     locked_in = system.last_forces(lists)
     for contacts in lists.values():
-        contacts.adopt(u)
+        contacts.start_from_displacements(u)
         contacts.push(u, reference=True)
     total = system.last_forces(lists)
 
@@ -167,7 +167,7 @@ def test_a_settled_body_with_a_history_is_balanced_under_the_law_it_begins_with(
     lists = body.contact_lists()
     if not has_history:
         for contacts in lists.values():
-            contacts.adopt(start.displacement)
+            contacts.start_from_displacements(start.displacement)
     system = DiskSystem(body, STEP, start)
     resting = forces_of(system, lists, start.displacement)
     state = begun(system, start.displacement)
@@ -229,7 +229,7 @@ def test_where_one_part_leaves_the_elastic_law_all_change_to_the_other(scene, bo
     state.displacement[:], state.velocity[:], state.step = shaken(body, 1e-4), shaken(body, 1.0, 4), 7
     expected = body.contact_lists()
     for contacts in expected.values():
-        contacts.adopt(state.displacement - STEP * state.velocity)  # the first push adds this step
+        contacts.start_from_displacements(state.displacement - STEP * state.velocity)  # the first push adds this step
     moved, speed = state.displacement.copy(), state.velocity.copy()
     system.react(DONE, 3, state)
     system.react(LIST_ENDS, 3, state)
@@ -283,7 +283,7 @@ def test_energy_that_comes_with_another_law_is_written_down(scene, balanced: boo
     before = stored()
     system.react(LAW_ENDS, 1, state)
     for contacts in system.contacts.values():
-        contacts.adopt(u)
+        contacts.start_from_displacements(u)
     change = stored() - before
 
     assert np.array_equal(state.displacement, u)

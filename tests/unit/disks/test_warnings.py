@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.casefile import Case
-from dembound.disks.ground import Ground
+from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import build
 from dembound.disks.warnings import disk_warnings, particles_per_wavelength
 from dembound.running import plan
@@ -273,7 +273,7 @@ def test_reflections_of_two_per_cent_are_warned_of(bar, speed: float, other: boo
 
 @pytest.mark.parametrize(("ratio", "other"), [(1.09, False), (1.11, True), (0.91, False), (0.89, True)])
 def test_a_packing_of_another_speed_is_warned_of(bar, monkeypatch, ratio: float, other: bool) -> None:
-    monkeypatch.setattr(Ground, "wave_speeds", lambda self, axis: (1000.0 * ratio, np.nan))
+    monkeypatch.setattr(PackedMaterial, "wave_speeds", lambda self, axis: (1000.0 * ratio, np.nan))
     found = [each for each in warned(bar({**SLOW, **CALIBRATED})) if each.startswith("material")]
 
     assert found == other * [
@@ -283,7 +283,7 @@ def test_a_packing_of_another_speed_is_warned_of(bar, monkeypatch, ratio: float,
 
 
 def test_the_speed_along_y_counts_where_waves_go_there(bar, monkeypatch) -> None:
-    monkeypatch.setattr(Ground, "wave_speeds", lambda self, axis: (1000.0 if axis == 0 else 1200.0, np.nan))
+    monkeypatch.setattr(PackedMaterial, "wave_speeds", lambda self, axis: (1000.0 if axis == 0 else 1200.0, np.nan))
     tap = {"name": "tap", "force": [1.0, 0.0], "position": [5.0, 0.5], "wave": "pulse"}
     below = {"boundary.bottom": {"type": "velocity", "wave_p": "pulse"}, "motion.held": []}
     for changes, there in (({}, False), ({"load": [tap]}, True), (below, True)):

@@ -29,7 +29,7 @@ ROUNDING = 8.0 * EPS * STEPS**2
 def laid(rod: Rod, horizon: int, *zones: tuple[int, int], **words) -> Bonds:
     bonds = Bonds(rod, horizon, **words)
     for zone in zones:
-        bonds.cover(*zone)
+        bonds.add_zone(*zone)
     return bonds
 
 
@@ -134,8 +134,8 @@ class Run:
         supports = supports._replace(drive=supports.drive[number : number + steps])
         nobody = np.zeros(0, dtype=np.int64)
         log = tables.Log(np.arange(COUNT), self.record[number:], nobody, np.zeros((0, 3, 2)), self.top_speed, self.work)
-        spare = np.zeros_like(self.u)
-        return advance(self.u, spare, self.v, number, (self.arrays,), (), None, body, supports, log)
+        u_next = np.zeros_like(self.u)
+        return advance(self.u, u_next, self.v, number, (self.arrays,), (), None, body, supports, log)
 
 
 def plain_run(bonds: Bonds, u: np.ndarray, v: np.ndarray, outside: Outside = NOTHING, a: float = 0.0):
@@ -243,7 +243,7 @@ def test_step_is_the_same_as_written_down_plainly(layout, outside: Outside, a: f
 def test_books_close_while_bonds_break(layout, outside: Outside, a: float) -> None:
     u, v = shaken()
     run = Run(layout(WEAK), u, 15.0 * v, outside, a)
-    run.arrays.asks[:] = False
+    run.arrays.triggers[:] = False
     run.arrays = run.arrays._replace(plain_limit=np.inf, plain=run.arrays.plain[:0], mixed=all_mixed(run.arrays))
     before = energy(run.bonds, u[0], u[0] - STEP * run.v[0], run.v[0])
     run.advance()
@@ -316,14 +316,14 @@ def test_springs_that_ask_stop_the_kernel_before_the_step(plain: bool) -> None:
     rod = Rod(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=0.5)
     u, v = np.zeros((2, 3, COUNT))
     v[0] = 0.02 * np.arange(COUNT)
-    run = Run(Bonds(rod, 3, ask_at=0.1), u, v)
+    run = Run(Bonds(rod, 3, trigger_ratio=0.1), u, v)
     if not plain:
         run.arrays = run.arrays._replace(plain=run.arrays.plain[:0], mixed=all_mixed(run.arrays))
     done, why = run.advance()
 
     # 0.002 m a step against 0.1 · 0.5 · 0.5 m, but where the ends' waves have come
     assert (done, why) == (13, TRIGGERED)
-    assert run.bonds.asking(run.u[0]).size > 0
+    assert run.bonds.triggered(run.u[0]).size > 0
     assert np.all(run.bonds.spring_broken == -1)
     # it asks again at once
     assert run.advance(10, done) == (0, TRIGGERED)

@@ -42,8 +42,8 @@ def run_kernel(
 ) -> tuple[int, int, Log]:
     """Advance u and v in place; steps done, why it stopped, and the log of all particles."""
     body, supports, log = model.bundles()
-    spare, law = np.empty_like(u), bonded_law(pairs, limits, skin=skin, stop=stop)
-    done, why = advance(u, spare, v, number, (law,), (), followers, body, supports, log)
+    u_next, law = np.empty_like(u), bonded_law(pairs, limits, skin=skin, stop=stop)
+    done, why = advance(u, u_next, v, number, (law,), (), followers, body, supports, log)
     return done, why, log
 
 

@@ -15,11 +15,11 @@ from dembound.kernels.contacts import (
     SHEAR,
     TENSION,
     UPDATED,
-    adopt,
     moved,
     note_places,
     push,
     slack,
+    start_from_displacements,
     strain_energy,
     sum_forces,
 )
@@ -299,7 +299,7 @@ def test_adopted_pairs_start_where_small_motions_brought_them(random_pairs, plai
     u = motion(1)[0][0]
     pairs = random_pairs(PARTICLES, PAIRS)
     pairs.slip[:] = 9.0
-    adopt(u, pairs)
+    start_from_displacements(u, pairs)
 
     law = plain(pairs, UNBREAKABLE._replace(geometry=REFERENCE))
     for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):

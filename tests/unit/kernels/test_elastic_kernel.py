@@ -46,7 +46,7 @@ class Bodies:
             total[2, j] += self.arm_j[b] * self.k_s[b] * slip - bending
         return total
 
-    def rows(self, begin: int = 0) -> tables.Rows:
+    def rows(self, begin: int = 0) -> tables.NeighbourTable:
         """The contacts as the kernels take them; begin : number of the first particle."""
         lines, owner, neighbour = [], [], []
         for b, (i, j) in enumerate(self.pairs):
@@ -60,7 +60,7 @@ class Bodies:
         start = np.concatenate([np.zeros(begin + 1), np.cumsum(np.bincount(owner, minlength=PARTICLES))])
         index = np.uint32
         neighbour = (begin + np.array(neighbour)[order]).astype(index)
-        return tables.Rows(begin, start.astype(index), neighbour, order.astype(index), np.array(lines))
+        return tables.NeighbourTable(begin, start.astype(index), neighbour, order.astype(index), np.array(lines))
 
     def links(self, begin: int = 0) -> tables.Links:
         """The law on them."""

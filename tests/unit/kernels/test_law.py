@@ -32,9 +32,9 @@ class Wind(NamedTuple):
 
 
 @njit(**HERE)
-def blow(wind, u, spare, v, body, nodes):
+def blow(wind, u, u_next, v, body, nodes):
     for i in range(U(wind.begin), U(wind.end)):
-        move_particle(i, wind.force[0], wind.force[1], wind.force[2], u, v, body, spare)
+        move_particle(i, wind.force[0], wind.force[1], wind.force[2], u, v, body, u_next)
     wind.blown[1] += 1
 
 
@@ -62,12 +62,12 @@ def rise(gust):
 
 
 @njit(**HERE)
-def wane(gust, u, spare, v):
+def wane(gust, u, u_next, v):
     return TRIGGERED if gust.number[0] >= gust.calm else DONE
 
 
 @njit(**HERE)
-def press(gust, u, spare, v, number, step, work):
+def press(gust, u, u_next, v, number, step, work):
     gust.number[0] = number + 1
     return 3 if number == gust.harm else 0
 
@@ -79,8 +79,8 @@ def tell(gust, index, u, log):
 
 
 @njit(**HERE)
-def blow_gust(gust, u, spare, v, body, nodes):
-    blow(gust.wind, u, spare, v, body, nodes)
+def blow_gust(gust, u, u_next, v, body, nodes):
+    blow(gust.wind, u, u_next, v, body, nodes)
 
 
 @njit(**HERE)

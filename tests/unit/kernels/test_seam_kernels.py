@@ -156,17 +156,17 @@ class Following:
 def test_a_dashpot_follows_its_twin_at_the_middle_of_the_step_supported_or_not(damp: float) -> None:
     model = Following(damp)
     supports, body, log = model.bundles()
-    v, spare, followed = model.before.copy(), np.full((3, 7), np.nan), np.empty((3, 3))
+    v, u_next, followed = model.before.copy(), np.full((3, 7), np.nan), np.empty((3, 3))
     note_before(0, model.u, v, log.probes, log.record, supports.twin, followed)
     v[:, model.free_ones] = model.after[:, model.free_ones]  # the free ones move first
-    spare[:, model.nodes] = (model.force - model.across).T  # where the contacts' forces wait
-    move_supported(0, model.u, v, spare, model.across, followed, supports, body, log.work)
+    u_next[:, model.nodes] = (model.force - model.across).T  # where the contacts' forces wait
+    move_supported(0, model.u, v, u_next, model.across, followed, supports, body, log.work)
     expected, work = model.expected()
 
     # some ten operations on numbers of size 1 to 10
     np.testing.assert_allclose(v, expected, rtol=0.0, atol=1e-14)
     moved = model.u + STEP * expected
-    np.testing.assert_allclose(spare[:, model.nodes], moved[:, model.nodes], rtol=0.0, atol=1e-14)
-    assert np.isnan(spare[:, model.free_ones]).all()
+    np.testing.assert_allclose(u_next[:, model.nodes], moved[:, model.nodes], rtol=0.0, atol=1e-14)
+    assert np.isnan(u_next[:, model.free_ones]).all()
     # of nine components; what comes across the seam is the outside's work
     np.testing.assert_allclose(log.work[:, :2], work, rtol=0.0, atol=1e-13)

@@ -18,7 +18,7 @@ LIMIT = 0.25 * STRETCH
 def zoned(horizon: int, *zones: tuple[int, int], **words) -> Bonds:
     bonds = Bonds(ROD, horizon, **words)
     for first, last in zones:
-        bonds.cover(first, last)
+        bonds.add_zone(first, last)
     return bonds
 
 
@@ -82,18 +82,18 @@ def test_without_a_horizon_there_are_springs_alone() -> None:
 
     assert bonds.bond.shape == (0, COUNT)
     assert np.array_equal(bonds.spring, np.full(40, WHOLE))
-    assert bonds.asks.all()
+    assert bonds.triggers.all()
     assert np.array_equal(bonds.spring_limit, np.full(40, LIMIT))
     assert bonds.alive == 40
 
 
 def test_a_spring_asks_at_its_share_of_the_critical_stretch() -> None:
-    bonds = Bonds(ROD, 3, ask_at=0.8)
+    bonds = Bonds(ROD, 3, trigger_ratio=0.8)
     nearly, reached = pulled(7, elongation=0.8 * LIMIT * (1 - 1e-9)), pulled(7, 30, elongation=0.8 * LIMIT)
 
-    assert bonds.asking(nearly).tolist() == []
-    assert bonds.asking(reached).tolist() == [7, 30]
-    assert bonds.asking(-reached).tolist() == []
+    assert bonds.triggered(nearly).tolist() == []
+    assert bonds.triggered(reached).tolist() == [7, 30]
+    assert bonds.triggered(-reached).tolist() == []
 
 
 ZONES = [[(10, 30)], [(10, 20), (25, 35)], [(0, 20)], [(15, 41)], [(0, 41)], [(18, 20)], [(10, 20), (15, 32)]]
@@ -163,18 +163,18 @@ def test_bonds_of_zones_do_not_depend_on_their_order() -> None:
 
 
 def test_springs_ask_until_bonds_cover_their_plane_as_far_as_they_can() -> None:
-    bonds = zoned(3, (10, 30), ask_at=0.5)
+    bonds = zoned(3, (10, 30), trigger_ratio=0.5)
     # bonds of three across plane k need the nodes k − 2 to k + 3
     covered = np.zeros(40, dtype=bool)
     covered[12:27] = True
 
-    assert np.array_equal(bonds.asks, ~covered)
+    assert np.array_equal(bonds.triggers, ~covered)
     assert np.array_equal(bonds.spring_limit, np.where(covered, LIMIT, 0.5 * LIMIT))
     # all over, no spring is left to a method: at soft ends they break as bonds do
-    everywhere = zoned(3, (0, COUNT), ask_at=0.5)
-    assert not everywhere.asks.any()
+    everywhere = zoned(3, (0, COUNT), trigger_ratio=0.5)
+    assert not everywhere.triggers.any()
     assert np.flatnonzero(everywhere.spring).tolist() == [0, 1, 2, 37, 38, 39]
-    assert everywhere.asking(pulled(0)).size == 0
+    assert everywhere.triggered(pulled(0)).size == 0
 
 
 def test_soft_ends_are_those_of_one_spacing() -> None:
@@ -202,12 +202,12 @@ def test_stiffness_is_that_of_all_pairs(zones: list[tuple[int, int]]) -> None:
 
 @pytest.mark.parametrize("horizon", [0, 3])
 def test_springs_that_ask_no_more_break_at_the_critical_stretch(horizon: int) -> None:
-    bonds = Bonds(ROD, horizon, ask_at=0.8)
+    bonds = Bonds(ROD, horizon, trigger_ratio=0.8)
     u = pulled(7, elongation=2.0 * LIMIT)
-    assert bonds.asking(u).tolist() == [7]
-    bonds.stop_asking()
+    assert bonds.triggered(u).tolist() == [7]
+    bonds.stop_triggering()
 
-    assert bonds.asking(u).size == 0
+    assert bonds.triggered(u).size == 0
     assert np.array_equal(bonds.spring_limit, np.full(40, LIMIT))
     # the kernel has to look at each of them: no node is plain any more
     plain, mixed = ranges(bonds, supported=[])
@@ -230,7 +230,7 @@ def broken_at(bonds: Bonds, plane: int, step: int) -> Bonds:
 
 def test_what_is_broken_stays_broken_when_a_zone_grows() -> None:
     bonds = broken_at(zoned(3, (10, 30)), 20, step=5)
-    bonds.cover(5, 35)
+    bonds.add_zone(5, 35)
 
     carried = stress(bonds)
     assert carried[20] == 0.0
@@ -243,7 +243,7 @@ def test_what_is_broken_stays_broken_when_a_zone_grows() -> None:
 def test_a_broken_spring_is_not_replaced() -> None:
     bonds = zoned(3, (0, COUNT))
     bonds.spring[0], bonds.spring_broken[0] = 0.0, 3
-    bonds.cover(0, COUNT)
+    bonds.add_zone(0, COUNT)
 
     assert bonds.spring[0] == 0.0
     assert bonds.spring[1] > 0.0
@@ -334,7 +334,7 @@ def test_every_node_is_moved_once_and_holds_on_to_what_its_range_says(seed: int)
     horizon = int(rng.integers(0, 6))
     bonds = Bonds(ROD, horizon)
     for first in rng.integers(0, 38, rng.integers(0, 4) if horizon else 0):
-        bonds.cover(int(first), int(first + rng.integers(2, 15)))
+        bonds.add_zone(int(first), int(first + rng.integers(2, 15)))
     for plane in rng.integers(0, 40, rng.integers(0, 4)):
         bonds.spring[plane] = 0.0
     supported = np.unique(rng.integers(0, COUNT, rng.integers(0, 4)))
@@ -348,7 +348,7 @@ def test_every_node_is_moved_once_and_holds_on_to_what_its_range_says(seed: int)
     for a, b in plain:
         assert not bonded[a:b].any()
         assert np.all(bonds.spring[a - 1 : b] == WHOLE)
-        assert bonds.asks[a - 1 : b].all()
+        assert bonds.triggers[a - 1 : b].all()
         assert not np.isin(supported, np.arange(a, b)).any()
     for a, b, lengths, held in mixed:
         # a range with bonds is a zone, which no bond leaves
@@ -360,10 +360,10 @@ def test_every_node_is_moved_once_and_holds_on_to_what_its_range_says(seed: int)
 
 
 def test_arrays_for_kernels_are_the_bonds_own() -> None:
-    bonds = zoned(3, (10, 30), ask_at=0.5)
+    bonds = zoned(3, (10, 30), trigger_ratio=0.5)
     arrays = bonds.arrays(np.array([0]), 4.0, 1.0)
 
-    for name in ("spring", "spring_limit", "asks", "bond", "spring_broken", "bond_broken"):
+    for name in ("spring", "spring_limit", "triggers", "bond", "spring_broken", "bond_broken"):
         assert getattr(arrays, name) is getattr(bonds, name)
     np.testing.assert_allclose(arrays.bond_limit, LIMIT * np.array([1.0, 2.0, 3.0]), rtol=2 * EPS)
     # of 4 kg/m³ · 0.5 m² · 0.25 m a node

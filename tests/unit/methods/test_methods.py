@@ -67,12 +67,12 @@ def test_keys_out_of_range_are_refused(keys: dict) -> None:
 def test_finite_differences_ask_until_the_first_break() -> None:
     found = method("finite_difference")
     bonds = found.begin(ROD)
-    assert bonds.asking(pulled(10, 20)).tolist() == [10, 20]
-    name = found.answer(bonds, pulled(10, 20))
+    assert bonds.triggered(pulled(10, 20)).tolist() == [10, 20]
+    name = found.on_trigger(bonds, pulled(10, 20))
 
     assert bonds.horizon == 0
     assert name == "finite differences"
-    assert not bonds.asks.any()
+    assert not bonds.triggers.any()
     # they are left whole: the kernel breaks them
     assert np.all(bonds.spring == ROD.spring)
     assert np.all(bonds.spring_broken == -1)
@@ -85,7 +85,7 @@ def test_peridynamics_never_asks(corrected: bool) -> None:
     bonds = found.begin(ROD)
 
     assert bonds.zones == [(0, 61)]
-    assert not bonds.asks.any()
+    assert not bonds.triggers.any()
     assert np.flatnonzero(bonds.spring).tolist() == ([0, 1, 2, 57, 58, 59] if corrected else [])
 
 
@@ -96,11 +96,11 @@ def test_a_switch_turns_into_peridynamics_all_over(before: str, corrected: bool)
     bonds = found.begin(ROD)
     soft = before == "peridynamics" and not corrected
     assert bonds.spring[[0, 1, -1]].tolist() == [ROD.spring * (0.5 if soft else 1.0), ROD.spring, bonds.spring[0]]
-    assert bonds.asking(pulled(30, elongation=0.81 * LIMIT)).tolist() == [30]
-    name = found.answer(bonds, pulled(30, elongation=0.81 * LIMIT))
+    assert bonds.triggered(pulled(30, elongation=0.81 * LIMIT)).tolist() == [30]
+    name = found.on_trigger(bonds, pulled(30, elongation=0.81 * LIMIT))
 
     after = method("peridynamics", horizon=3, corrected_ends=corrected).begin(ROD)
-    for part in ("spring", "spring_limit", "asks", "bond", "bond_broken"):
+    for part in ("spring", "spring_limit", "triggers", "bond", "bond_broken"):
         assert np.array_equal(getattr(bonds, part), getattr(after, part)), part
     assert name == "peridynamics, m = 3"
     assert np.array_equal(found.stages(ROD)[1].stiffness(), after.stiffness())
@@ -109,20 +109,20 @@ def test_a_switch_turns_into_peridynamics_all_over(before: str, corrected: bool)
 def test_a_patch_lays_zones_around_all_that_asks() -> None:
     found = method("patch", horizon=2, reach=3, trigger=0.8)
     bonds = found.begin(ROD)
-    name = found.answer(bonds, pulled(20, 50, elongation=0.8 * LIMIT))
+    name = found.on_trigger(bonds, pulled(20, 50, elongation=0.8 * LIMIT))
 
     # three horizons of two beyond the two nodes of the spring
     assert bonds.zones == [(14, 28), (44, 58)]
     assert name == "finite differences and peridynamics, m = 2"
-    assert not bonds.asks[[20, 50]].any()
+    assert not bonds.triggers[[20, 50]].any()
 
 
 def test_a_patch_grows_from_where_its_edge_asks() -> None:
     found = method("patch", horizon=2, reach=3)
     bonds = found.begin(ROD)
-    bonds.cover(20, 40)
-    assert bonds.asking(pulled(39)).tolist() == [39]
-    found.answer(bonds, pulled(39))
+    bonds.add_zone(20, 40)
+    assert bonds.triggered(pulled(39)).tolist() == [39]
+    found.on_trigger(bonds, pulled(39))
 
     # by half of its twenty nodes, which is more than three horizons, beyond the two nodes of the spring
     assert bonds.zones == [(20, 51)]
@@ -134,8 +134,8 @@ def test_a_patch_grows_alike_to_the_left_and_to_the_right(beyond: int, zone: tup
     zones = []
     for place, plane in (((21, 41), 20 - beyond), ((20, 40), 39 + beyond)):
         bonds = found.begin(ROD)
-        bonds.cover(*place)
-        found.answer(bonds, pulled(plane))
+        bonds.add_zone(*place)
+        found.on_trigger(bonds, pulled(plane))
         zones += bonds.zones
 
     # by half of its twenty nodes beyond the spring where this is its own or stands across its edge; two springs further
@@ -150,10 +150,10 @@ def test_what_a_patch_has_answered_does_not_ask_again(horizon: int, plane: int) 
     found = method("patch", horizon=horizon, reach=1, trigger=1.0)
     bonds = found.begin(ROD)
     u = pulled(plane)
-    found.answer(bonds, u)
+    found.on_trigger(bonds, u)
 
     # or a run would stand still
-    assert bonds.asking(u).size == 0
+    assert bonds.triggered(u).size == 0
 
 
 def test_a_patch_is_stable_wherever_it_may_stand() -> None:

@@ -271,9 +271,9 @@ def test_the_jump_of_the_potential_where_the_law_changes_is_its_handover(bar) ->
     stretched = there[:2] - angle * np.stack([-arm[1], arm[0]]) + arm
     turned[:2] = np.array([[c, -s], [s, c]]) @ stretched - arm
     # under the history-dependent law contacts and bonds have what they sheared by along the way
-    contacts.adopt(there)
+    contacts.start_from_displacements(there)
     before = sum(strain_energy(there, pairs, REFERENCE)) - np.sum(force * there)
-    contacts.adopt(turned)
+    contacts.start_from_displacements(turned)
     after = sum(strain_energy(turned, pairs, UPDATED)) - np.sum(force * turned)
 
     assert law == "linearpbond"

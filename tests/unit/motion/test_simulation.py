@@ -325,7 +325,7 @@ def test_a_body_that_settles_anew_is_pushed_by_all_its_contacts(bar, has_history
     displacement = 1e-9 * np.random.default_rng(1).uniform(-1.0, 1.0, (3, scene.count))
     contacts, twin = scene.contact_lists(), scene.contact_lists()
     for lists in (contacts, twin):
-        lists["body"].adopt(displacement)
+        lists["body"].start_from_displacements(displacement)
         lists["body"].arrays.slip[:] = 1e-9 * has_history  # friction has its part of the force
     pushed = np.zeros_like(displacement)
     twin["body"].push(displacement, reference=not has_history)
@@ -379,7 +379,7 @@ def test_across_a_seam_both_laws_move_a_body_alike(bar) -> None:
         if not elastic:
             assert list(simulation.system.contacts) == ["column", "body"]
             for pairs in simulation.system.contacts.values():  # their first push adds this step
-                pairs.adopt(-simulation.time_step * simulation.state.velocity)
+                pairs.start_from_displacements(-simulation.time_step * simulation.state.velocity)
         simulation.advance(50)
         assert [name for name, _ in simulation.state.laws] == ["elastic" if elastic else "linearpbond"]
         moves.append(simulation.state.displacement)

@@ -2,7 +2,7 @@
 
 import numba
 
-from dembound.motion.threads import PARTICLES_PER_THREAD, threads_for, worthwhile_threads
+from dembound.motion.threads import PARTICLES_PER_THREAD, thread_count_for, threads_for
 
 
 def test_small_scenes_get_one_thread_and_the_allowance_comes_back(monkeypatch) -> None:
@@ -13,4 +13,4 @@ def test_small_scenes_get_one_thread_and_the_allowance_comes_back(monkeypatch) -
         assert asked == [2]
 
     assert asked == [2, 4]
-    assert [worthwhile_threads(n * PARTICLES_PER_THREAD) for n in (0, 1, 3, 9)] == [1, 1, 3, 4]
+    assert [thread_count_for(n * PARTICLES_PER_THREAD) for n in (0, 1, 3, 9)] == [1, 1, 3, 4]

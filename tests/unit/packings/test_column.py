@@ -75,10 +75,12 @@ def listed_contacts(brick: Brick, joint: Assembly, seam: Seam, body: Assembly) -
     """The same from the seam."""
     column = places(tile(brick, (1, body.copies[1]), (True, False)), brick)
     where = places(body, brick)
-    node = np.repeat(seam.node, seam.many) - seam.count
+    node = np.repeat(seam.node, seam.contact_counts) - seam.count
     return Counter(
         (where[n], column[near][1:], int(kind), int(second), int(image))
-        for n, near, kind, second, image in zip(node, seam.near, seam.kind, seam.second, seam.image, strict=True)
+        for n, near, kind, second, image in zip(
+            node, seam.neighbour, seam.kind, seam.twin_is_second, seam.image, strict=True
+        )
     )
 
 
@@ -95,14 +97,14 @@ def test_every_contact_that_a_side_cuts_is_in_the_seam_once(brick, copies, sides
 
 def test_seam_contacts_reach_from_the_twin_to_the_neighbour(dense_brick):
     joint, seam = with_column(dense_brick, tile(dense_brick, (2, 2), OPEN), BOTH)
-    twin = np.repeat(seam.twin[seam.node], seam.many)
-    reach = joint.positions[seam.near] + np.outer(seam.image, [seam.width, 0.0]) - joint.positions[twin]
-    vectors = dense_brick.vectors[seam.kind] * np.where(seam.second, -1.0, 1.0)[:, None]
+    twin = np.repeat(seam.twin[seam.node], seam.contact_counts)
+    reach = joint.positions[seam.neighbour] + np.outer(seam.image, [seam.width, 0.0]) - joint.positions[twin]
+    vectors = dense_brick.vectors[seam.kind] * np.where(seam.twin_is_second, -1.0, 1.0)[:, None]
 
     assert np.abs(reach - vectors).max() < 1e-13  # round-off of 20 m
     assert np.all(np.diff(seam.node) > 0)
-    assert np.all(seam.many > 0)
-    assert (seam.start[0], seam.start[-1]) == (0, len(seam.near))
+    assert np.all(seam.contact_counts > 0)
+    assert (seam.start[0], seam.start[-1]) == (0, len(seam.neighbour))
 
 
 def test_a_twin_stands_at_the_same_place_of_the_brick(brick):

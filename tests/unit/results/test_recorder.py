@@ -111,12 +111,12 @@ def test_a_snapshot_is_the_whole_scene_at_its_time(tmp_path, simulation) -> None
 
 
 def test_stress_and_peaks_are_kept_if_the_case_asks_for_them(tmp_path, bar, simulation) -> None:
-    asking = Simulation(build(bar({"output.stress": True, "output.peaks": True, "monitor": []})), STEP)
-    fastest = np.zeros(asking.scene.count)
-    with recorder(tmp_path / "asked.h5", asking) as kept:
+    triggered = Simulation(build(bar({"output.stress": True, "output.peaks": True, "monitor": []})), STEP)
+    fastest = np.zeros(triggered.scene.count)
+    with recorder(tmp_path / "asked.h5", triggered) as kept:
         for _ in range(40):
-            kept.append(asking.advance(1))
-            fastest = np.maximum(fastest, np.hypot(*asking.state.velocity[:2]))
+            kept.append(triggered.advance(1))
+            fastest = np.maximum(fastest, np.hypot(*triggered.state.velocity[:2]))
         kept.snapshot()
     with recorder(tmp_path / "not.h5", simulation) as kept:
         kept.append(simulation.advance(1))
@@ -124,7 +124,7 @@ def test_stress_and_peaks_are_kept_if_the_case_asks_for_them(tmp_path, bar, simu
 
     with h5py.File(tmp_path / "asked.h5") as file:
         stress, peaks = file["snapshots/0000/stress"], file["particles/peak_velocity"]
-        assert np.array_equal(stress, asking.system.stress(asking.state.displacement))
+        assert np.array_equal(stress, triggered.system.stress(triggered.state.displacement))
         assert stress[:, 0].min() < -1e5
         # y is held, so no square is rounded; both ends are supported
         assert np.array_equal(peaks, fastest)
@@ -152,7 +152,7 @@ def test_scene_and_sides_are_kept(tmp_path, simulation) -> None:
         assert np.array_equal(side["particle"], scene.edges["right"].nodes)
         assert np.array_equal(side["position"], scene.assembly.positions[scene.edges["right"].nodes])
         assert side["diameter"][:].tolist() == [0.5, 0.5]
-        assert (side.attrs["length"], side.attrs["cover"]) == (1.0, 1.0)
+        assert (side.attrs["length"], side.attrs["diameter_sum_ratio"]) == (1.0, 1.0)
         assert np.array_equal(side["peak_velocity"], simulation.edge_peaks("right"))
         assert side["peak_velocity"][0, 0, 1] > 0.4  # the pulse of 0.5 m/s has arrived
 

@@ -169,7 +169,7 @@ def test_holes_loads_static_stage_and_law_are_left_out_of_a_calibration(long_bar
 
 
 def test_half_masses_stay_in_a_calibration(long_bar) -> None:
-    half, whole = (calibrate(long_bar({"boundary.right.half_mass": asks}), "right") for asks in (True, False))
+    half, whole = (calibrate(long_bar({"boundary.right.half_mass": triggers}), "right") for triggers in (True, False))
 
     # with steps near the limit a half mass leaves no error in the end, a whole one shifts the peak
     assert half.ratio[0] != whole.ratio[0]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.ground import Ground, homogenise, make_ground, nominal_moduli
+from dembound.disks.packed_material import PackedMaterial, homogenise, make_packed_material, nominal_moduli
 from dembound.errors import CaseError
 from dembound.packings.brick import Brick
 from dembound.packings.dense import Recipe, pack_dense
@@ -29,8 +29,8 @@ def dense() -> Brick:
     return pack_dense(Recipe(size=(6.0, 5.0), radius=0.25, radius_ratio=1.5, pressure=0.008, bond_gap=0.0, seed=2))
 
 
-def ground(brick: Brick, held: tuple[str, ...] = (), **material: object) -> Ground:
-    return make_ground(brick, Material(**{**MATERIAL, **material}), held)
+def ground(brick: Brick, held: tuple[str, ...] = (), **material: object) -> PackedMaterial:
+    return make_packed_material(brick, Material(**{**MATERIAL, **material}), held)
 
 
 def test_masses_add_up_to_density_times_area(dense: Brick) -> None:
@@ -147,7 +147,7 @@ def test_of_a_random_brick_the_smaller_share_along_x_or_y_counts(dense: Brick) -
     whole = ground(dense, contact_share=0.4, fric=0.5)
     density_only = {key: value for key, value in MATERIAL.items() if key == "density"}
     bonds = Material(**density_only, emod=0.0, pb_emod=whole.moduli.pb_emod, fric=0.5)
-    alone = make_ground(dense, bonds, ()).tensor
+    alone = make_packed_material(dense, bonds, ()).tensor
     shares = [alone[axis, axis] / whole.tensor[axis, axis] for axis in (0, 1)]
 
     assert whole.bond_share == pytest.approx(min(shares), rel=SOLVE)

@@ -28,7 +28,7 @@ AXES = {"x": 0, "y": 1, "rotation": 2}
 
 
 @dataclass(frozen=True)
-class Ground:
+class PackedMaterial:
     """A brick with its material.
 
     Attributes
@@ -107,7 +107,7 @@ class Ground:
         return float(np.sqrt(squares[p])), float(np.sqrt(squares[1 - p]))
 
 
-def make_ground(brick: Brick, material: Material, held: Iterable[str]) -> Ground:
+def make_packed_material(brick: Brick, material: Material, held: Iterable[str]) -> PackedMaterial:
     """Give a brick its material, moduli scaled so that the wave speed asked for is met where the case says so.
 
     Raises CaseError for a locked-in stress that the packing's contacts cannot carry.
@@ -123,9 +123,9 @@ def make_ground(brick: Brick, material: Material, held: Iterable[str]) -> Ground
     return ground
 
 
-def _scaled(brick: Brick, material: Material, held: Iterable[str]) -> Ground:
+def _scaled(brick: Brick, material: Material, held: Iterable[str]) -> PackedMaterial:
     """A brick with its material; a case's wave speed scales the moduli where it is that of the packing."""
-    ground = Ground(
+    ground = PackedMaterial(
         brick=brick,
         density=material.density,
         moduli=nominal_moduli(material),

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
-from dembound.waves import Record
-from dembound.waves.record import read_samples
+from dembound.waves import FileWave
+from dembound.waves.file_wave import read_samples
 
 
-def record(folder: Path, text: str, **keys: float) -> Record:
+def record(folder: Path, text: str, **keys: float) -> FileWave:
     (folder / "quake.txt").write_text(text, encoding="utf-8")
     table = {"type": "file", "path": "quake.txt", **keys}
-    return TypeAdapter(Record).validate_python(table, context={"folder": folder})
+    return TypeAdapter(FileWave).validate_python(table, context={"folder": folder})
 
 
 TRIANGLE = "# a triangle\n0.0 0.0\n1.0 2.0  # crest\n\n3.0 0.0\n"

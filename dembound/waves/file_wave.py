@@ -13,7 +13,7 @@ from dembound.waves.spectrum import amplitude_spectrum, faded_frequency
 from dembound.waves.wave import NonZero, Wave
 
 
-class Record(Wave):
+class FileWave(Wave):
     """Velocities from a file, joined by straight lines and zero outside.
 
     The file is one for `read_samples`, of times (s) and velocities (m/s). Its times are counted from `start`. A
@@ -30,7 +30,7 @@ class Record(Wave):
     _velocities: tuple[float, ...] = PrivateAttr(default=())
 
     @model_validator(mode="after")
-    def _read(self, info: ValidationInfo) -> "Record":
+    def _read(self, info: ValidationInfo) -> "FileWave":
         folder = (info.context or {}).get("folder", Path())
         samples = read_samples(folder / self.path)
         self._times = tuple(samples[:, 0].tolist())
