@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 GAINED = 1e-3
-"""Share of the energy that fracture may give instead of taking it before a run says so."""
+"""Share of the energy that fracture may give instead of taking it before a run reports it."""
 
 LISTED = 3
 """Spalls that are named one by one."""

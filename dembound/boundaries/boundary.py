@@ -1,4 +1,4 @@
-"""What every boundary type has in common: what a case, a scene and a study may ask of a side."""
+"""The base of all boundary types: the traits of a side that cases, scenes and studies use."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Self
@@ -11,8 +11,8 @@ from dembound.table import Table
 class Boundary(Table):
     """A side's table: the base of all types.
 
-    A type is a subclass with a literal `type`, its keys, and the recipe `support`. Below is what else is asked of a
-    side; each answer has a default, that of a side that does nothing of the kind.
+    A type is a subclass with a literal `type`, its keys, and the recipe `support`. The other members default to
+    those of a side without waves, dashpots and prescribed motion.
 
     Attributes
     ----------

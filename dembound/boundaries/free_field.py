@@ -1,7 +1,7 @@
 """A free-field side: beyond it the ground moves as it would without the body.
 
-Z eq. 21. The force that the ground beyond puts on a particle is what its twin in the free-field column feels across the
-same seam, moment included: static part and motion at once, nothing to calibrate (see packings/column.py). Dashpots
+Z eq. 21. The force that the ground beyond puts on a particle is what acts on its twin in the free-field column across
+the same seam, moment included: static part and motion at once, nothing to calibrate (see packings/column.py). Dashpots
 on the velocity relative to the twin absorb what the body sends out.
 """
 

@@ -30,7 +30,7 @@ class Dashpots(Boundary):
 
     @property
     def half_cells(self) -> bool:
-        """As the table says."""
+        """The key half_mass."""
         return self.half_mass
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:

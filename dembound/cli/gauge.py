@@ -9,7 +9,7 @@ from rich.table import Table
 from dembound.cli.app import PICTURE, app, out
 from dembound.cli.results import results_file
 from dembound.gauge.estimates import Estimate
-from dembound.gauge.readings import read_free_end, read_gauge
+from dembound.gauge.gauge_io import read_free_end, read_gauge
 from dembound.gauge.spalling import Findings, evaluate
 from dembound.plot.gauge import plot_gauge
 from dembound.plot.style import save

@@ -59,7 +59,7 @@ class Balance:
 
     @classmethod
     def recalled(cls, scene: DiskBody, memory: Arrays) -> Balance:
-        """What has the memory of another run of the same case."""
+        """The balance whose memory() in another run of the same case was this."""
         balance = cls(scene, memory["force"].copy(), *(memory[name].copy() for name in _FIXED))
         for name in _EVOLVING:
             setattr(balance, f"_{name}", memory[name].copy())

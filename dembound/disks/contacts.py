@@ -118,7 +118,7 @@ class ContactList:
         moved, radii = displacement[:2, self.nodes].T, self.assembly.radii
         here = self.assembly.positions + moved
         if not np.isfinite(here).all():
-            return  # the loop's watch will say so
+            return  # the watch of the loop raises for it
         old, count = self.arrays, len(radii)
         old_first, old_second = self.pairs
         near, image = near_pairs(here, radii, self.skin, self.periods)
@@ -301,7 +301,7 @@ class ContactList:
 
 
 _KEPT = ("first", "second", "kind", "state", "shear", "slip", "cracked", "force")
-"""What of the pairs' arrays their memory holds."""
+"""The arrays of the pairs that memory() returns."""
 
 
 def plain_contacts(ground: PackedMaterial, assembly: Assembly, begin: int = 0) -> Contacts:

@@ -108,7 +108,7 @@ class PackedMaterial:
 
 
 def make_packed_material(brick: Brick, material: Material, held: Iterable[str]) -> PackedMaterial:
-    """Give a brick its material, moduli scaled so that the wave speed asked for is met where the case says so.
+    """Give a brick its material, moduli scaled to the wave speed asked for where match is "assembly".
 
     Raises CaseError for a locked-in stress that the packing's contacts cannot carry.
     """

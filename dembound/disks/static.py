@@ -23,7 +23,7 @@ from dembound.motion.state import Arrays, State
 from dembound.motion.trackers import Run, Tracker
 
 LOOK = 100
-"""Steps between two looks at the force ratio."""
+"""Steps between two evaluations of the force ratio."""
 
 PATIENCE = 20_000
 """Steps without a tenth of progress after which a stage counts as stalled."""
@@ -177,7 +177,7 @@ class _UntilAtRest(Tracker):
         self.due = min(step + LOOK, max(self._body.static.max_steps, step + 1))
 
     def handle(self, run: Run) -> None:
-        """Look at the force ratio; raise StalledError where it makes no more progress or takes too many steps."""
+        """Evaluate the force ratio; raise StalledError where it makes no more progress or takes too many steps."""
         body, static, system, state = self._body, self._body.static, self._system, run.state
         body.keep_from_turning(state)
         self.forces = self._contact_forces(state.displacement)
@@ -199,7 +199,7 @@ class _UntilAtRest(Tracker):
         self._look_after(state.step)
 
     def memory(self) -> Arrays:
-        """When it looks next, the least force ratio that counted as progress and when, and the tractions."""
+        """When it is evaluated next, the least force ratio that counted as progress and when, and the tractions."""
         applied = np.zeros(0) if self._body.applied is None else self._body.applied
         best = {"best": np.array(self._best), "best_at": np.array(self._best_at)}
         return {**super().memory(), **best, "tractions": applied, "corrections": np.array(self._body.corrections_left)}

@@ -14,7 +14,7 @@ UNYIELDING = Limits(friction=0.0, tension=np.inf, cohesion=np.inf, tan_fa=0.0, g
 """Under the elastic law nothing gives way."""
 
 PIECE = 2**18
-"""Pairs looked at in one go: large scenes then take little memory beside their own."""
+"""Pairs evaluated at once: large scenes then take little memory beside their own."""
 
 
 def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np.ndarray:
@@ -56,7 +56,7 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
 
 
 def _pieces(contacts: Contacts, displacement: np.ndarray, *, elastic: bool) -> Iterator[tuple[slice, np.ndarray]]:
-    """Pieces of the list of pairs and their forces (k, 4), for which no pair's memory is touched."""
+    """Pieces of the list of pairs and their forces (k, 4), whose pairs are not changed."""
     for begin in range(0, len(contacts.first), PIECE):
         piece = slice(begin, begin + PIECE)
         if not elastic:

@@ -69,7 +69,7 @@ def describe_packing(scene: DiskScene) -> dict[str, Any]:
 
 
 def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
-    """One side in numbers: type, particles, diameters (m), ΣD/H, and what its table has to say."""
+    """One side in numbers: type, particles, diameters (m), ΣD/H, and the numbers of its table."""
     edge = scene.edges[side]
     table, medium = scene.case.side(side), boundary_medium(scene.case, scene.ground, edge.axis)
     described: dict[str, Any] = {

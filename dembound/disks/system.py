@@ -92,14 +92,14 @@ class DiskSystem(System):
             self._balance(springs - resting - self.load, state.datum)
             steady = springs - self.elastic_forces(state.datum)
         elif scene.has_history and not has_history:
-            # the elastic law does not know the forces of the body as built, as of a locked-in stress
+            # the elastic law has no forces of the body as built, such as those of a locked-in stress
             rest = np.zeros_like(self.load)
             steady = self.load + self._forces_of_history(rest, fresh=True)
         else:
             steady = self.load
         if steady.any():
             self.steady = steady.copy()
-        # a locked-in stress also comes through the seam of a free field, of which the elastic law would not know
+        # a locked-in stress also comes through the seam of a free field, which the elastic law lacks
         through = bool(self.ties) and scene.case.material.locked_in is not None and not self._settling
         if has_history or (scene.has_history and (through or not scene.case.material.elastic_start)):
             self._switch(state, fresh=not has_history)
@@ -145,7 +145,7 @@ class DiskSystem(System):
         return np.concatenate([part_stress(self.scene, part, displacement) for part in self.parts])
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
-        """What is known of every disk at displacements (3, n) beside its motion; stress if the case asks for it."""
+        """Fields of every disk at displacements (3, n) beside its motion; stress only with output.stress."""
         known = super().snapshot(displacement)
         if self.scene.case.output.stress:
             known["stress"] = self.stress(displacement), "Pa"

@@ -80,7 +80,7 @@ def _locked_in(scene: DiskScene) -> Iterator[str]:
 
 def _tension(scene: DiskScene) -> Iterator[str]:
     """Waves that would open real contacts, where the elastic law keeps them closed."""
-    if scene.has_history or not _confinement(scene):  # the docs say so of a lattice, which is packed without stress
+    if scene.has_history or not _confinement(scene):  # a lattice is packed without stress; the docs treat it
         return
     for name, stress in strong_waves(scene).items():
         yield (

@@ -1,6 +1,6 @@
 """Exact solutions that results are shown beside, one problem a file.
 
-They know nothing of disks, cases or runs: plain numbers and arrays in, arrays out.
+They import nothing of disks, cases or runs: plain numbers and arrays in, arrays out.
 """
 
 from dembound.exact.bar import bar_stress, bar_velocity, triangle_spall

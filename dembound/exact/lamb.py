@@ -33,7 +33,7 @@ BLOCK = 16384
 """Values that are worked on at once: as many as stay in a processor's cache, not so few that calls cost more."""
 
 LoadFrom = Callable[..., np.ndarray]
-"""The load felt with a slowness, at all times or at some."""
+"""The load that acts with a slowness, at all times or at some."""
 
 
 @dataclass(frozen=True)
@@ -118,9 +118,9 @@ def surface_displacement(
 
     latest = times / s_arrival
 
-    def load_from(p: np.ndarray | float, felt: np.ndarray | slice = slice(None)) -> np.ndarray:
-        """Load felt with slowness p, a number, (n, 1) or (n, k'), at those k' of the times that `felt` picks."""
-        return load(np.maximum(times[felt] - p * s_arrival, 0.0))
+    def load_from(p: np.ndarray | float, chosen: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Load that acts with slowness p, a number, (n, 1) or (n, k'), at the k' times `chosen`."""
+        return load(np.maximum(times[chosen] - p * s_arrival, 0.0))
 
     at_pole = np.where(latest > kernel.pole, load_from(kernel.pole), 0.0)
     whole = _converged(kernel, load_from, latest, at_pole, tolerance)
@@ -195,22 +195,22 @@ def _integral(
 def _piece(
     kernel: _Kernel,
     load_from: LoadFrom,
-    felt: np.ndarray,
+    chosen: np.ndarray,
     residue: np.ndarray,
     low: float,
     width: np.ndarray,
     panels: int,
 ) -> np.ndarray:
-    """The part (2, k') of that integral from slowness `low` on, over widths (k',) or (1,), for times `felt` (k',)."""
+    """The part (2, k') of that integral from slowness `low` on, over widths (k',) or (1,), for times `chosen` (k',)."""
     nodes = ((np.arange(panels)[:, None] + 0.5 + 0.5 * NODES) / panels).ravel()
     slopes = np.tile(WEIGHTS, panels) / (2 * panels) * 0.5 * math.pi * np.sin(math.pi * nodes)
-    total = np.zeros((2, len(felt)))
-    many = max(1, BLOCK // len(felt))
+    total = np.zeros((2, len(chosen)))
+    many = max(1, BLOCK // len(chosen))
     for begin in range(0, len(nodes), many):
         v, slope = nodes[begin : begin + many, None], slopes[begin : begin + many]
         p = low + width * np.sin(0.5 * math.pi * v) ** 2
-        load = load_from(p, felt)
-        regular = load * kernel.vertical(p) - residue[felt]
+        load = load_from(p, chosen)
+        regular = load * kernel.vertical(p) - residue[chosen]
         away = p - kernel.pole
         total[1] += slope @ np.divide(regular, away, out=np.zeros_like(regular), where=away != 0.0)
         if low < 1.0:

@@ -1,6 +1,6 @@
-"""What a gauge on a bar tells: wave speed, attenuation, and the stress at which the bar spalls (L section 3.3).
+"""What the signal of a gauge on a bar yields: wave speed, attenuation and spall strength (L section 3.3).
 
-A compressive pulse enters a bar at x = 0 and runs to and fro between its free ends. A gauge in between feels it as
+A compressive pulse enters a bar at x = 0 and runs to and fro between its free ends. A gauge in between measures it as
 compression on the way out and as tension on the way back. Stresses are positive in tension, and may be strains or
 voltages where only their course matters; places count from the loaded end.
 """
@@ -19,7 +19,7 @@ ENDED = 0.2
 """Share of its largest compression below which a pulse counts as ended when its reflection returns."""
 
 FEWEST = 3
-"""Samples of a history that say something of its noise."""
+"""Samples of a history from which its noise is estimated."""
 
 
 class Estimate(NamedTuple):
@@ -31,7 +31,7 @@ class Estimate(NamedTuple):
 
 
 def tension_peaks(time: np.ndarray, stress: np.ndarray, count: int | None = None) -> Peaks:
-    """Successive tension peaks at a gauge between free ends, 2L/c apart; how they are found says `positive_peaks`.
+    """Successive tension peaks at a gauge between free ends, 2L/c apart, found by `positive_peaks`.
 
     Where all tension is less than `SMALLEST` of the compression, it is what rings behind a pulse that has not returned,
     and no peak.
@@ -127,7 +127,7 @@ def near_free_end(
 
     Parameters
     ----------
-    time, stress : (p,) the incident pulse s alone, as the gauge feels it, zero before and after; s and any unit.
+    time, stress : (p,) the incident pulse s alone, as the gauge measures it, zero before and after; s and any unit.
     gauge, length : place x_g of the gauge and length L of the bar, m.
     speed : c, m/s.
     positions, at_times : (q,) m and (k,) s.

@@ -1,4 +1,4 @@
-"""A spalling test on a bar: all that its gauge tells, and the velocity of its free end (L section 3.3)."""
+"""A spalling test on a bar: estimates from its gauge and the velocity of its free end (L section 3.3)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ from dembound.gauge.estimates import (
     wave_speed,
     way_by_the_end,
 )
+from dembound.gauge.gauge_io import FREE, Gauge, not_above_zero, not_on_bar
 from dembound.gauge.peaks import Peaks
-from dembound.gauge.readings import FREE, Gauge, not_above_zero, not_on_bar
 
 AGREEMENT = 0.05
 """Share by which an estimated wave speed may be off the record's; coarse nodes slow pulses by less."""
@@ -43,7 +43,7 @@ class Strength:
 
 @dataclass(frozen=True)
 class Findings:
-    """What a gauge tells: wave speed in m/s, attenuation in 1/m, strengths in Pa; None is unknown.
+    """Estimates from a gauge: wave speed in m/s, attenuation in 1/m, strengths in Pa; None is unknown.
 
     `peaks` are the tension peaks that speed or attenuation are estimated from, None if both were known.
     """
@@ -66,25 +66,25 @@ def evaluate(
     speed: float | None = None,
     coefficient: float | None = None,
 ) -> Findings:
-    """All that a gauge tells with what is given beside it.
+    """All estimates from a gauge and what is given beside it.
 
     Parameters
     ----------
-    gauge : what it has felt.
+    gauge : its signal.
     spall : where the bar has spalled, from the loaded end, m.
     free_end : times (q,) in s and velocities (q,) in m/s of the free end, positive outwards.
-    estimate : take wave speed and attenuation from the tension peaks even if a record tells them.
+    estimate : take wave speed and attenuation from the tension peaks even if a record has them.
     count : the same, from the first peaks only.
     pulse_end : time at which the incident pulse is over at the gauge, s; by default when its front comes back.
-    speed, coefficient : wave speed in m/s and attenuation in 1/m of another test; by default what a record tells,
+    speed, coefficient : wave speed in m/s and attenuation in 1/m of another test; by default those of a record,
         else estimates.
 
     Raises CaseError when what is given is not enough, and when a record contradicts what is to be found.
     """
-    told = gauge.told
-    if told is not None and not estimate and count is None:
-        speed = told.speed if speed is None else speed
-        coefficient = told.attenuation if coefficient is None else coefficient
+    metadata = gauge.metadata
+    if metadata is not None and not estimate and count is None:
+        speed = metadata.speed if speed is None else speed
+        coefficient = metadata.attenuation if coefficient is None else coefficient
     problems = list(_problems_with_options(gauge, spall, speed, coefficient))
     if free_end is not None and gauge.density is None:
         problems.append("--density: is not known, give it")
@@ -102,13 +102,14 @@ def _problems_with_options(
     """What is wrong with what is given beside a gauge."""
     if spall is not None:
         yield from not_on_bar("--spall", spall, gauge.length)
-        if gauge.told is not None and gauge.told.ends[1] != FREE:
-            yield f"--spall: takes a pulse that a free end returns, the end opposite the load is {gauge.told.ends[1]}"
+        if gauge.metadata is not None and gauge.metadata.ends[1] != FREE:
+            end = gauge.metadata.ends[1]
+            yield f"--spall: takes a pulse that a free end returns, the end opposite the load is {end}"
     yield from not_above_zero("--wave-speed", speed, "m/s")
     if coefficient is not None and not 0.0 <= coefficient < np.inf:
         yield f"--attenuation: is {coefficient:g} 1/m, must be finite and not below 0"
-    if gauge.told is not None and (speed is None or coefficient is None):
-        for which, kind in zip(("the loaded end", "the end opposite the load"), gauge.told.ends, strict=True):
+    if gauge.metadata is not None and (speed is None or coefficient is None):
+        for which, kind in zip(("the loaded end", "the end opposite the load"), gauge.metadata.ends, strict=True):
             if kind != FREE:
                 yield f"--estimate: takes peaks of a pulse between free ends, {which} is {kind}"
 
@@ -131,20 +132,20 @@ def _waves(
 
 
 def _hold_against_break(gauge: Gauge, peaks: Peaks) -> None:
-    """Raise CaseError if a record tells that the bar broke before the last of the tension peaks."""
-    broken = np.inf if gauge.told is None else gauge.told.broken
+    """Raise CaseError if a record shows that the bar broke before the last of the tension peaks."""
+    broken = np.inf if gauge.metadata is None else gauge.metadata.broken
     whole, count = int(np.sum(peaks.time <= broken)), len(peaks.time)
     if whole < count:
         said = f"this one broke at {broken:.4g} s, before {count - whole} of its {count}"
-        advice = f"use --peaks {whole}" if whole > 1 else "it tells neither speed nor attenuation"
+        advice = f"use --peaks {whole}" if whole > 1 else "it gives neither speed nor attenuation"
         raise CaseError([f"--estimate: takes tension peaks of a whole bar, {said}; {advice}"])
 
 
 def _hold_against_speed(gauge: Gauge, passing: float, given: float | None) -> None:
     """Raise CaseError if the tension peaks' wave speed, m/s, is not the record's, or without one not the given one."""
-    known = given if gauge.told is None else gauge.told.speed
+    known = given if gauge.metadata is None else gauge.metadata.speed
     if known is not None and abs(passing / known - 1.0) > AGREEMENT:
-        option = "--attenuation: give it," if gauge.told is None else "--estimate:"
+        option = "--attenuation: give it," if gauge.metadata is None else "--estimate:"
         said = f"come to a wave speed of {passing:.4g} m/s, must be within {100.0 * AGREEMENT:g} % of {known:.4g} m/s"
         raise CaseError([f"{option} the tension peaks {said}"])
 

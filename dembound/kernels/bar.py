@@ -5,7 +5,7 @@ The force on node i of a bar is (L eq. 8 and its finite difference counterpart, 
     Σ_p k_{i,p} (u_{i+p} − u_i) − k_{i−p,p} (u_i − u_{i−p}),  p = 0 … m
 
 where p = 0 stands for the local springs between neighbours. Springs and bonds stand in rows by index offset, so every
-loop runs along contiguous numbers and no node looks for its family. Stretches of the bar with nothing but whole local
+loop runs along contiguous numbers, without lists of families. Stretches of the bar with nothing but whole local
 springs are `plain`: one stencil with constants moves them. A bar is alone in its loop: its kernels take all nodes.
 """
 

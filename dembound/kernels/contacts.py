@@ -1,8 +1,8 @@
 """Contacts with a history: PFC2D's linear contact (no tension, Coulomb friction) with a parallel bond that breaks.
 
 A pair's motion is three numbers: the distance of the centres, the tangential displacement `shear` of the two surfaces
-(counted along the path, as the tangent turns with the pair) and the relative rotation. The bond answers all three from
-its unloaded state; the contact answers overlap and the part of `shear` that has not slid. No other history is needed:
+(counted along the path, as the tangent turns with the pair) and the relative rotation. The bond resists all three from
+its unloaded state; the contact resists overlap and the part of `shear` that has not slid. No other history is needed:
 in two dimensions a shear force has one component, which turns with the pair by itself.
 
 A palette line (12,) of a pair with first disk i and second disk j:

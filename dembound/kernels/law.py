@@ -36,7 +36,7 @@ def push(law, u, u_next, v, number, step, work):
 
 
 def note(law, index, u, log):
-    """Write down what the law knows of the probes beside their motion, in row `index` of log.record."""
+    """Write down what the law records at the probes beside their motion, in row `index` of log.record."""
 
 
 def move(law, u, u_next, v, body, nodes):
@@ -155,7 +155,7 @@ def is_law(
     push: Kernel = _no_push,
     note: Kernel = _no_note,
 ) -> None:
-    """Make bundles of this type a law with these kernels; each does what this module's function of its name says.
+    """Make bundles of this type a law with these kernels; each as described at this module's function of its name.
 
     The type has to be importable by its name, as what is compiled for it is kept on disk.
     """

@@ -1,4 +1,4 @@
-"""What every bond law of disks can answer, from the springs of its contacts."""
+"""The base of all bond laws of disks: stiffnesses and constants of pairs, from the springs of their contacts."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass

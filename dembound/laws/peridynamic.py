@@ -1,6 +1,6 @@
 """The bond-based peridynamic law on a grid of nodes, in one, two or three dimensions (L section 1).
 
-A node feels every other one within the horizon δ = mΔx. Families are found once, by index offset: a distance
+A node is bonded to every other one within the horizon δ = mΔx. Families are found once, by index offset: a distance
 compared as a float loses the nodes at |ξ| = δ, and so do current positions once the body is stretched.
 """
 

@@ -2,7 +2,7 @@
 
 Local springs join neighbours, peridynamic bonds join nodes in zones. A plane between two nodes is covered to the share
 of the stress that bonds carry across it; a local spring there carries the rest, 1 − coverage. So any zone fits into
-local springs: forces come in pairs, and rest and uniform strain feel no seam.
+local springs: forces come in pairs, and rest and uniform strain are not disturbed at the seam.
 """
 
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ TINY = 1e-12
 
 @dataclass(frozen=True)
 class Rod:
-    """What methods need to know of a bar: n nodes, spacing m, section m², Young's modulus Pa, critical stretch.
+    """A bar as methods need it: n nodes, spacing m, section m², Young's modulus Pa, critical stretch.
 
     Nodes at the ends have half the volume of the others.
     """

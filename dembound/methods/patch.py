@@ -13,7 +13,7 @@ class Patch(Triggered):
     """Zones of peridynamics that appear where a stretch reaches `trigger` of the critical one, and grow as needed.
 
     Around a zone local springs carry the share of the stress that its bonds leave (complement springs): forces stay in
-    pairs, so that momentum is kept, and neither rest nor uniform strain feels the seam.
+    pairs, so that momentum is kept, and neither rest nor uniform strain is disturbed at the seam.
     """
 
     type: Literal["patch"]

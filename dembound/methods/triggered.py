@@ -1,4 +1,4 @@
-"""What methods share that are finite differences until something is about to break."""
+"""The base of methods that are finite differences until something is about to break."""
 
 from dembound.methods.method import Method
 from dembound.table import quantity

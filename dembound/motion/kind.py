@@ -1,4 +1,4 @@
-"""What runs, checks and reports ask of a kind of body; kinds.py names them all."""
+"""The interface of a kind of body to runs, checks and reports; kinds.py names all kinds."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Stage:
 class Beginning:
     """Where a run begins: its parts and ties, the displacements (3, n) they are at rest at, and the stages before.
 
-    summary : what reports say of these stages, as plain JSON values; None where there were none.
+    summary : these stages in reports, as plain JSON values; None where there were none.
     """
 
     system: System

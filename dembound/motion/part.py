@@ -76,7 +76,7 @@ class System:
 
     Parameters
     ----------
-    parts, ties : what it is made of.
+    parts, ties : those of the scene.
     load : (3, n) N and N·m, steady forces and moments of loads.
 
     Attributes

@@ -15,7 +15,7 @@ RUNAWAY = 1e4
 """A node this many times as fast as all waves together is unphysical: resonance gives factors of ten."""
 
 FASTEST = 1e100
-"""Speed (m/s) beyond which energies come near the end of what numbers can say, 1e308 J."""
+"""Speed (m/s) beyond which energies come near the largest double, 1e308 J."""
 
 
 class Scene(ABC):
@@ -30,7 +30,7 @@ class Scene(ABC):
     kind : what records call the kind of body.
     energy_unit : the unit of its energies.
     record_width : columns of a probe's record, see kernels.tables.Log.
-    block : steps between two looks at a run, which compiled code does not leave in between.
+    block : steps between two returns of the compiled loop.
     has_history : whether its law is history-dependent.
     """
 

@@ -15,7 +15,7 @@ NEVER = 2**62
 
 
 class Run(Protocol):
-    """A run as trackers see it: what moves, its parts, what they have come to, the step in s; stopped ends it."""
+    """A run as trackers see it: scene, parts, state, time step (s); setting `stopped` ends it."""
 
     scene: Scene
     system: System
@@ -81,7 +81,7 @@ class Every(Tracker):
 class Watch(Every):
     """Stops a run whose motion grows without bound, or that is seen to gain energy from nothing.
 
-    It looks whenever the loop comes back, and sees to it that this is often.
+    It checks whenever the loop returns, and makes the loop return often.
     """
 
     name = "watch"

@@ -12,7 +12,7 @@ from dembound.packings.brick import Brick
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
-    """The disks and contacts of a whole scene; everything a contact needs to know stands once, in the brick.
+    """The disks and contacts of a whole scene; the constants of contacts stand once, in the brick.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
     """Lay `copies` (along x, along y) of the brick side by side.
 
     Along a periodic axis contacts wrap around: over one copy only, a disk may then touch its own image, and
-    this self-contact (i, i) is listed too (it feels no displacement, but it does feel rotation). Elsewhere
+    this self-contact (i, i) is listed too (displacement does not deform it, but rotation does). Elsewhere
     contacts that would leave the scene are dropped, and the regular rows of the brick, if it has any, are
     repeated on the far edge, so that they frame the scene on all sides. Disks that such a cut severs from the
     body are left out.

@@ -1,4 +1,4 @@
-"""What every wave can answer, and what the waves given by a formula have in common."""
+"""The base of all waves, and of those given by a formula."""
 
 import math
 from abc import ABC, abstractmethod
@@ -58,14 +58,14 @@ class Wave(Table, ABC):
 
     @abstractmethod
     def dominant_frequency(self) -> float:
-        """The frequency that characterises the wave, Hz; each type says which."""
+        """The frequency that characterises the wave, Hz; see each type."""
 
     @abstractmethod
     def highest_frequency(self) -> float:
         """Frequency above which the amplitude spectrum stays below 1 % of its largest value, Hz.
 
         It is what particle spacing and time step have to carry. The spectrum is the velocity's unless the
-        type says otherwise.
+        type defines it otherwise.
         """
 
     def dominant_period(self) -> float:
@@ -74,7 +74,7 @@ class Wave(Table, ABC):
         return 1.0 / frequency if frequency > 0.0 else math.inf
 
     def time_scale(self) -> float:
-        """Time (s) in which the wave does what it is about; by default its period."""
+        """Time (s) that characterises how fast the wave varies; by default its period."""
         return self.dominant_period()
 
     def moved(self, here: Path, there: Path) -> dict[str, str]:

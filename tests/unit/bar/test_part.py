@@ -1,4 +1,4 @@
-"""How a bar steps: what its method answers, what that costs, and what it tells."""
+"""How a bar steps: what its method changes, what that costs, and what is reported of it."""
 
 import numpy as np
 import pytest
@@ -135,9 +135,11 @@ def test_breaking_and_changes_of_method_close_the_books(simulation, method: dict
 
 
 def test_finite_differences_answer_once_then_springs_break_by_themselves(simulation, monkeypatch) -> None:
-    answers = []
+    calls = []
     on_trigger = FiniteDifference.on_trigger
-    monkeypatch.setattr(FiniteDifference, "on_trigger", lambda self, *state: answers.append(1) or on_trigger(self, *state))
+    monkeypatch.setattr(
+        FiniteDifference, "on_trigger", lambda self, *state: calls.append(1) or on_trigger(self, *state)
+    )
     # three times the strength and a little, of which three spalls come
     load = {"name": "hit", "pressure": 25e6, "nodes": 3, "wave": "hit"}
     run = simulation(method=METHODS["finite_difference"], load=[load])
@@ -149,7 +151,7 @@ def test_finite_differences_answer_once_then_springs_break_by_themselves(simulat
         assert np.array_equal(bonds.spring_broken == step, due)
 
     assert len(np.unique(bonds.spring_broken)) > 3
-    assert len(answers) == 1
+    assert len(calls) == 1
     # 70 steps of sums over 41 nodes
     came_in = max(entry.outside for entry in ledger.entries)
     assert max(abs(entry.error) for entry in ledger.entries) < 70 * 41 * EPS * came_in

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.gauge.readings import Gauge
+from dembound.gauge.gauge_io import Gauge
 from dembound.gauge.spalling import evaluate
 from dembound.plot.gauge import plot_gauge
 

@@ -1,4 +1,4 @@
-"""What a gauge on a bar has felt, and how the bar's free end has moved: read from text and from records of runs."""
+"""The signal of a gauge on a bar, and the velocity of its free end: read from text and from records of runs."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,8 +21,8 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class Told:
-    """What the record of a run tells of its bar.
+class BarMetadata:
+    """What the record of a run has of its bar.
 
     speed : of waves, m/s; attenuation : 1/m; ends : types of the loaded end and of the other; broken : time at which
     the first bond broke, s, infinite for a whole bar.
@@ -36,10 +36,10 @@ class Told:
 
 @dataclass(frozen=True)
 class Gauge:
-    """A gauge on a bar, and what it has felt.
+    """A gauge on a bar, and its signal.
 
     time, stress : (k,) s and Pa, tension positive; position : from the loaded end, m; length : the bar's, m;
-    density : kg/m³, None where it is not known; told : of the bar by a record, None for a text file.
+    density : kg/m³, None where it is not known; metadata : of the bar in a record, None for a text file.
     """
 
     time: np.ndarray
@@ -47,16 +47,16 @@ class Gauge:
     position: float
     length: float
     density: float | None
-    told: Told | None = None
+    metadata: BarMetadata | None = None
 
 
-class Known(NamedTuple):
-    """What a record knows of a gauge: as of `Gauge`, None is unknown."""
+class GaugeMetadata(NamedTuple):
+    """What a record has of a gauge: as of `Gauge`, None is unknown."""
 
     position: float | None = None
     length: float | None = None
     density: float | None = None
-    told: Told | None = None
+    metadata: BarMetadata | None = None
 
 
 def read_gauge(
@@ -73,7 +73,7 @@ def read_gauge(
     ----------
     path : the file.
     monitor : its name in the record; may be left out where only one stands between the ends.
-    position, length, density : as of `Gauge`; by default what the record says.
+    position, length, density : as of `Gauge`; by default those of the record.
     scale : factor of the values, not 0.
 
     Raises CaseError for a file that cannot be read, an unknown monitor, a bar that is not loaded at one end, and a
@@ -82,7 +82,7 @@ def read_gauge(
     if h5py.is_hdf5(path):
         time, stress, known = _recorded(path, monitor)
     else:
-        (time, stress), known = _samples(path, "stress (Pa)"), Known()
+        (time, stress), known = _samples(path, "stress (Pa)"), GaugeMetadata()
         if monitor is not None:
             raise CaseError([f"--monitor: is for results of a run, {path} is a text file"])
     place, long, dense = (
@@ -96,7 +96,7 @@ def read_gauge(
         raise CaseError(problems)
     assert place is not None
     assert long is not None
-    return Gauge(time, scale * stress, place, long, dense, known.told)
+    return Gauge(time, scale * stress, place, long, dense, known.metadata)
 
 
 def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
@@ -120,9 +120,9 @@ def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
         if free_end not in there:
             allowed = f"which is {' or '.join(there)}" if there else "but the results have none there"
             raise CaseError([f"--free-end: is {free_end}, must be a monitor at the end opposite the load, {allowed}"])
-        told = _told(file)
-        if told is not None and told.ends[1] != FREE:
-            raise CaseError([f"--free-end: is {free_end}, where the bar's end is {told.ends[1]}, must be free"])
+        metadata = _bar_metadata(file)
+        if metadata is not None and metadata.ends[1] != FREE:
+            raise CaseError([f"--free-end: is {free_end}, where the bar's end is {metadata.ends[1]}, must be free"])
         group, outwards = there[free_end], 1.0 if _loaded_end(file) == "left" else -1.0
         return group["time"][:], outwards * group["velocity"][:, 0]
 
@@ -151,44 +151,44 @@ def _problems_with_bar(position: float | None, length: float | None, density: fl
     yield from not_above_zero("--density", density, "kg/m³")
 
 
-def _recorded(path: Path, name: str | None) -> tuple[np.ndarray, np.ndarray, Known]:
+def _recorded(path: Path, name: str | None) -> tuple[np.ndarray, np.ndarray, GaugeMetadata]:
     """Time, stress and what else is known of a monitor in a record."""
     with open_record(path) as file:
         group = _gauge(file, name)
         time, stress = group["time"][:], group["stress"][:]
         _enough(time, path)
         density = file.attrs.get("density")
-        known = Known(
+        known = GaugeMetadata(
             position=_from_loaded_end(file, group),
             length=_length(file),
             density=None if density is None else float(density),
-            told=_told(file),
+            metadata=_bar_metadata(file),
         )
         return time, stress, known
 
 
 def _gauge(file: h5py.File, name: str | None) -> h5py.Group:
     """The history of a monitor between the ends of a recorded bar, by its name or as the only one."""
-    felt = {
+    signals = {
         each: group
         for each, group in file.get("histories", {}).items()
         if "stress" in group and not _is_at(file, group, 0.0) and not _is_at(file, group, _length(file))
     }
-    if not felt:
+    if not signals:
         raise CaseError([f"{file.filename}: holds no history of stress between the ends of a bar"])
-    if name is None and len(felt) > 1:
-        raise CaseError([f"--monitor: is not named, must be one of {', '.join(felt)}"])
-    if name is not None and name not in felt:
-        raise CaseError([f"--monitor: is {name}, must be between the bar's ends, which is {' or '.join(felt)}"])
-    return felt[next(iter(felt)) if name is None else name]
+    if name is None and len(signals) > 1:
+        raise CaseError([f"--monitor: is not named, must be one of {', '.join(signals)}"])
+    if name is not None and name not in signals:
+        raise CaseError([f"--monitor: is {name}, must be between the bar's ends, which is {' or '.join(signals)}"])
+    return signals[next(iter(signals)) if name is None else name]
 
 
-def _told(file: h5py.File) -> Told | None:
-    """What a record tells of its bar; None where it does not tell of waves."""
+def _bar_metadata(file: h5py.File) -> BarMetadata | None:
+    """What a record has of its bar; None where it has no wave speed."""
     if "wave_speed" not in file.attrs:
         return None
     left, right = (str(end) for end in file.attrs["ends"])
-    return Told(
+    return BarMetadata(
         speed=float(file.attrs["wave_speed"]),
         attenuation=float(file.attrs["attenuation"]),
         ends=(left, right) if _loaded_end(file) == "left" else (right, left),
@@ -205,7 +205,7 @@ def _loaded_end(file: h5py.File) -> str:
     """The end of a recorded bar from which all places count."""
     loaded = file.attrs.get("loaded")
     if loaded not in ("left", "right"):
-        where = {"both": "both ends", "none": "neither end"}.get(loaded, "an end that is not told")
+        where = {"both": "both ends", "none": "neither end"}.get(loaded, "an end that the record does not name")
         raise CaseError([f"{file.filename}: is of a bar loaded at {where}, must be loaded at the left or the right"])
     return str(loaded)
 

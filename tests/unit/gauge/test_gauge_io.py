@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.gauge.readings import Told, read_free_end, read_gauge
+from dembound.gauge.gauge_io import BarMetadata, read_free_end, read_gauge
 
 BAR = {"position": 0.6, "length": 0.99}
 VELOCITY = np.interp(np.arange(400), [0, 100, 140, 240, 270], [0.0, 0.0, 10.0, 4.0, 8.0])
@@ -158,16 +158,16 @@ def test_beside_a_text_file_the_free_end_is_another(text, tmp_path):
 
 @pytest.mark.parametrize("loaded", ["left", "right"])
 def test_a_record_tells_of_its_bar(record, loaded):
-    assert read_gauge(record, "near").told is None
+    assert read_gauge(record, "near").metadata is None
     with h5py.File(record, "r+") as file:
         file.attrs.update({"wave_speed": 2740.0, "attenuation": 0.52, "ends": ["viscous", "fixed"], "loaded": loaded})
         file["cracks/time"] = np.empty(0)
     ends = ("viscous", "fixed") if loaded == "left" else ("fixed", "viscous")
-    assert read_gauge(record, "near").told == Told(2740.0, 0.52, ends, np.inf)
+    assert read_gauge(record, "near").metadata == BarMetadata(2740.0, 0.52, ends, np.inf)
     with h5py.File(record, "r+") as file:
         del file["cracks/time"]
         file["cracks/time"] = [4e-4, 3e-4, 5e-4]
-    assert read_gauge(record, "near").told.broken == 3e-4
+    assert read_gauge(record, "near").metadata.broken == 3e-4
 
 
 def test_an_end_that_is_held_is_not_free(record):
