@@ -133,5 +133,5 @@ class BarBody(Scene):
 
     @property
     def bytes(self) -> int:
-        """Memory of state (9 numbers a node), masses, springs, work space (10), bonds, their stiffness and breaks (3m)."""
+        """Memory of state (9 numbers a node), masses, springs, work space (10), bonds and their breaks (3m)."""
         return 8 * self.count * (9 + 10 + 3 * self.case.method.largest_horizon)

@@ -15,6 +15,7 @@ from dembound.casefile.output import Output
 from dembound.waves import Cosine
 
 ROOT = Path(__file__).parents[2]
+pytestmark = pytest.mark.filterwarnings("ignore:(wave|monitor)")  # of a case this small
 TABLES = {
     "packing": {"pattern": "A", "size": (5.0, 1.0), "radius": 0.25},
     "material": {"density": 2500.0, "p_wave_speed": np.float64(1000.0)},

@@ -14,7 +14,7 @@ ALPHA, MODULUS, DISTANCE, PERIOD = 2.5, 0.625e9, 100.0, 0.05
 def test_displacement_decays_with_tau(lab, pattern):
     plain = lab.scene(pattern, (60.0, 10.0), boundary={"bottom": "periodic", "top": "periodic"})
     speed = plain.ground.wave_speeds(0)[0]
-    matched = {side: speed / lab.speed / plain.edges[side].add_zone for side in ("left", "right")}
+    matched = {side: speed / lab.speed / plain.edges[side].diameter_sum_ratio for side in ("left", "right")}
     scene = lab.scene(
         pattern,
         (60.0, 10.0),
