@@ -32,7 +32,7 @@ def test_displacement_decays_with_tau(lab, pattern):
         },
         wave=lab.pulse(PERIOD),
     )
-    tau = 2.0 * lab.density * speed * DISTANCE / (ALPHA * MODULUS * scene.edges["right"].add_zone)
+    tau = 2.0 * lab.density * speed * DISTANCE / (ALPHA * MODULUS * scene.edges["right"].diameter_sum_ratio)
     middle = np.argsort(np.abs(scene.assembly.positions[:, 0] - 30.0))[:1]
     history = lab.run(scene, middle, 6.0 * tau)
     moved = history.displacement[:, 0, 0]

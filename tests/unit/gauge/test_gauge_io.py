@@ -192,7 +192,7 @@ def test_places_and_velocities_count_from_the_loaded_end(record, felt):
 
 
 @pytest.mark.parametrize(
-    ("loaded", "said"), [("both", "both ends"), ("none", "neither end"), (None, "an end that is not told")]
+    ("loaded", "said"), [("both", "both ends"), ("none", "neither end"), (None, "an end that the record does not name")]
 )
 def test_a_bar_that_is_not_loaded_at_one_end_is_refused(record, loaded, said):
     with h5py.File(record, "r+") as file:
