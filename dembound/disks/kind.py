@@ -115,8 +115,8 @@ def _facts(settled: Settled) -> dict[str, Any]:
     return {
         "steps": settled.steps,
         "ratio": settled.ratio,
-        "carried": settled.carried,
-        "left": settled.left,
+        "mean_reaction": settled.mean_reaction,
+        "mean_residual": settled.mean_residual,
         "stress": settled.stress,
         "cracks": len(settled.cracks),
     }

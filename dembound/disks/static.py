@@ -44,8 +44,8 @@ class Settled:
     start : where the run begins.
     steps : steps it took.
     ratio : mean unbalanced over mean contact force at the end.
-    carried : N, mean force with which supports and tractions held the particles they act on.
-    left : N, mean unbalanced force on all other particles, which F_0 balances too.
+    mean_reaction : N, mean force with which supports and tractions held the particles they act on.
+    mean_residual : N, mean unbalanced force on all other particles, which F_0 balances too.
     stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive.
     cracks : the bonds that broke on the way.
     tractions : (3,) Pa, the stress that the tractions were made of in the end; None without a stress asked for.
@@ -56,8 +56,8 @@ class Settled:
     start: Start
     steps: int
     ratio: float
-    carried: float
-    left: float
+    mean_reaction: float
+    mean_residual: float
     stress: np.ndarray
     cracks: Cracks
     tractions: np.ndarray | None = None
@@ -137,8 +137,8 @@ def _settle(
         start=Start(displacement, system.contacts, system.uses_history),
         steps=simulation.state.step,
         ratio=rest.ratio,
-        carried=float(unbalanced[held].mean()) if held.any() else 0.0,
-        left=float(unbalanced[~held].mean()) if not held.all() else 0.0,
+        mean_reaction=float(unbalanced[held].mean()) if held.any() else 0.0,
+        mean_residual=float(unbalanced[~held].mean()) if not held.all() else 0.0,
         stress=mean_stress(scene, system.stress(displacement)),
         cracks=rest.take_cracks(),
         tractions=body.applied,

@@ -28,15 +28,15 @@ def asked_stress(scene: DiskScene) -> list[float] | None:
 
 
 def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, Any]:
-    """The static stage: steps, force ratio, forces (N) carried by supports and tractions and left, stress (Pa).
+    """The static stage: steps, force ratio, mean reaction of supports and tractions and mean residual (N), stress (Pa).
 
     And the same of the free-field column alone, if there is one, and before an excavation, if there was one.
     """
     return {
         "steps": settled.steps,
         "ratio": settled.ratio,
-        "carried": settled.carried,
-        "left": settled.left,
+        "mean_reaction": settled.mean_reaction,
+        "mean_residual": settled.mean_residual,
         "stress": settled.stress.tolist(),
         "asked": asked,
         "cracks": len(settled.cracks),

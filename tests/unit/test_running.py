@@ -261,7 +261,7 @@ def test_a_static_stage_is_run_first_and_recorded(bar, tmp_path) -> None:
     assert heard.static[-1] == (static["steps"], static["ratio"])
     assert static["ratio"] <= 1e-6 < heard.static[0][1]
     # 40 disks of 625 kg hang from two; the mean of their weights and of what is left is what the record says
-    assert static["carried"] == pytest.approx(40 * 625.0 * 9.81 / 2, rel=1e-4)
+    assert static["mean_reaction"] == pytest.approx(40 * 625.0 * 9.81 / 2, rel=1e-4)
     assert static["cracks"] == 0
     with h5py.File(folder / "run.h5") as file:
         assert file["static"].attrs["steps"] == static["steps"]
@@ -284,7 +284,7 @@ def test_an_excavation_is_recorded_with_what_was_before(bar, tmp_path) -> None:
     assert before["before"] is None
     assert {(stage["steps"], stage["ratio"]) for stage in (before, static)} <= set(heard.static)
     for stage, disks in ((before, 40), (static, 36)):
-        assert stage["carried"] == pytest.approx(disks * 625.0 * 9.81 / 2, rel=1e-4)
+        assert stage["mean_reaction"] == pytest.approx(disks * 625.0 * 9.81 / 2, rel=1e-4)
     with h5py.File(folder / "run.h5") as file:
         assert file["static/before"].attrs["steps"] == before["steps"]
         x, y = file["particles/position"][:].T

@@ -50,7 +50,10 @@ def test_a_run_begins_where_its_static_stage_has_come_to_rest(bar) -> None:
     (stage,) = beginning.stages
     assert stage.name == "static"
     assert looks[-1] == (stage.facts["steps"], stage.facts["ratio"]) == (settled.steps, settled.ratio)
-    assert (stage.facts["carried"], stage.facts["left"]) == (settled.carried, settled.left)
+    assert (stage.facts["mean_reaction"], stage.facts["mean_residual"]) == (
+        settled.mean_reaction,
+        settled.mean_residual,
+    )
     assert stage.facts["cracks"] == len(stage.cracks) == 0
     assert np.array_equal(stage.facts["stress"], settled.stress)
     assert np.array_equal(stage.displacement, settled.start.displacement)
