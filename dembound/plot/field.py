@@ -30,7 +30,8 @@ class Disks:
     """The disks of a run before the motion.
 
     positions (n, 2) and radii (n,) in m; monitors: name -> place (2,) m; twins (k, 2) m, the places of
-    theirs in the free-field column; case: its name; laws in words, empty if one law served all through.
+    theirs in the free-field column; case: its name; laws in words, empty if one law served all through; column, how many
+    disks belong to the free-field column; they come first.
     """
 
     positions: np.ndarray
@@ -39,11 +40,20 @@ class Disks:
     twins: np.ndarray
     case: str
     laws: str
+    column: int = 0
 
     @cached_property
     def window(self) -> Window:
         """The whole scene."""
         return Window.around(self.positions, self.radii)
+
+    @property
+    def seam(self) -> float | None:
+        """Where (m, along x) between the free-field column and the body; None without a column."""
+        if self.column == 0:
+            return None
+        right, left = (self.positions + sign * self.radii[:, None] for sign in (1.0, -1.0))
+        return 0.5 * float(right[: self.column, 0].max() + left[self.column :, 0].min())
 
 
 @dataclass(frozen=True)
@@ -81,6 +91,7 @@ def read_disks(file: h5py.File) -> Disks:
         twins=np.array(twins).reshape(-1, 2),
         case=str(file.attrs["name"]),
         laws=laws_in_words(laws) if len(laws) > 1 else "",
+        column=int(file.attrs.get("column", 0)),
     )
 
 

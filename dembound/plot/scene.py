@@ -167,6 +167,8 @@ def close_up(disks: Disks, values: np.ndarray) -> Window:
 def _draw_panel(panel: Axes, disks: Disks, shown: Field, index: int, window: Window, scale: float) -> ScalarMappable:
     """A window of the scene at one of its moments, at `scale` pixels per metre."""
     colours = draw_field(panel, window, disks.positions, disks.radii, shown.values[index], shown.limits, scale)
+    if disks.seam is not None and disks.seam > window.corner[0]:
+        panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
     _mark_cracks(panel, shown, index)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         if pixels > 45:

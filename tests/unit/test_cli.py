@@ -476,7 +476,7 @@ def test_pictures_are_png_files(dembound, spalled_run, tmp_path) -> None:
         ("packing", "missing.toml", "--output"),
         ("dispersion", "--output"),
         ("gauge", spalled_run, "--output"),
-        ("view", spalled_run, "--picture"),
+        ("view", spalled_run, "--output"),
     ):
         for name in ("picture.pdf", "picture"):
             assert dembound(*command, name) == Answer(2, "", f"{command[-1]}: is {name}, must end in .png\n")

@@ -157,7 +157,7 @@ def test_monitors_are_named_where_they_are(small_run):
 
 
 def test_small_disks_give_way_to_their_mean(tmp_path):
-    # 600 columns on 9.5 inches of 150 pixels are 2.4 pixels each, below the 3 that a disk needs
+    # 600 columns on 9.5 inches of 150 pixels are 2.4 pixels each, below the 4 that a disk needs
     run = block(tmp_path / "run.h5", 600, 100, lambda x: x)
     panel = plot_scene(run).axes[0]
     (picture,) = panel.images
@@ -256,3 +256,11 @@ def test_a_missing_snapshot_is_refused(small_run, snapshot):
 def test_a_field_that_only_bars_have_is_refused(small_run):
     with pytest.raises(CaseError, match="field: is damage, must be one of velocity, displacement, stress_xx"):
         plot_scene(small_run, field="damage")
+
+
+def test_a_line_stands_between_the_column_and_the_body(tmp_path):
+    run = block(tmp_path / "run.h5", 6, 4, np.zeros_like)
+    with h5py.File(run, "r+") as file:
+        file.attrs["column"] = 8
+    (line,) = plot_scene(run).axes[0].lines
+    assert list(line.get_xdata()) == [2.0, 2.0]  # two columns of four disks, each 1 m wide
