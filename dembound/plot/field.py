@@ -29,9 +29,9 @@ SENSES = dict.fromkeys(STRESSES[:2], ", tension positive") | {"stress_xy": ", po
 class Disks:
     """The disks of a run before the motion.
 
-    positions (n, 2) and radii (n,) in m; monitors: name -> place (2,) m; twins (k, 2) m, the places of
-    theirs in the free-field column; case: its name; laws in words, empty if one law served all through; column, how many
-    disks belong to the free-field column; they come first.
+    positions (n, 2) and radii (n,) in m; monitors: name -> place (2,) m; twins (k, 2) m, the places of theirs in the
+    free-field column; case: its name; laws in words, empty if one law served all through; column, how many disks belong
+    to the free-field column, which come first.
     """
 
     positions: np.ndarray

@@ -60,7 +60,8 @@ def _head(figure: Figure, panel: Axes, line: Line2D) -> str:
     """A line's name, its run, and what its axis shows with the unit."""
     axis = ", ".join(filter(None, (figure.get_supylabel(), panel.get_ylabel())))
     name, label = str(line.get_gid()), str(line.get_label())
-    return ", ".join(filter(None, (name, label if label != name else ""))) + f": {axis}"
+    run = "" if label.startswith(("_", name)) else f", {label}"  # matplotlib's own word for none, or the name again
+    return f"{name}{run}: {axis}"
 
 
 def _x_label(panel: Axes) -> str:
