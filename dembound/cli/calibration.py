@@ -107,4 +107,6 @@ def _print_result(found: Calibration) -> None:
     if found.method == "homogenised":
         out.print("from the brick's homogenised wave speed and the side's ΣD/H; no wave was run")
         return
-    out.print(f"calibrated on {found.particles} particles, {found.steps} steps: {'; '.join(found.shortened)}")
+    out.print(f"calibrated on {found.particles:,} particles, {found.steps:,} steps:")
+    for line in found.shortened:
+        out.print(f"  {line}")
