@@ -25,9 +25,25 @@ def _run_facts(planned: Plan) -> dict[str, str]:
         f"{planned.step_limit:.6g} s",
         "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s",
         "memory": f"{scene.bytes / 1e6:.3g} MB",
-        "estimated time": f"about {_estimate(planned):.2g} s with {scene.threads} thread(s)"
+        "estimated time": f"{duration_in_words(_estimate(planned))} {_threads_in_words(scene.threads)}"
         f"{planned.kind.not_estimated(scene.case)}",
     }
+
+
+def duration_in_words(seconds: float) -> str:
+    """A time in s as an estimate in words: "about 40 s", "about 15 min", "about 2.5 h"."""
+    if seconds < 1.0:
+        return "less than 1 s"
+    for unit, length, least in (("d", 86400.0, 48.0 * 3600.0), ("h", 3600.0, 5400.0), ("min", 60.0, 90.0)):
+        if seconds >= least:
+            count = seconds / length
+            return f"about {count:.0f} {unit}" if count >= 9.5 else f"about {count:.2g} {unit}"
+    return f"about {round(seconds, -1 if seconds >= 19.5 else 0):.0f} s"
+
+
+def _threads_in_words(count: int) -> str:
+    """How many threads a run uses."""
+    return f"with {count} thread{'' if count == 1 else 's'}"
 
 
 def _estimate(planned: Plan) -> float:

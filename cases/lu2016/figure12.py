@@ -25,13 +25,15 @@ def figure_12(runs: list[Path]) -> Figure:
     figure = new_figure(3.6 * len(by_spacing) + 1.0, 5.0)
     panels = figure.subplots(1, len(by_spacing), sharey=True, squeeze=False)[0]
     for panel, (spacing, alike) in zip(panels, by_spacing.items(), strict=True):
-        draw_damage(panel, [(name_of(case_of(run)), run) for run in alike])
-        expected = expected_spall(case_of(alike[0]))[0]
-        panel.axvline(expected, color=REFERENCE, zorder=1, label="spall by the closed form")
+        expected, when = expected_spall(case_of(alike[0]))
+        limits = expected - 4.0 * spacing, expected + 9.0 * spacing
+        draw_damage(panel, [(name_of(case_of(run)), run) for run in alike], limits)
+        label = f"spall by the closed form, {expected / MILLI:.1f} mm, {when / MILLI:.4f} ms"
+        panel.axvline(expected, color=REFERENCE, zorder=1, label=label)
         panel.set_title(f"Δx = {spacing / MILLI:g} mm")
         panel.locator_params(axis="x", nbins=5)
-        panel.set_xlim(expected - 4.0 * spacing, expected + 9.0 * spacing)
-    figure.suptitle("Local damage at the first spall, in rows from 0 to 1", fontsize=11)
+    title = "fig. 12: local damage at the first spall, from 0 to 1; which nodes crack, and when"
+    figure.suptitle(f"Lu & Wang (2016), {title}", fontsize=11)
     outside_legend(figure, panels, columns=2)
     return figure
 

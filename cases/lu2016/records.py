@@ -64,8 +64,11 @@ def damage_at_first_spall(run: Path) -> tuple[np.ndarray, np.ndarray]:
     return planned.scene.positions[:, 0], simulation.system.parts[0].bonds.damage(step)
 
 
-def draw_damage(panel: Axes, runs: Sequence[tuple[str, Path]]) -> None:
-    """Damage of named runs, each at its first spall, in rows one below the other with the line that is a crack."""
+def draw_damage(panel: Axes, runs: Sequence[tuple[str, Path]], limits: tuple[float, float]) -> None:
+    """Damage of named runs, each at its first spall, in rows one below the other with the line that is a crack.
+
+    Shown is the bar between the limits (m). Nodes of the spall and its time stand on the side where there is room.
+    """
     for index, (_, run) in enumerate(runs):
         x, damage = damage_at_first_spall(run)
         base, colour = -ROW * index, COLOURS[index % len(COLOURS)]
@@ -74,6 +77,12 @@ def draw_damage(panel: Axes, runs: Sequence[tuple[str, Path]]) -> None:
         panel.plot(x[damage > 0], base + damage[damage > 0], ".", color=colour)
         label = f"a crack, φ = {CRACKED:g}" if index == 0 else None
         panel.axhline(base + CRACKED, color=REFERENCE, linewidth=0.8, linestyle="--", zorder=1, label=label)
+        spall = first_spall(run)
+        words = f"{in_millimetres(spall['start'])} mm\n{spall['time'] / MILLI:.4f} ms"
+        at, side = (0.99, "right") if np.mean(spall["start"]) < np.mean(limits) else (0.01, "left")
+        beside: dict[str, Any] = {"ha": side, "va": "bottom", "fontsize": 7.5, "transform": panel.get_yaxis_transform()}
+        panel.text(at, base + CRACKED + 0.04, words, **beside)
+    panel.set_xlim(*limits)
     panel.set_yticks([-ROW * index for index in range(len(runs))], [name for name, _ in runs])
     panel.set_ylim(-ROW * (len(runs) - 1) - 0.3, 1.1)
     panel.set_xlabel("x (m)")

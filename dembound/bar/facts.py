@@ -30,13 +30,13 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
         "strength": _strength_in_words(case.bar),
     }
     if case.bar.attenuation > 0.0:
-        facts["attenuation"] = f"{case.bar.attenuation:g} 1/m"
+        facts["attenuation"] = f"α = {case.bar.attenuation:g} 1/m"
     for side in scene.edges:
         facts[f"{side} end"] = str(describe_end(scene, side)["type"])
     for load in case.load:
         largest = abs(load.pressure) * case.wave[load.wave].peak()
         facts[f"load {load.name}"] = (
-            f"up to {largest / 1e6:.4g} MPa, {load.pressure:.4g} Pa times wave {load.wave}, "
+            f"up to {largest / 1e6:.4g} MPa, {_pressure_in_words(load.pressure)} times wave {load.wave}, "
             f"on {load.nodes} node(s) at the {load.side} end"
         )
     for name, node in scene.monitors.items():
@@ -52,6 +52,11 @@ def method_in_words(case: BarCase) -> str:
     """The method and its keys."""
     keys = case.method.model_dump(exclude={"type"})
     return f"{case.method.type}" + "".join(f", {key} = {value}" for key, value in keys.items())
+
+
+def _pressure_in_words(pressure: float) -> str:
+    """A pressure in Pa as MPa, or as it is where that would be tiny, as of a load whose wave has the size."""
+    return f"{pressure / 1e6:.4g} MPa" if abs(pressure) >= 1e4 else f"{pressure:.4g} Pa"
 
 
 def _strength_in_words(bar: Bar) -> str:

@@ -9,7 +9,9 @@ from typing import Annotated, Any
 
 import numba
 import typer
+from rich import box
 from rich.console import Console
+from rich.table import Column, Table
 
 from dembound import __version__
 from dembound.boundaries import SIDES
@@ -37,6 +39,11 @@ app = typer.Typer(
 )
 out = Console(highlight=False, soft_wrap=True)
 err = Console(stderr=True, highlight=False, soft_wrap=True)
+
+
+def compact_table(*columns: Column | str, **looks: Any) -> Table:
+    """A table without frame, whose columns stand close: 80 columns of a terminal hold it."""
+    return Table(*columns, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False, title_justify="left", **looks)
 
 
 def writable(path: Path | None) -> Path | None:

@@ -10,6 +10,7 @@ import typer
 
 from dembound.casefile import to_toml
 from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, out, use_threads
+from dembound.disks.facts import FACTORS
 from dembound.kinds import with_changes
 from dembound.plot.convergence import plot_convergence
 from dembound.plot.style import save
@@ -96,14 +97,16 @@ def _leave(found: Calibration, folder: Path) -> Iterator[Path]:
 def _print_pass(found: Calibration) -> None:
     number = len(found.beta)
     out.print(
-        f"pass {number:2d}: {found.factor} = {found.beta[-1]:.6f}, "
+        f"pass {number:2d}: {FACTORS[found.factor]} = {found.beta[-1]:.6f}, "
         f"M_out = {found.outgoing[-1]:.6f} m/s, M_out/M_in = {found.ratio[-1]:.6f}"
     )
 
 
 def _print_result(found: Calibration) -> None:
-    out.print(f"{found.case.name}, {found.side} ({found.kind}): {found.factor} = {found.result:.6f}")
+    out.print(f"{found.case.name}, {found.side} ({found.kind}): {FACTORS[found.factor]} = {found.result:.6f}")
     if found.method == "homogenised":
         out.print("from the brick's homogenised wave speed and the side's ΣD/H; no wave was run")
         return
-    out.print(f"calibrated on {found.particles} particles, {found.steps} steps: {'; '.join(found.shortened)}")
+    out.print(f"calibrated on {found.particles:,} particles, {found.steps:,} steps:")
+    for line in found.shortened:
+        out.print(f"  {line}")

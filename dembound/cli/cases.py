@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.table import Table
 
 from dembound import IMPORT_BEGAN
 from dembound.boundaries.support import Edge
@@ -22,6 +21,7 @@ from dembound.cli.app import (
     Side,
     Threads,
     app,
+    compact_table,
     err,
     load_case,
     load_disks,
@@ -61,7 +61,7 @@ def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None)
     use_threads(threads)
     for case in [load_case(path, changes) for path in cases]:
         facts, warnings = check(case)
-        table = Table(title=f"{case.name}: {case.title}" if case.title else case.name, show_header=False)
+        table = compact_table(title=f"{case.name}: {case.title}" if case.title else case.name, show_header=False)
         for name, value in facts.items():
             table.add_row(name, value)
         out.print(table)

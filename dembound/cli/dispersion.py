@@ -8,7 +8,7 @@ import numpy as np
 import typer
 from rich.table import Table
 
-from dembound.cli.app import PICTURE, Settings, app, load_case, out, writable
+from dembound.cli.app import PICTURE, Settings, app, compact_table, load_case, out, writable
 from dembound.errors import CaseError
 from dembound.exact.dispersion import Lattice, Speed, cells_per_wavelength
 from dembound.plot.dispersion import Points, name, plot_dispersion
@@ -86,7 +86,7 @@ def _refuse(options: Mapping[str, object], why: str) -> None:
 
 def _overview(shown: Sequence[Lattice]) -> Table:
     """Courant numbers, their limits, and how many spacings a wavelength needs."""
-    overview = Table(*HEADS, title="Spacings per wavelength from which on waves run within 1 % of c")
+    overview = compact_table(*HEADS, title="Spacings per wavelength from which on waves run within 1 % of c")
     for lattice in shown:
         limit = lattice.courant_limit
         sizes = (str(lattice.horizon), f"{lattice.spacing:g}", f"{lattice.time_step:g}")

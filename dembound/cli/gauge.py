@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from dembound.cli.app import PICTURE, app, out
+from dembound.cli.app import PICTURE, app, compact_table, out
 from dembound.cli.results import results_file
 from dembound.gauge.estimates import Estimate
 from dembound.gauge.gauge_io import read_free_end, read_gauge
@@ -73,10 +73,10 @@ def gauge(
 
 def _overview(found: Findings, speed_from: str, attenuation_from: str) -> Table:
     """All that was found, a line each; speed and attenuation come from there if not from peaks."""
-    overview = Table("", "value", "std. error", "from")
+    overview = compact_table("", "value", "std. error", "from")
     overview.add_row("wave speed (m/s)", *_fitted(found.speed, "times", speed_from))
     if found.attenuation is not None:
-        overview.add_row("attenuation (1/m)", *_fitted(found.attenuation, "heights", attenuation_from))
+        overview.add_row("attenuation α (1/m)", *_fitted(found.attenuation, "heights", attenuation_from))
     if (strength := found.strength) is not None:
         source = f"image at {strength.position:g} m"
         overview.add_row("nominal strength (MPa)", f"{strength.nominal / MPA:.4g}", "", source)

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.table import Column, Table
+from rich.table import Column
 
-from dembound.cli.app import PICTURE, Side, app, out, png
+from dembound.cli.app import PICTURE, Side, app, compact_table, out, png, writable
 from dembound.errors import CaseError
 from dembound.kinds import kind_of_record
 from dembound.packings.cache import cache_folder, clear
@@ -17,6 +17,7 @@ from dembound.plot.convergence import plot_convergence
 from dembound.plot.energy import plot_energy
 from dembound.plot.histories import plot_histories
 from dembound.plot.style import save
+from dembound.plot.table import write_lines
 from dembound.results.compare import compare
 from dembound.results.view import view
 
@@ -36,7 +37,17 @@ class Quantity(StrEnum):
 
     velocity = "velocity"
     displacement = "displacement"
+    acceleration = "acceleration"
     stress = "stress"
+
+
+class Component(StrEnum):
+    """Along what a motion of the monitors is shown."""
+
+    x = "x"
+    y = "y"
+    both = "both"
+    rotation = "rotation"
 
 
 class SceneField(StrEnum):
@@ -59,7 +70,14 @@ def plot(
     output: Annotated[Path, PICTURE] = Path("plot.png"),
     quantity: Annotated[
         Quantity | None,
-        typer.Option(help="What of the monitors to show, by default velocity; the stress of bars alone."),
+        typer.Option(
+            help="What of the monitors to show, by default velocity; acceleration is that of central differences of "
+            "the velocity, stress of bars alone."
+        ),
+    ] = None,
+    component: Annotated[
+        Component | None,
+        typer.Option(help="Along what the monitors move, by default x or y, whichever is larger; both: side by side."),
     ] = None,
     monitor: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Show this monitor only. May be repeated.")
@@ -79,17 +97,26 @@ def plot(
         int | None,
         typer.Option(help="With --field: number of the snapshot, −1 the last; by default the liveliest, of a bar all."),
     ] = None,
+    table: Annotated[
+        Path | None,
+        typer.Option(help="Table of the lines drawn to write as well (CSV), in their units.", callback=writable),
+    ] = None,
 ) -> None:
-    """Overlay the histories of several runs, or the passes of several calibrations, in one picture."""
+    """Overlay the histories of several runs, or the passes of several calibrations, in one picture.
+
+    Beside free-field sides a monitor's twin in the free-field column is dashed.
+    """
     files = [results_file(path) for path in results]
     kind = _common_kind(files)
     pictures = {"--field": field, "--energy": energy, "--boundary": boundary}
-    _one_picture(pictures, {"--quantity": quantity, "--monitor": monitor}, kind)
+    _one_picture(pictures, {"--quantity": quantity, "--component": component, "--monitor": monitor}, kind)
     for option in ("--field", "--energy"):
         if pictures[option] and len(files) > 1:
             raise CaseError([f"{option}: shows one run, name one"])
     if snapshot is not None and field is None:
         raise CaseError(["--snapshot: goes with --field"])
+    if table is not None and field is not None:
+        raise CaseError(["--table: is of lines, a field has none; run.h5 and the files for ParaView hold its values"])
     if kind == CALIBRATIONS:
         figure = plot_convergence(files)
     elif field is not None:
@@ -99,9 +126,17 @@ def plot(
     elif boundary is not None:
         figure = plot_boundary(files, boundary.value)
     else:
-        figure = plot_histories(files, quantity=(quantity or Quantity.velocity).value, monitors=monitor or None)
+        figure = plot_histories(
+            files,
+            component=component.value if component else None,
+            quantity=(quantity or Quantity.velocity).value,
+            monitors=monitor or None,
+        )
     save(figure, output)
     out.print(f"wrote {output}")
+    if table is not None:
+        write_lines(figure, table)
+        out.print(f"wrote {table}")
 
 
 def _common_kind(files: Sequence[Path]) -> str:
@@ -140,13 +175,19 @@ def view_disks(
     ] = None,
     field: Annotated[Field, typer.Option(help="What colours the disks.")] = Field.velocity,
     picture: Annotated[
-        Path | None, typer.Option(help="Picture to write (PNG) instead of opening a window.", callback=png)
+        Path | None,
+        typer.Option(
+            "--output", "-o", "--picture", help="Picture to write (PNG) instead of opening a window.", callback=png
+        ),
     ] = None,
     exaggerate: Annotated[
         float, typer.Option(help="Show disks moved by this many times their displacement; 0: where they began.")
     ] = 0.0,
 ) -> None:
-    """Show the disks of a run in a window to zoom into, with a slider over its snapshots."""
+    """Show the disks of a run in a window to zoom into, with a slider over its snapshots.
+
+    A window needs a display; without one, --output draws a picture.
+    """
     view(results_file(results), snapshot, field.value, picture, exaggerate)
     if picture is not None:
         out.print(f"wrote {picture}")
@@ -172,16 +213,20 @@ def compare_histories(
 ) -> None:
     """Say how far the histories of runs are from those of a reference, monitor by monitor.
 
-    RMS is that of the difference over that of the reference, largest the largest difference over the reference's peak.
+    RMS is that of the difference in % of that of the reference, largest the largest difference in % of the reference's
+    peak; end and reference are the values of both at the end.
     """
     found = compare(results_file(reference), [results_file(path) for path in results], quantity.value)
     unit = found[0].unit
-    heads = ("run", "monitor", "along", "RMS / reference", "largest / peak", f"at the end ({unit})", "reference")
-    columns = (Column(head, overflow="fold") for head in heads)
-    table = Table(*columns, title=f"{quantity.value} beside {reference}")
+    heads = ("along", "RMS (%)", "largest (%)", f"end ({unit})", "reference")
+    names = (Column(head, overflow="fold") for head in ("run", "monitor"))
+    numbers = (Column(head, no_wrap=True) for head in heads)
+    table = compact_table(*names, *numbers, title=f"{quantity.value} beside {reference}")
     for line in found:
-        numbers = (f"{line.rms:.3%}", f"{line.peak:.3%}", f"{line.last:.4g}", f"{line.reference_last:.4g}")
-        table.add_row(line.run, line.monitor, line.component, *numbers)
+        percents = f"{100.0 * line.rms:.3f}", f"{100.0 * line.peak:.3f}"
+        table.add_row(
+            line.run, line.monitor, line.component, *percents, f"{line.last:.4g}", f"{line.reference_last:.4g}"
+        )
     out.print(table)
     for line in found:
         if line.place != line.reference_place:

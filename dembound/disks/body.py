@@ -53,7 +53,7 @@ class DiskBody(Scene):
     @property
     def attributes(self) -> dict[str, Any]:
         """What a record's header has beside that of every run."""
-        return {"seed": getattr(self.case.packing, "seed", 0)}
+        return {"seed": getattr(self.case.packing, "seed", 0), "column": 0 if self.seam is None else self.seam.count}
 
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:

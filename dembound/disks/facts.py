@@ -3,10 +3,14 @@
 from typing import Any
 
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.summary import describe_packing, describe_side
 from dembound.disks.warnings import particles_per_wavelength, strong_waves
+
+FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
+"""Keys of the factors of a side, and how they are written."""
 
 
 def disk_facts(scene: DiskScene) -> dict[str, str]:
@@ -17,12 +21,22 @@ def disk_facts(scene: DiskScene) -> dict[str, str]:
     for side in scene.edges:
         facts[f"{side} side"] = _side_fact(scene, side)
     facts |= _load_facts(scene)
-    for name, node in scene.monitors.items():
-        x, y = scene.assembly.positions[node]
-        facts[f"monitor {name}"] = f"particle {node} at ({x:.3f}, {y:.3f}) m"
+    facts |= _monitor_facts(scene)
     facts |= _tension_facts(scene)
     for name, count in particles_per_wavelength(scene).items():
         facts[f"wave {name}"] = f"{count:.0f} particles per shortest wavelength"
+    return facts
+
+
+def _monitor_facts(scene: DiskScene) -> dict[str, str]:
+    """The particle of each monitor, its place, and its twin in the free-field column."""
+    facts = {}
+    for monitor in scene.case.monitor:
+        node = scene.monitors[monitor.name]
+        x, y = scene.assembly.positions[node]
+        twin = scene.monitors.get(f"{monitor.name}{FREE_FIELD}")
+        beside = "" if twin is None else f", in the free-field column {twin}"
+        facts[f"monitor {monitor.name}"] = f"particle {node} at ({x:.3f}, {y:.3f}) m{beside}"
     return facts
 
 
@@ -132,7 +146,7 @@ def _load_facts(scene: DiskScene) -> dict[str, str]:
 
 def _side_fact(scene: DiskScene, side: str) -> str:
     facts = describe_side(scene, side)
-    factors = "".join(f", {factor} = {facts[factor]:g}" for factor in ("beta_p", "beta_s") if factor in facts)
+    factors = "".join(f", {sign} = {facts[key]:g}" for key, sign in FACTORS.items() if key in facts)
     half = ", half mass" if facts.get("half_mass") else ""
     return (
         f"{facts['type']}{factors}{half}{_springs_in_words(facts)}; {facts['particles']} particles, "

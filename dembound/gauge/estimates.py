@@ -66,7 +66,7 @@ def wave_speed(peak_times: np.ndarray, length: float, weights: np.ndarray | None
 
 
 def attenuation(peak_times: np.ndarray, peak_heights: np.ndarray, speed: float) -> Estimate:
-    """Coefficient β in 1/m of σ = σ_0 e^(−βx), x = ct (L eq. 19): from the line through the heights' logarithms.
+    """Coefficient α in 1/m of σ = σ_0 e^(−αx), x = ct (L eq. 19, β there): the slope of the heights' logarithms.
 
     Each counts by its height, for the same noise changes a small height's logarithm more.
 
@@ -155,7 +155,7 @@ def way_by_the_end(gauge: float, length: float, position: Any) -> Any:
 
 
 def attenuated_strength(nominal: float, coefficient: float, distance: float) -> float:
-    """What is left of a nominal strength in Pa after a way in m: σ_1 = σ_0 e^(−βx) (L section 3.3)."""
+    """What is left of a nominal strength in Pa after a way in m: σ_1 = σ_0 e^(−αx) (L section 3.3)."""
     return float(nominal * np.exp(-coefficient * distance))
 
 

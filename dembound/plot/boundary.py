@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,11 +20,21 @@ LEAST_SPAN = 0.1
 
 @dataclass(frozen=True)
 class Side:
-    """The q particles of a side: along (q,) m, diameters (q,) m, largest |velocity| peaks (q, 3) m/s, rad/s."""
+    """The q particles of a side in their order along it.
+
+    along (q,) m, diameters (q,) m, largest |velocity| peaks (q, 3) m/s, rad/s; column (q,) bool, which of them
+    belong to the free-field column.
+    """
 
     along: np.ndarray
     diameters: np.ndarray
     peaks: np.ndarray
+    column: np.ndarray
+
+    def of_column(self, column: bool) -> "Side":
+        """Those of the column alone, or of the body alone."""
+        chosen = self.column == column
+        return Side(self.along[chosen], self.diameters[chosen], self.peaks[chosen], self.column[chosen])
 
 
 @styled
@@ -31,7 +42,8 @@ def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
     """Diameter (upper panel) and peak velocity (lower panel) of the particles along a side, for several runs.
 
     The peak is that of the component, x or y, that moved most on the side in any run. The legend gives the
-    number of particles, the mean peak, and its standard deviation in per cent.
+    number of particles, the mean peak, and its standard deviation in per cent. Particles of a free-field column are
+    drawn apart, as hollow marks that no line joins.
 
     Parameters
     ----------
@@ -47,10 +59,10 @@ def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
     figure = new_figure(9.0, 6.5)
     upper, lower = figure.subplots(2, 1, sharex=True)
     for index, (name, each) in enumerate(zip(record_names(runs), sides, strict=True)):
-        peaks = each.peaks[:, column]
-        style = point_style(index)
-        upper.plot(each.along, each.diameters, **style)
-        lower.plot(each.along, peaks, label=f"{name}: {_summary(peaks)}", **style)
+        _draw((upper, lower), each.of_column(False), column, name, point_style(index))
+        if each.column.any():
+            hollow = point_style(index) | {"linestyle": "none", "markerfacecolor": "white"}
+            _draw((upper, lower), each.of_column(True), column, f"{name}, free-field column", hollow)
     along = "y" if side in ("left", "right") else "x"
     upper.set_ylabel("particle diameter (m)")
     unit = UNITS["velocity"][column]
@@ -61,6 +73,14 @@ def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
     figure.suptitle(f"Particles of the {side} side: diameters, and peaks of their velocity", fontsize=11)
     outside_legend(figure, [lower], columns=1)  # the labels are long
     return figure
+
+
+def _draw(panels: tuple[Axes, Axes], side: Side, column: int, name: str, style: dict[str, Any]) -> None:
+    """Diameters of some particles in the upper panel, peaks of a component of their velocity in the lower one."""
+    upper, lower = panels
+    peaks = side.peaks[:, column]
+    upper.plot(side.along, side.diameters, gid=name, label=name, **style)
+    lower.plot(side.along, peaks, gid=name, label=f"{name}: {_summary(peaks)}", **style)
 
 
 def read_side(path: Path, side: str) -> Side:
@@ -78,7 +98,9 @@ def read_side(path: Path, side: str) -> Side:
         group = sides[side]
         axis = 1 if side in ("left", "right") else 0
         peaks = np.abs(group["peak_velocity"][:]).max(axis=2)
-        return Side(group["position"][:, axis], group["diameter"][:], peaks)
+        along, column = group["position"][:, axis], group["particle"][:] < file.attrs.get("column", 0)
+        order = np.argsort(along, kind="stable")
+        return Side(along[order], group["diameter"][:][order], peaks[order], column[order])
 
 
 def _summary(peaks: np.ndarray) -> str:

@@ -42,8 +42,8 @@ def plot_convergence(records: Sequence[Path]) -> Figure:
     for index, (name, each) in enumerate(zip(record_names(records), calibrations, strict=True)):
         passes = np.arange(1, len(each.beta) + 1)
         style = point_style(index)
-        upper.plot(passes, each.outgoing, label=f"{name}, {each.asked}", **style)
-        lower.plot(passes, each.beta, **style)
+        upper.plot(passes, each.outgoing, label=f"{name}, {each.asked}", gid=name, **style)
+        lower.plot(passes, each.beta, gid=name, label=name, **style)
     for incident in sorted({each.incident for each in calibrations}):
         label = f"incident peak, {incident:.4g} m/s"
         upper.axhline(incident, color=REFERENCE, linewidth=1.0, zorder=1, label=label)

@@ -10,8 +10,8 @@ from matplotlib.collections import EllipseCollection
 
 from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP
 
-# A disk narrower than this cannot be told from its neighbours; drawing it alone would cost time for nothing.
-SMALLEST_PIXELS = 3.0
+# A disk narrower than this is a speckle between gaps as wide as itself, and a picture of many of them megabytes large.
+SMALLEST_PIXELS = 4.0
 
 # Cells of the averaged picture, in mean diameters: wide enough that none inside the packing is empty, so that
 # an empty cell is a hole.

@@ -1,6 +1,7 @@
 """How fast waves run on the nodes of a bar, for several lattices at once (L fig. 5)."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +13,9 @@ from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legen
 
 CELLS = np.geomspace(2.0, 100.0, 800)
 """Spacings per wavelength shown, from the shortest wave to where even wide horizons are exact to a few per cent."""
+
+WIDTH, WIDENED = 1.4, 2.0
+"""Width of a line in points, and what each further one of the same horizon adds to those below it."""
 
 TICKS = (2, 3, 5, 10, 20, 50, 100)
 
@@ -32,10 +36,12 @@ def plot_dispersion(lattices: Sequence[Lattice], measured: Sequence[Points] = ()
     """
     figure = new_figure(11.0, 4.4)
     left, middle, right = figure.subplots(1, 3)
+    widths = line_widths(lattices)
     for index, lattice in enumerate(lattices):
-        style = line_style(index)
+        style: dict[str, Any] = dict(line_style(index))
         wavenumber = np.linspace(0.0, lattice.shortest, 800)
         left.plot(wavenumber, _kilohertz(lattice.frequency(wavenumber)), label=name(lattice), **style)
+        style["linewidth"] = widths[index]
         wavenumber = 2.0 * lattice.shortest / CELLS
         middle.plot(CELLS, lattice.phase_velocity(wavenumber) / lattice.wave_speed, **style)
         right.plot(CELLS, lattice.group_velocity(wavenumber) / lattice.wave_speed, **style)
@@ -53,11 +59,20 @@ def plot_dispersion(lattices: Sequence[Lattice], measured: Sequence[Points] = ()
     return figure
 
 
+def line_widths(lattices: Sequence[Lattice]) -> list[float]:
+    """Widths in points over spacings per wavelength, the larger the more lattices of the same horizon follow.
+
+    There these nearly coincide, and each must be seen below the next.
+    """
+    horizons = [lattice.horizon for lattice in lattices]
+    return [WIDTH + WIDENED * horizons[index + 1 :].count(horizon) for index, horizon in enumerate(horizons)]
+
+
 def name(lattice: Lattice) -> str:
     """A lattice in words, such as "horizon 3, Δx = 5 mm, Δt = 1 µs"."""
     step = f"Δt = {1e6 * lattice.time_step:g} µs" if lattice.time_step else "exact in time"
     unstable = "" if lattice.stable else ", unstable"
-    return f"horizon {lattice.horizon}, Δx = {1e3 * lattice.spacing:g} mm, {step}{unstable}"
+    return f"horizon {lattice.horizon}, Δx = {1e3 * lattice.spacing:.4g} mm, {step}{unstable}"
 
 
 def _exact_lines(panel: Axes, lattices: Sequence[Lattice]) -> None:

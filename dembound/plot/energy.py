@@ -1,10 +1,11 @@
 """Where the energy of a run is, where it went, and how well its books close."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter
+from matplotlib.ticker import EngFormatter, MaxNLocator, StrMethodFormatter
 
 from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled, time_unit
 from dembound.results.reader import energy_of, is_line, open_record
@@ -35,6 +36,12 @@ BAR_COLUMNS = COLUMNS | {
 HUES = (*COLOURS, "#8C510A", "#999999", "#5E3C99")
 """A colour for each of them."""
 
+OWN_LOOKS: dict[str, dict[str, Any]] = {
+    "contact": {"linewidth": 4.0, "alpha": 0.7, "zorder": 1.9},
+    "kinetic": {"zorder": 2.1},
+}
+"""What shares of the stiffness often make equal, contacts and bonds, lies as a thin line upon a wide one."""
+
 NEGLIGIBLE = 1e-6
 """A column that stays below this share of the largest is left out."""
 
@@ -62,11 +69,13 @@ def plot_energy(run: Path) -> Figure:
     least = NEGLIGIBLE * max(largest.values())
     for index, (column, label) in enumerate((BAR_COLUMNS if bar else COLUMNS).items()):
         if largest[column] > least:
-            looks = line_style(index) | {"color": HUES[index]}
-            upper.plot(time, columns[column], label=label, **looks)
-    lower.plot(time, columns["relative_error"], color=REFERENCE)
-    upper.set_ylabel("energy" if bar else "energy per metre of thickness")
-    upper.yaxis.set_major_formatter(EngFormatter(unit="J"))
+            looks = line_style(index) | {"color": HUES[index]} | OWN_LOOKS.get(column, {})
+            upper.plot(time, columns[column], label=label, gid=label, **looks)
+    lower.plot(time, columns["relative_error"], color=REFERENCE, gid="error of the balance")
+    lower.yaxis.set_major_locator(MaxNLocator(nbins=3))
+    lower.yaxis.set_major_formatter(StrMethodFormatter("{x:.3g}"))  # each with its own power, none beside the title
+    upper.set_ylabel("energy (J)" if bar else "energy per metre of thickness (J/m)")
+    upper.yaxis.set_major_formatter(EngFormatter())
     lower.set_ylabel("error (–)")
     lower.set_xlabel(unit.label)
     lower.set_title("error of the balance, in parts of the most that came in", loc="left", fontsize=9, pad=3)

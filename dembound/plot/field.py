@@ -7,6 +7,7 @@ from typing import Literal, get_args
 import h5py
 import numpy as np
 
+from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.errors import CaseError
 from dembound.plot.disks import Window
 from dembound.results.histories import UNITS
@@ -14,36 +15,54 @@ from dembound.results.reader import COMPONENTS, cracks_until, laws_in_words, law
 
 FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced"]
 
+MEGA = 1e6
+"""Pascals in a megapascal."""
+
 STRESSES = ("stress_xx", "stress_yy", "stress_xy")
 """In the order of the columns of a stress in a record."""
+
+SENSES = dict.fromkeys(STRESSES[:2], ", tension positive") | {"stress_xy": ", positive up on a face to the right"}
+"""What a positive stress means."""
 
 
 @dataclass(frozen=True)
 class Disks:
     """The disks of a run before the motion.
 
-    positions (n, 2) and radii (n,) in m; monitors: name -> place (2,) m; case: its name; laws in words, empty if one
-    law served all through.
+    positions (n, 2) and radii (n,) in m; monitors: name -> place (2,) m; twins (k, 2) m, the places of theirs in the
+    free-field column; case: its name; laws in words, empty if one law served all through; column, how many disks belong
+    to the free-field column, which come first.
     """
 
     positions: np.ndarray
     radii: np.ndarray
     monitors: dict[str, np.ndarray]
+    twins: np.ndarray
     case: str
     laws: str
+    column: int = 0
 
     @cached_property
     def window(self) -> Window:
         """The whole scene."""
         return Window.around(self.positions, self.radii)
 
+    @property
+    def seam(self) -> float | None:
+        """Where (m, along x) between the free-field column and the body; None without a column."""
+        if self.column == 0:
+            return None
+        right, left = (self.positions + sign * self.radii[:, None] for sign in (1.0, -1.0))
+        return 0.5 * float(right[: self.column, 0].max() + left[self.column :, 0].min())
+
 
 @dataclass(frozen=True)
 class Field:
     """One field of the disks of a run, k times.
 
-    captions, k words that say when; values (k, n); cracks so far, each time, as by `cracks_until`; limits of the colour
-    scale, equally far from zero for a field of either sign; the field's name in words and its unit.
+    captions, k words that say when; values (k, n) in the unit; cracks so far, each time, as by `cracks_until`; limits
+    of the colour scale, equally far from zero for a field of either sign; the field's name in words and its unit; the
+    sense of its sign, where the name does not have it.
     """
 
     captions: list[str]
@@ -52,17 +71,27 @@ class Field:
     limits: tuple[float, float]
     name: str
     unit: str
+    sense: str = ""
+
+    @property
+    def label(self) -> str:
+        """For a colour bar."""
+        return f"{self.name}{self.sense} ({self.unit})"
 
 
 def read_disks(file: h5py.File) -> Disks:
     """The disks of an open record."""
     laws = laws_of(file)
+    places = {name: group.attrs["position"] for name, group in file.get("histories", {}).items()}
+    twins = [place for name, place in places.items() if name.endswith(FREE_FIELD)]
     return Disks(
         positions=file["particles/position"][:],
         radii=file["particles/radius"][:],
-        monitors={name: group.attrs["position"] for name, group in file.get("histories", {}).items()},
+        monitors={name: place for name, place in places.items() if not name.endswith(FREE_FIELD)},
+        twins=np.array(twins).reshape(-1, 2),
         case=str(file.attrs["name"]),
         laws=laws_in_words(laws) if len(laws) > 1 else "",
+        column=int(file.attrs.get("column", 0)),
     )
 
 
@@ -86,6 +115,7 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
             [f"{file.filename}: holds no {dataset.replace('unbalanced', 'unbalanced forces')}; {having} do"]
         )
     largest = np.array([np.abs(group[dataset][:]).max(axis=0) for group in groups])
+    scale = MEGA if name in STRESSES else 1.0
     column, words, unit = _column(name, component, largest.max(axis=0))
     if snapshot is not None:
         chosen = [snapshot_of(file, snapshot)]
@@ -95,21 +125,22 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
         backwards = np.linspace(len(groups) - 1, 0, min(most, len(groups)))
         chosen = [groups[round(number)] for number in reversed(backwards)]
     times = [float(group.attrs["time"]) for group in chosen]
-    limit = float(largest[:, column].max()) or 1.0
+    limit = float(largest[:, column].max()) / scale or 1.0
     return Field(
         captions=[f"t = {time:.3g} s" for time in times],
-        values=np.array([group[dataset][:, column] for group in chosen]),
+        values=np.array([group[dataset][:, column] for group in chosen]) / scale,
         cracks=[cracks_until(file, time) for time in times],
         limits=(-limit, limit),
         name=words,
         unit=unit,
+        sense=SENSES.get(name, ""),
     )
 
 
 def _column(name: str, component: str | None, largest: np.ndarray) -> tuple[int, str, str]:
     """The column of a field, the field in words, and its unit; largest (3,) of each column in the run."""
     if name in STRESSES:
-        return STRESSES.index(name), f"stress {name[-2:]}", "Pa"
+        return STRESSES.index(name), f"stress {name[-2:]}", "MPa"
     column = int(np.argmax(largest[:2])) if component is None else COMPONENTS.index(component)
     way = "of rotation" if column == 2 else f"along {COMPONENTS[column]}"
     if name == "unbalanced":

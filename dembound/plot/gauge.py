@@ -54,7 +54,7 @@ def _history(panel: Axes, gauge: Gauge, findings: Findings) -> None:
         weights = peaks.height**2  # through the middle of the line that was fitted
         first, middle = (np.average(each, weights=weights) for each in (np.log(peaks.height), peaks.time))
         height = np.exp(first - decay.value * findings.speed.value * (time - middle))
-        label = f"exp(−βct), β = {decay.value:.3g} 1/m, c = {findings.speed.value:.4g} m/s"
+        label = f"exp(−αct), α = {decay.value:.3g} 1/m, c = {findings.speed.value:.4g} m/s"
         panel.plot(1e3 * time, height / MPA, color=COLOURS[0], linestyle="--", label=label)
     panel.set_xlabel("time (ms)")
     panel.set_ylabel("stress, tension positive (MPa)")

@@ -2,21 +2,31 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.errors import CaseError
 from dembound.plot.style import line_style, new_figure, outside_legend, styled, time_unit
 from dembound.results.histories import UNITS, History, Quantity, read_histories
 from dembound.results.reader import COMPONENTS, record_names
 
-Component = Literal["x", "y", "rotation"]
+Component = Literal["x", "y", "both", "rotation"]
 
-SENSES = {"velocity": "", "displacement": "", "stress": ", tension positive"}
-"""What a positive value means, where the axis does not tell."""
+Histories = dict[str, History]
+"""The histories of one run by monitor."""
+
+SENSES = {"stress": ", tension positive"}
+"""What a positive value means, where the axis does not show it."""
+
+MOST_PLACES = 2
+"""More places than this of a monitor in several runs are counted, not listed."""
+
+BESIDE_TWINS: tuple[Any, ...] = ("-", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
+"""Lines of runs beside free-field twins, whose own are dashed."""
 
 
 @styled
@@ -28,63 +38,113 @@ def plot_histories(
 ) -> Figure:
     """One panel per monitor, on common axes; several runs lie over each other in it.
 
+    Beside free-field sides a monitor's panel has its twin in the free-field column as well, dashed. The title gives the
+    place of its particle, and the one wanted where it differs.
+
     Parameters
     ----------
     runs
         ``run.h5`` files; a monitor need not occur in all of them.
     component
-        of a motion, by default whichever of x and y moved most in any run.
+        of a motion, by default whichever of x and y moved most in any run; both: x on the left, y on the right.
     quantity
-        velocity in m/s, displacement in m (rad/s or rad for the rotation), or of bars stress in MPa.
+        velocity in m/s, displacement in m, acceleration in m/s² (rad/s, rad, rad/s² for the rotation), or of bars
+        stress in MPa.
     monitors
-        names of those to show, in this order; by default all.
+        names of those to show, in this order; by default all. A twin that is named itself has a panel of its own.
 
-    Raises CaseError when a file cannot be read or holds no stress that is asked for, no run has a monitor, or none has
-    one of those asked for.
+    Raises CaseError when a file cannot be read or holds no stress that is asked for, no run has a monitor, none has
+    one of those asked for, or a component of a stress is asked for.
     """
+    if quantity == "stress" and component is not None:
+        raise CaseError(["component: is of motions; the stress of a bar is that along it"])
     histories = [read_histories(path, quantity) for path in runs]
     shown = _choose(runs, histories, monitors)
-    histories = [{name: run[name] for name in shown if name in run} for run in histories]
-    column = _largest(histories) if component is None else COMPONENTS.index(component)
-    unit = time_unit(max(history.time.max(initial=0.0) for run in histories for history in run.values()))
-    figure = new_figure(9.0, 1.6 + len(shown) * np.clip(9.0 / len(shown), 0.6, 1.6))
-    panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
-    for index, (label, run) in enumerate(zip(record_names(runs), histories, strict=True)):
-        for panel, monitor in zip(panels, shown, strict=True):
-            if monitor in run:
-                history = run[monitor]
-                panel.plot(history.time / unit.seconds, history.values[:, column], label=label, **line_style(index))
-    for panel, monitor in zip(panels, shown, strict=True):
-        _tell_places(panel, monitor, [run[monitor].place for run in histories if monitor in run])
-    direction = _direction(column)
-    panels[-1].set_xlabel(unit.label)
-    figure.supylabel(f"{quantity} {direction}{SENSES[quantity]} ({UNITS[quantity][column]})", fontsize=10)
-    figure.suptitle(f"{quantity.capitalize()} {direction} at the monitors", fontsize=11)
-    outside_legend(figure, panels, columns=3)
+    drawn = [{name: run[name] for name in (*shown, *map(_twin, shown)) if name in run} for run in histories]
+    columns = _columns(drawn, component)
+    unit = time_unit(max(history.time.max(initial=0.0) for run in drawn for history in run.values()))
+    height = 1.6 + len(shown) * np.clip(9.0 / len(shown), 0.6, 1.6)
+    figure = new_figure(9.0 if len(columns) == 1 else 12.0, height)
+    panels = figure.subplots(len(shown), len(columns), sharex=True, sharey=True, squeeze=False)
+    twins = any(_twin(name) in run for run in drawn for name in shown)
+    for index, (label, run) in enumerate(zip(record_names(runs), drawn, strict=True)):
+        style = line_style(index) | ({"linestyle": BESIDE_TWINS[index % len(BESIDE_TWINS)]} if twins else {})
+        for row, monitor in zip(panels, shown, strict=True):
+            for panel, column in zip(row, columns, strict=True):
+                _draw(panel, run, monitor, column, unit.seconds, label, style)
+    for row, monitor in zip(panels, shown, strict=True):
+        row[0].set_title(
+            _title(monitor, [run[monitor] for run in drawn if monitor in run]), loc="left", fontsize=9, pad=3
+        )
+    for panel in panels[-1]:
+        panel.set_xlabel(unit.label)
+    _name_axes(figure, panels, quantity, columns)
+    outside_legend(figure, panels.flat, columns=3)
     return figure
 
 
-def _tell_places(panel: Axes, monitor: str, places: Sequence[str]) -> None:
-    """The monitor's name, and its place in the title if it is the same for every line, else beside each line."""
-    alike = len(set(places)) == 1
-    panel.set_title(f"{monitor} at {places[0]}" if alike else monitor, loc="left", fontsize=9, pad=3)
-    if not alike:
-        panel.legend(panel.lines, places, fontsize=8)
+def _draw(
+    panel: Axes, run: Histories, monitor: str, column: int, seconds: float, label: str, style: dict[str, Any]
+) -> None:
+    """A monitor's history in one run, if it has it, and that of its twin, dashed; times in units of `seconds`."""
+    twin: dict[str, Any] = {"color": style["color"], "linestyle": "--", "linewidth": 0.9}
+    for name, words, looks in ((monitor, label, style), (_twin(monitor), f"{label}, free-field column", twin)):
+        if name in run:
+            history = run[name]
+            panel.plot(history.time / seconds, history.values[:, column], label=words, gid=name, **looks)
 
 
-def _choose(runs: Sequence[Path], histories: Sequence[dict[str, History]], wanted: Sequence[str] | None) -> list[str]:
-    """Names of the monitors to show, each once; errors as in `plot_histories`."""
+def _name_axes(figure: Figure, panels: np.ndarray, quantity: Quantity, columns: Sequence[int]) -> None:
+    """Say which quantity and component the panels (rows, columns) show, and in which unit."""
+    sense, unit = SENSES.get(quantity, ""), UNITS[quantity][columns[0]]
+    shown = f"{quantity} {' and '.join(map(_direction, columns))}"
+    if len(columns) > 1:
+        for row in panels:
+            for panel, column in zip(row, columns, strict=True):
+                panel.set_ylabel(_direction(column), fontsize=9)
+    figure.supylabel(f"{shown if len(columns) == 1 else quantity}{sense} ({unit})", fontsize=10)
+    figure.suptitle(f"{shown.capitalize()} at the monitors", fontsize=11)
+
+
+def _twin(monitor: str) -> str:
+    """What records call a monitor's twin in the free-field column."""
+    return f"{monitor}{FREE_FIELD}"
+
+
+def _title(monitor: str, histories: Sequence[History]) -> str:
+    """The monitor's name, the place of its particle in each of the runs, and where it was wanted if that differs."""
+    places, wanted = (list(dict.fromkeys(getattr(each, what) for each in histories)) for what in ("place", "wanted"))
+    asked = "" if places == wanted else f", wanted {_in_words(wanted)}"
+    return f"{monitor} at {_in_words(places)}{asked}"
+
+
+def _in_words(places: Sequence[str]) -> str:
+    """Places in words, or some of many."""
+    if len(places) <= MOST_PLACES:
+        return " and ".join(places)
+    return f"{places[0]} and {len(places) - 1} other places"
+
+
+def _choose(runs: Sequence[Path], histories: Sequence[Histories], wanted: Sequence[str] | None) -> list[str]:
+    """Names of the monitors that have a panel, each once; errors as in `plot_histories`."""
     known = list(dict.fromkeys(name for run in histories for name in run))
     if not known:
         raise CaseError([f"{', '.join(map(str, runs))}: has no monitors to show"])
     if wanted is None:
-        return known
+        return [name for name in known if name.removesuffix(FREE_FIELD) == name]
     if unknown := [name for name in wanted if name not in known]:
         raise CaseError([f"monitor: is {name}, must be one of {', '.join(known)}" for name in unknown])
     return list(dict.fromkeys(wanted))
 
 
-def _largest(histories: Sequence[dict[str, History]]) -> int:
+def _columns(histories: Sequence[Histories], component: Component | None) -> list[int]:
+    """The columns of the histories that are shown, one, or those of x and y."""
+    if component == "both":
+        return [0, 1]
+    return [_largest(histories) if component is None else COMPONENTS.index(component)]
+
+
+def _largest(histories: Sequence[Histories]) -> int:
     """0 or 1, the column of x or y with the largest value in any history."""
     largest = [np.abs(h.values[:, :2]).max(axis=0, initial=0.0) for run in histories for h in run.values()]
     return int(np.argmax(np.max(largest, axis=0)))

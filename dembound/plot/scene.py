@@ -34,8 +34,17 @@ MOST_STRIPS = 8
 STRIP_GAP = 0.12
 """Inches between two strips."""
 
-CRACKS = {"bond broken in tension": ("o", 3.0), "bond broken in shear": ("x", 14.0)}
-"""What the legend calls the two kinds of cracks, and the shape and size of their marks."""
+CRACKS = {"bond broken in tension": ("o", 14.0, "black"), "bond broken in shear": ("X", 26.0, "#C000C0")}
+"""What the legend calls the two kinds of cracks; shape, size in points² and colour of their marks."""
+
+ABOVE_DISKS, ABOVE_CRACKS = 2.5, 3.0
+"""Where marks lie."""
+
+NAME_HEIGHT, LETTER_WIDTH = 12.0, 5.2
+"""Of a monitor's name in points, its plate included."""
+
+BESIDE_MARK = ((0.0, 7.0), (0.0, -19.0), (1.0, -6.0), (-1.0, -6.0), (0.0, 20.0), (0.0, -32.0))
+"""Where the name of a monitor may stand: right or left of it, and the points from it to the name's lower end."""
 
 
 @styled
@@ -47,7 +56,8 @@ def plot_scene(
 ) -> Figure:
     """The scene at a snapshot, at its undeformed places, with the monitors; colours mean the same all through a run.
 
-    Bonds that have broken by then are marked where they stood. A very long scene gets one more panel that shows a part
+    Bonds that have broken by then are marked where they stood, above the disks and as large in every scene; the legend
+    has their number. A very long scene gets one more panel that shows a part
     of it closely.
 
     Parameters
@@ -58,7 +68,7 @@ def plot_scene(
         number of the snapshot; negative ones count from the last. By default the one in which the field is largest; of
         a scene that lies long, as many as fit on the page, evenly picked, one below the other.
     field
-        velocity in m/s or displacement in m; a stress in Pa, tension positive; peak, the largest speed of each disk in
+        velocity in m/s or displacement in m; a stress in MPa, tension positive; peak, the largest speed of each disk in
         the whole run in m/s. The record must hold it.
     component
         of a velocity or displacement, by default whichever of x and y is largest in any snapshot of the run.
@@ -75,7 +85,7 @@ def plot_scene(
         figure, panels, colours = _draw_whole(disks, shown)
     numbers = ScalarFormatter(useMathText=True)
     numbers.set_powerlimits((-3, 4))
-    figure.colorbar(colours, ax=panels, label=f"{shown.name} ({shown.unit})", shrink=0.9, pad=0.02, format=numbers)
+    figure.colorbar(colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=numbers)
     title = f"{disks.case}: {shown.name} of {len(disks.radii)} disks"
     figure.suptitle("\n".join(filter(None, [title, disks.laws])), fontsize=11)
     outside_legend(figure, panels, columns=3)
@@ -98,7 +108,7 @@ def _draw_whole(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarM
     panel = figure.subplots()
     colours = _draw_panel(panel, disks, shown, 0, disks.window, scale * figure.dpi)
     panel.set_title(shown.captions[0], pad=18)  # above the names of monitors at the top
-    _mark_monitors(panel, disks.monitors)
+    _mark_monitors(panel, disks, scale)
     return figure, [panel], colours
 
 
@@ -121,7 +131,7 @@ def _draw_long(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMa
     _draw_strips(panels[:-1], disks, shown, scales[0] * figure.dpi)
     colours = _draw_panel(panels[-1], disks, shown, framed, part, scales[1] * figure.dpi)
     _frame(panels[framed], part)
-    _mark_monitors(panels[0], disks.monitors)
+    _mark_monitors(panels[0], disks, scales[0])
     return figure, list(panels), colours
 
 
@@ -157,7 +167,9 @@ def close_up(disks: Disks, values: np.ndarray) -> Window:
 def _draw_panel(panel: Axes, disks: Disks, shown: Field, index: int, window: Window, scale: float) -> ScalarMappable:
     """A window of the scene at one of its moments, at `scale` pixels per metre."""
     colours = draw_field(panel, window, disks.positions, disks.radii, shown.values[index], shown.limits, scale)
-    _mark_cracks(panel, shown.cracks[index])
+    if disks.seam is not None and disks.seam > window.corner[0]:
+        panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
+    _mark_cracks(panel, shown, index)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         if pixels > 45:
             axis.set_label_text(f"{name} (m)")
@@ -167,29 +179,66 @@ def _draw_panel(panel: Axes, disks: Disks, shown: Field, index: int, window: Win
     return colours
 
 
-def _mark_cracks(panel: Axes, cracks: dict[str, np.ndarray]) -> None:
-    """A mark at each broken bond."""
-    for shear, (label, (mark, size)) in enumerate(CRACKS.items()):
-        places = cracks["position"][cracks["shear"] == shear]
+def _mark_cracks(panel: Axes, shown: Field, index: int) -> None:
+    """A mark at each bond broken at one of the moments; the legend has the number at the last of them."""
+    until = f" until {shown.captions[-1]}" if len(shown.captions) > 1 else ""
+    for shear, (label, (mark, size, colour)) in enumerate(CRACKS.items()):
+        places, last = (each["position"][each["shear"] == shear] for each in (shown.cracks[index], shown.cracks[-1]))
         if len(places) > 0:
+            looks: dict[str, Any] = {"color": colour, "edgecolors": "white", "linewidths": 0.5, "zorder": ABOVE_DISKS}
             x, y = places.T
-            panel.scatter(x, y, s=size, marker=mark, color="black", linewidths=0.8, label=label)
+            panel.scatter(x, y, s=size, marker=mark, label=f"{label} ({len(last):,}{until})", **looks)
 
 
-def _mark_monitors(panel: Axes, monitors: dict[str, np.ndarray]) -> None:
-    """A triangle and a name at each monitor."""
-    if not monitors:
+def _mark_monitors(panel: Axes, disks: Disks, scale: float) -> None:
+    """A triangle and a name at each monitor, a hollow triangle at each twin; `scale` in inches per metre."""
+    mark: dict[str, Any] = {"marker": "^", "s": 40, "clip_on": False, "zorder": ABOVE_CRACKS}
+    if not disks.monitors:
         return
-    x, y = np.transpose(list(monitors.values()))
-    mark: dict[str, Any] = {"marker": "^", "color": "black", "edgecolors": "white", "clip_on": False, "zorder": 3}
-    panel.scatter(x, y, s=40, label="monitor", **mark)
+    places = np.array(list(disks.monitors.values()))
+    x, y = places.T
+    panel.scatter(x, y, color="black", edgecolors="white", label="monitor", **mark)
+    if len(disks.twins):
+        hollow: dict[str, Any] = {"facecolors": "white", "edgecolors": "black", "label": "its twin in the free field"}
+        x, y = disks.twins.T
+        panel.scatter(x, y, **hollow, **mark)
     plate: dict[str, Any] = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.8}
-    beside: dict[str, Any] = {
-        "textcoords": "offset points",
-        "ha": "center",
-        "va": "bottom",
-        "fontsize": 8,
-        "bbox": plate,
-    }
-    for name, place in monitors.items():
-        panel.annotate(name, tuple(place), (0, 7), **beside)
+    looks: dict[str, Any] = {"textcoords": "offset points", "fontsize": 8, "bbox": plate, "zorder": ABOVE_CRACKS}
+    sides = name_sides(72.0 * scale * places, [len(name) for name in disks.monitors])
+    for name, place, (side, up) in zip(disks.monitors, places, sides, strict=True):
+        align = {0.0: "center", 1.0: "left", -1.0: "right"}[side]
+        panel.annotate(name, tuple(place), (8.0 * side, up), ha=align, va="bottom", **looks)
+
+
+def name_sides(marks: np.ndarray, letters: Sequence[int]) -> list[tuple[float, float]]:
+    """For each mark the entry of `BESIDE_MARK` at which its name covers least names and other marks.
+
+    Parameters
+    ----------
+    marks
+        (k, 2) places on the page in points.
+    letters
+        of each name.
+    """
+    taken = [(x - 4.0, y - 4.0, x + 4.0, y + 4.0) for x, y in marks]
+    chosen = []
+    for (x, y), count in zip(marks, letters, strict=True):
+        boxes = [_name_box(x, y, count, side) for side in BESIDE_MARK]
+        covered = [sum(_overlap(box, other) for other in taken) for box in boxes]
+        best = int(np.argmin(covered))
+        chosen.append(BESIDE_MARK[best])
+        taken.append(boxes[best])
+    return chosen
+
+
+def _name_box(x: float, y: float, letters: int, side: tuple[float, float]) -> tuple[float, float, float, float]:
+    """Left, bottom, right and top of a name beside a mark at (x, y), points."""
+    width, (way, up) = LETTER_WIDTH * letters + 4.0, side
+    left = x + 8.0 * way + 0.5 * (way - 1.0) * width
+    return left, y + up, left + width, y + up + NAME_HEIGHT
+
+
+def _overlap(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> float:
+    """Common area of two boxes, points²."""
+    across = min(one[2], other[2]) - max(one[0], other[0])
+    return max(across, 0.0) * max(min(one[3], other[3]) - max(one[1], other[1]), 0.0)

@@ -67,6 +67,6 @@ def _difference(run: str, monitor: str, history: History, reference: History, qu
         last=float(values[-1]),
         reference_last=float(expected[-1]),
         unit=UNITS[quantity][column],
-        place=history.place,
-        reference_place=reference.place,
+        place=history.wanted,
+        reference_place=reference.wanted,
     )

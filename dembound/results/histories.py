@@ -10,41 +10,60 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.results.reader import open_record, place_in_words
 
-Quantity = Literal["velocity", "displacement", "stress"]
+Quantity = Literal["velocity", "displacement", "acceleration", "stress"]
 
-UNITS = {"velocity": ("m/s", "m/s", "rad/s"), "displacement": ("m", "m", "rad"), "stress": ("MPa",)}
+UNITS = {
+    "velocity": ("m/s", "m/s", "rad/s"),
+    "displacement": ("m", "m", "rad"),
+    "acceleration": ("m/s²", "m/s²", "rad/s²"),
+    "stress": ("MPa",),
+}
 """Units of x, y and rotation; the stress is along x."""
 
-SCALES = {"velocity": 1.0, "displacement": 1.0, "stress": 1e6}
+SCALES = {"velocity": 1.0, "displacement": 1.0, "acceleration": 1.0, "stress": 1e6}
 """SI units in the units shown."""
+
+SOURCES = {"acceleration": "velocity"}
+"""What a quantity is computed from that no record holds."""
 
 
 @dataclass(frozen=True)
 class History:
-    """What one monitor felt in one run.
+    """What one monitor recorded in one run.
 
-    time (k,) s; values in `UNITS`, of a motion (k, 3), of a stress along x (k, 1); place asked for, in words.
+    time (k,) s; values in `UNITS`, of a motion (k, 3), of a stress along x (k, 1); the place of its particle, and the
+    one wanted in the case, in words.
     """
 
     time: np.ndarray
     values: np.ndarray
     place: str
+    wanted: str
 
 
 def read_histories(path: Path, quantity: Quantity) -> dict[str, History]:
     """The histories of a run by monitor name; empty for a run without monitors.
 
-    Raises CaseError when the file cannot be read or holds no stress that is asked for.
+    Accelerations are central differences of the recorded velocity, one-sided ones at both ends; with
+    `output.history_interval` they are means over that interval on either side.
+
+    Raises CaseError when the file cannot be read, holds no stress that is asked for, or too few samples for an
+    acceleration.
     """
+    source = SOURCES.get(quantity, quantity)
     with open_record(path) as file:
         groups = dict(file.get("histories", {}).items())
-        if any(quantity not in group for group in groups.values()):
+        if any(source not in group for group in groups.values()):
             raise CaseError([f"{path}: holds no {quantity} of its monitors; runs of bars do"])
+        if source != quantity and any(len(group["time"]) < 2 for group in groups.values()):
+            raise CaseError([f"{path}: holds fewer than two samples of its monitors, too few for an {quantity}"])
         return {name: _read(group, quantity, file.attrs["size"].tolist()) for name, group in groups.items()}
 
 
 def _read(group: h5py.Group, quantity: Quantity, size: list[float]) -> History:
     """A monitor's history."""
-    time, values = group["time"][:], group[quantity][:]
-    columns = values.reshape(len(time), -1) / SCALES[quantity]
-    return History(time, columns, place_in_words(group.attrs["wanted"], size))
+    time, values = group["time"][:], group[SOURCES.get(quantity, quantity)][:]
+    if quantity in SOURCES:
+        values = np.gradient(values, time, axis=0)
+    place, wanted = (place_in_words(group.attrs[name], size) for name in ("position", "wanted"))
+    return History(time, values.reshape(len(time), -1) / SCALES[quantity], place, wanted)

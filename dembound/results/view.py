@@ -35,6 +35,11 @@ window.Render()
 print(window.GetClassName())
 """
 
+NO_DISPLAY = (
+    "view: there is no display to open a window on; set DISPLAY to one (over ssh: ssh -X), draw a picture with "
+    "--output picture.png, or open paraview/particles.pvd of the results in ParaView"
+)
+
 WINDOWLESS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")  # what VTK draws in where it finds no display
 
 
@@ -73,9 +78,11 @@ def require_rendering(in_window: bool) -> None:
     """Raise DemboundError if VTK cannot draw here, or `in_window` and there is no display to show a window on."""
     tried = subprocess.run([sys.executable, "-c", TRIAL], capture_output=True, text=True, check=False)
     if tried.returncode != 0:
-        raise DemboundError("view: cannot draw here, VTK finds no working OpenGL; `dembound plot` needs none")
+        raise DemboundError(
+            "view: cannot draw here, VTK finds no working OpenGL; `dembound plot RESULTS --field velocity` needs none"
+        )
     if in_window and tried.stdout.split()[-1] in WINDOWLESS:
-        raise DemboundError("view: there is no display to open a window on, see DISPLAY, or try --picture FILE.png")
+        raise DemboundError(NO_DISPLAY)
 
 
 def disk_mesh(positions: np.ndarray, radii: np.ndarray) -> "pyvista.PolyData":

@@ -3,7 +3,7 @@
 import pytest
 
 from dembound.bar.facts import bar_facts
-from dembound.check import check
+from dembound.check import check, duration_in_words
 from dembound.disks.facts import disk_facts
 from dembound.running import plan, warnings_before
 
@@ -16,8 +16,7 @@ def test_facts_are_those_of_the_run_and_of_the_scene(bar) -> None:
     assert facts["steps"] == "100 for 0.01 s"
     assert facts["time step"] == f"0.0001 s, {1e-4 / planned.step_limit:.3f} of the limit {planned.step_limit:.6g} s"
     assert facts["memory"] == f"{planned.scene.bytes / 1e6:.3g} MB"
-    assert facts["estimated time"].startswith("about ")
-    assert facts["estimated time"].endswith(" s with 1 thread(s)")
+    assert facts["estimated time"] == "less than 1 s with 1 thread"
     own = disk_facts(planned.scene)
     assert {name: fact for name, fact in facts.items() if name in own} == own
     assert set(facts) - set(own) == {"time step", "steps", "memory", "estimated time"}
@@ -47,7 +46,7 @@ def test_a_bar_is_told_of_as_a_bar(spalling) -> None:
 def test_the_estimate_says_what_it_is_without(bar, changes: dict, without: str) -> None:
     facts, _ = check(bar(changes))
 
-    assert facts["estimated time"].endswith(f" thread(s){without}")
+    assert facts["estimated time"].endswith(f" with 1 thread{without}")
 
 
 def test_checking_writes_nothing(bar, tmp_path, monkeypatch) -> None:
@@ -55,3 +54,21 @@ def test_checking_writes_nothing(bar, tmp_path, monkeypatch) -> None:
     check(bar())
 
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.026, "less than 1 s"),
+        (8.4, "about 8 s"),
+        (42.0, "about 40 s"),
+        (89.0, "about 90 s"),
+        (130.0, "about 2.2 min"),
+        (910.0, "about 15 min"),
+        (9000.0, "about 2.5 h"),
+        (90000.0, "about 25 h"),
+        (259200.0, "about 3 d"),
+    ],
+)
+def test_times_are_told_as_one_would_say_them(seconds: float, words: str) -> None:
+    assert duration_in_words(seconds) == words

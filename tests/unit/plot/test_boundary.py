@@ -24,6 +24,28 @@ def test_diameters_and_peaks_stand_along_the_side(small_run, side, axis, along):
     assert lower.get_xlabel() == f"{along}, along the side (m)"
 
 
+def test_particles_stand_in_their_order_and_those_of_a_column_apart(small_run, tmp_path):
+    run = tmp_path / "run.h5"
+    run.write_bytes(small_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        file.attrs["column"] = 10
+        group = file["boundaries/bottom"]
+        for name in ("particle", "position", "diameter", "peak_velocity"):
+            group[name][:] = group[name][:][::-1]
+        positions, column = group["position"][:, 0][::-1], group["particle"][:][::-1] < 10
+    assert 0 < np.count_nonzero(column) < len(column)
+    figure = plot_boundary([run], "bottom")
+    for panel in figure.axes:
+        body, apart = panel.lines
+        np.testing.assert_array_equal(body.get_xdata(), positions[~column])
+        np.testing.assert_array_equal(apart.get_xdata(), positions[column])
+        assert (apart.get_linestyle(), apart.get_markerfacecolor()) == ("None", "white")
+    assert [text.get_text().split(":")[0] for text in figure.legends[0].get_texts()] == [
+        "small",
+        "small, free-field column",
+    ]
+
+
 def test_the_legend_counts_and_averages_each_run(small_run, other_run):
     figure = plot_boundary([small_run, other_run], "left")
     small, other = (text.get_text() for text in figure.legends[0].get_texts())

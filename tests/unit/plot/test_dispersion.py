@@ -3,7 +3,7 @@
 import numpy as np
 
 from dembound.exact import Lattice
-from dembound.plot.dispersion import CELLS, name, plot_dispersion
+from dembound.plot.dispersion import CELLS, WIDENED, WIDTH, line_widths, name, plot_dispersion
 
 COARSE = Lattice(3, spacing=0.01, time_step=1e-6, wave_speed=2500.0)
 FINE = Lattice(1, spacing=0.005, time_step=0.0, wave_speed=2500.0)
@@ -49,3 +49,12 @@ def test_lattices_are_told_apart_in_words():
     assert name(COARSE) == "horizon 3, Δx = 10 mm, Δt = 1 µs"
     assert name(FINE) == "horizon 1, Δx = 5 mm, exact in time"
     assert name(UNSTABLE) == "horizon 1, Δx = 5 mm, Δt = 3 µs, unstable"
+
+
+def test_lattices_of_one_horizon_can_be_seen_below_each_other():
+    finer = Lattice(3, spacing=0.005, time_step=1e-6, wave_speed=2500.0)
+    assert line_widths([COARSE, FINE, finer]) == [WIDTH + WIDENED, WIDTH, WIDTH]
+    left, middle, right = plot_dispersion([COARSE, finer]).axes
+    assert left.lines[0].get_linewidth() == left.lines[1].get_linewidth()
+    for panel in (middle, right):
+        assert panel.lines[0].get_linewidth() > panel.lines[1].get_linewidth()

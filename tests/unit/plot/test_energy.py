@@ -29,9 +29,9 @@ def test_every_column_that_is_not_zero_is_a_line(cracked_run):
 def test_units_and_the_name_are_told(cracked_run):
     figure = plot_energy(cracked_run)
     upper, lower = figure.axes
-    assert (upper.get_ylabel(), lower.get_xlabel()) == ("energy per metre of thickness", "time (ms)")
+    assert (upper.get_ylabel(), lower.get_xlabel()) == ("energy per metre of thickness (J/m)", "time (ms)")
     assert figure.get_suptitle().startswith("cracked: ")
-    assert [upper.yaxis.get_major_formatter()(value) for value in (0.0, 20.0, 5e4)] == ["0 J", "20 J", "50 kJ"]
+    assert [upper.yaxis.get_major_formatter()(value) for value in (0.0, 20.0, 5e4)] == ["0", "20", "50 k"]
 
 
 def test_what_is_negligible_is_left_out_and_no_two_colours_are_alike(cracked_run, tmp_path):
@@ -58,7 +58,7 @@ def test_a_bar_keeps_its_books_in_its_own_words(spalled_run, tmp_path):
         for name in COLUMNS:
             file["energy"][name][:] = 1.0
     upper = plot_energy(run).axes[0]
-    assert upper.get_ylabel() == "energy"
+    assert upper.get_ylabel() == "energy (J)"
     labels = {line.get_label() for line in upper.lines}
     assert {
         "stored in local springs",
@@ -67,3 +67,16 @@ def test_a_bar_keeps_its_books_in_its_own_words(spalled_run, tmp_path):
         "in: added by a change of method",
     } <= labels
     assert len({line.get_color() for line in upper.lines}) == len(COLUMNS)
+
+
+def test_equal_shares_of_contacts_and_bonds_are_both_visible(cracked_run):
+    lines = {line.get_label(): line for line in plot_energy(cracked_run).axes[0].lines}
+    contact, bond = lines["stored in contacts"], lines["stored in bonds"]
+    assert contact.get_linewidth() > 2.0 * bond.get_linewidth()
+    assert contact.get_zorder() < bond.get_zorder()
+
+
+def test_small_errors_have_their_power_at_every_tick(cracked_run):
+    lower = plot_energy(cracked_run).axes[1]
+    assert [lower.yaxis.get_major_formatter()(value) for value in (0.0, -2.5e-16)] == ["0", "−2.5e−16"]
+    assert lower.yaxis.get_offset_text().get_text() == ""

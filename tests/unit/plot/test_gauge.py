@@ -27,7 +27,7 @@ def test_the_history_is_drawn_with_its_peaks_and_their_fit(gauge):
     np.testing.assert_allclose(np.interp(peaks.get_xdata(), *fit.get_data()), peaks.get_ydata(), rtol=0.01)
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("time (ms)", "stress, tension positive (MPa)")
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert texts[2] == "exp(−βct), β = 0.52 1/m, c = 2740 m/s"
+    assert texts[2] == "exp(−αct), α = 0.52 1/m, c = 2740 m/s"
 
 
 def test_a_spalled_bar_shows_the_stress_near_its_end(gauge):

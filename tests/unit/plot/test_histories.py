@@ -25,7 +25,8 @@ def test_each_monitor_has_a_panel_with_its_history(small_run, component, quantit
     assert figure.axes[-1].get_xlabel() == "time (ms)"
     with h5py.File(small_run) as file:
         for panel, (name, group) in zip(figure.axes, file["histories"].items(), strict=True):
-            assert panel.get_title("left") == name + " at ({:.2f}, {:.2f}) m".format(*group.attrs["wanted"])
+            places = ("({:.2f}, {:.2f}) m".format(*group.attrs[key]) for key in ("position", "wanted"))
+            assert panel.get_title("left") == "{} at {}, wanted {}".format(name, *places)
             (line,) = panel.lines
             np.testing.assert_array_equal(line.get_xdata(), group["time"][:] / 1e-3)
             np.testing.assert_array_equal(line.get_ydata(), group[quantity][:, column])
@@ -54,17 +55,87 @@ def test_runs_lie_over_each_other_in_different_styles(small_run, other_run):
     assert [text.get_text() for text in legend.get_texts()] == ["small", "other"]
 
 
-def test_places_that_differ_stand_beside_their_lines(small_run, tmp_path):
+def test_places_that_differ_stand_in_the_title(small_run, tmp_path):
     run = tmp_path / "run.h5"
     run.write_bytes(small_run.read_bytes())
     with h5py.File(run, "r+") as file:
         file.attrs["name"] = "elsewhere"
-        file["histories/front"].attrs["wanted"] = (2.5, 1.2)
+        file["histories/front"].attrs.update({"wanted": (2.5, 1.2), "position": (2.5, 1.2)})
+        file["histories/back"].attrs["position"] = (9.6, 1.2)
+        (x, y) = file["histories/back"].attrs["position"]
     front, back = plot_histories([small_run, run]).axes
-    assert front.get_title("left") == "front"
-    assert [text.get_text() for text in front.get_legend().get_texts()] == ["(2.40, 1.20) m", "(2.50, 1.20) m"]
-    assert back.get_title("left") == "back at (9.60, 1.20) m"
-    assert back.get_legend() is None
+    with h5py.File(small_run) as file:
+        own = {name: "({:.2f}, {:.2f}) m".format(*group.attrs["position"]) for name, group in file["histories"].items()}
+    assert (
+        front.get_title("left")
+        == f"front at {own['front']} and (2.50, 1.20) m, wanted (2.40, 1.20) m and (2.50, 1.20) m"
+    )
+    assert back.get_title("left") == f"back at {own['back']} and ({x:.2f}, {y:.2f}) m, wanted (9.60, 1.20) m"
+
+
+def test_many_places_are_counted(small_run, tmp_path):
+    runs = [tmp_path / name for name in "abc"]
+    for number, run in enumerate(runs):
+        run.write_bytes(small_run.read_bytes())
+        with h5py.File(run, "r+") as file:
+            file["histories/front"].attrs["position"] = (2.0 + number, 1.2)
+    front, _ = plot_histories(runs).axes
+    assert front.get_title("left") == "front at (2.00, 1.20) m and 2 other places, wanted (2.40, 1.20) m"
+
+
+@pytest.fixture
+def twin_run(small_run, tmp_path):
+    """A copy of the run with a twin of its monitor ``front``."""
+    run = tmp_path / "run.h5"
+    run.write_bytes(small_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        file.copy("histories/front", file["histories"], "front.free_field")
+        file["histories/front.free_field/velocity"][:] *= 0.5
+    return run
+
+
+def test_twins_are_dashed_in_the_panel_of_their_monitor(twin_run):
+    figure = plot_histories([twin_run])
+    front, back = figure.axes
+    own, twin = front.lines
+    assert (own.get_linestyle(), twin.get_linestyle()) == ("-", "--")
+    assert own.get_color() == twin.get_color()
+    np.testing.assert_array_equal(twin.get_ydata(), 0.5 * own.get_ydata())
+    assert len(back.lines) == 1
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["small", "small, free-field column"]
+
+
+def test_no_run_is_dashed_beside_twins(twin_run, other_run):
+    front = plot_histories([twin_run, other_run]).axes[0]
+    assert [line.get_linestyle() for line in front.lines] == ["-", "--", "-."]
+
+
+def test_a_twin_may_be_shown_alone(twin_run):
+    (panel,) = plot_histories([twin_run], monitors=["front.free_field"]).axes
+    assert panel.get_title("left").startswith("front.free_field at ")
+    assert len(panel.lines) == 1
+
+
+def test_both_components_stand_side_by_side(small_run):
+    figure = plot_histories([small_run], "both")
+    assert figure.get_supylabel() == "velocity (m/s)"
+    assert [panel.get_ylabel() for panel in figure.axes] == ["along x", "along y"] * 2
+    with h5py.File(small_run) as file:
+        for number, panel in enumerate(figure.axes):
+            name = ("front", "back")[number // 2]
+            np.testing.assert_array_equal(panel.lines[0].get_ydata(), file[f"histories/{name}/velocity"][:, number % 2])
+
+
+def test_accelerations_have_their_units(small_run):
+    assert plot_histories([small_run], quantity="acceleration").get_supylabel() == "acceleration along x (m/s²)"
+    assert (
+        plot_histories([small_run], "rotation", "acceleration").get_supylabel() == "acceleration of rotation (rad/s²)"
+    )
+
+
+def test_a_stress_has_no_component(spalled_run):
+    with pytest.raises(CaseError, match="component: is of motions"):
+        plot_histories([spalled_run], "y", "stress")
 
 
 def test_monitors_stand_in_the_order_of_the_case(small_run):

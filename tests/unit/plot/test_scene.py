@@ -7,7 +7,7 @@ from matplotlib.collections import EllipseCollection
 
 from dembound.errors import CaseError
 from dembound.plot.disks import Window
-from dembound.plot.scene import plot_scene, strips_on_page
+from dembound.plot.scene import BESIDE_MARK, name_sides, plot_scene, strips_on_page
 
 
 def disks_of(panel):
@@ -72,9 +72,10 @@ def test_stresses_are_shown_where_they_are_largest(rich_run, field, column):
         stresses = [(each["stress"][:, column], each.attrs["time"]) for each in file["snapshots"].values()]
     stress, time = max(stresses, key=lambda pair: np.abs(pair[0]).max())
     disks = disks_of(panel)
-    np.testing.assert_array_equal(disks.get_array(), stress)
-    assert disks.get_clim() == (-np.abs(stress).max(), np.abs(stress).max())
-    assert bar.get_ylabel() == f"stress {field[-2:]} (Pa)"
+    np.testing.assert_array_equal(disks.get_array(), stress / 1e6)
+    assert disks.get_clim() == (-np.abs(stress).max() / 1e6, np.abs(stress).max() / 1e6)
+    sense = "positive up on a face to the right" if field == "stress_xy" else "tension positive"
+    assert bar.get_ylabel() == f"stress {field[-2:]}, {sense} (MPa)"
     assert panel.get_title() == f"t = {time:.3g} s"
 
 
@@ -110,8 +111,35 @@ def test_bonds_broken_by_then_are_marked_by_how_they_broke(cracked_run, snapshot
         cracks = file["cracks"]
         past = cracks["time"][:] <= file[f"snapshots/{snapshot:04d}"].attrs["time"]
         for label, shear in (("bond broken in tension", False), ("bond broken in shear", True)):
-            np.testing.assert_array_equal(marks[label], cracks["position"][past & (cracks["shear"][:] == shear)])
-            assert len(marks[label]) > 0
+            expected = cracks["position"][past & (cracks["shear"][:] == shear)]
+            np.testing.assert_array_equal(marks[f"{label} ({len(expected)})"], expected)
+            assert len(expected) > 0
+
+
+def test_marks_of_broken_bonds_lie_above_the_disks(cracked_run):
+    panel = plot_scene(cracked_run).axes[0]
+    marks = [each for each in panel.collections if "bond" in each.get_label()]
+    assert min(each.get_zorder() for each in marks) > disks_of(panel).get_zorder()
+
+
+def test_twins_are_hollow_marks_without_names(small_run, tmp_path):
+    run = tmp_path / "run.h5"
+    run.write_bytes(small_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        file.copy("histories/front", file["histories"], "front.free_field")
+        place = file["histories/front"].attrs["position"]
+    panel = plot_scene(run).axes[0]
+    assert [text.get_text() for text in panel.texts] == ["front", "back"]
+    (twins,) = [each for each in panel.collections if each.get_label() == "its twin in the free field"]
+    np.testing.assert_array_equal(twins.get_offsets(), [place])
+
+
+def test_names_give_way_to_each_other():
+    # 20 letters are 108 points wide: the second would cover the first, 30 points to the left, and goes below its mark
+    above, below = name_sides(np.array([[100.0, 100.0], [130.0, 100.0]]), [20, 20])
+    assert above == BESIDE_MARK[0]
+    assert below == BESIDE_MARK[1]
+    assert name_sides(np.array([[100.0, 100.0], [300.0, 100.0]]), [20, 20]) == [BESIDE_MARK[0]] * 2
 
 
 def test_the_title_tells_when_the_law_changed(small_run, cracked_run):
@@ -129,7 +157,7 @@ def test_monitors_are_named_where_they_are(small_run):
 
 
 def test_small_disks_give_way_to_their_mean(tmp_path):
-    # 600 columns on 9.5 inches of 150 pixels are 2.4 pixels each, below the 3 that a disk needs
+    # 600 columns on 9.5 inches of 150 pixels are 2.4 pixels each, below the 4 that a disk needs
     run = block(tmp_path / "run.h5", 600, 100, lambda x: x)
     panel = plot_scene(run).axes[0]
     (picture,) = panel.images
@@ -228,3 +256,11 @@ def test_a_missing_snapshot_is_refused(small_run, snapshot):
 def test_a_field_that_only_bars_have_is_refused(small_run):
     with pytest.raises(CaseError, match="field: is damage, must be one of velocity, displacement, stress_xx"):
         plot_scene(small_run, field="damage")
+
+
+def test_a_line_stands_between_the_column_and_the_body(tmp_path):
+    run = block(tmp_path / "run.h5", 6, 4, np.zeros_like)
+    with h5py.File(run, "r+") as file:
+        file.attrs["column"] = 8
+    (line,) = plot_scene(run).axes[0].lines
+    assert list(line.get_xdata()) == [2.0, 2.0]  # two columns of four disks, each 1 m wide

@@ -46,7 +46,7 @@ def test_without_opengl_there_is_one_line_instead_of_a_crash(small_run, tmp_path
 def test_without_a_display_only_pictures_are_drawn(monkeypatch, drawn_in):
     monkeypatch.setattr(module, "TRIAL", f"print('{drawn_in}')")
     require_rendering(in_window=False)
-    with pytest.raises(DemboundError, match=r"no display .* --picture"):
+    with pytest.raises(DemboundError, match=r"no display .* DISPLAY .* --output picture\.png, .* ParaView"):
         require_rendering(in_window=True)
 
 

@@ -1,0 +1,70 @@
+"""The lines of a picture as numbers: what is drawn, in the units it is drawn in."""
+
+import csv
+from collections.abc import Iterator
+from itertools import zip_longest
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from dembound.results.reader import replacing
+
+Column = tuple[str, np.ndarray]
+"""A head with its unit, and the values (k,) below it."""
+
+
+def write_lines(figure: Figure, path: Path) -> None:
+    """Write the lines of a figure as CSV, a column each, whole or not at all.
+
+    Lines drawn over the same places share one column of these, which stands before theirs. Columns end where their
+    lines do; cells below are empty. Frames and other lines that show no numbers are left out.
+
+    Raises FileNotFoundError where the folder of the path is not there.
+    """
+    columns = list(columns_of(figure))
+    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow([head for head, _ in columns])
+        table.writerows(zip_longest(*([f"{value:.10g}" for value in values] for _, values in columns), fillvalue=""))
+
+
+def columns_of(figure: Figure) -> Iterator[Column]:
+    """The columns of that table: of each group of lines over the same places these, then the lines' own values."""
+    groups: list[tuple[np.ndarray, list[tuple[Axes, Line2D]]]] = []
+    for panel, line in _lines(figure):
+        along = np.asarray(line.get_xdata(), dtype=float)
+        for known, lines in groups:
+            if np.array_equal(known, along):
+                lines.append((panel, line))
+                break
+        else:
+            groups.append((along, [(panel, line)]))
+    for along, lines in groups:
+        panel, first = lines[0]
+        of = f" of {first.get_label()}" if len(groups) > 1 else ""
+        yield f"{_x_label(panel)}{of}", along
+        for panel, line in lines:
+            yield _head(figure, panel, line), np.asarray(line.get_ydata(), dtype=float)
+
+
+def _lines(figure: Figure) -> Iterator[tuple[Axes, Line2D]]:
+    """All lines that have a name, and the panels they are in."""
+    for panel in figure.axes:
+        yield from ((panel, line) for line in panel.lines if line.get_gid() is not None)
+
+
+def _head(figure: Figure, panel: Axes, line: Line2D) -> str:
+    """A line's name, its run, and what its axis shows with the unit."""
+    axis = ", ".join(filter(None, (figure.get_supylabel(), panel.get_ylabel())))
+    name, label = str(line.get_gid()), str(line.get_label())
+    run = "" if label.startswith(("_", name)) else f", {label}"  # matplotlib's own word for none, or the name again
+    return f"{name}{run}: {axis}"
+
+
+def _x_label(panel: Axes) -> str:
+    """What stands below a panel, or below the lowest that shares its axis."""
+    sharing = [panel, *panel.get_shared_x_axes().get_siblings(panel)]
+    return next(filter(None, (each.get_xlabel() for each in sharing)), "x")
