@@ -2,10 +2,10 @@
 
 import re
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 from importlib.metadata import entry_points
-from typing import Annotated, Any, TypeVar, Union
+from typing import Annotated, Any, TypeVar, Union, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
@@ -52,20 +52,43 @@ def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:
 def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tuple[type[T], ...]:
     """These types of tables, and those that other installed packages register under the entry point group `group`.
 
-    One that cannot be imported, or is not derived from `base`, is left out with a Python warning.
+    One that cannot be used is left out with a Python warning that says why.
     """
     found = list(types)
+    taken = {name_of(table) for table in found}
     for entry in _registered().select(group=group):
         try:
             table = entry.load()
         except Exception as error:  # whatever another package may raise
             warnings.warn(f"{group}: {entry.name} ({entry.value}) cannot be imported: {error}", stacklevel=2)
             continue
-        if isinstance(table, type) and issubclass(table, base):
-            found.append(table)
-        else:
-            warnings.warn(f"{group}: {entry.name} ({entry.value}) is not derived from {base.__name__}", stacklevel=2)
+        if table in found:
+            continue
+        if flaw := _flaw(table, base, taken):
+            warnings.warn(f"{group}: {entry.name} ({entry.value}) {flaw}", stacklevel=2)
+            continue
+        taken.add(name_of(table))
+        found.append(table)
     return tuple(found)
+
+
+def name_of(table: type[Any]) -> str | None:
+    """What case files call a type: the literal at its key, or a law's `name`; None without one."""
+    fields = getattr(table, "model_fields", {})
+    literals = [get_args(fields[key].annotation) for key in TOLD_APART_BY if key in fields]
+    name = literals[0][0] if literals and literals[0] else getattr(table, "name", None)
+    return name if isinstance(name, str) else None
+
+
+def _flaw(table: Any, base: type[Any], taken: Collection[str | None]) -> str | None:
+    """Why a registered type cannot be used."""
+    if not (isinstance(table, type) and issubclass(table, base)):
+        return f"is not derived from {base.__name__}"
+    if missing := sorted(getattr(table, "__abstractmethods__", ())):
+        return f"lacks {', '.join(missing)}"
+    if (name := name_of(table)) is None:
+        return "does not say what case files call it: a Literal at type or pattern, of a law its name"
+    return f'is called "{name}", which is taken' if name in taken else None
 
 
 @cache

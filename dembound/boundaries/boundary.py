@@ -54,7 +54,10 @@ class Boundary(Table):
 
     @property
     def waves(self) -> Mapping[Motion, str]:
-        """The waves that drive the side: kind -> name; by default none."""
+        """The waves that drive the side: kind -> name; by default none.
+
+        Calibration of a side with waves and dashpots takes it that they come in with the force 2βρcD·v_i (Z eq. 6).
+        """
         return {}
 
     @property

@@ -87,7 +87,7 @@ def _law_facts(scene: DiskScene) -> dict[str, str]:
     """The law, and where contacts and bonds give way."""
     material = scene.case.material
     if not scene.has_history:
-        return {"law": "elastic: contacts neither open nor slip, bonds do not break"}
+        return {"law": f"{material.law}: contacts neither open nor slip, bonds do not break"}
     start = ", elastic until a contact opens, slips or closes or a bond yields" if material.elastic_start else ""
     bonds = "no bonds"
     if scene.ground.moduli.pb_emod > 0.0:
@@ -149,9 +149,21 @@ def _side_fact(scene: DiskScene, side: str) -> str:
     factors = "".join(f", {sign} = {facts[key]:g}" for key, sign in FACTORS.items() if key in facts)
     half = ", half mass" if facts.get("half_mass") else ""
     return (
-        f"{facts['type']}{factors}{half}{_springs_in_words(facts)}; {facts['particles']} particles, "
+        f"{facts['type']}{factors}{half}{_springs_in_words(facts)}{_others(facts)}; {facts['particles']} particles, "
         f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['diameter_sum_ratio']:.4f}"
     )
+
+
+IN_WORDS = {
+    *("type", "particles", "length", "diameter_min", "diameter_mean", "diameter_max", "diameter_sum_ratio"),
+    *("beta_p", "beta_s", "half_mass", "alpha_n", "alpha_s", "shear_modulus", "distance_min", "distance_max"),
+}
+"""Numbers of a side that have words of their own."""
+
+
+def _others(side: dict[str, Any]) -> str:
+    """All other numbers of a described side, as another package's type may have."""
+    return "".join(f", {key} = {value}" for key, value in side.items() if key not in IN_WORDS)
 
 
 def _springs_in_words(side: dict[str, Any]) -> str:

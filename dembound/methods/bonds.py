@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
+from dembound.errors import CaseError
 from dembound.kernels.tables import BarBonds
 from dembound.laws.peridynamic import Family, damage, families, micromodulus
 
@@ -51,6 +52,8 @@ class Rod:
 
         Row p − 1 has the bonds between i and i + p. influence : (m,) factors of the micromodulus c_m by length of the
         bonds, scaled so that Young's modulus stays; by default it is the same for all.
+
+        Raises CaseError for a negative influence, and where all are zero.
         """
         rows = np.zeros((horizon, self.count))
         if horizon > 0:
@@ -60,6 +63,8 @@ class Rod:
             both = self.volumes[first] * self.volumes[second]
             rows[apart - 1, first] = c_m * both * family.factor / (apart * self.spacing)
         if influence is not None:
+            if np.min(influence) < 0.0 or not np.max(influence) > 0.0:
+                raise CaseError(["method: makes bonds without a stiffness above 0, take a larger horizon"])
             rows *= np.reshape(influence, (horizon, 1)) * (1.0 / _influenced(horizon, influence))
         return rows
 
@@ -194,7 +199,10 @@ class Bonds:
             laid = self.laid[row, first]
             intact[laid] = ((broken < 0) | (broken > last))[laid, None]
         volumes = self.rod.volumes[self._family.pairs[:, ::-1]]
-        return damage(self._family.pairs, self._family.factor[:, None] * volumes, intact, self.rod.count)
+        factor = self._family.factor
+        if self.horizon > 0:
+            factor = factor * (self._rows[row, first] > 0.0)  # those without stiffness are no bonds: they never break
+        return damage(self._family.pairs, factor[:, None] * volumes, intact, self.rod.count)
 
     def breaks(self, since: int) -> tuple[np.ndarray, np.ndarray]:
         """What broke in step `since` or later: steps (b,) and pairs of nodes (b, 2), in the order of the steps."""

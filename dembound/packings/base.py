@@ -1,5 +1,6 @@
 """What every packing table has in common."""
 
+from abc import ABC, abstractmethod
 from typing import Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
@@ -12,7 +13,7 @@ from dembound.table import Table, quantity
 Extent = tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]]
 Count = tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 
-TYPED = 1e-6
+TYPED = 5e-6
 """What a size may differ from whole bricks, relative: it is typed with six digits, as 5.19615 m for 3√3 m."""
 
 # Confining stress over contact modulus where the case names none: 4.5 contacts per disk, and eight times the
@@ -23,7 +24,7 @@ PRESSURE = 8e-3
 PRESSURES = (5e-4, 0.1)
 
 
-class Packing(Table):
+class Packing(Table, ABC):
     """A scene filled with whole bricks of disks, its extent given in metres or in bricks.
 
     Attributes
@@ -41,13 +42,13 @@ class Packing(Table):
     radius: float = quantity(unit="m", help="disk radius (mean radius of a random packing)", gt=0.0)
 
     @property
+    @abstractmethod
     def brick_size(self) -> tuple[float, float]:
         """Width and height of one brick in metres."""
-        raise NotImplementedError
 
+    @abstractmethod
     def pack(self, contact_modulus: float) -> Brick:
         """The brick, packed for disks of contact modulus E_c (Pa), see `Brick`."""
-        raise NotImplementedError
 
     @property
     def copies(self) -> tuple[int, int]:
@@ -99,6 +100,7 @@ class DensePacking(Packing):
     bond_gap: float = quantity(0.0, unit="m", help="gaps up to this are contacts too", ge=0.0)
 
     @property
+    @abstractmethod
     def brick_size(self) -> tuple[float, float]:
         """Width and height of one brick in metres."""
         return self.brick

@@ -35,6 +35,10 @@ LARGEST_RATIO = 1.99
 """M_out/M_in is 2 at most; dispersion may lift a free end's a little above, where the relation has no factor."""
 
 
+PAST = 0.99
+"""Share of its peak below which the side's velocity is when a pass ends; a cosine's is 0.905 then, AFTER its peak."""
+
+
 @dataclass
 class Calibration:
     """What a calibration found.
@@ -193,7 +197,19 @@ def _pass(scene: DiskScene, time_step: float, found: Calibration, pulse: Cosine)
     due = pulse.peak_time() + (0.0 if found.kind == "input" else _travel(scene, found.side, found.motion))
     simulation.run(int(np.ceil((due + AFTER * pulse.period) / time_step)))
     peaks = simulation.edge_peaks(found.side)[:, axis_of_motion(found.side, found.motion), 1]
+    _must_be_past(simulation, found, float(peaks.mean()))
     return float(peaks.mean()), simulation.state.step
+
+
+def _must_be_past(simulation: Simulation, found: Calibration, peak: float) -> None:
+    """Raise RunError where the pulse that an input side lets in has not passed its peak (m/s) when a pass ends."""
+    scene = simulation.scene
+    velocity = simulation.state.velocity[axis_of_motion(found.side, found.motion), scene.edges[found.side].nodes]
+    if found.kind == "input" and np.abs(velocity).mean() >= PAST * peak:
+        raise RunError(
+            f"calibration of {found.side}: the pulse is not past its peak after {simulation.time:.4g} s, when a pass "
+            f'ends; "{scene.case.side(found.side).type}" lets its waves in late or not at all'
+        )
 
 
 def _travel(scene: DiskScene, side: str, motion: Motion) -> float:

@@ -149,7 +149,8 @@ def _line_load(scene: DiskScene) -> LineLoad:
 def _yielding(case: DiskCase) -> Iterator[str]:
     """What makes the body other than a linear half-space below a free surface."""
     if LAWS[case.material.law].has_history:
-        yield f'material.law: is "{case.material.law}", must be "elastic"; the solution is that of a linear solid'
+        name = case.material.law
+        yield f'material.law: is "{name}", must have no history, as "elastic"; the solution is that of a linear solid'
     top = case.side("top")
     if not top.is_free:
         yield f'boundary.top.type: is "{top.type}", must be "free", the surface of the half-space'
