@@ -405,6 +405,45 @@ def test_a_homogenised_calibration_has_no_passes_to_show(dembound, written, tmp_
     assert not list((tmp_path / "results").rglob("convergence.png"))
 
 
+def test_all_sides_are_calibrated_at_once_and_leave_one_case(dembound, written, tmp_path) -> None:
+    path = written(changes={"wave.pulse.period": 0.05, "boundary.right.beta_p": 0.5})
+    answer = dembound("calibrate", path, "--all", "--tolerance", "1e-2")
+
+    assert answer.code == 0
+    folder = tmp_path / "results" / "bar_calibration"
+    records = {"left_p/calibration.h5", "right_p/calibration.h5"}
+    assert files(tmp_path / "results" / "bar_calibration") == {
+        *records,
+        "bar_calibrated.toml",
+        "summary.json",
+        "convergence.png",
+    }
+    found = json.loads((folder / "summary.json").read_text())["result"]
+    sides = load(folder / "bar_calibrated.toml").boundary
+    assert found == {f"boundary.{side}.beta_p": sides[side].beta_p for side in ("left", "right")}
+    rows = [line for line in answer.out.splitlines() if line.startswith("│ boundary.")]
+    assert [row.split()[1] for row in rows] == list(found)
+    assert "right, pass  1: beta_p = 0.500000" in answer.out
+    assert dembound("plot", folder / "left_p", folder / "right_p").code == 0
+
+    # once more, from what it left: the names stay as they are
+    again = dembound("calibrate", folder / "bar_calibrated.toml", "--all", "--method", "homogenised")
+    assert again.code == 0
+    assert files(tmp_path / "results" / "bar_calibration") == {*records, "bar_calibrated.toml", "summary.json"}
+    one = dembound("calibrate", folder / "bar_calibrated.toml", "-b", "left", "--method", "homogenised")
+    assert one.code == 0
+    assert (tmp_path / "results" / "bar_calibration_left_p_homogenised" / "bar_calibrated.toml").is_file()
+
+
+def test_one_side_or_all_of_them_are_calibrated(dembound, written, tmp_path) -> None:
+    path = written()
+    assert dembound("calibrate", path) == Answer(2, "", "--boundary: is missing; name a side, or give --all\n")
+    answer = dembound("calibrate", path, "--all", "-b", "left", "--wave", "p")
+    assert answer.code == 2
+    assert [line.split(":")[0] for line in answer.err.splitlines()] == ["--boundary", "--wave"]
+    assert not (tmp_path / "results").exists()
+
+
 def test_calibrating_a_side_without_dashpots_is_bad_input(dembound, written, tmp_path) -> None:
     answer = dembound("calibrate", written(), "--boundary", "top")
 
