@@ -1,6 +1,7 @@
 """dembound: waves in bonded particles, with artificial boundaries that really absorb.
 
-From Python: `load`, `case`, `change`, `run`, `calibrate` and `Results`; see `dembound.api` and docs/python.md.
+From Python: `load`, `case`, `change`, `run`, `calibrate`, `calibrate_all` and `Results`; see `dembound.api` and
+docs/python.md.
 """
 
 import time
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
         Results,
         RunError,
         calibrate,
+        calibrate_all,
         case,
         change,
         load,
@@ -42,6 +44,7 @@ __all__ = [
     "Results",
     "RunError",
     "calibrate",
+    "calibrate_all",
     "case",
     "change",
     "load",

@@ -16,7 +16,7 @@ from dembound.casefile.model import as_kind
 from dembound.errors import CaseError, DemboundError, PackingError, RunError
 from dembound.results.results import Arrays, Results
 from dembound.running import Progress, run_case
-from dembound.studies import calibration
+from dembound.studies import all_sides, calibration
 from dembound.studies.calibration import Calibration
 from dembound.table import Table, as_toml
 
@@ -31,6 +31,7 @@ __all__ = [
     "Results",
     "RunError",
     "calibrate",
+    "calibrate_all",
     "case",
     "change",
     "load",
@@ -111,9 +112,22 @@ def calibrate(case: Case, side: str, **options: Any) -> tuple[Case, Calibration]
 
     Raises CaseError when the side has no dashpots or cannot move that way, RunError when β does not converge.
     """
-    disks = as_kind(kinds.checked(case), DiskCase, "is the case of a bar; β of disks is calibrated")
-    found = calibration.calibrate(disks, side, **options)
+    found = calibration.calibrate(_of_disks(case), side, **options)
     return change(case, {f"boundary.{side}.{found.factor}": found.result}), found
+
+
+def calibrate_all(case: Case, **options: Any) -> tuple[Case, list[Calibration]]:
+    """Find all factors β of all sides with dashpots, for the waves whose motion is not held; as `calibrate`.
+
+    options : those of `calibrate` but motion.
+    """
+    found = all_sides.calibrate_all(_of_disks(case), **options)
+    return change(case, all_sides.changes_of(found)), found
+
+
+def _of_disks(case: Case) -> DiskCase:
+    """The case, checked; raises CaseError for that of a bar."""
+    return as_kind(kinds.checked(case), DiskCase, "is the case of a bar; β of disks is calibrated")
 
 
 class _Warns(Progress):

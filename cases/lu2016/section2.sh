@@ -3,6 +3,7 @@
 #
 #   cases/lu2016/section2.sh [RESULTS]      (default: results/lu2016)
 set -euo pipefail
+python3 -c 'import dembound' # ends here, before anything is run, where this is not the Python of dembound
 cases=$(cd "$(dirname "$0")" && pwd)
 figures=${1:-results/lu2016}/figures
 mkdir -p "$figures"

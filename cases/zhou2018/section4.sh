@@ -8,6 +8,15 @@ set -euo pipefail
 cases=$(cd "$(dirname "$0")" && pwd)
 results=${1:-results/zhou2018}
 figures=$results/figures
+
+needs() { # PACKAGE MODULE: ends here, before anything is run, where python3 has no such module
+    python3 -c "import importlib.util, sys; sys.exit(importlib.util.find_spec('$2') is None)" || {
+        echo "$(basename "$0"): needs the Python package $1 in $(command -v python3); pip install $1" >&2
+        exit 1
+    }
+}
+needs dembound dembound
+needs scikit-fem skfem
 mkdir -p "$figures"
 
 errors() { # RUN REFERENCE: along x, along y and both

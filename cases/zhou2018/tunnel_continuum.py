@@ -1,6 +1,6 @@
 """The tunnel of Zhou et al. (2018), section 4, in an elastic continuum: the reference for figure 18.
 
-Finite elements in plane strain (scikit-fem, of the extra "dev") on ground so wide that nothing scattered comes back
+Finite elements in plane strain (`pip install scikit-fem`) on ground so wide that nothing scattered comes back
 from its sides. The histories are written as a record like a run's, for `dembound plot` and `dembound compare`.
 
     python cases/zhou2018/tunnel_continuum.py                                         # the paper's own moduli

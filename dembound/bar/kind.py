@@ -15,7 +15,7 @@ from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step
 from dembound.bar.summary import summarise_bar
 from dembound.bar.warnings import bar_warnings, warnings_after_bar
-from dembound.casefile.bar import SCHEMA, STARTER, BarCase
+from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.motion.kind import Beginning, Kind, OnLook
 from dembound.motion.trackers import Run
 from dembound.plot.bar import plot_bar, plot_bar_field
@@ -33,7 +33,6 @@ class Bars(Kind[BarCase, BarScene]):
 
     name, plural = "bar", "bars"
     schema = SCHEMA
-    starter = STARTER
     mesh_name = "bar"
     view_script = VIEW_SCRIPT
 

@@ -33,7 +33,6 @@ app = typer.Typer(
     help="Waves in bonded particles, with artificial boundaries that really absorb, and in bars of rock that break.",
     epilog=EXIT_CODES,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )

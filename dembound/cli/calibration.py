@@ -1,20 +1,26 @@
 """The command calibrate."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from rich.table import Table
 
 from dembound.casefile import to_toml
 from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, out, use_threads
 from dembound.disks.facts import FACTORS
+from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.plot.convergence import plot_convergence
 from dembound.plot.style import save
+from dembound.studies.all_sides import calibrate_all, changes_of, summary_of
 from dembound.studies.calibration import Calibration, calibrate
+
+CALIBRATED = "_calibrated"
+"""What the name of a calibrated case ends with."""
 
 OneCase = Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")]
 
@@ -35,9 +41,14 @@ class CalibrationMethod(StrEnum):
 
 
 @app.command("calibrate", rich_help_panel="Cases")
-def calibrate_side(
+def calibrate_sides(
     case: OneCase,
-    boundary: Annotated[Side, typer.Option("--boundary", "-b", help="Side to calibrate.")],
+    boundary: Annotated[
+        Side | None, typer.Option("--boundary", "-b", help="Side to calibrate; required without --all.")
+    ] = None,
+    every: Annotated[
+        bool, typer.Option("--all", "-a", help="Calibrate every side with dashpots, for both waves that can move it.")
+    ] = False,
     wave: Annotated[
         WaveType | None, typer.Option(help="P or S; by default what runs towards this side, else P.")
     ] = None,
@@ -56,26 +67,40 @@ def calibrate_side(
     name: Name = None,
     threads: Threads = None,
 ) -> None:
-    """Find the β with which a viscous side absorbs, or lets in, a plane wave whole.
+    """Find the β with which viscous sides absorb, or let in, a plane wave whole.
 
     Prints β and M_out/M_in of every pass; leaves the calibrated case, the passes in HDF5 and a picture of them.
     """
+    _one_or_all(boundary, every, wave)
     use_threads(threads)
     loaded = load_disks(case, changes, name)
-    found = calibrate(
-        loaded,
-        boundary.value,
-        motion=wave.value if wave else None,  # type: ignore[arg-type]
-        method=method.value,  # type: ignore[arg-type]
-        start=start,
-        tolerance=tolerance,
-        full=full,
-        report=_print_pass,
-    )
-    folder = output / f"{loaded.name}_calibration_{found.side}_{found.motion}_{found.method}"
-    _print_result(found)
-    for path in _leave(found, folder):
+    options: dict[str, Any] = {"method": method.value, "start": start, "tolerance": tolerance, "full": full}
+    folder = output / f"{loaded.name.removesuffix(CALIBRATED)}_calibration"
+    if boundary is None:
+        found = calibrate_all(loaded, report=_print_pass_of_side, **options)
+        _print_table(found)
+        written = _leave_all(found, folder)
+    else:
+        one = calibrate(
+            loaded,
+            boundary.value,
+            motion=wave.value if wave else None,  # type: ignore[arg-type]
+            report=_print_pass,
+            **options,
+        )
+        _print_result(one)
+        written = _leave(one, folder.with_name(f"{folder.name}_{one.side}_{one.motion}_{one.method}"))
+    for path in written:
         out.print(f"wrote {path}")
+
+
+def _one_or_all(boundary: Side | None, every: bool, wave: WaveType | None) -> None:
+    """Raise CaseError where neither or both are asked for."""
+    if not every and boundary is None:
+        raise CaseError(["--boundary: is missing; name a side, or give --all"])
+    given = {"--boundary": boundary, "--wave": wave}
+    if every and (both := [option for option, value in given.items() if value is not None]):
+        raise CaseError([f"{option}: is for one side, not allowed together with --all" for option in both])
 
 
 def _leave(found: Calibration, folder: Path) -> Iterator[Path]:
@@ -83,23 +108,56 @@ def _leave(found: Calibration, folder: Path) -> Iterator[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     found.write(folder / "calibration.h5")
     yield folder / "calibration.h5"
-    (folder / "summary.json").write_text(json.dumps(found.summary(), indent=2) + "\n")
+    yield from _leave_case([found], found.summary(), folder, [folder / "calibration.h5"])
+
+
+def _leave_all(found: Sequence[Calibration], folder: Path) -> Iterator[Path]:
+    """Write what all calibrations of a case found, the passes of each in a folder of its own; yields each file."""
+    records = [folder / f"{each.side}_{each.motion}" / "calibration.h5" for each in found]
+    for each, record in zip(found, records, strict=True):
+        record.parent.mkdir(parents=True, exist_ok=True)
+        each.write(record)
+        yield record
+    yield from _leave_case(found, summary_of(found), folder, records)
+
+
+def _leave_case(
+    found: Sequence[Calibration], summary: Mapping[str, Any], folder: Path, records: Sequence[Path]
+) -> Iterator[Path]:
+    """Write the summary, the calibrated case and a picture of the passes; records : of those found, in their order."""
+    (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
     yield folder / "summary.json"
-    changed = with_changes(found.case, {f"boundary.{found.side}.{found.factor}": found.result})
-    calibrated = folder / f"{found.case.name}_calibrated.toml"
-    calibrated.write_text(to_toml(changed, folder), encoding="utf-8")
+    case = found[0].case
+    calibrated = folder / f"{case.name.removesuffix(CALIBRATED)}{CALIBRATED}.toml"
+    calibrated.write_text(to_toml(with_changes(case, changes_of(found)), folder), encoding="utf-8")
     yield calibrated
-    if found.beta:
-        save(plot_convergence([folder / "calibration.h5"]), folder / "convergence.png")
-        yield folder / "convergence.png"
+    picture = folder / "convergence.png"
+    picture.unlink(missing_ok=True)  # that of an earlier calibration, by another method
+    if found[0].beta:
+        save(plot_convergence(records), picture)
+        yield picture
 
 
-def _print_pass(found: Calibration) -> None:
+def _print_pass(found: Calibration, of: str = "") -> None:
     number = len(found.beta)
     out.print(
-        f"pass {number:2d}: {FACTORS[found.factor]} = {found.beta[-1]:.6f}, "
+        f"{of}pass {number:2d}: {FACTORS[found.factor]} = {found.beta[-1]:.6f}, "
         f"M_out = {found.outgoing[-1]:.6f} m/s, M_out/M_in = {found.ratio[-1]:.6f}"
     )
+
+
+def _print_pass_of_side(found: Calibration) -> None:
+    _print_pass(found, f"{found.side}, ")
+
+
+def _print_table(found: Sequence[Calibration]) -> None:
+    """One line per factor: what it is of, what it was and is, and how well the side answers then."""
+    table = Table("key", "side", "β", "before", "M_out/M_in", "passes", title=found[0].case.name)
+    for (key, result), each in zip(changes_of(found).items(), found, strict=True):
+        before = each.case.boundary[each.side].factors[each.motion]
+        ratio = f"{each.ratio[-1]:.6f}" if each.ratio else "–"
+        table.add_row(key, each.kind, f"{result:.6f}", f"{before:g}", ratio, str(len(each.beta)))
+    out.print(table)
 
 
 def _print_result(found: Calibration) -> None:

@@ -1,4 +1,4 @@
-"""Commands that begin with a case: new, check, run, packing."""
+"""Commands that begin with a case: check, run, packing, exact."""
 
 import json
 import time
@@ -9,8 +9,6 @@ import typer
 
 from dembound import IMPORT_BEGAN
 from dembound.boundaries.support import Edge
-from dembound.casefile.bar import STARTER as BAR_STARTER
-from dembound.casefile.disks import STARTER
 from dembound.check import check
 from dembound.cli.app import (
     PICTURE,
@@ -41,18 +39,6 @@ RIGHT = Side("right")
 
 IMPORT_SECONDS = time.perf_counter() - IMPORT_BEGAN
 """What the command line took to be imported, but for the rest of its own modules."""
-
-
-@app.command("new", rich_help_panel="Cases")
-def new(
-    path: Annotated[Path, typer.Argument(help="File to write.")] = Path("case.toml"),
-    bar: Annotated[bool, typer.Option("--bar", help="A bar of nodes that spalls, instead of disks.")] = False,
-) -> None:
-    """Write a commented starter case."""
-    if path.exists():
-        raise CaseError([f"{path}: exists already, give another name"])
-    path.write_text(BAR_STARTER if bar else STARTER, encoding="utf-8")
-    out.print(f"wrote {path}; try: dembound check {path}")
 
 
 @app.command("check", rich_help_panel="Cases")

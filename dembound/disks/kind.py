@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from dembound.casefile.disks import SCHEMA, STARTER, DiskCase
+from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.facts import disk_facts
 from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
@@ -35,7 +35,6 @@ class Disks(Kind[DiskCase, DiskScene]):
 
     name = plural = "disks"
     schema = SCHEMA
-    starter = STARTER
     mesh_name = "particles"
     view_script = VIEW_SCRIPT
 

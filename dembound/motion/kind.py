@@ -89,14 +89,12 @@ class Kind(ABC, Generic[C, S]):
     ----------
     name : what records call it; plural : what messages call several.
     schema : its case files.
-    starter : the case that `dembound new` writes.
     mesh_name : what its files for ParaView are called; view_script : a script that shows them.
     """
 
     name: str
     plural: str
     schema: Schema
-    starter: str
     mesh_name: str
     view_script: str
 

@@ -100,7 +100,6 @@ class DensePacking(Packing):
     bond_gap: float = quantity(0.0, unit="m", help="gaps up to this are contacts too", ge=0.0)
 
     @property
-    @abstractmethod
     def brick_size(self) -> tuple[float, float]:
         """Width and height of one brick in metres."""
         return self.brick

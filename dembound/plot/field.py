@@ -7,10 +7,9 @@ from typing import Literal, get_args
 import h5py
 import numpy as np
 
-from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.errors import CaseError
 from dembound.plot.disks import Window
-from dembound.results.histories import UNITS
+from dembound.results.histories import FREE_FIELD, UNITS
 from dembound.results.reader import COMPONENTS, cracks_until, laws_in_words, laws_of, snapshot_of
 
 FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced"]

@@ -8,10 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.errors import CaseError
 from dembound.plot.style import line_style, new_figure, outside_legend, styled, time_unit
-from dembound.results.histories import UNITS, History, Quantity, read_histories
+from dembound.results.histories import FREE_FIELD, UNITS, History, Quantity, read_histories
 from dembound.results.reader import COMPONENTS, record_names
 
 Component = Literal["x", "y", "both", "rotation"]

@@ -7,6 +7,7 @@ from typing import Literal
 import h5py
 import numpy as np
 
+from dembound.casefile.disks.monitor import FREE_FIELD as FREE_FIELD  # the ending of a twin's name, for pictures, too
 from dembound.errors import CaseError
 from dembound.results.reader import open_record, place_in_words
 

@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 
 from dembound.casefile import Case
-from dembound.casefile.disks import STARTER
 from dembound.kinds import loads, with_changes
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
 from dembound.results.recorder import Histories, Recorder, Snapshots
 from dembound.running import plan
+from dembound.starting import starting_point
+
+STARTER = starting_point()
 
 CASE = """
 [packing]

@@ -140,6 +140,15 @@ def test_a_side_is_calibrated() -> None:
     assert calibrated.boundary["right"].beta_p == found.result == pytest.approx(1.0, abs=0.02)
 
 
+def test_all_sides_are_calibrated() -> None:
+    case = dembound.change(dembound.case(**TABLES), {"boundary.right.beta_p": 2.0, "wave.push.period": 0.1})
+    calibrated, found = dembound.calibrate_all(case, method="homogenised")
+
+    assert {(each.side, each.motion): each.result for each in found} == {
+        (side, motion): table.factors[motion] for side, table in calibrated.boundary.items() for motion in table.factors
+    }
+
+
 def test_the_documented_examples_run(tmp_path, monkeypatch, capsys) -> None:
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/python.md").read_text(), flags=re.DOTALL)
     monkeypatch.chdir(tmp_path)

@@ -19,7 +19,7 @@ import tomli_w
 from matplotlib.figure import Figure
 from typer.main import get_command
 
-from dembound import __version__, cli
+from dembound import __version__, cli, starting
 from dembound.casefile.bar import BarCase
 from dembound.cli.progress import Lines, progress_of
 from dembound.kinds import load
@@ -97,7 +97,7 @@ def test_version_and_help_end_well(dembound) -> None:
     assert dembound("--version") == Answer(0, f"dembound {__version__}\n", "")
     told = dembound("--help")
     assert told.code == 0
-    for command in ("new", "check", "run", "calibrate", "plot", "dispersion", "gauge"):
+    for command in ("new", "cases", "schema", "check", "run", "calibrate", "plot", "dispersion", "gauge"):
         assert command in told.out
 
 
@@ -107,18 +107,39 @@ def test_unknown_commands_and_options_are_bad_input(dembound) -> None:
     assert dembound("calibrate", "bar.toml", "--boundary", "up").code == 2
 
 
-def test_a_new_case_can_be_run_as_it_stands(dembound, tmp_path) -> None:
+def test_a_new_case_can_be_checked_as_it_stands(dembound, tmp_path) -> None:
     assert dembound("new", "first.toml").code == 0
 
     assert load(tmp_path / "first.toml").name == "first"
     assert dembound("check", "first.toml").code == 0
 
 
-def test_a_new_case_of_a_bar_can_be_run_as_it_stands(dembound, tmp_path) -> None:
-    assert dembound("new", "--bar", "first.toml").code == 0
+def test_starting_points_are_listed_and_written_by_name(dembound, tmp_path) -> None:
+    listed = dembound("new", "--list")
+    assert [line.split()[0] for line in listed.out.splitlines()] == starting.names()
+    assert files(tmp_path) == set()
 
+    assert dembound("new", "--from", "rock_bar", "first.toml").code == 0
     assert isinstance(load(tmp_path / "first.toml"), BarCase)
     assert dembound("check", "first.toml") == Answer(0, ANY, "")  # nothing to be warned of
+    refused = dembound("new", "--from", "rock", "second.toml")
+    assert refused.code == 2
+    assert refused.err.startswith('--from: is "rock", must be one of long_bar, ')
+
+
+def test_editors_find_the_schema_beside_a_new_case(dembound, tmp_path) -> None:
+    (tmp_path / "mine").mkdir()
+    dembound("new", "mine/first.toml")
+    assert files(tmp_path) == {"mine/first.toml", "mine/dembound.schema.json"}
+    assert (tmp_path / "mine" / "first.toml").read_text().startswith("#:schema ./dembound.schema.json\n")
+    schema = (tmp_path / "mine" / "dembound.schema.json").read_text()
+    assert dembound("schema").out == schema
+    assert dembound("schema", "--output", "own.json").code == 0
+    assert (tmp_path / "own.json").read_text() == schema
+
+    (tmp_path / "mine" / "dembound.schema.json").write_text(schema.replace("duration", "old"))  # an earlier version's
+    dembound("new", "mine/second.toml")
+    assert (tmp_path / "mine" / "dembound.schema.json").read_text() == schema
 
 
 def test_new_overwrites_nothing(dembound, tmp_path) -> None:
@@ -127,6 +148,39 @@ def test_new_overwrites_nothing(dembound, tmp_path) -> None:
 
     assert answer == Answer(2, "", "mine.toml: exists already, give another name\n")
     assert (tmp_path / "mine.toml").read_text() == "precious"
+
+    (tmp_path / "dembound.schema.json").write_text("precious")
+    answer = dembound("new", "other.toml")
+    said = "dembound.schema.json: exists and is no schema of dembound; move it, or give --no-schema\n"
+    assert answer == Answer(2, "", said)
+    assert dembound("new", "--no-schema", "other.toml").code == 0
+    assert files(tmp_path) == {"mine.toml", "other.toml", "dembound.schema.json"}
+    assert (tmp_path / "dembound.schema.json").read_text() == "precious"
+
+
+def test_shipped_cases_are_listed_and_copied(dembound, tmp_path) -> None:
+    listed = dembound("cases")
+    assert listed.code == 0
+    names = [line.split()[0] for line in listed.out.splitlines()]
+    assert {"quickstart", "zhou2018/tunnel"} <= set(names)
+    assert files(tmp_path) == set()
+
+    assert dembound("cases", "copy", "spall") == Answer(0, "wrote spall.toml\nwrote spall_pulse.txt\n", "")
+    assert dembound("check", "spall.toml").code == 0
+    assert dembound("cases", "copy", "spall").code == 2
+    assert dembound("cases", "copy", "zhou2018/tunnel", "there").code == 0
+    assert files(tmp_path) == {"spall.toml", "spall_pulse.txt", "there/tunnel.toml"}
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [("dembound new --from ro", "rock_bar"), ("dembound cases copy zh", "zhou2018"), ("dembound calib", "calibrate")],
+)
+def test_the_shell_completes_commands_and_names(dembound, monkeypatch, typed: str, offered: str) -> None:
+    monkeypatch.setenv("_DEMBOUND_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", typed)
+    monkeypatch.setenv("COMP_CWORD", str(len(typed.split()) - 1))
+    assert offered in dembound().out.split()
 
 
 def test_all_mistakes_are_told_at_once_and_nothing_is_written(dembound, written, tmp_path) -> None:
@@ -362,6 +416,45 @@ def test_a_homogenised_calibration_has_no_passes_to_show(dembound, written, tmp_
     assert not list((tmp_path / "results").rglob("convergence.png"))
 
 
+def test_all_sides_are_calibrated_at_once_and_leave_one_case(dembound, written, tmp_path) -> None:
+    path = written(changes={"wave.pulse.period": 0.05, "boundary.right.beta_p": 0.5})
+    answer = dembound("calibrate", path, "--all", "--tolerance", "1e-2")
+
+    assert answer.code == 0
+    folder = tmp_path / "results" / "bar_calibration"
+    records = {"left_p/calibration.h5", "right_p/calibration.h5"}
+    assert files(tmp_path / "results" / "bar_calibration") == {
+        *records,
+        "bar_calibrated.toml",
+        "summary.json",
+        "convergence.png",
+    }
+    found = json.loads((folder / "summary.json").read_text())["result"]
+    sides = load(folder / "bar_calibrated.toml").boundary
+    assert found == {f"boundary.{side}.beta_p": sides[side].beta_p for side in ("left", "right")}
+    rows = [line for line in answer.out.splitlines() if line.startswith("│ boundary.")]
+    assert [row.split()[1] for row in rows] == list(found)
+    assert "right, pass  1: β_P = 0.500000" in answer.out
+    assert dembound("plot", folder / "left_p", folder / "right_p").code == 0
+
+    # once more, from what it left: the names stay as they are
+    again = dembound("calibrate", folder / "bar_calibrated.toml", "--all", "--method", "homogenised")
+    assert again.code == 0
+    assert files(tmp_path / "results" / "bar_calibration") == {*records, "bar_calibrated.toml", "summary.json"}
+    one = dembound("calibrate", folder / "bar_calibrated.toml", "-b", "left", "--method", "homogenised")
+    assert one.code == 0
+    assert (tmp_path / "results" / "bar_calibration_left_p_homogenised" / "bar_calibrated.toml").is_file()
+
+
+def test_one_side_or_all_of_them_are_calibrated(dembound, written, tmp_path) -> None:
+    path = written()
+    assert dembound("calibrate", path) == Answer(2, "", "--boundary: is missing; name a side, or give --all\n")
+    answer = dembound("calibrate", path, "--all", "-b", "left", "--wave", "p")
+    assert answer.code == 2
+    assert [line.split(":")[0] for line in answer.err.splitlines()] == ["--boundary", "--wave"]
+    assert not (tmp_path / "results").exists()
+
+
 def test_calibrating_a_side_without_dashpots_is_bad_input(dembound, written, tmp_path) -> None:
     answer = dembound("calibrate", written(), "--boundary", "top")
 
@@ -410,7 +503,7 @@ def test_what_cannot_be_drawn_is_bad_input(dembound, written, tmp_path) -> None:
 
 
 def test_a_bar_leaves_pictures_and_what_paraview_shows(dembound, tmp_path) -> None:
-    dembound("new", "--bar", "rod.toml")
+    dembound("new", "--from", "rock_bar", "rod.toml")
     short = ("--set", "run.duration=5e-5", "--set", "bar.spacing=0.01", "--set", "output.snapshots=3")
     assert dembound("run", "rod.toml", *short).code == 0
 
@@ -656,7 +749,7 @@ def test_options_of_gauges_that_make_no_sense_are_bad_input(dembound, felt, tmp_
 
 
 def test_the_starter_of_a_bar_tells_its_strength_and_no_speed(dembound) -> None:
-    dembound("new", "--bar", "bar.toml")
+    dembound("new", "--from", "rock_bar", "bar.toml")
     few = ("--set", "output.pictures=false", "--set", "output.snapshots=1")
     assert dembound("run", "bar.toml", *few).code == 0
     told = dembound("gauge", "results/bar", "--free-end", "end", "--spall", 0.907)

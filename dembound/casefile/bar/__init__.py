@@ -2,6 +2,5 @@
 
 from dembound.casefile.bar.model import BarCase
 from dembound.casefile.bar.schema import SCHEMA
-from dembound.casefile.bar.starter import STARTER
 
-__all__ = ["SCHEMA", "STARTER", "BarCase"]
+__all__ = ["SCHEMA", "BarCase"]

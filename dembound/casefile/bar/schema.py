@@ -15,7 +15,7 @@ from dembound.casefile.types import BarEndTable, MethodTable
 SCHEMA = Schema(
     case=BarCase,
     noun="a bar",
-    new="dembound new --bar",
+    new="dembound new --from rock_bar",
     marks=("bar", "method"),
     tables={
         "bar": TypeAdapter(Bar),

@@ -2,6 +2,5 @@
 
 from dembound.casefile.disks.model import DiskCase
 from dembound.casefile.disks.schema import SCHEMA
-from dembound.casefile.disks.starter import STARTER
 
-__all__ = ["SCHEMA", "STARTER", "DiskCase"]
+__all__ = ["SCHEMA", "DiskCase"]

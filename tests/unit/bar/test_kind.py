@@ -5,9 +5,7 @@ import numpy as np
 import pytest
 
 from dembound.bar.kind import Bars
-from dembound.casefile.bar import STARTER
 from dembound.errors import CaseError
-from dembound.kinds import loads
 from dembound.running import preflight
 
 
@@ -33,11 +31,6 @@ def test_what_would_stop_a_run_is_found_before_it(spalling) -> None:
 
 def test_a_short_trial_shows_a_whole_run(spalling) -> None:
     assert Bars().not_estimated(spalling()) == ""
-
-
-def test_the_starter_is_a_case_of_a_bar() -> None:
-    assert Bars.starter is STARTER
-    assert isinstance(loads(Bars.starter), Bars.schema.case)
 
 
 def test_stress_is_drawn_where_there_are_monitors(spalled_run, tmp_path) -> None:

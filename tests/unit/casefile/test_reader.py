@@ -249,8 +249,8 @@ def test_all_mistakes_of_all_tables_are_listed_at_once() -> None:
 def test_a_case_of_neither_disks_nor_a_bar_is_asked_what_it_is() -> None:
     (line,) = problems("")
     assert line == (
-        "has neither [bar] (a bar) nor [packing] (disks); `dembound new --bar` and `dembound new` write a case to "
-        "start from"
+        "has neither [bar] (a bar) nor [packing] (disks); `dembound new --from rock_bar` and `dembound new` write a "
+        "case to start from"
     )
     # what else it holds cannot be judged, but for tables that no case has
     found = problems(GOOD.replace("[packing]", "[pakcing]").replace("density", "densitty"))

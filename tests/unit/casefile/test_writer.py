@@ -6,9 +6,11 @@ from pathlib import Path
 import pytest
 
 from dembound.casefile import to_toml
-from dembound.casefile.disks import STARTER
 from dembound.errors import CaseError
 from dembound.kinds import load, loads, with_changes
+from dembound.starting import starting_point
+
+STARTER = starting_point()
 
 RECORD = '[wave.quake]\ntype = "file"\npath = "quake.txt"\n'
 

@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from dembound.casefile.disks import STARTER
 from dembound.disks.kind import Disks
 from dembound.disks.static import settle
 from dembound.errors import CaseError
-from dembound.kinds import loads
 from dembound.running import preflight
 
 HANGING = {
@@ -115,11 +113,6 @@ def test_what_would_stop_a_run_is_found_before_it(bar, changes: dict, said: str)
 )
 def test_what_a_short_trial_does_not_show(bar, changes: dict, without: str) -> None:
     assert Disks().not_estimated(bar(changes)) == without
-
-
-def test_the_starter_is_a_case_of_disks() -> None:
-    assert Disks.starter is STARTER
-    assert isinstance(loads(Disks.starter), Disks.schema.case)
 
 
 def test_a_run_is_shown_as_its_scene(small_run) -> None:

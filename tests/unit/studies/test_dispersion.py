@@ -6,11 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dembound.casefile.disks import STARTER
 from dembound.errors import CaseError
 from dembound.exact import Lattice, courant_limit
 from dembound.kinds import loads, with_changes
+from dembound.starting import starting_point
 from dembound.studies.dispersion import COLUMNS, ROWS, lattices, lattices_of, measure, write_table
+
+STARTER = starting_point()
 
 BAR = """
 [bar]

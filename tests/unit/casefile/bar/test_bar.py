@@ -5,9 +5,12 @@ import math
 import pytest
 
 from dembound.casefile.bar import BarCase
-from dembound.casefile.disks import STARTER, DiskCase
+from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
 from dembound.kinds import loads, with_changes
+from dembound.starting import starting_point
+
+STARTER = starting_point()
 
 GOOD = """\
 title = "short bar"

@@ -1,19 +1,21 @@
-"""The starter case of a bar says what is true, runs, and spalls."""
+"""The starting point of a rock bar says what is true, runs, and spalls."""
 
 import re
 
 import pytest
 
 from dembound.bar.fracture import spalls
-from dembound.casefile.bar import STARTER as BAR_STARTER
 from dembound.kinds import loads
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
+from dembound.starting import starting_point
+
+ROCK_BAR = starting_point("rock_bar")
 
 
 def test_keys_that_are_commented_out_exist_and_show_their_defaults() -> None:
-    text, count = re.subn(r"^# (?=\w+ = |\[)", "", BAR_STARTER, flags=re.MULTILINE)
-    told, plain = loads(text), loads(BAR_STARTER)
+    text, count = re.subn(r"^# (?=\w+ = |\[)", "", ROCK_BAR, flags=re.MULTILINE)
+    told, plain = loads(text), loads(ROCK_BAR)
 
     assert count == 13
     assert told.boundary["right"].type == "free"
@@ -22,7 +24,7 @@ def test_keys_that_are_commented_out_exist_and_show_their_defaults() -> None:
 
 
 def test_it_first_spalls_where_and_when_a_triangle_makes_it() -> None:
-    planned = plan(loads(BAR_STARTER))
+    planned = plan(loads(ROCK_BAR))
     simulation = Simulation(planned.scene, planned.time_step)
     simulation.run(planned.steps)
     spall, *_ = spalls(simulation.system.parts[0].bonds, planned.scene.positions[:, 0], planned.time_step)

@@ -1,0 +1,112 @@
+"""Commands that give something to start from: new, cases, schema."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from dembound import shipped
+from dembound.casefile.json_schema import IDENTIFIER, json_schema
+from dembound.cli.app import app, out, writable
+from dembound.errors import CaseError
+from dembound.kinds import SCHEMAS
+from dembound.starting import DEFAULT, names, starting_point, titles
+
+SCHEMA_FILE = "dembound.schema.json"
+"""What the schema is called that stands beside new cases."""
+
+cases = typer.Typer(invoke_without_command=True)
+app.add_typer(cases, name="cases", rich_help_panel="Cases")
+
+
+@app.command("new", rich_help_panel="Cases")
+def new(
+    path: Annotated[Path, typer.Argument(metavar="FILE", help="File to write.")] = Path("case.toml"),
+    start: Annotated[
+        str, typer.Option("--from", metavar="NAME", help="Starting point.", autocompletion=lambda: names())
+    ] = DEFAULT,
+    listed: Annotated[bool, typer.Option("--list", help="List the starting points and stop.")] = False,
+    schema: Annotated[bool, typer.Option(help=f"Write {SCHEMA_FILE} beside it, for editors.")] = True,
+) -> None:
+    """Write a commented case to start from."""
+    if listed:
+        _print_titles(titles())
+        return
+    text = starting_point(start)
+    if path.exists():
+        raise CaseError([f"{path}: exists already, give another name"])
+    if schema:
+        _write_schema_beside(path)
+        text = f"#:schema ./{SCHEMA_FILE}\n{text}"
+    path.write_text(text, encoding="utf-8")
+    out.print(f"wrote {path}; try: dembound check {path}", markup=False)
+
+
+def _write_schema_beside(path: Path) -> None:
+    """Write the schema into the folder of a case, over one that an earlier version may have left.
+
+    Raises CaseError where a file of that name is something else.
+    """
+    file, text = path.parent / SCHEMA_FILE, _schema()
+    if file.exists():
+        if IDENTIFIER not in file.read_text(encoding="utf-8", errors="replace"):
+            raise CaseError([f"{file}: exists and is no schema of dembound; move it, or give --no-schema"])
+        if file.read_text(encoding="utf-8") == text:
+            return
+    writable(file)
+    file.write_text(text, encoding="utf-8")
+    out.print(f"wrote {file}, by which editors complete and check cases", markup=False)
+
+
+def _schema() -> str:
+    """The schema as the text of a file."""
+    return json.dumps(json_schema(SCHEMAS), indent=1, ensure_ascii=False) + "\n"
+
+
+@app.command("schema", rich_help_panel="Cases")
+def schema(
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="File to write (JSON).", callback=writable)
+    ] = None,
+) -> None:
+    """Print a JSON schema of case files, by which editors complete and check them."""
+    if output is None:
+        typer.echo(_schema(), nl=False)
+        return
+    output.write_text(_schema(), encoding="utf-8")
+    out.print(f"wrote {output}", markup=False)
+
+
+@cases.callback()
+def list_cases(context: typer.Context) -> None:
+    """List the cases that come with dembound, or copy some."""
+    if context.invoked_subcommand is None:
+        _print_titles(shipped.titles())
+        groups = " or ".join(shipped.groups())
+        out.print(f"copy one, or all of {groups}: dembound cases copy NAME [FOLDER]", markup=False)
+
+
+@cases.command("copy")
+def copy(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="NAME",
+            help="A case, as `dembound cases` lists it, or a group such as zhou2018.",
+            autocompletion=lambda: [*shipped.groups(), *shipped.names()],
+        ),
+    ],
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Where to.")] = Path(),
+) -> None:
+    """Copy a case, or a group of cases with their scripts, and the files they read. Overwrites nothing."""
+    for path in shipped.copy(name, folder):
+        out.print(f"wrote {path}", markup=False)
+
+
+def _print_titles(titles: Mapping[str, str]) -> None:
+    """Names and titles, one line each."""
+    width = max(map(len, titles))
+    for name, title in titles.items():
+        out.print(f"{name:{width}}  {title}", markup=False)

@@ -1,0 +1,90 @@
+"""The cases that come with the package: what there is, and copies of it with the files it needs.
+
+They stand in the folder ``cases`` of the repository, which a wheel carries as ``dembound/_cases``. A case goes by its
+path there without ending, ``zhou2018/tunnel``; a folder of cases is a group, with scripts and tables of its own.
+"""
+
+import shutil
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+from dembound.casefile import Case
+from dembound.casefile.messages import choices, show
+from dembound.errors import CaseError
+from dembound.kinds import load
+
+PACKAGE = Path(__file__).parent
+
+NOT_COPIED = "__pycache__"
+
+
+def folder() -> Path:
+    """Where the cases are: in the installed package, or beside the package in a checkout.
+
+    Raises CaseError where they are in neither.
+    """
+    for place in (PACKAGE / "_cases", PACKAGE.parent / "cases"):
+        if place.is_dir():
+            return place
+    raise CaseError(["cases: this installation has none; install dembound from a wheel or a checkout"])
+
+
+def names() -> list[str]:
+    """Names of all cases, those of no group first."""
+    found = [path.relative_to(folder()).with_suffix("").as_posix() for path in folder().rglob("*.toml")]
+    return sorted(found, key=lambda name: ("/" in name, name))
+
+
+def titles() -> dict[str, str]:
+    """Name of every case -> its title, in the order of `names`."""
+    return {name: tomllib.loads(_file(name).read_text(encoding="utf-8")).get("title", "") for name in names()}
+
+
+def groups() -> list[str]:
+    """Names of the folders that cases are in."""
+    return sorted({name.rpartition("/")[0] for name in names() if "/" in name})
+
+
+def copy(name: str, target: Path) -> list[Path]:
+    """Copy a case and the files it reads into the folder `target`, or a group into a folder of its name there.
+
+    Returns the copies, the case first. Raises CaseError, with nothing written, for an unknown name and for files that
+    are there already.
+    """
+    copies = dict(_files(name))
+    taken = [str(target / place) for place in copies if (target / place).exists()]
+    if taken:
+        others = f", as {len(taken) - 1} more of its files do" if len(taken) > 1 else ""
+        raise CaseError([f"{taken[0]}: exists already{others}; give another folder"])
+    for place, source in copies.items():
+        (target / place).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source, target / place)
+    return [target / place for place in copies]
+
+
+def _file(name: str) -> Path:
+    """The file of a case."""
+    return folder() / f"{name}.toml"
+
+
+def _files(name: str) -> Iterator[tuple[Path, Path]]:
+    """The files of a case or a group: each one's place below the target, and where it is."""
+    if name in names():
+        path = _file(name)
+        for file in (path, *_read_by(load(path))):
+            yield file.relative_to(path.parent), file
+    elif name in groups():
+        for file in sorted((folder() / name).rglob("*")):
+            if file.is_file() and NOT_COPIED not in file.parts:
+                yield file.relative_to(folder()), file
+    else:
+        raise CaseError([f"NAME: is {show(name)}, must be one of {choices(name, [*groups(), *names()])}"])
+
+
+def _read_by(case: Case) -> Iterator[Path]:
+    """The files that the waves of a case are read from, where it names them by relative paths."""
+    here = case.folder.resolve()
+    for wave in case.wave.values():
+        for path in wave.moved(here, here.parent).values():
+            yield case.folder / (here.parent / path).resolve().relative_to(here)

@@ -1,0 +1,63 @@
+"""Calibration of all sides of a case that have dashpots, for both waves that can move there."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, get_args
+
+from dembound import __version__
+from dembound.boundaries import Motion, axis_of_motion
+from dembound.casefile.disks import DiskCase
+from dembound.errors import CaseError
+from dembound.studies.calibration import Calibration, Method, Report, calibrate
+
+
+def factors_of(case: DiskCase) -> list[tuple[str, Motion]]:
+    """The sides with dashpots, each with the waves ("p", "s") whose motion is not held there.
+
+    Raises CaseError where there are none.
+    """
+    found = [
+        (side, motion)
+        for side, table in case.boundary.items()
+        for motion in get_args(Motion)
+        if motion in table.factors and "xy"[axis_of_motion(side, motion)] not in case.motion.held
+    ]
+    if not found:
+        raise CaseError(["boundary: has no side with dashpots that can move, so there is nothing to calibrate"])
+    return found
+
+
+def calibrate_all(
+    case: DiskCase,
+    *,
+    method: Method = "impedance",
+    start: float | None = None,
+    tolerance: float = 1e-3,
+    full: bool = False,
+    report: Report | None = None,
+) -> list[Calibration]:
+    """Find all factors of a case, in the order of `factors_of`; parameters as of `calibration.calibrate`.
+
+    Each is found by itself, on the case as it is: the result does not depend on the order.
+
+    Raises CaseError when nothing can be calibrated, RunError when a factor does not converge.
+    """
+    return [
+        calibrate(case, side, motion=motion, method=method, start=start, tolerance=tolerance, full=full, report=report)
+        for side, motion in factors_of(case)
+    ]
+
+
+def changes_of(found: Sequence[Calibration]) -> dict[str, float]:
+    """The factors found by their keys in the case file, such as ``boundary.left.beta_p``."""
+    return {f"boundary.{each.side}.{each.factor}": each.result for each in found}
+
+
+def summary_of(found: Sequence[Calibration]) -> Mapping[str, Any]:
+    """All calibrations of one case as plain JSON values: the factors by key, and each one's own summary."""
+    return {
+        "name": found[0].case.name,
+        "version": __version__,
+        "method": found[0].method,
+        "result": changes_of(found),
+        "calibrations": [each.summary() for each in found],
+    }

@@ -1,0 +1,66 @@
+"""Shipped cases: listed, and copied with what they need."""
+
+from pathlib import Path
+
+import pytest
+
+from dembound import shipped
+from dembound.errors import CaseError
+from dembound.kinds import load
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_all_cases_of_the_repository_are_listed_with_their_titles() -> None:
+    here = {path.relative_to(ROOT / "cases").with_suffix("").as_posix() for path in (ROOT / "cases").rglob("*.toml")}
+
+    assert set(shipped.names()) == set(shipped.titles()) == here
+    assert all(shipped.titles().values())
+    assert shipped.groups() == ["lu2016", "zhou2018"]
+
+
+@pytest.mark.parametrize("name", shipped.names())
+def test_a_copy_of_a_case_can_be_read_where_it_is(name: str, tmp_path) -> None:
+    copied = shipped.copy(name, tmp_path / "mine")
+
+    assert copied[0].parent == tmp_path / "mine"
+    assert load(copied[0]).name == name.rpartition("/")[2]
+
+
+def test_a_wave_that_is_read_from_a_file_is_copied_with_its_case(tmp_path) -> None:
+    assert [path.name for path in shipped.copy("spall", tmp_path)] == ["spall.toml", "spall_pulse.txt"]
+
+
+def test_a_group_is_copied_with_its_scripts_which_stay_executable(tmp_path) -> None:
+    copied = shipped.copy("lu2016", tmp_path)
+
+    assert {path.relative_to(tmp_path).as_posix() for path in copied} >= {"lu2016/run.sh", "lu2016/table1.csv"}
+    source = ROOT / "cases" / "lu2016" / "run.sh"
+    assert (tmp_path / "lu2016" / "run.sh").stat().st_mode == source.stat().st_mode
+    assert "__pycache__" not in {path.name for path in (tmp_path / "lu2016").iterdir()}
+
+
+def test_nothing_is_overwritten(tmp_path) -> None:
+    (tmp_path / "spall_pulse.txt").write_text("precious")
+    with pytest.raises(CaseError, match=r"spall_pulse\.txt: exists already; give another folder"):
+        shipped.copy("spall", tmp_path)
+
+    assert [path.name for path in tmp_path.iterdir()] == ["spall_pulse.txt"]
+    shipped.copy("lu2016", tmp_path)
+    with pytest.raises(CaseError, match=r"exists already, as \d+ more of its files do; give another folder"):
+        shipped.copy("lu2016", tmp_path)
+
+
+def test_an_unknown_name_is_refused(tmp_path) -> None:
+    with pytest.raises(CaseError, match=r"NAME: is \"zhou218\", must be one of .*did you mean zhou2018\?"):
+        shipped.copy("zhou218", tmp_path)
+
+
+def test_a_wheel_keeps_them_in_the_package_and_a_broken_one_says_so(tmp_path, monkeypatch) -> None:
+    package = tmp_path / "site" / "dembound"
+    package.mkdir(parents=True)
+    monkeypatch.setattr(shipped, "PACKAGE", package)
+    with pytest.raises(CaseError, match="this installation has none"):
+        shipped.folder()
+    (package / "_cases").mkdir()
+    assert shipped.folder() == package / "_cases"
