@@ -129,5 +129,34 @@ class Diamond(Hole):
         return x - h, y - h, x + h, y + h
 
 
+class LateInput(OtherInput):
+    """Lets waves in so late that a calibration's pass is over before."""
+
+    type: Literal["late_input"]
+
+    def support(self, edge, medium, waves, supports):
+        """As the base does, with waves that come 10 s later."""
+        super().support(edge, medium, {name: _Later(wave) for name, wave in waves.items()}, supports)
+
+
+class _Later:
+    """A wave 10 s later."""
+
+    def __init__(self, wave):
+        self.wave = wave
+
+    def velocity(self, t):
+        """Its velocity."""
+        return self.wave.velocity(t - 10.0)
+
+
+class Namesake(Elastic):
+    """Stiffer than the elastic law, whose name it forgot to change."""
+
+
+class Nameless(Shape):
+    """A wave without a literal type, and without formulas."""
+
+
 class Stranger:
     """Nothing that dembound knows."""

@@ -32,6 +32,9 @@ def found(tmp_path_factory) -> dict[str, Any]:
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: added\nVersion: 1.0\n")
     groups = [f"[dembound.{group}]\nx = added_types:{name}\n" for group, name in REGISTERED.items()]
     groups[-1] += "y = added_types:Absent\nz = added_types:Stranger\n"
+    groups[2] += "y = added_types:LateInput\n"
+    groups[0] += "y = added_types:Namesake\n"
+    groups[4] += "y = added_types:Nameless\n"
     (info / "entry_points.txt").write_text("".join(groups))
     path = os.pathsep.join([str(site), *filter(None, [os.environ.get("PYTHONPATH")])])
     done = subprocess.run(
@@ -93,6 +96,13 @@ def test_messages_know_what_was_added(found) -> None:
 
 
 def test_what_cannot_be_used_is_said_and_left_out(found) -> None:
-    absent, stranger = found["warnings"]
+    absent, stranger, nameless, namesake = found["warnings"]
     assert absent.startswith("dembound.holes: y (added_types:Absent) cannot be imported:")
     assert stranger == "dembound.holes: z (added_types:Stranger) is not derived from Hole"
+    assert nameless.startswith("dembound.waves: y (added_types:Nameless) lacks _displacement_shape, _velocity_shape, ")
+    assert namesake == 'dembound.laws: y (added_types:Namesake) is called "elastic", which is taken'
+
+
+def test_a_side_whose_wave_comes_too_late_is_not_calibrated(found) -> None:
+    assert found["late"].startswith("calibration of left: the pulse is not past its peak after ")
+    assert found["late"].endswith('"late_input" lets its waves in late or not at all')

@@ -13,7 +13,7 @@ with warnings.catch_warnings(record=True) as said:
 
 from dembound.bar.facts import cells_of_waves
 from dembound.casefile.types import BOUNDARIES
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RunError
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
@@ -88,6 +88,15 @@ def stepped(made) -> dict:
     }
 
 
+def failure(made) -> str:
+    """Why the left side of a case cannot be calibrated."""
+    try:
+        calibrate(made, "left")
+    except RunError as error:
+        return str(error)
+    return ""
+
+
 def refusal(text: str, **changes: object) -> list[str]:
     """The mistakes of a case."""
     try:
@@ -118,6 +127,7 @@ json.dump(
         "unknown": refusal(GROUND, **{"boundary.left.type": "quarter_input"}),
         "across": refusal(GROUND, **{"motion.held": ["y"]}),
         "calibrated": [full.kind, full.result, full.ratio[-1]],
+        "late": failure(kinds.with_changes(sent, {"boundary.left.type": "late_input"})),
         "let in": calibrate(sent, "left").kind,
         "frequencies": measure(lattices[0], wavenumbers).tolist(),
         "formula": lattices[0].frequency(wavenumbers).tolist(),

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from dembound.errors import CaseError
 from dembound.exact.dispersion import usual_shares
 from dembound.methods.bonds import Bonds, Rod
 
@@ -66,6 +67,23 @@ def test_another_micromodulus_leaves_youngs_modulus(horizon: int) -> None:
     np.testing.assert_allclose(stress(bonds)[horizon:-horizon], 1.0, rtol=32 * EPS)
     usual = ROD.bond_rows(horizon)[:, 20]
     np.testing.assert_allclose(bonds.bond[:, 20] / usual, influence * bonds.bond[0, 20] / usual[0] / influence[0])
+
+
+def test_bonds_without_a_stiffness_are_none() -> None:
+    cone = zoned(4, (0, COUNT), complement=False, influence=np.array([0.75, 0.5, 0.25, 0.0]))
+    whole = zoned(3, (0, COUNT), complement=False)
+    for bonds in (cone, whole):  # cut between nodes 19 and 20
+        for row in range(3):
+            crossing = slice(20 - row - 1, 20)
+            bonds.bond[row, crossing], bonds.bond_broken[row, crossing] = 0.0, 5
+
+    # half of the family beside a cut is on its other side, whatever the stiffness of its bonds; of the cone's, bonds of
+    # four spacings are none, and of the other those of three reach to the horizon, where they count half
+    assert cone.damage()[20] == pytest.approx(0.5, rel=8 * EPS)
+    assert whole.damage()[20] == pytest.approx(0.5, rel=8 * EPS)
+    for influence in ([0.0], [1.0, -0.1]):
+        with pytest.raises(CaseError, match=r"method: makes bonds without a stiffness above 0"):
+            ROD.bond_rows(len(influence), np.array(influence))
 
 
 @pytest.mark.parametrize("horizon", [1, 2, 3, 5])

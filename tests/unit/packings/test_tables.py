@@ -27,6 +27,16 @@ def test_copies():
     assert read(B).copies == (2, 1)
     assert Square(size=(1000.0, 50.0), radius=0.25).copies == (2000, 100)
     assert Square(size=(0.3, 0.6), radius=0.05).copies == (3, 6)  # 0.3/0.1 is not 3 in floating point
+    assert Square(size=(2.66667, 2.0), radius=1.0 / 3.0).copies == (4, 3)  # six digits
+
+
+def test_the_extent_is_given_in_metres_or_in_bricks():
+    assert Square(bricks=(4, 3), radius=0.25).extent == (2.0, 1.5)
+    assert Square(size=(2.0, 1.5), radius=0.25).extent == (2.0, 1.5)
+    assert Square(size=(2.0, 1.5), radius=0.25).with_copies(5, 1).extent == (2.5, 0.5)
+    for both in ({}, {"size": (2.0, 1.5), "bricks": (4, 3)}):
+        with pytest.raises(ValidationError, match="must have exactly one of size"):
+            Square(radius=0.25, **both)
 
 
 @pytest.mark.parametrize(
