@@ -4,14 +4,10 @@ From Python: `load`, `case`, `change`, `run`, `calibrate`, `calibrate_all` and `
 docs/python.md.
 """
 
-import time
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
-
-IMPORT_BEGAN = time.perf_counter()
-"""When the package began to be imported, for the summary of what a run spent its time on."""
+from dembound.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from dembound.api import (

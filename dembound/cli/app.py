@@ -13,7 +13,6 @@ from rich import box
 from rich.console import Console
 from rich.table import Column, Table
 
-from dembound import __version__
 from dembound.boundaries import SIDES
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
@@ -21,6 +20,7 @@ from dembound.casefile.model import as_kind
 from dembound.errors import CaseError, DemboundError
 from dembound.kinds import load, with_changes
 from dembound.results.reader import require_folder
+from dembound.version import __version__
 
 EXIT_CODES = """
 Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration or view failed; 4 a packing

@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from dembound import IMPORT_BEGAN
 from dembound.boundaries.support import Edge
 from dembound.check import check
 from dembound.cli.app import (
@@ -34,6 +33,7 @@ from dembound.plot.packing import plot_brick, plot_patterns
 from dembound.plot.style import save
 from dembound.running import preflight, run_case
 from dembound.studies.half_space import write_exact
+from dembound.version import IMPORT_BEGAN
 
 RIGHT = Side("right")
 

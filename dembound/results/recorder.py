@@ -33,11 +33,11 @@ from types import TracebackType
 import h5py
 import numpy as np
 
-from dembound import __version__
 from dembound.motion.cracks import Cracks
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.kind import Stage, StalledError
 from dembound.motion.trackers import NEVER, Run, Tracker
+from dembound.version import __version__
 
 DISPLACEMENT_UNIT = "m, m, rad"
 VELOCITY_UNIT = "m/s, m/s, rad/s"

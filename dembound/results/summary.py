@@ -7,10 +7,10 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dembound import __version__
 from dembound.motion.kind import Plan
 from dembound.motion.trackers import Run
 from dembound.results.reader import energy_of, open_record
+from dembound.version import __version__
 
 
 def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float]) -> dict[str, Any]:

@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
-from dembound import __version__
 from dembound.boundaries import Motion, axis_of_motion
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
 from dembound.studies.calibration import Calibration, Method, Report, calibrate
+from dembound.version import __version__
 
 
 def factors_of(case: DiskCase) -> list[tuple[str, Motion]]:

@@ -16,7 +16,6 @@ from typing import Any, Literal
 import h5py
 import numpy as np
 
-from dembound import __version__
 from dembound.boundaries import OPPOSITE, Boundary, Motion, axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import homogenised_beta
@@ -25,6 +24,7 @@ from dembound.disks.stability import choose_step
 from dembound.errors import CaseError, RunError
 from dembound.motion.simulation import Simulation
 from dembound.studies.strip import AFTER, calibration_pulse, full_scene, linear_medium, short_strip
+from dembound.version import __version__
 from dembound.waves import Cosine
 
 Method = Literal["impedance", "ratio", "homogenised"]

@@ -10,7 +10,6 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from dembound import __version__
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
 from dembound.casefile.types import LAWS
@@ -18,6 +17,7 @@ from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
 from dembound.results.reader import replacing
+from dembound.version import __version__
 
 ISOTROPY = 1e-6
 """Relative difference of C11 − C12 and 2 C66 up to which a medium counts as isotropic."""

@@ -7,7 +7,6 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound import __version__
 from dembound.bar.scene import build_bar
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
@@ -15,6 +14,7 @@ from dembound.disks.system import DiskSystem, Start
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.simulation import Simulation
 from dembound.results.recorder import Histories, Recorder, Snapshots
+from dembound.version import __version__
 
 STEP = 3e-4
 MONITORS = {"monitor": [{"name": "front", "position": [0.0, 0.0]}, {"name": "back", "position": [9.9, 0.9]}]}

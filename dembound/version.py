@@ -1,0 +1,8 @@
+"""The version, and the moment at which the package began to be imported."""
+
+import time
+
+__version__ = "0.1.0"
+
+IMPORT_BEGAN = time.perf_counter()
+"""For the summary of what a run spent its time on."""
