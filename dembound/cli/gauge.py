@@ -35,7 +35,7 @@ def gauge(
     ] = None,
     estimate: Annotated[
         bool,
-        typer.Option("--estimate", help="Take speed and attenuation from tension peaks, though the results tell them."),
+        typer.Option("--estimate", help="Take speed and attenuation from tension peaks, though the results have them."),
     ] = False,
     peaks: Annotated[int | None, typer.Option(help="The same, from the first peaks only.", min=2)] = None,
     pulse_end: Annotated[
@@ -49,14 +49,14 @@ def gauge(
     ] = None,
     output: Annotated[Path | None, PICTURE] = None,
 ) -> None:
-    """Say what a gauge on a bar tells: wave speed, attenuation, and the stress at which the bar spalled.
+    """Estimate from a gauge on a bar: wave speed, attenuation, and the stress at which the bar spalled.
 
-    Results tell place, length, density, speed and attenuation. Strengths take --spall or --free-end.
+    Results have place, length, density, speed and attenuation. Strengths take --spall or --free-end.
     """
     path = results_file(record) if record.is_dir() else record
-    felt = read_gauge(path, monitor, position, length, density, scale)
+    gauge = read_gauge(path, monitor, position, length, density, scale)
     found = evaluate(
-        felt,
+        gauge,
         spall=spall,
         free_end=None if free_end is None else read_free_end(path, free_end),
         estimate=estimate,
@@ -67,7 +67,7 @@ def gauge(
     )
     out.print(_overview(found, *("results" if given is None else "given" for given in (wave_speed, attenuation))))
     if output is not None:
-        save(plot_gauge(felt, found), output)
+        save(plot_gauge(gauge, found), output)
         out.print(f"wrote {output}")
 
 

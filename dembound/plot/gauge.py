@@ -1,4 +1,4 @@
-"""What a gauge on a bar has felt, and the stress beside the bar's free end (L figs 10 and 11)."""
+"""The signal of a gauge on a bar, and the stress beside the bar's free end (L figs 10 and 11)."""
 
 from typing import Any
 
@@ -31,7 +31,7 @@ def plot_gauge(gauge: Gauge, findings: Findings) -> Figure:
     Parameters
     ----------
     gauge, findings
-        what it has felt, and what `spalling.evaluate` has found.
+        its signal, and the estimates of `spalling.evaluate`.
     """
     figure = new_figure(10.0 if findings.strength else 7.0, 4.6)
     panels = figure.subplots(1, 2 if findings.strength else 1, squeeze=False)[0]

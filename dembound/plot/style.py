@@ -13,7 +13,7 @@ from matplotlib.font_manager import get_font_names
 
 from dembound.results.reader import replacing
 
-# Okabe & Ito: told apart with every kind of colour vision; yellow is left out, too faint for lines on white
+# Okabe & Ito: distinct with every kind of colour vision; yellow is left out, too faint for lines on white
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 DASHES = ("-", "--", "-.", ":")
 MARKERS = "os^Dv"
@@ -30,13 +30,13 @@ UNSIGNED_MAP = "viridis"
 FONTS = ("DejaVu Sans", "Noto Sans CJK SC", "Microsoft YaHei", "PingFang SC", "SimHei", "WenQuanYi Zen Hei")
 
 SHORT = 0.1
-"""A picture of less than so many seconds tells times in milliseconds."""
+"""A picture of less than so many seconds has times in milliseconds."""
 
 Parameters = ParamSpec("Parameters")
 
 
 class TimeUnit(NamedTuple):
-    """What times are told in: its name, and what it is in seconds."""
+    """The unit of times: its name, and its length in seconds."""
 
     name: str
     seconds: float

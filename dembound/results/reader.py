@@ -83,7 +83,7 @@ def laws_in_words(laws: Sequence[tuple[str, float]]) -> str:
 
 
 def laws_of(file: h5py.File) -> list[tuple[str, float]]:
-    """The laws of an open record, each with the time in s it began at; none if the run was cut off before it told."""
+    """The laws of an open record, each with the time in s it began at; none if the run was cut off before."""
     if "laws" not in file:
         return []
     return list(zip(file["laws/name"].asstr()[:], file["laws/time"][:].tolist(), strict=True))

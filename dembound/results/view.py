@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Field = Literal["velocity", "displacement"]
 LABELS = {"velocity": "speed (m/s)", "displacement": "displacement (m)"}
 
-CRACKS = "red"  # told from every disk; black would be lost on those at rest
+CRACKS = "red"  # unlike every disk; black would be lost on those at rest
 
 CORNERS = 24  # of a disk's polygon; a multiple of four, so that it is as wide and as high as the disk
 

@@ -91,7 +91,7 @@ def measure(lattice: Lattice, wavenumbers: np.ndarray) -> np.ndarray:
     """Angular frequencies (k,) rad/s of harmonic waves of some wave numbers (k,) rad/m in simulations.
 
     A bar is strained to a cosine and let go; the node in its middle does not hear of the ends. Its displacements u and
-    their second differences δ²u tell sin²(ωΔt/2) = −¼ Σu δ²u/Σu²; no formula for ω comes in. The lattice must be stable
+    their second differences δ²u give sin²(ωΔt/2) = −¼ Σu δ²u/Σu²; no formula for ω comes in. The lattice must be stable
     and have a time step.
     """
     return np.array([_frequency(lattice, wavenumber) for wavenumber in wavenumbers])

@@ -54,7 +54,7 @@ def _across_the_bar(ends: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _loaded_but_held(ends: Mapping[str, Any], loads: Sequence[BarLoad | None]) -> Iterator[str]:
-    """Loads on an end whose motion is prescribed, which would feel nothing of them."""
+    """Loads on an end whose motion is prescribed, where they have no effect."""
     for place, load in numbered("load", loads):
         end = ends.get(load.side)
         if end and 0 in end.prescribed(normal_axis(load.side)):
