@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.gauge.peaks import SMALLEST, Peaks, first_fall, positive_peaks, quietened
+from dembound.gauge.peaks import SMALLEST, Peaks, denoised, first_fall, positive_peaks
 
 ONSET = 0.01
 """Share of its largest compression at which a pulse begins."""
@@ -109,7 +109,7 @@ def incident_pulse(
     count = int(np.searchsorted(time, end, side="right"))
     if count < FEWEST:
         raise CaseError([f"--pulse-end: leaves {count} samples of the incident pulse, must leave three or more"])
-    return time[:count], quietened(stress[:count])
+    return time[:count], denoised(stress[:count])
 
 
 def near_free_end(
@@ -149,7 +149,7 @@ def nominal_strength(
     return float(there.max()), float(moments[there.argmax()])
 
 
-def way_by_the_end(gauge: float, length: float, position: Any) -> Any:
+def path_via_free_end(gauge: float, length: float, position: Any) -> Any:
     """Way in m, of the shape of the position, from a gauge to the free end and back: (L − x_g) + (L − x)."""
     return 2.0 * length - gauge - position
 
@@ -197,7 +197,7 @@ def _rise(values: np.ndarray) -> tuple[int, int]:
 
 def _delays(gauge: float, length: float, speed: float, position: Any) -> tuple[Any, Any]:
     """Times in s, of the shape of the position, from the gauge to there: straight, and by the free end."""
-    return (position - gauge) / speed, way_by_the_end(gauge, length, position) / speed
+    return (position - gauge) / speed, path_via_free_end(gauge, length, position) / speed
 
 
 def _pulse(time: np.ndarray, stress: np.ndarray, at: np.ndarray) -> np.ndarray:

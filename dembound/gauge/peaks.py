@@ -56,7 +56,7 @@ def positive_peaks(time: np.ndarray, values: np.ndarray, count: int | None = Non
     return Peaks(times, here - 0.25 * (before - after) * offset)
 
 
-def quietened(values: np.ndarray) -> np.ndarray:
+def denoised(values: np.ndarray) -> np.ndarray:
     """A history (k,) smoothed by parabolas as far as its noise is worth it; a clean one stays as it is."""
     sizes = np.abs(values)
     return _smooth(values, _worthwhile_reach(_noise(values) / sizes.max(), _width(sizes)))

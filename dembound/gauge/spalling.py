@@ -12,10 +12,10 @@ from dembound.gauge.estimates import (
     attenuation,
     incident_pulse,
     nominal_strength,
+    path_via_free_end,
     pull_back_strength,
     tension_peaks,
     wave_speed,
-    way_by_the_end,
 )
 from dembound.gauge.gauge_io import FREE, Gauge, not_above_zero, not_on_bar
 from dembound.gauge.peaks import Peaks
@@ -155,7 +155,7 @@ def _strength(gauge: Gauge, speed: float, decay: Estimate | None, position: floa
     bar = gauge.position, gauge.length, speed
     pulse = incident_pulse(gauge.time, gauge.stress, *bar, pulse_end)
     nominal, time = nominal_strength(*pulse, *bar, position)
-    way = way_by_the_end(gauge.position, gauge.length, position)
+    way = path_via_free_end(gauge.position, gauge.length, position)
     attenuated = None if decay is None else attenuated_strength(nominal, decay.value, way)
     return Strength(position, nominal, time, way, attenuated, pulse)
 

@@ -27,7 +27,7 @@ class Entry:
 
     kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
     of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
-    and driven loads; damping, friction, crack, taken by them; handover, what a change of method or law has added;
+    and driven loads; damping, friction, crack, taken by them; law_switch, what a change of method or law has added;
     error, what is stored and taken beyond what came in. Of a bar in J.
     """
 
@@ -41,7 +41,7 @@ class Entry:
     damping: float
     friction: float
     crack: float
-    handover: float
+    law_switch: float
     error: float
 
 
@@ -106,10 +106,10 @@ class Ledger(Tracker):
         kinetic = 0.5 * float(np.sum(self._inertia * before * state.velocity))
         contact, bond = (now - first for now, first in zip(system.stored(place), self._first, strict=True))
         load = float(np.sum(system.load * (place - state.datum)))
-        outside, damping, friction, crack, handover, turning = (float(work) for work in state.work[1])
+        outside, damping, friction, crack, law_switch, turning = (float(work) for work in state.work[1])
         balance = turning + balancing
-        error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - handover
-        taken = (damping, friction, crack, handover)
+        error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - law_switch
+        taken = (damping, friction, crack, law_switch)
         time = (state.step - 1) * run.time_step
         self.entries.append(Entry(time, kinetic, contact, bond, load, balance, outside, *taken, error))
         self._watch()

@@ -9,7 +9,7 @@ import numpy as np
 Arrays = Mapping[str, np.ndarray]
 """Arrays by name."""
 
-WORK = ("outside", "damping", "friction", "crack", "handover", "turning")
+WORK = ("outside", "damping", "friction", "crack", "law_switch", "turning")
 """What the columns of the work are, see kernels.tables.Log."""
 
 

@@ -34,7 +34,7 @@ FEWEST = 10
 
 
 @dataclass(frozen=True)
-class Look:
+class FieldStyle:
     """How a field is shown: in words, its unit and what that is in SI, the sense of its sign, a map pale at zero.
 
     jumps: whether it changes at once, so that nothing may be drawn between one snapshot and the next.
@@ -54,16 +54,16 @@ class Look:
 
 
 FIELDS = {
-    "stress": Look("stress", "MPa", MEGA, ", tension positive"),
-    "damage": Look("local damage", "–", 1.0, colours="Reds", jumps=True),
-    "velocity": Look("velocity", "m/s", 1.0, ", positive to the right"),
-    "displacement": Look("displacement", "mm", MILLI, ", positive to the right"),
+    "stress": FieldStyle("stress", "MPa", MEGA, ", tension positive"),
+    "damage": FieldStyle("local damage", "–", 1.0, colours="Reds", jumps=True),
+    "velocity": FieldStyle("velocity", "m/s", 1.0, ", positive to the right"),
+    "displacement": FieldStyle("displacement", "mm", MILLI, ", positive to the right"),
 }
 """The fields of a bar by name."""
 
 
 @dataclass(frozen=True)
-class Course:
+class SpaceTimeField:
     """Fields of a bar of n nodes at k moments.
 
     place (n,) m; time (k,) in `unit`, as all times; values: name of a field -> (k, n) in its unit; crack_place (c,) m
@@ -121,7 +121,7 @@ def plot_bar_field(run: Path, field: str, snapshot: int | None = None) -> Figure
     return _draw(read_course(run, (field,), snapshot))
 
 
-def read_course(run: Path, fields: Sequence[str], snapshot: int | None = None) -> Course:
+def read_course(run: Path, fields: Sequence[str], snapshot: int | None = None) -> SpaceTimeField:
     """Fields of a bar's record at all snapshots, or at one.
 
     Raises CaseError when the file cannot be read or has no such snapshot.
@@ -132,7 +132,7 @@ def read_course(run: Path, fields: Sequence[str], snapshot: int | None = None) -
         time = np.array([group.attrs["time"] for group in groups])
         cracks = cracks_until(file, time[-1])
         unit = time_unit(time[-1])
-        return Course(
+        return SpaceTimeField(
             place=file["particles/position"][:, 0],
             time=time / unit.seconds,
             values={name: np.array([_along(group[name]) for group in groups]) / FIELDS[name].scale for name in fields},
@@ -149,7 +149,7 @@ def _along(dataset: h5py.Dataset) -> np.ndarray:
     return dataset[:] if dataset.ndim == 1 else dataset[:, 0]
 
 
-def _draw(course: Course) -> Figure:
+def _draw(course: SpaceTimeField) -> Figure:
     """All fields of a bar's course."""
     figure = _draw_maps(course) if len(course.time) >= FEWEST else _draw_profiles(course)
     shown = " and ".join(FIELDS[name].words for name in course.values)
@@ -158,7 +158,7 @@ def _draw(course: Course) -> Figure:
     return figure
 
 
-def _draw_maps(course: Course) -> Figure:
+def _draw_maps(course: SpaceTimeField) -> Figure:
     """A column of panels for each field: over place and time, and below that its last profile."""
     count = len(course.values)
     figure = new_figure(2.0 + 4.5 * count, 6.8)
@@ -173,7 +173,7 @@ def _draw_maps(course: Course) -> Figure:
     return figure
 
 
-def _draw_map(panel: Axes, course: Course, name: str) -> ScalarMappable:
+def _draw_map(panel: Axes, course: SpaceTimeField, name: str) -> ScalarMappable:
     """A field over place and time, the bonds that broke and methods that took over; returns what a colour bar needs."""
     values, look = course.values[name], FIELDS[name]
     largest = float(np.abs(values).max()) or 1.0
@@ -197,7 +197,7 @@ def _draw_map(panel: Axes, course: Course, name: str) -> ScalarMappable:
     return picture
 
 
-def _draw_profiles(course: Course) -> Figure:
+def _draw_profiles(course: SpaceTimeField) -> Figure:
     """A panel for each field, with a line for each moment."""
     count = len(course.values)
     figure = new_figure(9.0, 1.6 + 2.4 * count)
@@ -209,7 +209,7 @@ def _draw_profiles(course: Course) -> Figure:
     return figure
 
 
-def _draw_profile(panel: Axes, course: Course, name: str, number: int, **looks: Any) -> None:
+def _draw_profile(panel: Axes, course: SpaceTimeField, name: str, number: int, **looks: Any) -> None:
     """A field along the bar at one moment; damage with the line above which nodes count as cracked."""
     panel.plot(course.place, course.values[name][number], **looks)
     panel.margins(x=0.0)

@@ -20,7 +20,7 @@ COLUMNS = {
     "damping": "taken by local damping",
     "friction": "taken by friction",
     "crack": "taken by cracks",
-    "handover": "in: added by a change of law",
+    "law_switch": "in: added by a change of law",
 }
 """Columns of the ledger and what the legend calls them."""
 
@@ -29,7 +29,7 @@ BAR_COLUMNS = COLUMNS | {
     "contact": "stored in local springs",
     "bond": "stored in peridynamic bonds",
     "damping": "taken by attenuation",
-    "handover": "in: added by a change of method",
+    "law_switch": "in: added by a change of method",
 }
 """The same of a bar."""
 

@@ -57,7 +57,7 @@ def _numbers(count: int) -> str:
     return f"0 to {count - 1}" if count else "none"
 
 
-def liveliest_snapshot(file: h5py.File, field: str) -> h5py.Group:
+def snapshot_of_largest_motion(file: h5py.File, field: str) -> h5py.Group:
     """The snapshot of an open record in which a disk's `field` (velocity or displacement) is largest in x or y.
 
     Raises CaseError when there is no snapshot.

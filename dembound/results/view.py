@@ -10,7 +10,14 @@ import numpy as np
 from matplotlib.image import imsave
 
 from dembound.errors import CaseError, DemboundError
-from dembound.results.reader import cracks_until, is_line, liveliest_snapshot, open_record, replacing, snapshot_of
+from dembound.results.reader import (
+    cracks_until,
+    is_line,
+    open_record,
+    replacing,
+    snapshot_of,
+    snapshot_of_largest_motion,
+)
 
 if TYPE_CHECKING:
     import pyvista
@@ -64,7 +71,7 @@ def view(
     with open_record(run) as file:
         if is_line(file.attrs["size"]):
             raise CaseError([f"{run}: is a bar, view shows disks; `dembound plot RESULTS --field stress` draws bars"])
-        first = liveliest_snapshot(file, field) if snapshot is None else snapshot_of(file, snapshot)
+        first = snapshot_of_largest_motion(file, field) if snapshot is None else snapshot_of(file, snapshot)
         require_rendering(in_window=picture is None)
         plotter = make_plotter(file, first, field, exaggerate, off_screen=picture is not None)
         if picture is None:

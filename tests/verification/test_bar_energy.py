@@ -69,7 +69,7 @@ def test_through_fracture_and_change_of_method(books):
     last = kept.entries[-1]
     assert last.crack > 0.0
     changed = len(kept.simulation.state.laws) > 1
-    assert (abs(last.handover) > ROUNDING * last.outside) == changed
+    assert (abs(last.law_switch) > ROUNDING * last.outside) == changed
 
 
 def test_torn_at_an_end(books):

@@ -131,7 +131,7 @@ def test_breaking_and_changes_of_method_close_the_books(simulation, method: dict
     assert max(abs(entry.error) for entry in ledger.entries) < 70 * 41 * EPS * came_in
     assert last.crack > 1e-6 * came_in
     # bonds of three spacings store another energy than springs in a wave that is not uniform
-    assert (abs(last.handover) > 1e-6 * came_in) == (method["type"] in ("switch", "patch"))
+    assert (abs(last.law_switch) > 1e-6 * came_in) == (method["type"] in ("switch", "patch"))
 
 
 def test_finite_differences_answer_once_then_springs_break_by_themselves(simulation, monkeypatch) -> None:
@@ -156,7 +156,7 @@ def test_finite_differences_answer_once_then_springs_break_by_themselves(simulat
     came_in = max(entry.outside for entry in ledger.entries)
     assert max(abs(entry.error) for entry in ledger.entries) < 70 * 41 * EPS * came_in
     assert ledger.entries[-1].crack > 1e-6 * came_in
-    assert ledger.entries[-1].handover == 0.0
+    assert ledger.entries[-1].law_switch == 0.0
 
 
 def test_every_break_is_told_once(simulation, method: dict) -> None:

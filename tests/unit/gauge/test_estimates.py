@@ -10,10 +10,10 @@ from dembound.gauge.estimates import (
     incident_pulse,
     near_free_end,
     nominal_strength,
+    path_via_free_end,
     pull_back_strength,
     tension_peaks,
     wave_speed,
-    way_by_the_end,
 )
 
 POSITION, LENGTH, SPEED, DECAY = 0.6, 0.99, 2740.0, 0.52
@@ -184,7 +184,7 @@ def test_nominal_and_attenuated_strength_are_those_of_the_paper(felt):
     # the tension lasts from when the crest comes back until the pulse's end comes
     crest_back = 60e-6 + (2.0 * LENGTH - SPALL) / SPEED
     assert crest_back - 2e-6 < when < 60e-6 + FALL + SPALL / SPEED + 2e-6
-    way = way_by_the_end(POSITION, LENGTH, SPALL)
+    way = path_via_free_end(POSITION, LENGTH, SPALL)
     assert way == pytest.approx(0.59, rel=1e-12)
     assert attenuated_strength(25.5e6, DECAY, way) == pytest.approx(18.76e6, abs=0.005e6)  # as printed: 18.8
 

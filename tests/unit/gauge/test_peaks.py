@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.gauge.peaks import Peaks, first_fall, positive_peaks, quietened
+from dembound.gauge.peaks import Peaks, denoised, first_fall, positive_peaks
 
 TIME = 0.5 * np.arange(1000)
 CRESTS, HEIGHTS, LENGTH = np.array([100.15, 231.8, 360.05]), np.array([2.0, 1.0, 0.3]), 40.0
@@ -74,8 +74,8 @@ def test_a_flat_top_is_a_peak_in_its_middle():
 def test_a_clean_history_is_not_smoothed_and_a_noisy_one_is():
     clean = np.clip(100.0 - np.abs(TIME - 200.0), 0.0, None)
     noise = np.random.default_rng(1).standard_normal(len(TIME))
-    assert quietened(clean).tolist() == clean.tolist()
-    left = quietened(clean + noise) - clean
+    assert denoised(clean).tolist() == clean.tolist()
+    left = denoised(clean + noise) - clean
     # r = (√32 · 0.01 · 200)^(2/3) = 5 samples, and of the noise 3/√(8·5) = 0.47 is left, known from 1000 samples of
     # which one in 2r + 1 is independent to 1/√(2·91) = 7 %, four times which is allowed; beside the crest alone it is
     # (3/16)·5 samples · 0.5 s off

@@ -171,7 +171,7 @@ def test_energies_of_a_bar_are_in_springs_and_in_bonds(spalling) -> None:
     of_bonds = sum(0.5 * np.sum(bonds.bond[p, : 40 - p] * each**2) for p, each in enumerate(stretched))
     assert entry.bond == pytest.approx(of_bonds, rel=1e-12)
     assert min(entry.kinetic, entry.contact, entry.bond, entry.damping, entry.outside) > 0.0
-    assert (entry.load, entry.friction, entry.crack, entry.handover) == (0.0,) * 4
+    assert (entry.load, entry.friction, entry.crack, entry.law_switch) == (0.0,) * 4
     # twelve steps of sums over 41 nodes and 120 bonds
     assert abs(entry.error) < 12 * 41 * np.finfo(float).eps * entry.outside
 
@@ -288,8 +288,8 @@ def test_the_jump_of_the_potential_where_the_law_changes_is_its_handover(bar) ->
     # most of it is that the forces have come nearer to the body: (1 − cos θ) Σ F·r, with Σ F·r = −2pA
     assert after - before == pytest.approx((1.0 - c) * np.sum(force[:2] * arm), rel=1e-4)
 
-    assert ledger.entries[-2].handover == 0.0
-    assert ledger.entries[-1].handover == simulation.state.work[1, 4]
+    assert ledger.entries[-2].law_switch == 0.0
+    assert ledger.entries[-1].law_switch == simulation.state.work[1, 4]
 
 
 def scene_inertia(simulation: Simulation) -> np.ndarray:
