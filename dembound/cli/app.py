@@ -124,7 +124,7 @@ def use_threads(threads: int | None) -> None:
 def main() -> None:
     """Run the command line; every failure a user can cause is one message and its exit code."""
     try:
-        app()
+        app(prog_name="dembound")  # however it was started: help and completion go by this name
     except DemboundError as error:
         source = f"{error.source}: " if error.source else ""
         for line in str(error).splitlines():

@@ -19,12 +19,13 @@ import tomli_w
 from matplotlib.figure import Figure
 from typer.main import get_command
 
+from dembound import cli, starting
 from dembound.casefile.bar import BarCase
 from dembound.cli.progress import Lines, progress_of
 from dembound.kinds import load
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
-from dembound.version import __version__, cli, starting
+from dembound.version import __version__
 
 
 @dataclass
