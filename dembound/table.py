@@ -18,12 +18,12 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     def given(self) -> dict[str, Any]:
-        """The keys that have been given, as a TOML file has them; what tells types apart always stands there."""
-        keys = [name for name in type(self).model_fields if name in self.model_fields_set | TOLD_APART_BY]
+        """The keys that have been given, as a TOML file has them; the key that distinguishes types always is."""
+        keys = [name for name in type(self).model_fields if name in self.model_fields_set | DISCRIMINATORS]
         return {name: as_toml(getattr(self, name)) for name in keys if getattr(self, name) is not None}
 
 
-TOLD_APART_BY = {"type", "pattern"}
+DISCRIMINATORS = {"type", "pattern"}
 """Keys whose literal says of which type a table is."""
 
 
@@ -75,7 +75,7 @@ def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tu
 def name_of(table: type[Any]) -> str | None:
     """What case files call a type: the literal at its key, or a law's `name`; None without one."""
     fields = getattr(table, "model_fields", {})
-    literals = [get_args(fields[key].annotation) for key in TOLD_APART_BY if key in fields]
+    literals = [get_args(fields[key].annotation) for key in DISCRIMINATORS if key in fields]
     name = literals[0][0] if literals and literals[0] else getattr(table, "name", None)
     return name if isinstance(name, str) else None
 
@@ -98,7 +98,7 @@ def _registered() -> Any:
 
 
 def one_of(key: str, types: Iterable[type[Any]]) -> Any:
-    """The annotation of a table that is of one of several types, told apart by the literal at `key`."""
+    """The annotation of a table that is of one of several types, distinguished by the literal at `key`."""
     return Annotated[Union[tuple(types)], Field(discriminator=key)]  # noqa: UP007  # of types known only now
 
 

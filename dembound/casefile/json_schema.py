@@ -101,7 +101,7 @@ def _is_needed(kind: TypeAdapter[Any]) -> bool:
 
 
 def _table(table: Json) -> Json:
-    """The definition of one type of table; what tells types apart is always required."""
+    """The definition of one type of table; the key that distinguishes types is always required."""
     table = _plain(table)
     told_apart = [key for key, value in table["properties"].items() if "const" in value]
     table["required"] = sorted({*table.get("required", ()), *told_apart})
@@ -110,7 +110,7 @@ def _table(table: Json) -> Json:
 
 
 def _one_of_types(table: Json) -> Json:
-    """A table, which may be of one of several types told apart by a key."""
+    """A table, which may be of one of several types distinguished by a key."""
     if "discriminator" not in table:
         return _plain(table)
     key, places = table["discriminator"]["propertyName"], table["discriminator"]["mapping"]

@@ -35,7 +35,7 @@ def describe(error: ValidationError, path: str, raw: object, schema: Mapping[str
     raw
         The table as it was read.
     schema
-        JSON schema of what was expected: a table, tables told apart by a key, or a plain value.
+        JSON schema of what was expected: a table, tables distinguished by a key, or a plain value.
     """
     if not isinstance(raw, Mapping) or not {"properties", "discriminator"} & schema.keys():
         return [f"{path}: is {show(raw)}, must be {allowed(schema)}"]

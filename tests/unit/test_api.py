@@ -11,6 +11,7 @@ import pytest
 import tomli_w
 
 import dembound
+from dembound import api
 from dembound.casefile.output import Output
 from dembound.waves import Cosine
 
@@ -169,4 +170,5 @@ def test_the_documented_examples_run(tmp_path, monkeypatch, capsys) -> None:
 def test_what_there_is_not_is_no_attribute() -> None:
     with pytest.raises(AttributeError, match="no attribute 'runs'"):
         _ = dembound.runs
+    assert dembound.__all__ == api.__all__
     assert all(callable(getattr(dembound, name)) for name in dembound.__all__)

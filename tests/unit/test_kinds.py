@@ -1,4 +1,4 @@
-"""Cases and records of either kind are told apart."""
+"""Cases and records of either kind are distinguished."""
 
 import h5py
 

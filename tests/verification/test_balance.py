@@ -47,11 +47,11 @@ def test_rigid_motion_meets_no_force(lab, body, motion):
     x, y = scene.assembly.positions.T
     one, zero = np.ones_like(x), np.zeros_like(x)
     rigid = {"along x": [one, zero, zero], "along y": [zero, one, zero], "rotation": [-y, x, one]}[motion]
-    on_trigger = np.abs(lab.forces(scene, 1e-3 * np.array(rigid))).max(axis=1)
+    answer = np.abs(lab.forces(scene, 1e-3 * np.array(rigid))).max(axis=1)
     # `force` answers differences of the size of u; here they cancel to the rounding of positions of up to 20 m,
     # and positions of disks across a brick's seam carry a few ε of 20 m themselves
     scale = np.abs(force).max(axis=1) * 1e-3 * 20.0 / np.abs(u).max()
-    assert np.all(on_trigger < 100.0 * EPS * scale)
+    assert np.all(answer < 100.0 * EPS * scale)
 
 
 def test_forces_are_reciprocal(lab, body):

@@ -14,7 +14,7 @@ from dembound.running import plan
 
 TIME = 1e-6 * np.arange(400)
 FREE_END = TIME, np.interp(np.arange(400), [0, 100, 140, 240, 270], [0.0, 0.0, 10.0, 4.0, 8.0])
-TOLD = BarMetadata(2740.0, 0.4, ("free", "free"), np.inf)
+METADATA = BarMetadata(2740.0, 0.4, ("free", "free"), np.inf)
 
 
 @pytest.fixture
@@ -47,7 +47,7 @@ def test_strengths_follow_from_where_it_spalled_and_how_its_end_moved(gauge):
 
 
 def test_a_record_knows_speed_and_attenuation_unless_an_estimate_is_asked_for(gauge):
-    recorded = replace(gauge, metadata=TOLD)
+    recorded = replace(gauge, metadata=METADATA)
     known = evaluate(recorded)
     assert (known.speed.value, known.attenuation.value, known.peaks) == (2740.0, 0.4, None)
     other = evaluate(recorded, speed=2000.0)
@@ -91,7 +91,7 @@ FIRST, SECOND = (20e-6 + (1.38 + 1.98 * turn) / 2740.0 + 40e-6 for turn in range
 )
 def test_a_record_that_contradicts_an_estimate_refuses_it(gauge, changes, given, said):
     with pytest.raises(CaseError) as caught:
-        evaluate(replace(gauge, metadata=replace(TOLD, **changes)), **given)
+        evaluate(replace(gauge, metadata=replace(METADATA, **changes)), **given)
     assert said in str(caught.value)
 
 
@@ -105,7 +105,7 @@ def test_a_record_that_contradicts_an_estimate_refuses_it(gauge, changes, given,
     ],
 )
 def test_a_record_that_does_not_contradict_lets_it_pass(gauge, changes, given):
-    assert evaluate(replace(gauge, metadata=replace(TOLD, **changes)), **given).speed.value > 0.0
+    assert evaluate(replace(gauge, metadata=replace(METADATA, **changes)), **given).speed.value > 0.0
 
 
 def test_peaks_that_contradict_a_given_speed_tell_no_attenuation(gauge):
