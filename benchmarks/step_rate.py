@@ -98,7 +98,7 @@ def measure(law: str, keys: dict, options: argparse.Namespace) -> None:
     scene = build(with_changes(load(options.case), changes))
     time_step, _ = choose_step(scene)
     simulation = Simulation(scene, time_step)
-    simulation.state.velocity[:] = np.random.default_rng(0).normal(0.0, 1e-3, simulation.state.velocity.shape)
+    simulation.state.velocity = np.random.default_rng(0).normal(0.0, 1e-3, simulation.state.velocity.shape)
     simulation.advance(2)
     traffic, flops = bytes_per_step(simulation), flops_per_step(simulation)
     source = np.ones(int(traffic / 24))

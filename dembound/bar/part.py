@@ -55,8 +55,8 @@ class BarPart(Part):
         """
         self.bond_updates += steps * self.bonds.alive
         if why == TRIGGERED:
-            u = state.displacement[0]
-            self._change_bonds(u, u - self._step * state.velocity[0], state)
+            u = state.u[0]
+            self._change_bonds(u, u - self._step * state.v[0], state)
 
     def _change_bonds(self, u: np.ndarray, before: np.ndarray, state: State) -> None:
         """Let the method change the bonds at displacements u (n,), a step ago `before`, and book the energy added."""

@@ -88,7 +88,8 @@ class Balance:
         loose = np.zeros(len(self._ended), dtype=np.bool_)
         for part in parts:
             body = part.nodes
-            piece = pieces(part.pairs, body.start, body.stop)
+            slot = part.layout.slot[body]
+            piece = pieces(part.pairs, slot.min(), slot.max() + 1)[slot - slot.min()]
             largest = np.argmax(np.bincount(piece))
             loose[body] = (piece != largest) & np.isin(piece, piece[self._torn[body]])
         loose &= ~self._ended
@@ -162,7 +163,7 @@ def mean_rotations(scene: DiskBody, moved: np.ndarray) -> dict[str, float]:
     """Rotation (rad) by which forces on each side turn, of a body that has moved by (3, n), see `side_rotations`."""
     still = np.zeros_like(moved)
     followers = _followers(scene, still, still, still, still)
-    return dict(zip(_body_sides(scene), side_rotations(moved, followers).tolist(), strict=True))
+    return dict(zip(_body_sides(scene), side_rotations(moved.copy(), followers).tolist(), strict=True))
 
 
 def _body_sides(scene: DiskBody) -> dict[str, np.ndarray]:
@@ -184,6 +185,9 @@ def _followers(
     members = np.concatenate([np.zeros(0, np.int64), *sides.values()])
     node, side = _side_numbers(scene, sides)
     names = list(sides)
+    rest = datum[:2, members].copy()
+    if scene.seam is not None:
+        rest -= datum[:2, scene.seam.twin[members]]
     return Followers(
         opposite=np.array(
             [names.index(OPPOSITE[side] if OPPOSITE[side] in names else side) for side in names], np.int64
@@ -197,7 +201,7 @@ def _followers(
         force=np.ascontiguousarray(_shares(side)[:, None, :] * (force + across)[:2, node]),
         steady=np.ascontiguousarray((steady + force)[:2, node]),
         extra=np.zeros((2, len(node))),
-        datum=datum,
+        rest=rest,
     )
 
 

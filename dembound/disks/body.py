@@ -11,9 +11,10 @@ from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.disks import DiskCase
 from dembound.disks.contacts import ContactList
+from dembound.disks.layout import Rows
 from dembound.disks.loads import steady
 from dembound.disks.packed_material import PackedMaterial
-from dembound.kernels.tables import NeighbourTable
+from dembound.motion.layout import Layout
 from dembound.motion.scene import Scene
 from dembound.motion.threads import thread_count_for
 from dembound.packings.column import Seam
@@ -34,16 +35,18 @@ class DiskBody(Scene):
     supports : the table of what pushes from outside, loads that follow a wave included.
     monitors : name -> particle.
     seam : what joins the free-field column, which stands first in the arrays, to the body; None without one.
+    slots : where kernels hold its particles; None: in their order.
     """
 
     case: DiskCase
     ground: PackedMaterial
     assembly: Assembly
-    rows: tuple[NeighbourTable, ...]
+    rows: tuple[Rows, ...]
     edges: Mapping[str, Edge]
     supports: Supports
     monitors: Mapping[str, int]
     seam: Seam | None = None
+    slots: Layout | None = None
 
     kind = "disks"
     energy_unit = "J/m"
@@ -85,6 +88,11 @@ class DiskBody(Scene):
     def size(self) -> np.ndarray:
         """(2,) width and height, m."""
         return self.assembly.size
+
+    @cached_property
+    def layout(self) -> Layout:  # type: ignore[override]  # computed once
+        """Where kernels hold its particles."""
+        return Layout.plain(self.count) if self.slots is None else self.slots
 
     @property
     def threads(self) -> int:
@@ -151,7 +159,7 @@ class DiskBody(Scene):
         if self.seam is not None and name == "column":
             along_x, held = self.seam.width, self.seam.pairs(self.ground.brick)
         part = self.assembly.part(nodes)
-        return ContactList(self.ground, self.case.material, part, (along_x, along_y), nodes.start, held)
+        return ContactList(self.ground, self.case.material, part, (along_x, along_y), nodes.start, held, self.layout)
 
 
 def parts_of(count: int, seam: Seam | None) -> dict[str, slice]:

@@ -13,6 +13,7 @@ from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
 from dembound.kernels.tables import Contacts
 from dembound.motion.cracks import Cracks, joined
+from dembound.motion.layout import Layout
 from dembound.motion.state import Arrays
 from dembound.packings.tiling import Assembly
 
@@ -44,14 +45,15 @@ class ContactList:
     periods : length (m) of the part along x and y where it is periodic, else None.
     begin : number of its first particle in the scene.
     held : first, second (k,) particles of the part and vectors (k, 2) m of pairs that stay listed however far apart.
+    layout : where kernels hold the scene's particles; None: in their order.
 
     Attributes
     ----------
-    arrays : the pairs as the kernels read them.
+    arrays : the pairs as the kernels read them, by slots.
     limits : where they give way.
-    origin : (2, m) m, displacements of the part's m particles at which the list was made.
+    origin : (2, m) m, displacements of the part's m slots at which the list was made.
     skin : m, gap up to which it is complete.
-    arms : (begin + m,) m, the longest arm of each particle's contacts and bonds, 0 for those before the part.
+    arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
     """
 
     def __init__(
@@ -62,16 +64,20 @@ class ContactList:
         periods: tuple[float | None, float | None],
         begin: int = 0,
         held: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
+        layout: Layout | None = None,
     ) -> None:
         self.ground = ground
         self.assembly = assembly
         self.periods = periods
         self.nodes = slice(begin, begin + len(assembly.radii))
+        self.layout = Layout.plain(self.nodes.stop) if layout is None else layout
+        self._slot = self.layout.slot[self.nodes]
+        self._slots = slice(int(self._slot.min()), int(self._slot.max()) + 1)
         self.limits = limits_of(material)
         self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
         self.searches = self.limits.geometry != REFERENCE
         self.skin = SKIN * ground.brick.mean_diameter
-        self.origin = np.zeros((2, len(assembly.radii)))
+        self.origin = np.zeros((2, self._slots.stop - self._slots.start))
         self.bonds = brick_lines(ground, gaps_close=self.searches, locked_in=self.locked_in)
         first, second = assembly.pairs.T.astype(np.int64)
         pairs = Pairs(first, second, self.images(first, second, self.bonds[assembly.kind, :2]), assembly.kind)
@@ -80,16 +86,16 @@ class ContactList:
         self._palette = self.bonds
         self._list(pairs, bonded, zero, zero, np.full(len(first), -1))
         widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
-        arms = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
-        self.arms = np.concatenate([np.zeros(begin), arms])
+        self.arms = np.zeros(self.layout.count)
+        self.arms[self._slot] = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
         self._cracks: list[Cracks] = []
         self._held = held
         if self.searches:
-            self.search(np.zeros((3, self.nodes.stop)))
+            self.search(np.zeros((3, len(self.layout.slot))))
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
         """Take over from the elastic law at displacements (3, n): nothing has slid so far."""
-        kernel.start_from_displacements(displacement, self.arrays)
+        kernel.start_from_displacements(self.layout.spread(displacement), self.arrays)
 
     def push(self, displacement: np.ndarray, *, reference: bool = False) -> None:
         """Compute the pairs' own forces at displacements (3, n) reached at rest, and leave them in `arrays`.
@@ -98,19 +104,21 @@ class ContactList:
         """
         elastic = self.limits._replace(geometry=REFERENCE, tension=np.inf, cohesion=np.inf)
         limits = elastic if reference else self.limits
-        still = np.zeros_like(displacement)
-        if kernel.push(displacement, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 2))) > 0:
-            kernel.note_places(displacement, 0, self.arrays)
+        u = self.layout.spread(displacement)
+        still = np.zeros_like(u)
+        if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 2))) > 0:
+            kernel.note_places(u, 0, self.arrays)
 
     def add_forces(self, total: np.ndarray) -> None:
         """Add the forces and moments of the pairs' last forces to those of all nodes, total (3, n)."""
-        force = np.empty_like(total)
+        force = np.empty((3, self.layout.count))
         kernel.sum_forces(self.arrays, force)
-        total[:, self.nodes] += force[:, self.nodes]
+        total[:, self.nodes] += force[:, self._slot]
 
     def is_old(self, displacement: np.ndarray) -> bool:
         """Whether a particle has moved so far by displacements (3, n) that pairs may be missing."""
-        return self.skin - 2.0 * kernel.moved(displacement, self.nodes.start, self.origin) < 0.0
+        u = self.layout.spread(displacement)
+        return self.skin - 2.0 * kernel.moved(u, self._slots.start, self.origin) < 0.0
 
     def search(self, displacement: np.ndarray) -> None:
         """List the pairs anew for displacements (3, n): near ones come in, those far apart and unbonded go."""
@@ -156,7 +164,7 @@ class ContactList:
             np.concatenate([old.slip[kept], np.zeros(len(first))]),
             np.concatenate([old.cracked[kept], np.full(len(first), -1)]),
         )
-        self.origin = displacement[:2, self.nodes].copy()
+        self._set_origin(displacement[:2, self.nodes])
 
     def take_over_subset(self, other: "ContactList", kept: np.ndarray) -> None:
         """Take the pairs, with their history, of a list of more particles, of which this one's are `kept` (m,)."""
@@ -165,7 +173,8 @@ class ContactList:
         old, (old_first, old_second) = other.arrays, other.pairs
         first, second = number[old_first], number[old_second]
         left = (first >= 0) & (second >= 0)
-        self._palette, self.origin = other._palette, other.origin[:, kept]
+        self._palette = other._palette
+        self._set_origin(other.origin[:, other._slot[kept] - other._slots.start])
         pairs = Pairs(first[left], second[left], other.image[left], old.kind[left])
         self._list(pairs, old.state[left], old.shear[left], old.slip[left], old.cracked[left], old.place[left])
 
@@ -204,10 +213,11 @@ class ContactList:
         """Write down the bonds that broke since the last time, where they did."""
         pairs = self.arrays
         broken = np.flatnonzero(pairs.cracked >= 0)
-        broken = broken[np.argsort(pairs.cracked[broken], kind="stable")]
         if len(broken) == 0:
             return
         first, second = (particles[broken] for particles in self.pairs)
+        order = np.lexsort((second, first, pairs.cracked[broken]))
+        broken, first, second = broken[order], first[order], second[order]
         half = 0.5 * pairs.palette[pairs.kind[broken], :2]
         middle = self.assembly.positions[first] + half + pairs.place[broken]
         both = np.column_stack([first, second]) + self.nodes.start
@@ -223,8 +233,8 @@ class ContactList:
     @property
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
         """First and second particle (b,) int64 of every pair, numbered from the part's first one."""
-        begin = self.nodes.start
-        return self.arrays.first.astype(np.int64) - begin, self.arrays.second.astype(np.int64) - begin
+        begin, node = self.nodes.start, self.layout.node
+        return node[self.arrays.first] - begin, node[self.arrays.second] - begin
 
     def images(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> np.ndarray:
         """Whole periods (b, 2) that a pair's vector goes beyond the difference of its positions."""
@@ -257,13 +267,18 @@ class ContactList:
     def recall(self, memory: Arrays) -> None:
         """Take over what `memory` has returned in another run of the same case."""
         self._palette, self.origin = memory["palette"], memory["origin"]
-        begin = self.nodes.start
-        first, second = (memory[name].astype(np.int64) - begin for name in ("first", "second"))
+        begin, node = self.nodes.start, self.layout.node
+        first, second = (node[memory[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, memory["image"], memory["kind"])
         columns = (memory[name] for name in ("state", "shear", "slip", "cracked"))
         self._list(pairs, *columns)
         self.arrays.force[:] = memory["force"]
         self._cracks = [Cracks(*(memory[f"crack_{field.name}"] for field in fields(Cracks)))]
+
+    def _set_origin(self, displacement: np.ndarray) -> None:
+        """Count from displacements (2, m) m of the part's particles."""
+        self.origin = np.zeros((2, self._slots.stop - self._slots.start))
+        self.origin[:, self._slot - self._slots.start] = displacement
 
     def _list(
         self,
@@ -275,18 +290,19 @@ class ContactList:
         place: np.ndarray | None = None,
     ) -> None:
         """Sort the pairs, and list the ends of each particle."""
-        order = np.lexsort((pairs.image[:, 1], pairs.image[:, 0], pairs.second, pairs.first))
+        first, second = self._slot[pairs.first], self._slot[pairs.second]
+        order = np.lexsort((pairs.image[:, 1], pairs.image[:, 0], second, first))
         self.image = pairs.image[order]
-        first, second = pairs.first[order], pairs.second[order]
-        count, b, begin = len(self.assembly.radii), len(order), self.nodes.start
+        first, second = first[order], second[order]
+        b, begin, stop = len(order), self._slots.start, self._slots.stop
         owner = np.concatenate([first, second])
         end = np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
-        start = np.zeros(begin + count + 1, dtype=np.uint32)
-        np.cumsum(np.bincount(owner, minlength=count), out=start[begin + 1 :])
+        start = np.zeros(stop + 1, dtype=np.uint32)
+        np.cumsum(np.bincount(owner - begin, minlength=stop - begin), out=start[begin + 1 :])
         self.arrays = Contacts(
             begin=begin,
-            first=(begin + first).astype(np.uint32),
-            second=(begin + second).astype(np.uint32),
+            first=first.astype(np.uint32),
+            second=second.astype(np.uint32),
             kind=pairs.line[order].astype(np.uint32),
             palette=self._palette,
             state=state[order],
@@ -304,16 +320,16 @@ _KEPT = ("first", "second", "kind", "state", "shear", "slip", "cracked", "force"
 """The arrays of the pairs that memory() returns."""
 
 
-def plain_contacts(ground: PackedMaterial, assembly: Assembly, begin: int = 0) -> Contacts:
+def plain_contacts(ground: PackedMaterial, assembly: Assembly, slot: np.ndarray) -> Contacts:
     """The contacts of the elastic law, without history, forces and rows: what its strain energy takes.
 
-    begin : number of the assembly's first particle in the scene.
+    slot : (n,) where kernels hold the assembly's particles.
     """
-    first, second = (begin + assembly.pairs.T).astype(np.uint32, order="C")
+    first, second = slot[assembly.pairs.T].astype(np.uint32, order="C")
     bonded = INTACT if ground.moduli.pb_emod > 0.0 else NONE
     nothing = np.zeros(0)
     return Contacts(
-        begin=begin,
+        begin=int(slot.min()),
         first=first,
         second=second,
         kind=assembly.kind.astype(np.uint32),

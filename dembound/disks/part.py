@@ -6,13 +6,15 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.disks.contacts import ContactList, plain_contacts
+from dembound.disks.layout import Rows
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.rows import palette_of
-from dembound.kernels import bonded, elastic  # their laws have to be known before the loop is compiled
+from dembound.kernels import bonded, elastic, elastic_lanes  # noqa: F401  # laws to know before the loop is compiled
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contacts import REFERENCE, strain_energy
-from dembound.kernels.tables import Bonded, Contacts, Links, NeighbourTable, Seam, SeamEnds, WatchedLinks
+from dembound.kernels.tables import Bonded, Contacts, Links, Seam, SeamEnds, WatchedLinks
 from dembound.motion.cracks import NO_CRACKS, Cracks
+from dembound.motion.layout import Layout
 from dembound.motion.part import Part, Tie
 from dembound.motion.state import Arrays, State
 from dembound.packings.column import Seam as ColumnSeam
@@ -27,7 +29,9 @@ class DiskPart(Part):
     name : what the state calls it.
     ground : brick and material.
     assembly : its disks and their contacts.
+    nodes : which of the scene's particles they are.
     rows : the same contacts as a linear law takes them.
+    layout : where kernels hold the scene's particles.
     contacts : its pairs with their history; None where the material's law has none.
 
     Attributes
@@ -37,12 +41,19 @@ class DiskPart(Part):
     """
 
     def __init__(
-        self, name: str, ground: PackedMaterial, assembly: Assembly, rows: NeighbourTable, contacts: ContactList | None
+        self,
+        name: str,
+        ground: PackedMaterial,
+        assembly: Assembly,
+        nodes: slice,
+        rows: Rows,
+        layout: Layout,
+        contacts: ContactList | None,
     ) -> None:
         self.name = name
         self.ground = ground
         self.assembly = assembly
-        self.nodes = slice(rows.begin, rows.begin + len(assembly.radii))
+        self.nodes, self.layout = nodes, layout
         self.contacts = contacts
         self.uses_history = False
         self.stops_at_breaks = False
@@ -72,16 +83,18 @@ class DiskPart(Part):
 
     def add_elastic_forces(self, displacement: np.ndarray, total: np.ndarray) -> None:
         """Add forces and moments of the elastic law at displacements (3, n) to those of all nodes, total (3, n)."""
-        force = np.empty_like(total)
-        elastic.contact_forces(displacement, self.rows, force)
-        total[:, self.nodes] += force[:, self.nodes]
+        u = self.layout.spread(displacement)
+        force = np.empty_like(u)
+        elastic.contact_forces(u, self.rows, force)
+        total[:, self.nodes] += force[:, self.layout.slot[self.nodes]]
 
     def stored(self, displacement: np.ndarray) -> tuple[float, float]:
         """Energy (J) in contacts and in bonds at displacements (3, n)."""
+        u = self.layout.spread(displacement)
         if self.contacts is None:
-            return strain_energy(displacement, self._plain_contacts, REFERENCE)
+            return strain_energy(u, self._plain_contacts, REFERENCE)
         geometry = self.contacts.limits.geometry if self.uses_history else REFERENCE
-        return strain_energy(displacement, self.contacts.arrays, geometry)
+        return strain_energy(u, self.contacts.arrays, geometry)
 
     def take_cracks(self, steps: int) -> Cracks:
         """The bonds that broke since this was last called."""
@@ -106,12 +119,12 @@ class DiskPart(Part):
 
     @property
     def pairs(self) -> Contacts:
-        """Its pairs as the kernels read them, without history where the material's law has none."""
+        """Its pairs as kernels read them, by slots, without history where the material's law has none."""
         return self._plain_contacts if self.contacts is None else self.contacts.arrays
 
     @cached_property
     def _plain_contacts(self) -> Contacts:
-        return plain_contacts(self.ground, self.assembly, self.nodes.start)
+        return plain_contacts(self.ground, self.assembly, self.layout.slot[self.nodes])
 
 
 class FreeFieldSeam(Tie):
@@ -126,7 +139,10 @@ class FreeFieldSeam(Tie):
     def __init__(self, seam: ColumnSeam, column: DiskPart) -> None:
         self.seam = seam
         self.column = column
-        self._line = palette_of(column.ground)[1][2 * seam.kind + seam.twin_is_second]
+        self._palette, line_of = palette_of(column.ground)
+        slot = column.layout.slot
+        self._line = line_of[2 * seam.kind + seam.twin_is_second].astype(np.uint32)
+        self._neighbour = slot[seam.neighbour].astype(np.uint32)
         self._ends: tuple[Contacts, np.ndarray] | None = None
 
     @property
@@ -142,8 +158,8 @@ class FreeFieldSeam(Tie):
         start = np.zeros(len(supported) + 1, dtype=np.uint32)
         np.cumsum(counts, out=start[1:])
         if not self.column.uses_history:
-            near, line = seam.neighbour.astype(np.uint32), self._line.astype(np.uint32)
-            return Seam(seam.twin[supported], start, near, line, self.column.rows.palette)
+            twin = self.column.layout.slot[seam.twin[supported]]
+            return Seam(twin, start, self._neighbour, self._line, self._palette)
         assert self.column.contacts is not None
         ends = self.ends(self.column.contacts).astype(np.uint32)
         return SeamEnds(start, ends, self.column.contacts.arrays.force)
@@ -151,9 +167,10 @@ class FreeFieldSeam(Tie):
     def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
         """Forces and moments (3, k) on its nodes at displacements (3, n) under the elastic law."""
         force = np.zeros((len(self.nodes), 3))
-        near, line = self.seam.neighbour.astype(np.uint32), self._line.astype(np.uint32)
-        twin = self.seam.twin[self.nodes]
-        elastic.seam_forces(Seam(twin, self.seam.start, near, line, self.column.rows.palette), displacement, force)
+        layout = self.column.layout
+        twin = layout.slot[self.seam.twin[self.nodes]]
+        seam = Seam(twin, self.seam.start, self._neighbour, self._line, self._palette)
+        elastic.seam_forces(seam, layout.spread(displacement), force)
         return force.T
 
     def last_forces(self, contacts: ContactList) -> np.ndarray:

@@ -14,14 +14,17 @@ def turns_freely(scene: DiskBody) -> bool:
     return bool(scene.free.all()) and scene.seam is None and not held and not periodic
 
 
-def turn_as_a_whole(scene: DiskBody, displacement: np.ndarray, velocity: np.ndarray, datum: np.ndarray) -> None:
-    """Take displacements and velocities (3, n) of small rotations for those of a body that has really turned.
+def turned_as_a_whole(
+    scene: DiskBody, displacement: np.ndarray, velocity: np.ndarray, datum: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Displacements and velocities (3, n) of a body that has really turned, from those of small rotations.
 
     The law of small displacements moves a body that turns by θ from r to r + θ ẑ × r + w, which is longer by ½θ². Its
     motion is that of a body which has turned, r to R(θ)(r + w), seen along with it. datum : (3, n) displacements at the
     start.
     """
     mass = scene.mass
+    displacement, velocity = displacement.copy(), velocity.copy()
     arm = scene.assembly.positions.T + datum[:2]
     arm = arm - np.average(arm, axis=1, weights=mass)[:, None]
     moved = displacement[:2] - datum[:2]
@@ -33,3 +36,4 @@ def turn_as_a_whole(scene: DiskBody, displacement: np.ndarray, velocity: np.ndar
     displacement[:2] = datum[:2] + centre + turn @ (arm + stretched) - arm
     mean = np.average(velocity[:2], axis=1, weights=mass)[:, None]
     velocity[:2] = mean + turn @ (velocity[:2] - mean)
+    return displacement, velocity

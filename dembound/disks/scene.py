@@ -13,9 +13,9 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.body import DiskBody, parts_of
 from dembound.disks.edges import edge_without, edges_beside_column, find_edges
+from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
-from dembound.disks.rows import contact_rows
 from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.holes import Hole
@@ -44,9 +44,9 @@ class DiskScene(DiskBody):
     @property
     def bytes(self) -> int:
         """Memory of the particle, contact and state arrays, those before an excavation included."""
-        state = 9 * 8 * self.count  # u, its successor and v
-        step = 4 * 8 * self.count  # mass, inertia and their mobilities
-        arrays = (*(array for rows in self.rows for array in rows[1:]), *vars(self.assembly).values())
+        state = 9 * 8 * self.layout.count  # u, its successor and v
+        step = 2 * 8 * (self.count + self.layout.count)  # mass, inertia and their mobilities
+        arrays = (*(array for rows in self.rows for array in rows), *vars(self.assembly).values(), self.layout.slot)
         before = 0 if self.before is None else self.before.bytes
         return before + state + step + sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
 
@@ -79,18 +79,18 @@ def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Ma
         assembly, seam = with_column(ground.brick, assembly, sides)
         edges = edges_beside_column(assembly, seam, edges)
     assembly, seam = _with_half_contacts(case, ground.brick, assembly, seam, edges)
+    count = len(assembly.radii)
+    slots, rows = lay_out(assembly, ground, parts_of(count, seam), mass_factor(count, edges, case.boundary))
     return DiskScene(
         case=case,
         ground=ground,
         assembly=assembly,
-        rows=tuple(
-            contact_rows(assembly.part(nodes), ground, nodes.start)
-            for nodes in parts_of(len(assembly.radii), seam).values()
-        ),
+        rows=rows,
         edges=edges,
         supports=_supports(case, ground, assembly, edges),
         monitors=_monitors(case, assembly, seam),
         seam=seam,
+        slots=slots,
     )
 
 

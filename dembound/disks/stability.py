@@ -38,9 +38,10 @@ def step_limit(scene: DiskScene, tolerance: float = TOLERANCE, damp: float | Non
 
     Raises RunError when the iteration does not converge.
     """
-    root = np.sqrt(_inverse_mass(scene))
-    stiffness = _support_stiffness(scene)
-    force = np.empty((3, scene.count))
+    layout = scene.layout
+    root = layout.spread(np.sqrt(_inverse_mass(scene)))
+    stiffness = layout.spread(_support_stiffness(scene))
+    force = np.zeros((3, layout.count))
 
     def apply(vector: np.ndarray) -> np.ndarray:
         u = root * vector.reshape(3, -1)
@@ -49,13 +50,13 @@ def step_limit(scene: DiskScene, tolerance: float = TOLERANCE, damp: float | Non
                 contact_forces(u, rows, force)
         return (root * (stiffness * u - force)).ravel()
 
-    size = 3 * scene.count
+    size = 3 * layout.count
     operator = LinearOperator((size, size), matvec=apply, dtype=float)
-    start = np.random.default_rng(0).standard_normal(size) * (root.ravel() > 0.0)
+    start = layout.spread(np.random.default_rng(0).standard_normal((3, scene.count))).ravel() * (root.ravel() > 0.0)
     if not start.any():
         largest = 0.0
-    elif size < 20:
-        matrix = np.stack([apply(column) for column in np.eye(size)], axis=1)
+    elif (moves := np.flatnonzero(root.ravel())).size < 20:
+        matrix = np.stack([apply(column)[moves] for column in np.eye(size)[moves]], axis=1)
         largest = np.linalg.eigvalsh(0.5 * (matrix + matrix.T))[-1]
     else:
         try:

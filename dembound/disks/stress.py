@@ -41,9 +41,10 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
     displacement : (3, n) m and rad.
     elastic : take the forces of the elastic law, and the ways as at the start; else the pairs' last forces.
     """
-    moments = np.zeros((3, scene.count))
-    for piece, force in _pieces(contacts, displacement, elastic=elastic):
-        first, second = contacts.first[piece].astype(np.int64), contacts.second[piece].astype(np.int64)
+    moments, node = np.zeros((3, scene.count)), scene.layout.node
+    u = scene.layout.spread(displacement)
+    for piece, force in _pieces(contacts, u, elastic=elastic):
+        first, second = node[contacts.first[piece]], node[contacts.second[piece]]
         lines = contacts.palette[contacts.kind[piece]]
         x, y = lines[:, :2].T if elastic else lines[:, :2].T + displacement[:2, second] - displacement[:2, first]
         part = 0.5 + lines[:, 4] / np.hypot(x, y)  # of the way, on the first one's side
@@ -55,8 +56,8 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
     return (moments / area).T
 
 
-def _pieces(contacts: Contacts, displacement: np.ndarray, *, elastic: bool) -> Iterator[tuple[slice, np.ndarray]]:
-    """Pieces of the list of pairs and their forces (k, 4), whose pairs are not changed."""
+def _pieces(contacts: Contacts, u: np.ndarray, *, elastic: bool) -> Iterator[tuple[slice, np.ndarray]]:
+    """Pieces of the list of pairs and their forces (k, 4) at displacements u (3, slots); no pair is changed."""
     for begin in range(0, len(contacts.first), PIECE):
         piece = slice(begin, begin + PIECE)
         if not elastic:
@@ -73,5 +74,5 @@ def _pieces(contacts: Contacts, displacement: np.ndarray, *, elastic: bool) -> I
             cracked=np.full(count, -1),
             force=np.empty((count, 4)),
         )
-        push(displacement, displacement, 0.0, 0, pairs, UNYIELDING, np.empty((CHUNKS, 2)))  # a step of no time: at rest
+        push(u, u, 0.0, 0, pairs, UNYIELDING, np.empty((CHUNKS, 2)))  # a step of no time: at rest
         yield piece, pairs.force

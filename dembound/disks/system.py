@@ -10,8 +10,9 @@ import numpy as np
 from dembound.disks.balance import Balance
 from dembound.disks.body import DiskBody
 from dembound.disks.contacts import ContactList
+from dembound.disks.layout import with_supports
 from dembound.disks.part import DiskPart, FreeFieldSeam
-from dembound.disks.rotation import turn_as_a_whole, turns_freely
+from dembound.disks.rotation import turned_as_a_whole, turns_freely
 from dembound.disks.stress import part_stress
 from dembound.kernels.common import BROKE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.contacts import UPDATED
@@ -65,10 +66,15 @@ class DiskSystem(System):
         lists: Mapping[str, ContactList] = {}
         if scene.has_history:
             lists = scene.contact_lists() if start is None else start.contacts
+        tied = np.zeros(0, dtype=np.int64) if scene.seam is None else scene.seam.node
+        supported = scene.layout.slot[np.union1d(scene.supports.node, tied)]
         parts = [
-            DiskPart(name, scene.ground, scene.assembly.part(nodes), rows, lists.get(name))
+            DiskPart(
+                name, scene.ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), scene.layout,
+                lists.get(name),
+            )
             for (name, nodes), rows in zip(scene.parts.items(), scene.rows, strict=True)
-        ]
+        ]  # fmt: skip
         ties = [] if scene.seam is None else [FreeFieldSeam(scene.seam, parts[0])]
         super().__init__(parts, ties, scene.steady_load if load is None else load)
         self.balance: Balance | None = None
@@ -197,7 +203,9 @@ class DiskSystem(System):
         """From here on the history-dependent law; fresh: without any history yet."""
         before = self._potential(state) if state.laws else None
         if fresh and self._is_updated and turns_freely(self.scene):
-            turn_as_a_whole(self.scene, state.displacement, state.velocity, state.datum)
+            state.displacement, state.velocity = turned_as_a_whole(
+                self.scene, state.displacement, state.velocity, state.datum
+            )
         self._adopt(state.displacement, fresh)
         for part in self.parts:
             part.uses_history = True
@@ -211,8 +219,9 @@ class DiskSystem(System):
         self._follow()
         if before is not None and self.turning is not None:
             # the step to come counts the work of turning from half a step ago, when forces did not turn yet
-            steady, step = self.steady.copy(), self._time_step
-            state.work[:, 4] -= turn_forces(self.turning, state.displacement, state.velocity, steady, step)
+            layout, steady = state.layout, state.layout.spread(self.steady)
+            turning = self.turning.in_slots(layout.slot)
+            state.work[:, 4] -= turn_forces(turning, state.u, state.v, steady, self._time_step)
         state.switch_velocity = state.velocity.copy()
         state.laws.append((self.law_name, state.step))
 

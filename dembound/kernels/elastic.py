@@ -18,13 +18,13 @@ from numba import njit, prange
 
 from dembound.kernels.common import CHUNKS, DONE, FAST, LAW_ENDS, LIST_ENDS, PARALLEL, U, largest
 from dembound.kernels.contacts import moved, slack
-from dembound.kernels.law import is_law, is_tie
+from dembound.kernels.law import answer, generic, is_law, is_tie
 from dembound.kernels.step import move_particle, note_damping
-from dembound.kernels.tables import Links, Seam, WatchedLinks
+from dembound.kernels.tables import Links, NeighbourTable, Seam, WatchedLinks
 
 
 @njit(**FAST, inline="always")
-def _row_force(row, i, u, start, neighbour, kind, palette):
+def row_force(row, i, u, start, neighbour, kind, palette):
     """Force (x, y) and moment on particle i from a row of contacts (Z eqs 7-9; PFC2D linear parallel bond)."""
     x = u[U(0), i]
     y = u[U(1), i]
@@ -51,15 +51,27 @@ def _row_force(row, i, u, start, neighbour, kind, palette):
     return fx, fy, moment
 
 
+@generic
+def fill_forces(rows, u, force):
+    """Fill force (3, slots) of the rows' disks with contact forces and moments (N, N·m) at displacements u."""
+
+
+@generic
+def move_rows(rows, u, v, body, u_next, fastest, arms, damped):
+    """One step of the rows' disks, see `move_particle`.
+
+    fastest (chunks,) gets surface speeds if there are arms (slots,), damped (chunks, 2) the work of local damping.
+    """
+
+
 @njit(**PARALLEL)
-def contact_forces(u, rows, force):
-    """Fill force (3, n) of the rows' particles with contact forces and moments (N, N·m) at displacements u (3, n)."""
+def _fill(rows, u, force):
     begin, start, neighbour, kind, palette = rows
     n = start.size - 1 - begin
     for chunk in prange(CHUNKS):
         for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
-            force[U(0), i], force[U(1), i], force[U(2), i] = _row_force(i, i, u, start, neighbour, kind, palette)
+            force[U(0), i], force[U(1), i], force[U(2), i] = row_force(i, i, u, start, neighbour, kind, palette)
 
 
 @njit(**FAST)
@@ -68,18 +80,14 @@ def seam_forces(seam, u, force):
     twin, start, neighbour, kind, palette = seam
     for s in range(twin.size):
         if start[s + 1] > start[s]:
-            fx, fy, moment = _row_force(U(s), U(twin[s]), u, start, neighbour, kind, palette)
+            fx, fy, moment = row_force(U(s), U(twin[s]), u, start, neighbour, kind, palette)
             force[s, 0] += fx
             force[s, 1] += fy
             force[s, 2] += moment
 
 
 @njit(**PARALLEL)
-def _move(u, v, rows, body, u_next, fastest, arms, damped):
-    """One step of the rows' particles, see `move_particle`.
-
-    fastest (chunks,) gets surface speeds if there are arms, damped (chunks, 2) the work of local damping.
-    """
+def _move(rows, u, v, body, u_next, fastest, arms, damped):
     begin, start, neighbour, kind, palette = rows
     n = start.size - 1 - begin
     watched = arms.size > 0
@@ -89,7 +97,7 @@ def _move(u, v, rows, body, u_next, fastest, arms, damped):
         half = 0.0
         for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
-            fx, fy, moment = _row_force(i, i, u, start, neighbour, kind, palette)
+            fx, fy, moment = row_force(i, i, u, start, neighbour, kind, palette)
             taken, up_to = move_particle(i, fx, fy, moment, u, v, body, u_next)
             whole += taken
             half += up_to
@@ -101,9 +109,32 @@ def _move(u, v, rows, body, u_next, fastest, arms, damped):
 
 
 @njit(**FAST)
+def _fill_table(rows, u, force):
+    _fill(rows, u, force)
+
+
+@njit(**FAST)
+def _move_table(rows, u, v, body, u_next, fastest, arms, damped):
+    _move(rows, u, v, body, u_next, fastest, arms, damped)
+
+
+answer(fill_forces, NeighbourTable, _fill_table)
+answer(move_rows, NeighbourTable, _move_table)
+
+
+@njit(**FAST)
+def contact_forces(u, rows, force):
+    """Fill force (3, slots) of the rows' disks with contact forces and moments (N, N·m) at displacements u (3, slots).
+
+    rows : a NeighbourTable or LaneRows.
+    """
+    fill_forces(rows, u, force)
+
+
+@njit(**FAST)
 def move(links, u, u_next, v, body, nodes):
     """One step of all particles, see law.move."""
-    _move(u, v, links.rows, body, u_next, links.fastest, links.fastest[:0], links.damped)
+    move_rows(links.rows, u, v, body, u_next, links.fastest, links.fastest[:0], links.damped)
 
 
 @njit(**FAST)
@@ -126,10 +157,10 @@ def check_watch(watched, u, u_next, v):
 
     How far every pair is from that is measured again when surfaces have travelled half of it.
     """
-    links, contacts, limits, origin, skin, _, way = watched
+    _, contacts, limits, origin, skin, _, way = watched
     if 2.0 * way[0] < way[1]:
         return DONE
-    listed = skin - 2.0 * moved(u, links.rows.begin, origin)
+    listed = skin - 2.0 * moved(u, contacts.begin, origin)
     way[0] = 0.0
     way[1] = min(slack(u, contacts, limits), listed)
     if way[1] >= 0.0:
@@ -141,7 +172,7 @@ def check_watch(watched, u, u_next, v):
 def move_watched(watched, u, u_next, v, body, nodes):
     """One step of all particles, measuring how fast surfaces are."""
     links = watched.links
-    _move(u, v, links.rows, body, u_next, links.fastest, watched.arms, links.damped)
+    move_rows(links.rows, u, v, body, u_next, links.fastest, watched.arms, links.damped)
 
 
 @njit(**FAST)
@@ -151,7 +182,7 @@ def finish_watched(watched, v, body, nodes, work):
     most = largest(watched.links.fastest)
     for s in range(nodes.size):
         i = nodes[s]
-        if watched.links.rows.begin <= i < watched.arms.size:
+        if watched.contacts.begin <= i < watched.arms.size:
             most = max(most, np.hypot(v[0, i], v[1, i]) + watched.arms[i] * abs(v[2, i]))
     watched.way[0] += body.step * most
 

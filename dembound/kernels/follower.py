@@ -19,13 +19,14 @@ GONE = -2
 
 
 @njit(**FAST, inline="always")
-def _moved(i, twin, u, datum):
-    """Displacement of particle i since the datum, less that of its twin if it has one."""
-    x = u[0, i] - datum[0, i]
-    y = u[1, i] - datum[1, i]
-    if twin >= 0:
-        x -= u[0, twin] - datum[0, twin]
-        y -= u[1, twin] - datum[1, twin]
+def _moved(m, u, member, twin, rest):
+    """Displacement of a member since the datum, less that of its twin if it has one."""
+    i = member[m]
+    x = u[0, i] - rest[0, m]
+    y = u[1, i] - rest[1, m]
+    if twin[m] >= 0:
+        x -= u[0, twin[m]]
+        y -= u[1, twin[m]]
     return x, y
 
 
@@ -36,14 +37,14 @@ def side_rotation(side, u, followers):
     The rotation that fits the members' places best by least squares: tan θ = Σ a × r / Σ a · r, with a a member's arm
     from their mean place at the datum and r that of now.
     """
-    member, twin, arm, datum = followers.member, followers.twin, followers.arm, followers.datum
+    member, twin, arm, rest = followers.member, followers.twin, followers.arm, followers.rest
     first, last = followers.start[side], followers.start[side + 1]
     mean_x = 0.0
     mean_y = 0.0
     count = 0
     for m in range(first, last):
         if twin[m] != GONE:
-            x, y = _moved(member[m], twin[m], u, datum)
+            x, y = _moved(m, u, member, twin, rest)
             mean_x += x
             mean_y += y
             count += 1
@@ -54,7 +55,7 @@ def side_rotation(side, u, followers):
     for m in range(first, last):
         if twin[m] == GONE:
             continue
-        x, y = _moved(member[m], twin[m], u, datum)
+        x, y = _moved(m, u, member, twin, rest)
         x -= mean_x
         y -= mean_y
         cross += arm[0, m] * y - arm[1, m] * x

@@ -4,10 +4,11 @@ Each is a named tuple of arrays (tables.py), and its type decides, when the loop
 A new law is a bundle with its kernels, named with `is_law`; the loop stays as it is.
 """
 
+from functools import wraps
 from typing import Any
 
 import numpy as np
-from numba import literal_unroll, njit, types
+from numba import config, literal_unroll, njit, types
 from numba.extending import overload
 
 from dembound.kernels.common import DONE, FAST
@@ -16,10 +17,27 @@ Kernel = Any
 """A compiled function."""
 
 
+def generic(stub: Kernel) -> Kernel:
+    """A function whose kernel is chosen by the type of its first argument; `answer` names the kernels.
+
+    Compiled code chooses when it is compiled, Python code, where nothing is compiled, when it is called.
+    """
+    kernels: dict[type, Kernel] = {}
+
+    @wraps(stub)
+    def choose(first: Any, *others: Any) -> Any:
+        return kernels[type(first)](first, *others)
+
+    choose.kernels = kernels  # type: ignore[attr-defined]
+    return choose
+
+
+@generic
 def begin(law):
     """Reset what the law counts within one call of the loop."""
 
 
+@generic
 def check(law, u, u_next, v):
     """Why the loop has to return before this step, DONE if nothing keeps it; changes nothing but work space.
 
@@ -27,6 +45,7 @@ def check(law, u, u_next, v):
     """
 
 
+@generic
 def push(law, u, u_next, v, number, step, work):
     """Compute the forces of displacements u in step `number` of length `step` (s).
 
@@ -35,24 +54,31 @@ def push(law, u, u_next, v, number, step, work):
     """
 
 
+@generic
 def note(law, index, u, log):
     """Write down what the law records at the probes beside their motion, in row `index` of log.record."""
 
 
+@generic
 def move(law, u, u_next, v, body, nodes):
     """Move the law's nodes by a step; u_next takes their displacements, of supported ones (k,) their forces."""
 
 
+@generic
 def finish(law, v, body, nodes, work):
     """Enter in work what the law took in this step, supported nodes (k,) moved too; v : (3, n) velocities after it."""
 
 
+@generic
 def across(tie, u, force):
     """Add to force (k, 3) what a tie does to the k supported nodes at displacements u (3, n)."""
 
 
 def pull(ties, u, force):
     """Fill force (k, 3) with what all ties do to the k supported nodes at displacements u (3, n)."""
+    force[:] = 0.0
+    for tie in ties:
+        across(tie, u, force)
 
 
 @overload(pull)
@@ -68,10 +94,12 @@ def _pull(ties, u, force):
     return pull_all
 
 
+@generic
 def turn(turning, u, v, load, step):
     """Turn the forces that turn with their sides, in load (3, n); returns the work (J) of that up to the whole step."""
 
 
+@generic
 def turning_work(turning, v, step):
     """Work (J) of what turning adds in the half step (s) after that, at velocities v (3, n) of its end."""
 
@@ -83,7 +111,9 @@ def _of_all(kernel: Kernel, *, returns: bool) -> Kernel:
     """
 
     def call(laws: Any, *others: Any) -> Any:
-        """Stands for one of those below."""
+        """Stands for one of those below; what it does itself is done where nothing is compiled."""
+        done = [kernel(law, *others) for law in laws]
+        return max(done) if returns else None
 
     def choose(laws: Any, *others: Any) -> Kernel:
         def one(laws, *others):  # type: ignore[no-untyped-def]
@@ -161,30 +191,33 @@ def is_law(
     """
     for name, kernel in locals().copy().items():
         if name != "bundle":
-            _answer(globals()[name], bundle, kernel)
+            answer(globals()[name], bundle, kernel)
 
 
 def is_tie(bundle: type, *, across: Kernel) -> None:
     """Make bundles of this type a tie."""
-    _answer(globals()["across"], bundle, across)
+    answer(globals()["across"], bundle, across)
 
 
 def is_turning(bundle: type, *, turn: Kernel, turning_work: Kernel) -> None:
     """Make bundles of this type forces that turn."""
-    _answer(globals()["turn"], bundle, turn)
-    _answer(globals()["turning_work"], bundle, turning_work)
+    answer(globals()["turn"], bundle, turn)
+    answer(globals()["turning_work"], bundle, turning_work)
 
 
-def _answer(generic: Kernel, bundle: type | None, kernel: Kernel) -> None:
-    """Let a kernel stand for `generic` where its first argument is a bundle of this type, or None."""
+def answer(function: Kernel, bundle: type | None, kernel: Kernel) -> None:
+    """Let a kernel stand for a generic function where its first argument is a bundle of this type, or None."""
+    function.kernels[bundle or type(None)] = kernel
+    if config.DISABLE_JIT:  # type: ignore[attr-defined]  # from the environment
+        return
 
     def choose(first: Any, *others: Any) -> Kernel | None:
         is_it = isinstance(first, types.NoneType) if bundle is None else getattr(first, "instance_class", 0) is bundle
         return kernel.py_func if is_it else None
 
     options = {name: value for name, value in kernel.targetoptions.items() if name in FAST} | _INLINED
-    overload(generic, jit_options=options, strict=False)(choose)  # type: ignore[arg-type]  # its stubs miss _nrt
+    overload(function, jit_options=options, strict=False)(choose)  # type: ignore[arg-type]  # its stubs miss _nrt
 
 
-_answer(turn, None, _no_turn)
-_answer(turning_work, None, _no_turning_work)
+answer(turn, None, _no_turn)
+answer(turning_work, None, _no_turning_work)

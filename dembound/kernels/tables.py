@@ -20,6 +20,36 @@ class NeighbourTable(NamedTuple):
     palette: np.ndarray
 
 
+class LaneRows(NamedTuple):
+    """Contacts of the elastic law between r rows of copies, see elastic_lanes.py.
+
+    first : (r + 1,) the blocks of eight slots that each row begins with; mass kg, inertia kg·m² : (r,) of its disks.
+    start : (r + 1,) entries of each row; shift : (e,) slots from a disk to its neighbour; mask : (e,) where the bits of
+    the copies that have the contact begin in masks (m,) uint8, one byte a block, −1: all have it; constants (e, 8),
+    turn (e, 3), own (r, 3) see there. special : (blocks,) bool, blocks with supported disks, strays, or masses of their
+    own. Contacts that are in no entry are strays, of k disks in stray (k,), ascending slots; those of each begin in
+    neighbour (s,) and kind (s,), a line of palette (p, 6), at stray_start (k + 1,). extra : (3, slots) work space.
+    """
+
+    first: np.ndarray
+    mass: np.ndarray
+    inertia: np.ndarray
+    start: np.ndarray
+    shift: np.ndarray
+    mask: np.ndarray
+    masks: np.ndarray
+    constants: np.ndarray
+    turn: np.ndarray
+    own: np.ndarray
+    special: np.ndarray
+    stray: np.ndarray
+    stray_start: np.ndarray
+    neighbour: np.ndarray
+    kind: np.ndarray
+    palette: np.ndarray
+    extra: np.ndarray
+
+
 class Contacts(NamedTuple):
     """Contacts with a history, each listed once; see contacts.py for the columns of palette and force.
 
@@ -82,7 +112,7 @@ class Followers(NamedTuple):
     turn, −1 for none, GONE for a member that has broken off; arm : (2, m) m, from the side's mean place at the datum.
     node : (q,) particles; side : (2, q) the one or two sides each belongs to, −1 for none; force : (2, 2, q) N by side
     and component; steady : (2, q) N, all steady load before anything has turned; extra : (2, q) N, what turning adds at
-    the moment. datum : (3, n) displacements counted from.
+    the moment. rest : (2, m) m, the displacement of a member at the datum, less that of its twin.
     """
 
     opposite: np.ndarray
@@ -95,7 +125,12 @@ class Followers(NamedTuple):
     force: np.ndarray
     steady: np.ndarray
     extra: np.ndarray
-    datum: np.ndarray
+    rest: np.ndarray
+
+    def in_slots(self, slot: np.ndarray) -> "Followers":
+        """The same by the slots (n,) of particles."""
+        twin = np.where(self.twin < 0, self.twin, slot[self.twin])
+        return self._replace(member=slot[self.member], twin=twin, node=slot[self.node])
 
 
 class Seam(NamedTuple):
@@ -165,7 +200,7 @@ class Log(NamedTuple):
 class Links(NamedTuple):
     """The elastic law on the particles that rows are of; fastest (chunks,), damped (chunks, 2) : work space."""
 
-    rows: NeighbourTable
+    rows: NeighbourTable | LaneRows
     fastest: np.ndarray
     damped: np.ndarray
 

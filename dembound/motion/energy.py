@@ -76,7 +76,7 @@ class Ledger(Tracker):
         self._interval, self._last = interval, last
         self._unit = run.scene.energy_unit
         self._inertia = np.stack([run.scene.mass, run.scene.mass, run.scene.inertia])
-        self._first = run.system.stored(run.state.displacement)
+        self._first = run.system.stored(run.state.displacement.copy())
         self._most = 0.0, 0.0  # that boundaries and loads have brought in at any time
         self._begun: _Begun | None = None
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile import Case
+from dembound.motion.layout import Layout
 from dembound.motion.part import System
 
 RUNAWAY = 1e4
@@ -117,6 +118,11 @@ class Scene(ABC):
     def twin(self) -> np.ndarray | None:
         """(n,) the node whose velocity the dashpots of each one follow, itself or another; None: no dashpots follow."""
         return None
+
+    @property
+    def layout(self) -> Layout:
+        """The slots in which kernels hold its nodes."""
+        return Layout.plain(self.count)
 
     @cached_property
     def tracked(self) -> np.ndarray:

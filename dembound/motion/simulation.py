@@ -6,6 +6,7 @@ import numpy as np
 
 from dembound.kernels import loop, tables
 from dembound.motion.clock import Clock
+from dembound.motion.layout import aligned_zeros
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
 from dembound.motion.state import State
@@ -54,23 +55,26 @@ class Simulation:
         self.probes = np.array(probes, dtype=np.int64)
         self.system = scene.system(time_step) if system is None else system
         datum = np.zeros((3, scene.count)) if datum is None else datum
+        layout = scene.layout
         self.state = State(
-            displacement=datum.copy(),
-            velocity=np.zeros((3, scene.count)),
+            layout=layout,
+            u=layout.spread(datum),
+            v=aligned_zeros(3, layout.count),
             datum=datum,
             peaks=np.zeros((len(scene.tracked), 3, 2)),
-            top_speed=np.zeros(scene.count if scene.case.output.peaks else 0),
+            top=np.zeros(layout.count if scene.case.output.peaks else 0),
         )
         self.state.owners["system"] = self.system
         self.trackers: list[Tracker] = []
         self.track(Watch(scene.block))
         self.stopped = False
-        self._u_next = np.zeros((3, scene.count))
+        self._u_next = aligned_zeros(3, layout.count)
         self._damp = scene.damp if damp is None else damp
         self._supports = NodeSupports(scene, self.system.ties, time_step)
-        self._mobility, self._inverse_inertia = time_step / scene.mass, time_step / scene.inertia
+        self._mobility, self._inverse_inertia = (layout.spread(time_step / of) for of in (scene.mass, scene.inertia))
         for mobility in (self._mobility, self._inverse_inertia):
-            mobility[self._supports.nodes] = 0.0  # the support table moves these
+            mobility[self._supports.slots] = 0.0  # the support table moves these
+        self._probe_slots, self._tracked_slots = layout.slot[self.probes], layout.slot[scene.tracked]
         self.system.begin(self.state)
 
     def track(self, *trackers: Tracker) -> None:
@@ -143,22 +147,26 @@ class Simulation:
     def _advance_under_one_law(self, record: np.ndarray, supports: tables.Supports) -> int:
         """As many of these steps as the laws in use, with their lists of pairs or bonds, are good for; those done."""
         state, system = self.state, self.system
-        body = tables.Body(
-            self._mobility, self._inverse_inertia, self.scene.free, system.steady, self._damp, self.time_step
-        )
-        log = tables.Log(self.probes, record, self.scene.tracked, state.peaks, state.top_speed, state.work)
+        load, turning = system.steady, system.turning
+        if not state.layout.is_plain:
+            load = state.layout.spread(load) if load.size else load
+            turning = None if turning is None else turning.in_slots(state.layout.slot)
+        body = tables.Body(self._mobility, self._inverse_inertia, self.scene.free, load, self._damp, self.time_step)
+        log = tables.Log(self._probe_slots, record, self._tracked_slots, state.peaks, state.top, state.work)
         done, why = loop.advance(
-            state.displacement,
+            state.u,
             self._u_next,
-            state.velocity,
+            state.v,
             state.step,
             system.laws(),
-            system.bundles(supports.nodes),
-            system.turning,
+            system.bundles(self._supports.nodes),
+            turning,
             body,
             supports,
             log,
         )
+        if turning is not None and system.turning is not None and not state.layout.is_plain:
+            system.steady[:2, system.turning.node] = load[:2, turning.node]
         state.step += int(done)
         system.react(int(why), int(done), state)
         return int(done)

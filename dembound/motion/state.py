@@ -6,6 +6,8 @@ from typing import Protocol
 
 import numpy as np
 
+from dembound.motion.layout import Layout
+
 Arrays = Mapping[str, np.ndarray]
 """Arrays by name."""
 
@@ -29,10 +31,11 @@ class State:
 
     Attributes
     ----------
-    displacement, velocity : (3, n) m and rad, m/s and rad/s; velocities are half a time step behind.
+    layout : the slots of the nodes.
+    u, v : (3, slots) displacements in m and rad and velocities in m/s and rad/s, half a time step behind.
     datum : (3, n) displacement at the start.
     peaks : (q, 3, 2) smallest and largest velocity so far of the nodes of all edges, one edge after the other.
-    top_speed : (n,) m/s, largest speed of every node so far; (0,) unless the case asks for it.
+    top : (slots,) m/s, largest speed so far; (0,) unless the case asks for it.
     work : (2, 6) J, in the columns `WORK`; see kernels.tables.Log.
     step : steps done.
     laws : name of each law used and the step it began with.
@@ -41,16 +44,45 @@ class State:
     owners : who keeps the rest of the state, by name.
     """
 
-    displacement: np.ndarray
-    velocity: np.ndarray
+    layout: Layout
+    u: np.ndarray
+    v: np.ndarray
     datum: np.ndarray
     peaks: np.ndarray
-    top_speed: np.ndarray
+    top: np.ndarray
     work: np.ndarray = field(default_factory=lambda: np.zeros((2, len(WORK))))
     step: int = 0
     laws: list[tuple[str, int]] = field(default_factory=list)
     switch_velocity: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))
     owners: dict[str, Owner] = field(default_factory=dict)
+
+    @property
+    def displacement(self) -> np.ndarray:
+        """(3, n) m and rad, to be read or replaced as a whole; copy it to keep it."""
+        return self.layout.gather(self.u)
+
+    @displacement.setter
+    def displacement(self, values: np.ndarray) -> None:
+        self.u[:, self.layout.slot] = values
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """(3, n) m/s and rad/s, half a time step behind, to be read or replaced as a whole; copy it to keep it."""
+        return self.layout.gather(self.v)
+
+    @velocity.setter
+    def velocity(self, values: np.ndarray) -> None:
+        self.v[:, self.layout.slot] = values
+
+    @property
+    def top_speed(self) -> np.ndarray:
+        """(n,) m/s, largest speed of every node so far; (0,) unless the case asks for it."""
+        return self.layout.gather(self.top) if self.top.size else self.top
+
+    @top_speed.setter
+    def top_speed(self, values: np.ndarray) -> None:
+        if self.top.size:
+            self.top[self.layout.slot] = values
 
     def arrays(self) -> dict[str, np.ndarray]:
         """Copies of all of it, by name: enough to go on in another process, to the same bits."""
@@ -75,7 +107,7 @@ class State:
 
 
 _ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_velocity")
-"""The fields of a state that are arrays as they stand."""
+"""What of a state is arrays of nodes."""
 
 
 def within(arrays: Arrays, owner: str) -> dict[str, np.ndarray]:

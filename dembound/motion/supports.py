@@ -20,8 +20,9 @@ class NodeSupports:
     Attributes
     ----------
     nodes : (k,) ascending.
+    slots : (k,) where kernels hold them.
     inertia, keep, mobility, stiffness, prescribed, follow : (k, 3), see kernels.tables.Supports.
-    twin : (k,) see there.
+    twin : (k,) slots, see there.
     """
 
     def __init__(self, scene: Scene, ties: tuple[Tie, ...], time_step: float) -> None:
@@ -29,13 +30,14 @@ class NodeSupports:
         self._half_step = 0.5 * time_step
         tied = np.concatenate([np.zeros(0, dtype=np.int64), *(tie.nodes for tie in ties)])
         self.nodes = np.union1d(self._rows.node, tied)
+        self.slots = scene.layout.slot[self.nodes]
         self._at = (np.searchsorted(self.nodes, self._rows.node), self._rows.component)
         self.inertia = np.stack([scene.mass, scene.mass, scene.inertia], axis=1)[self.nodes] / time_step
         damping = self._spread(self._rows.damping)
         self.stiffness, self.prescribed = self._spread(self._rows.stiffness), self._spread(self._rows.prescribed)
         self.follow = self._spread(self._rows.follow)
         twin = self.nodes if scene.twin is None else scene.twin[self.nodes]
-        self.twin = np.where(twin == self.nodes, -1, twin)
+        self.twin = np.where(twin == self.nodes, -1, scene.layout.slot[twin])
         moves = scene.free * (1.0 - self.prescribed)
         self.mobility = moves / (self.inertia + 0.5 * damping)
         self.keep = moves * (self.inertia - 0.5 * damping) / (self.inertia + 0.5 * damping)
@@ -45,7 +47,7 @@ class NodeSupports:
         drive = np.zeros((len(times), len(self.nodes), 3))
         drive[:, self._at[0], self._at[1]] = self._rows.sample(times, self._half_step)
         return tables.Supports(
-            nodes=self.nodes,
+            nodes=self.slots,
             inertia=self.inertia,
             keep=self.keep,
             mobility=self.mobility,

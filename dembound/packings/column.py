@@ -64,10 +64,10 @@ def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[A
     Raises PackingError when a disk of the body has no twin in the column.
     """
     column = tile(brick, (1, body.copies[1]), (True, False))
-    place = _places(column, brick)
+    place = column.tile.astype(np.int64)
     numbers = np.full((place[:, 1].max() + 1, len(brick.radii)), -1, dtype=np.int64)
     numbers[place[:, 1], column.brick_particle] = np.arange(len(place))
-    where = _places(body, brick)
+    where = body.tile.astype(np.int64)
     twin = numbers[where[:, 1], body.brick_particle]
     if (twin < 0).any():
         raise PackingError(f"{np.count_nonzero(twin < 0)} disks of the body have no twin in the free-field column")
@@ -79,6 +79,7 @@ def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[A
         positions=np.vstack([column.positions - [width + APART * brick.mean_diameter, 0.0], body.positions]),
         radii=np.concatenate([column.radii, body.radii]),
         brick_particle=np.concatenate([column.brick_particle, body.brick_particle]),
+        tile=np.vstack([column.tile, body.tile]),
         pairs=np.vstack([column.pairs, body.pairs + np.int32(count)]),
         kind=np.concatenate([column.kind, body.kind]),
         loose=column.loose + body.loose,
@@ -95,12 +96,6 @@ def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[A
         twin_is_second=seam["twin_is_second"],
         image=seam["image"],
     )
-
-
-def _places(assembly: Assembly, brick: Brick) -> np.ndarray:
-    """Tile (n, 2) int64 each disk stands in."""
-    inside = brick.positions[assembly.brick_particle]
-    return np.rint((assembly.positions - inside) / brick.size).astype(np.int64)
 
 
 def _seam(

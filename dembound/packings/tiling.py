@@ -19,6 +19,7 @@ class Assembly:
     positions : (n, 2) m.
     radii : (n,) m.
     brick_particle : (n,) int32, the disk of the brick that this one is a copy of (its twin).
+    tile : (n, 2) int32, in which copy of the brick it is, along x and y; in a row that closes the frame one more.
     pairs : (b, 2) int32, contacts i → j, sorted by i, then by kind.
     kind : (b,) int32, the contact of the brick that this one is a copy of: its vector points from i to j.
     copies : number of bricks along x and y.
@@ -30,6 +31,7 @@ class Assembly:
     positions: np.ndarray
     radii: np.ndarray
     brick_particle: np.ndarray
+    tile: np.ndarray
     pairs: np.ndarray
     kind: np.ndarray
     copies: tuple[int, int]
@@ -45,6 +47,7 @@ class Assembly:
             positions=self.positions[disks],
             radii=self.radii[disks],
             brick_particle=self.brick_particle[disks],
+            tile=self.tile[disks],
             pairs=self.pairs[chosen] - np.int32(disks.start),
             kind=self.kind[chosen],
             loose=0,
@@ -67,6 +70,7 @@ class Assembly:
             positions=self.positions[kept],
             radii=self.radii[kept],
             brick_particle=self.brick_particle[kept],
+            tile=self.tile[kept],
             pairs=number[self.pairs[contacts]],
             kind=self.kind[contacts],
             loose=self.loose + int(np.count_nonzero(~removed & ~kept)),
@@ -100,6 +104,7 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
         positions=brick.positions[twin] + tiles * brick.size,
         radii=brick.radii[twin],
         brick_particle=twin.astype(np.int32),
+        tile=tiles.astype(np.int32),
         pairs=pairs,
         kind=kind,
         copies=copies,

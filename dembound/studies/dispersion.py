@@ -101,7 +101,7 @@ def _frequency(lattice: Lattice, wavenumber: float) -> float:
     """Angular frequency (rad/s) at one wave number (rad/m)."""
     simulation = Simulation(build_bar(_endless(lattice)), lattice.time_step, [lattice.horizon * STEPS])
     x = simulation.scene.positions[:, 0]
-    simulation.state.displacement[0] = np.cos(wavenumber * (x - x[lattice.horizon * STEPS]))
+    simulation.state.u[0] = np.cos(wavenumber * (x - x[lattice.horizon * STEPS]))
     u = simulation.advance(STEPS)[:, 0, 0]
     square = -0.25 * np.sum(u[1:-1] * np.diff(u, 2)) / np.sum(u[1:-1] ** 2)
     sine = min(1.0, float(np.sqrt(square)))  # at the stability limit rounding may take it beyond 1

@@ -118,7 +118,8 @@ class Lab:
         brick = Brick(box, positions, radii, bonds, *nothing, residual_ratio=0.0)
         ground = make_packed_material(brick, case.material, case.motion.held)
         twins, kinds = np.arange(len(radii), dtype=np.int32), np.arange(len(bonds), dtype=np.int32)
-        assembly = Assembly(positions, radii, twins, bonds.astype(np.int32), kinds, (1, 1), box, box)
+        tiles = np.zeros((len(radii), 2), dtype=np.int32)
+        assembly = Assembly(positions, radii, twins, tiles, bonds.astype(np.int32), kinds, (1, 1), box, box)
         edges = find_edges(assembly, (False, False))
         rows = (contact_rows(assembly, ground),)
         return with_boundaries(DiskScene(case, ground, assembly, rows, edges, SupportBuilder().table(), {}), case)
@@ -172,10 +173,11 @@ class Lab:
 
     def forces(self, scene: DiskScene, displacement: np.ndarray) -> np.ndarray:
         """Contact forces and moments (3, n) of displacements and rotations (3, n)."""
-        force = np.empty_like(displacement)
+        u = scene.layout.spread(displacement)
+        force = np.zeros_like(u)
         for rows in scene.rows:
-            contact_forces(displacement, rows, force)
-        return force
+            contact_forces(u, rows, force)
+        return scene.layout.gather(force)
 
 
 @pytest.fixture(scope="session")

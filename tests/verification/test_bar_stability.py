@@ -17,7 +17,7 @@ def begin(lab, horizon: int, share: float, method: str = "peridynamics") -> Simu
     scene = lab.bar(CELLS, table)
     step = share * courant_limit(horizon) * lab.diameter / lab.speed
     simulation = Simulation(scene, step)
-    simulation.state.velocity[0] = np.random.default_rng(0).standard_normal(scene.count)
+    simulation.state.v[0, simulation.state.layout.slot] = np.random.default_rng(0).standard_normal(scene.count)
     return simulation
 
 

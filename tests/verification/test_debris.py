@@ -40,7 +40,7 @@ def torn(lab):
         scene = lab.scene("B", (10.0, 10.0), held=(), material=material, static={"stress": (stress, stress, 0.0)})
         simulation = lab.settled(scene, settle(scene).start)
         corner = np.hypot(*(scene.positions - [10.0, 10.0]).T) < 1.5
-        simulation.state.velocity[:2, corner] = SPEED / np.sqrt(2.0)
+        simulation.state.v[:2, simulation.state.layout.slot[corner]] = SPEED / np.sqrt(2.0)
         momenta, balancing, steady = [scene.mass @ simulation.state.velocity[:2].T], [], []
         for _ in range(2):
             simulation.advance(LEG)

@@ -25,8 +25,8 @@ def test_standing_wave_keeps_its_frequency(lab, horizon, method, share, part):
 
     simulation = Simulation(scene, step, np.array([middle]))
     shape = np.cos(wavenumber * (scene.positions[:, 0] - scene.positions[middle, 0]))
-    simulation.state.displacement[0] = shape
-    simulation.state.velocity[0] = shape * 2.0 * np.sin(0.5 * frequency * step) ** 2 / step
+    simulation.state.u[0, simulation.state.layout.slot] = shape
+    simulation.state.v[0, simulation.state.layout.slot] = shape * 2.0 * np.sin(0.5 * frequency * step) ** 2 / step
     record = simulation.advance(STEPS + 1)
 
     # each step rounds u and Δt·v by a few ε; a velocity error made at step k moves the node for all steps left, so the

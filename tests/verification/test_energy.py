@@ -22,7 +22,7 @@ def inertia(scene):
 def thrown(scene, share: float) -> Simulation:
     """The scene in random motion, without strain."""
     simulation = Simulation(scene, share * step_limit(scene))
-    simulation.state.velocity[:] = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
+    simulation.state.velocity = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
     return simulation
 
 

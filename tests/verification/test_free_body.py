@@ -35,8 +35,12 @@ def kick(simulation: Simulation, *, spin: float = 0.5) -> None:
     arm = (scene.positions - np.average(scene.positions, axis=0, weights=scene.mass)).T
     turn = np.stack([-arm[1], arm[0], np.ones(scene.count)]) * scene.free[:, None]
     for share, motion in ((1.0 - spin, noise), (spin, turn)):
-        simulation.state.velocity += motion * np.sqrt(share * KICK / kinetic(simulation, motion)) if share else 0.0
-    simulation.state.velocity *= np.sqrt(KICK / kinetic(simulation, simulation.state.velocity))
+        simulation.state.velocity = simulation.state.velocity + (
+            motion * np.sqrt(share * KICK / kinetic(simulation, motion)) if share else 0.0
+        )
+    simulation.state.velocity = simulation.state.velocity * np.sqrt(
+        KICK / kinetic(simulation, simulation.state.velocity)
+    )
 
 
 def largest(simulation: Simulation, steps: int) -> float:

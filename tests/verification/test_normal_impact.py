@@ -48,7 +48,7 @@ def impact(request, lab) -> Impact:
     scene = lab.disks(np.outer([0.0, RADII.sum() + gap], normal), RADII, held=(), material=material)
     simulation = Simulation(scene, step, np.arange(2))
     before = np.array([0.7 * SPEED, -0.3 * SPEED])
-    simulation.state.velocity[:2] = np.outer(normal, before)
+    simulation.state.v[:2, simulation.state.layout.slot] = np.outer(normal, before)
 
     overlaps, forces = [], []
     for _ in range(int(1.5 * np.pi / H)):

@@ -42,8 +42,10 @@ class Impact:
         spin = PASSING * np.array([1.0, -2.0])
         apart = -APPROACH * NORMAL + (PASSING + RADII @ spin) * TANGENT
         share = self.mass[::-1] / self.mass.sum()
-        self.simulation.state.velocity[:2] = np.outer(apart, [-share[0], share[1]]) + np.array([[3e-3], [1e-3]])
-        self.simulation.state.velocity[2] = spin
+        self.simulation.state.v[:2, self.simulation.state.layout.slot] = np.outer(
+            apart, [-share[0], share[1]]
+        ) + np.array([[3e-3], [1e-3]])
+        self.simulation.state.v[2, self.simulation.state.layout.slot] = spin
         self.turned = np.hypot(*apart) * IMPACT * self.simulation.time_step / RADII.sum()
         self.before = self.simulation.state.velocity.copy()
         ledger = Ledger(self.simulation, 1)

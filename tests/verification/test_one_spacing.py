@@ -17,7 +17,9 @@ def motion(lab):
     def move(method: dict) -> np.ndarray:
         scene = lab.bar(CELLS, method)
         simulation = Simulation(scene, 0.5 * lab.diameter / lab.speed)
-        simulation.state.displacement[0] = np.random.default_rng(0).uniform(-1.0, 1.0, scene.count) / 4.0
+        simulation.state.u[0, simulation.state.layout.slot] = (
+            np.random.default_rng(0).uniform(-1.0, 1.0, scene.count) / 4.0
+        )
         simulation.advance(STEPS)
         return simulation.state.displacement[0]
 

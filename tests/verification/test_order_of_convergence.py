@@ -31,7 +31,7 @@ def error(lab, horizon: int, spacing: float) -> float:
         return np.exp(-0.5 * ((scene.positions[:, 0] - 9.0 * WIDTH - lab.speed * time) / WIDTH) ** 2)
 
     simulation = Simulation(scene, step)
-    simulation.state.displacement[0] = pulse(0.0)
-    simulation.state.velocity[0] = (pulse(0.0) - pulse(-step)) / step
+    simulation.state.u[0, simulation.state.layout.slot] = pulse(0.0)
+    simulation.state.v[0, simulation.state.layout.slot] = (pulse(0.0) - pulse(-step)) / step
     simulation.advance(steps)
     return float(np.abs(simulation.state.displacement[0] - pulse(steps * step)).max())

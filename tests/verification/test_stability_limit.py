@@ -17,7 +17,7 @@ def kinetic_energy(scene, velocity):
 def growth(scene, share: float, steps: int) -> float:
     """Kinetic energy after some steps at a share of the limit, over that of the random start without strain."""
     simulation = Simulation(scene, share * step_limit(scene))
-    simulation.state.velocity[:] = scene.free[:, None] * np.random.default_rng(0).standard_normal((3, scene.count))
+    simulation.state.velocity = scene.free[:, None] * np.random.default_rng(0).standard_normal((3, scene.count))
     start = kinetic_energy(scene, simulation.state.velocity)
     simulation.advance(steps)
     return kinetic_energy(scene, simulation.state.velocity) / start

@@ -27,7 +27,7 @@ def test_stress_is_force_over_width(lab, law: str, turn: float) -> None:
     # it is in equilibrium but for what pushes at its ends
     assert np.abs(lab.forces(scene, displacement)[:, 1:-1]).max() < 1e-9 * PUSH
     if law == "elastic":
-        pairs = plain_contacts(scene.ground, scene.assembly)
+        pairs = plain_contacts(scene.ground, scene.assembly, scene.layout.slot)
     else:
         contacts = scene.contact_lists()["body"]
         contacts.push(displacement)

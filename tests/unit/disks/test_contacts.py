@@ -297,7 +297,10 @@ def test_with_the_geometry_of_the_start_nothing_gives_way(scene) -> None:
 def test_arms_reach_to_the_contacts_and_to_the_ends_of_the_bonds(scene, share: float) -> None:
     body = scene(**{"material.pb_rmul": share})
     contacts = list_of(body)
-    lines, radii = plain_contacts(body.ground, body.assembly).palette[body.assembly.kind], body.assembly.radii
+    lines, radii = (
+        plain_contacts(body.ground, body.assembly, body.layout.slot).palette[body.assembly.kind],
+        body.assembly.radii,
+    )
     reached = np.zeros(len(radii))
     for particle, sign in zip(body.assembly.pairs.T, (1.0, -1.0), strict=True):
         np.maximum.at(reached, particle, 0.5 * lines[:, 2] + sign * lines[:, 4])  # half the distance and (Ri − Rj)/2
@@ -313,7 +316,7 @@ def test_arms_reach_to_the_contacts_and_to_the_ends_of_the_bonds(scene, share: f
 def test_the_elastic_law_has_its_contacts_and_looks_for_no_others(scene) -> None:
     body = scene(**{"material.law": "elastic"})
     contacts = list_of(body)
-    plain = plain_contacts(body.ground, body.assembly)
+    plain = plain_contacts(body.ground, body.assembly, body.layout.slot)
 
     assert contacts.limits.geometry == REFERENCE
     assert len(contacts.arrays.first) == len(body.assembly.pairs)

@@ -20,6 +20,7 @@ def row() -> Assembly:
         positions=np.column_stack([numbers + 1.0, np.zeros(4)]),
         radii=numbers + 1.0,
         brick_particle=numbers,
+        tile=np.zeros((4, 2), np.int32),
         pairs=np.zeros((0, 2), np.int32),
         kind=numbers[:0],
         copies=(1, 1),

@@ -70,7 +70,7 @@ def advance(
     supports = Supports(nobody, *[nothing] * 5, drive=drive, twin=nobody, follow=nothing)
     log = Log(nobody, np.empty((steps, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 6)))
     done, why = loop.advance(u, np.zeros_like(u), v, 0, (part.law(),), (), None, arrays, supports, log)
-    part.react(int(why), int(done), State(u, v, np.zeros_like(u), np.zeros((0, 3, 2)), np.zeros(0)))
+    part.react(int(why), int(done), State(body.layout, u, v, np.zeros_like(u), np.zeros((0, 3, 2)), np.zeros(0)))
     return int(done), int(why)
 
 
@@ -131,7 +131,7 @@ def test_a_list_that_is_not_old_stays(scene) -> None:
 
     def react(why: int) -> bool:
         """Whether the part lists its pairs anew."""
-        part.react(why, 0, State(moved, still, still, np.zeros((0, 3, 2)), np.zeros(0)))
+        part.react(why, 0, State(body.layout, moved, still, still, np.zeros((0, 3, 2)), np.zeros(0)))
         return listed(part).arrays is not arrays
 
     # that of another part may be

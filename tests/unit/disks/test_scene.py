@@ -5,9 +5,9 @@ import pytest
 from scipy.spatial.distance import cdist
 
 from dembound.casefile import Case
+from dembound.disks.rows import contact_rows
 from dembound.disks.scene import DiskScene, boundary_medium, build, with_boundaries
 from dembound.errors import CaseError, PackingError
-from dembound.kernels.elastic import contact_forces
 
 RANDOM = {
     "packing": {"pattern": "B", "size": [12.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
@@ -32,7 +32,7 @@ def case(bar, request) -> Case:
 
 def test_every_contact_stands_in_two_rows(case: Case) -> None:
     scene = build(case)
-    (rows,) = scene.rows
+    rows = contact_rows(scene.assembly, scene.ground)
     owner = np.repeat(np.arange(scene.count), np.diff(rows.start))
     i, j = scene.assembly.pairs.T
     expected = sorted([*zip(i, j, strict=True), *zip(j, i, strict=True)])
@@ -45,10 +45,7 @@ def test_every_contact_stands_in_two_rows(case: Case) -> None:
 
 
 def forces(scene: DiskScene, u: np.ndarray) -> np.ndarray:
-    found = np.empty_like(u)
-    for rows in scene.rows:
-        contact_forces(u, rows, found)
-    return found
+    return scene.system(1.0).elastic_forces(u)
 
 
 def test_rows_and_palette_make_the_forces_of_the_assemblys_contacts(case: Case) -> None:

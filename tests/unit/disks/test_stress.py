@@ -23,7 +23,9 @@ WRAP = {side: {"type": "periodic"} for side in ("left", "right", "bottom", "top"
 
 def elastic_stress(scene: DiskScene, displacement: np.ndarray) -> np.ndarray:
     """Of the pairs of the elastic law, which have no forces of their own."""
-    return particle_stress(scene, plain_contacts(scene.ground, scene.assembly), displacement, elastic=True)
+    return particle_stress(
+        scene, plain_contacts(scene.ground, scene.assembly, scene.layout.slot), displacement, elastic=True
+    )
 
 
 def test_a_strained_lattice_answers_with_its_stiffness(bar) -> None:

@@ -49,7 +49,8 @@ def begun(system: DiskSystem, datum: np.ndarray | None = None) -> State:
     """The state of a system that has begun at rest at a datum (3, n)."""
     still = np.zeros((3, system.scene.count))
     datum = still if datum is None else datum
-    state = State(datum.copy(), still.copy(), datum, np.zeros((0, 3, 2)), np.zeros(0))
+    layout = system.scene.layout
+    state = State(layout, layout.spread(datum), layout.spread(still), datum, np.zeros((0, 3, 2)), np.zeros(0))
     system.begin(state)
     return state
 
@@ -255,7 +256,7 @@ def test_a_law_that_changes_in_good_time_changes_no_force(scene) -> None:
     body = scene(**WITH_HISTORY, **REFERENCE)
     system = DiskSystem(body, STEP)
     state = begun(system)
-    state.displacement[:] = shaken(body, 1e-6)
+    state.displacement = shaken(body, 1e-6)
     before = system.steady + system.elastic_forces(state.displacement)
     system.react(LAW_ENDS, 1, state)
     after = system.steady + forces_of(system, system.contacts, state.displacement)
@@ -272,7 +273,7 @@ def test_energy_that_comes_with_another_law_is_written_down(scene, balanced: boo
     system = DiskSystem(body, STEP, start)
     datum = None if start is None else start.displacement
     state = begun(system, datum)
-    state.displacement += shaken(body, 1e-5, 5)
+    state.displacement = state.displacement + shaken(body, 1e-5, 5)
     u, moved = state.displacement.copy(), state.displacement - state.datum
 
     def stored() -> float:
@@ -316,7 +317,7 @@ def test_only_the_part_whose_list_is_old_lists_its_pairs_anew(scene) -> None:
     system = DiskSystem(body, STEP)
     state = begun(system)
     column, rest = system.parts
-    state.displacement[0, rest.nodes] = rest.contacts.skin
+    state.u[0, state.layout.slot[rest.nodes]] = rest.contacts.skin
     before = [part.pairs for part in system.parts]
     system.react(LIST_ENDS, 1, state)
 

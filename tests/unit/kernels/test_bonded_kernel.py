@@ -143,7 +143,7 @@ def test_the_work_of_what_turning_adds_has_its_own_column(stepped, random_pairs,
         force=np.stack([force, np.zeros((2, 3))]),
         steady=model.load[:2, nodes].copy(),
         extra=np.zeros((2, 3)),
-        datum=np.zeros((3, PARTICLES)),
+        rest=np.zeros((2, 2)),
     )
 
     def added(u: np.ndarray) -> np.ndarray:

@@ -23,6 +23,10 @@ def turn(angle: float) -> np.ndarray:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
+DATUM = np.random.default_rng(2).integers(-1024, 1024, (3, PARTICLES)) / 1024.0
+"""Displacements of all particles that rotations count from, whole 1024ths."""
+
+
 @pytest.fixture
 def followers() -> Callable[..., tuple[Followers, np.ndarray]]:
     """Makes followers at random places, and these places (2, n) at the datum; twinned: members have twins 0 to 4."""
@@ -31,23 +35,23 @@ def followers() -> Callable[..., tuple[Followers, np.ndarray]]:
         rng = np.random.default_rng(1)
         # whole 1024ths, of which sums and differences are exact
         places = rng.integers(-1024, 1024, (2, PARTICLES)) / 1024.0
-        datum = rng.integers(-1024, 1024, (3, PARTICLES)) / 1024.0
         members = np.concatenate(list(SIDES.values()))
         arms = [places[:, nodes] - places[:, nodes].mean(axis=1, keepdims=True) for nodes in SIDES.values()]
         force = rng.uniform(-1.0, 1.0, (2, 2, len(NODE)))
         force[1, :, SIDE[1] < 0] = 0.0
+        twins = members % 5 if twinned else np.full(len(members), -1)
         table = Followers(
             opposite=OPPOSITE,
             start=np.cumsum([0, *(len(nodes) for nodes in SIDES.values())]),
             member=members,
-            twin=members % 5 if twinned else np.full(len(members), -1),
+            twin=twins,
             arm=np.concatenate(arms, axis=1),
             node=NODE,
             side=SIDE,
             force=force,
             steady=rng.uniform(-1.0, 1.0, (2, len(NODE))),
             extra=np.full((2, len(NODE)), np.nan),
-            datum=datum,
+            rest=DATUM[:2, members] - (DATUM[:2, twins] if twinned else 0.0),
         )
         return table, places
 
@@ -77,11 +81,11 @@ def fitted(places: np.ndarray, moved: np.ndarray) -> float:
 @pytest.mark.parametrize("angle", [1e-7, -0.3, 2.0, -2.5])
 def test_a_side_that_turns_as_one_has_turned_by_just_that(followers, angle: float, twinned: bool) -> None:
     table, places = followers(twinned=twinned)
-    u = table.datum + turned(places, angle)
+    u = DATUM + turned(places, angle)
     if twinned:  # all members have moved, beside the turn, by as much as their twins
-        u[:, :5] = table.datum[:, :5] + shaken()[:, :5]
+        u[:, :5] = DATUM[:, :5] + shaken()[:, :5]
         for i, twin in zip(table.member, table.twin, strict=True):
-            u[:, i] = (table.datum + turned(places, angle))[:, i] + (u - table.datum)[:, twin]
+            u[:, i] = (DATUM + turned(places, angle))[:, i] + (u - DATUM)[:, twin]
     for side in SIDES:
         # some ten sums of numbers up to 10, over arms of size 1
         assert side_rotation(side, u, table) == pytest.approx(angle, rel=0.0, abs=1e-14)
@@ -89,7 +93,7 @@ def test_a_side_that_turns_as_one_has_turned_by_just_that(followers, angle: floa
 
 def test_a_side_that_only_moves_has_not_turned(followers) -> None:
     table, _ = followers()
-    u = table.datum + np.array([[0.375], [-1.25], [0.5]])
+    u = DATUM + np.array([[0.375], [-1.25], [0.5]])
 
     assert [side_rotation(side, u, table) for side in SIDES] == [0.0, 0.0, 0.0]
 
@@ -97,9 +101,9 @@ def test_a_side_that_only_moves_has_not_turned(followers) -> None:
 def test_a_side_that_moves_as_its_twins_do_has_not_turned(followers) -> None:
     table, _ = followers(twinned=True)
     for side, nodes in SIDES.items():
-        u = table.datum + shaken()
+        u = DATUM + shaken()
         twin = table.twin[table.start[side] : table.start[side + 1]]
-        u[:, nodes] = (table.datum[:, nodes] - table.datum[:, twin]) + u[:, twin]
+        u[:, nodes] = (DATUM[:, nodes] - DATUM[:, twin]) + u[:, twin]
         assert side_rotation(side, u, table) == 0.0
         # one that moves otherwise has
         u[1, nodes[0]] += 0.25
@@ -114,14 +118,14 @@ def test_of_a_side_that_bends_the_rotation_is_the_nearest_one(followers, twinned
         members = slice(table.start[side], table.start[side + 1])
         relative = moved[:2, nodes] - (moved[:2, table.twin[members]] if twinned else 0.0)
         # as above
-        assert side_rotation(side, table.datum + moved, table) == pytest.approx(
+        assert side_rotation(side, DATUM + moved, table) == pytest.approx(
             fitted(places[:, nodes], relative), rel=0.0, abs=1e-14
         )
 
 
 def test_forces_turn_by_the_mean_of_both_opposite_sides(followers) -> None:
     table, _ = followers()
-    u = table.datum + 3.0 * shaken()
+    u = DATUM + 3.0 * shaken()
     own = [side_rotation(side, u, table) for side in SIDES]
     middle = 0.5 * (own[0] + own[1])
 
@@ -131,10 +135,10 @@ def test_forces_turn_by_the_mean_of_both_opposite_sides(followers) -> None:
 
 def test_the_load_is_what_was_steady_with_its_forces_turned(followers) -> None:
     table, places = followers()
-    u, v = table.datum + 3.0 * shaken(), shaken(3)
+    u, v = DATUM + 3.0 * shaken(), shaken(3)
     load = np.full((3, PARTICLES), 7.0)
     half = turn_forces(table, u, v, load, STEP)
-    angles = np.array([fitted(places[:, nodes], (u - table.datum)[:2, nodes]) for nodes in SIDES.values()])
+    angles = np.array([fitted(places[:, nodes], (u - DATUM)[:2, nodes]) for nodes in SIDES.values()])
     angles[:2] = angles[:2].mean()
 
     expected, work = np.full((3, PARTICLES), 7.0), 0.0
@@ -156,7 +160,7 @@ def test_the_load_is_what_was_steady_with_its_forces_turned(followers) -> None:
 def test_what_a_small_turn_adds_along_a_force_keeps_its_digits(followers) -> None:
     table, places = followers()
     angle = 1e-5
-    turn_forces(table, table.datum + turned(places, angle), shaken(), np.zeros((3, PARTICLES)), STEP)
+    turn_forces(table, DATUM + turned(places, angle), shaken(), np.zeros((3, PARTICLES)), STEP)
 
     one_side = SIDE[1] < 0
     force = table.force[0][:, one_side]
@@ -174,7 +178,7 @@ def test_where_nothing_has_moved_nothing_changes(followers) -> None:
     before = load.copy()
     before[:2, NODE] = table.steady
 
-    assert turn_forces(table, table.datum.copy(), shaken(), load, STEP) == 0.0
+    assert turn_forces(table, DATUM.copy(), shaken(), load, STEP) == 0.0
     assert np.array_equal(load, before)
     assert not table.extra.any()
 

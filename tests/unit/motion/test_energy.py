@@ -189,7 +189,7 @@ def test_what_balances_a_body_works_against_its_weight(bar) -> None:
     # what settled before lets nothing fall: all disks drift along, up or down
     simulation = at_rest(bar, **{**LONE, "packing.size": [1.0, 1.0]}, **FALL)
     ledger = booked(simulation)
-    simulation.state.velocity[:2] = [[1.0], [-3.0]]
+    simulation.state.v[:2, simulation.state.layout.slot] = [[1.0], [-3.0]]
     simulation.advance(10)
 
     assert len(ledger.entries) == 10
@@ -227,7 +227,7 @@ def rigid(simulation: Simulation) -> np.ndarray:
 def test_forces_that_turn_with_a_body_do_what_its_contacts_take(bar) -> None:
     simulation = at_rest(bar, **PACKED, **{"material.elastic_start": False})
     ledger, scene = booked(simulation), simulation.scene
-    simulation.state.velocity[:] = 0.5 * rigid(simulation)
+    simulation.state.velocity = 0.5 * rigid(simulation)
     works = [0.0]
     for _ in range(40):
         force, before = simulation.system.balance.force.copy(), simulation.state.velocity.copy()
@@ -255,7 +255,7 @@ def test_forces_that_turn_with_a_body_do_what_its_contacts_take(bar) -> None:
 def test_the_jump_of_the_potential_where_the_law_changes_is_its_handover(bar) -> None:
     simulation = at_rest(bar, **PACKED)
     ledger = booked(simulation)
-    simulation.state.velocity[:] = rigid(simulation)
+    simulation.state.velocity = rigid(simulation)
     arm = np.stack([rigid(simulation)[1], -rigid(simulation)[0]])
     while len(simulation.state.laws) == 1:
         there = simulation.state.displacement.copy()
@@ -306,7 +306,7 @@ class Push(Tracker):
         self.due, self.velocities = step, velocities
 
     def handle(self, simulation: Simulation) -> None:
-        simulation.state.velocity[:] = self.velocities(simulation.state)
+        simulation.state.velocity = self.velocities(simulation.state)
         self.due = NEVER
 
 
@@ -315,7 +315,7 @@ def test_a_run_that_gains_energy_from_nothing_is_stopped(bar, gain: float, stops
     simulation = simulated(bar, STEP, **LONE)
     simulation.track(Push(2, lambda state: np.sqrt(1.0 + gain) * state.velocity))
     ledger = booked(simulation, 2)
-    simulation.state.velocity[0] = 2.0
+    simulation.state.v[0, simulation.state.layout.slot] = 2.0
     simulation.advance(1)
     came = 0.5 * MASS * 2.0**2
     if not stops:
@@ -353,7 +353,7 @@ def test_what_loads_bring_in_a_run_may_have(bar, gain: float, stops: bool) -> No
 def test_rounding_is_no_gain_where_nothing_was_put_in(bar, law: dict) -> None:
     simulation = at_rest(bar, **PACKED, **law)
     ledger = booked(simulation)
-    simulation.state.velocity[:] = 1e-12 * np.random.default_rng(1).uniform(-1.0, 1.0, (3, simulation.scene.count))
+    simulation.state.velocity = 1e-12 * np.random.default_rng(1).uniform(-1.0, 1.0, (3, simulation.scene.count))
     first = np.sum(0.5 * scene_inertia(simulation) * simulation.state.velocity**2)
     simulation.advance(200)
 
@@ -364,8 +364,8 @@ def test_rounding_is_no_gain_where_nothing_was_put_in(bar, law: dict) -> None:
 @pytest.mark.parametrize("rate", [1.0, 0.01])
 def test_books_of_a_freely_turning_body_stay_closed_where_the_law_changes(bar, rate: float) -> None:
     simulation = at_rest(bar, **PACKED)
-    simulation.state.displacement[:] = 0.0099 * rigid(simulation)  # a little before the turn at which the law ends
-    simulation.state.velocity[:] = rate * rigid(simulation)
+    simulation.state.displacement = 0.0099 * rigid(simulation)  # a little before the turn at which the law ends
+    simulation.state.velocity = rate * rigid(simulation)
     ledger = booked(simulation)
     while len(simulation.state.laws) == 1 or simulation.state.step < simulation.state.laws[-1][1] + 5:
         simulation.advance(1)

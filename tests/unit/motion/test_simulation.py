@@ -35,7 +35,7 @@ def one_row(**columns: object) -> Supports:
 
 def test_a_dashpot_slows_a_disk_as_the_centred_update_says(bar) -> None:
     simulation = Simulation(lone_disk(bar, one_row(damping=0.4 * MASS / STEP)), STEP)
-    simulation.state.velocity[0, 0] = 1.0
+    simulation.state.v[0, simulation.state.layout.slot[0]] = 1.0
     simulation.advance(5)
 
     # (m/Δt − C/2)/(m/Δt + C/2) = 0.8/1.2 each step; rounding of five products
@@ -205,7 +205,9 @@ def test_motion_that_grows_without_bound_ends_the_run_and_says_when_and_where(ba
 def test_growth_is_seen_long_before_numbers_overflow(bar) -> None:
     scene = build(bar())
     simulation = Simulation(scene, 1.01 * step_limit(scene))
-    simulation.state.velocity[2, 5] = 1e-9  # the fastest mode turns the disks, which a plane wave never does
+    simulation.state.v[2, simulation.state.layout.slot[5]] = (
+        1e-9  # the fastest mode turns the disks, which a plane wave never does
+    )
     with pytest.raises(RunError, match="grew without bound"):
         simulation.run(100_000)
 
@@ -215,7 +217,7 @@ def test_growth_is_seen_long_before_numbers_overflow(bar) -> None:
 
 def test_what_is_not_a_number_ends_the_run(bar) -> None:
     simulation = simulated(bar)
-    simulation.state.displacement[0, 5] = np.nan
+    simulation.state.u[0, simulation.state.layout.slot[5]] = np.nan
     with pytest.raises(RunError, match="grew without bound"):
         simulation.advance(1)
 
@@ -225,12 +227,12 @@ def test_what_is_not_a_number_ends_the_run(bar) -> None:
 def test_a_runaway_node_ends_the_run_whichever_way_it_flies(bar, axis: int, sign: float) -> None:
     simulation = simulated(bar)
     where, limit = 2, simulation.scene.fastest
-    simulation.state.velocity[axis, where] = 0.9 * sign * limit
+    simulation.state.v[axis, simulation.state.layout.slot[where]] = 0.9 * sign * limit
     watch = simulation.trackers[0]
     none = np.zeros((0, 0, 6))
     watch.observe(simulation, none)
 
-    simulation.state.velocity[axis, where] = 1.1 * sign * limit
+    simulation.state.v[axis, simulation.state.layout.slot[where]] = 1.1 * sign * limit
     x, y = simulation.scene.positions[where]
     with pytest.raises(RunError, match=rf"near \({x:g}, {y:g}\) m"):
         watch.observe(simulation, none)
@@ -239,11 +241,11 @@ def test_a_runaway_node_ends_the_run_whichever_way_it_flies(bar, axis: int, sign
 def test_a_speed_ends_the_run_before_its_energy_is_no_number(spalling) -> None:
     planned = plan(spalling())  # a load moves it, whose effect no wave bounds
     simulation = Simulation(planned.scene, planned.time_step)
-    simulation.state.velocity[0] = 0.9 * FASTEST  # of all nodes, so that no bond feels it
+    simulation.state.v[0, simulation.state.layout.slot] = 0.9 * FASTEST  # of all nodes, so that no bond feels it
     simulation.advance(1)
     assert np.isfinite(np.sum(planned.scene.mass * simulation.state.velocity[0] ** 2))
 
-    simulation.state.velocity[0] *= 1.2
+    simulation.state.v[0, simulation.state.layout.slot] *= 1.2
     with pytest.raises(RunError, match="smaller waves and loads"):
         simulation.advance(1)
 
@@ -355,7 +357,7 @@ def test_the_law_with_a_memory_takes_over_where_it_must(bar, elastic_start: bool
     simulation.advance(5)
     assert len(simulation.state.laws) == 1
 
-    simulation.state.velocity[:2] = np.random.default_rng(1).uniform(-5.0, 5.0, (2, scene.count))
+    simulation.state.v[:2, simulation.state.layout.slot] = np.random.default_rng(1).uniform(-5.0, 5.0, (2, scene.count))
     simulation.advance(50)
     names, steps = zip(*simulation.state.laws, strict=True)
     assert names == (("elastic", "linearpbond") if elastic_start else ("linearpbond",))
@@ -375,7 +377,7 @@ def test_across_a_seam_both_laws_move_a_body_alike(bar) -> None:
     for elastic in (True, False):
         scene = build(bar(own if elastic else changes))
         simulation = Simulation(scene, step) if elastic else at_rest(scene)
-        simulation.state.velocity[:] = 1e-4 * np.random.default_rng(3).uniform(-1.0, 1.0, (3, scene.count))
+        simulation.state.velocity = 1e-4 * np.random.default_rng(3).uniform(-1.0, 1.0, (3, scene.count))
         if not elastic:
             assert list(simulation.system.contacts) == ["column", "body"]
             for pairs in simulation.system.contacts.values():  # their first push adds this step

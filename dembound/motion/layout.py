@@ -1,0 +1,60 @@
+"""The order in which kernels hold the nodes of a scene: every node has a slot, and some slots have no node."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+ALIGNMENT = 64
+"""Bytes at whose multiples arrays of slots begin: a line of the caches, and eight doubles."""
+
+
+def aligned_zeros(*shape: int) -> np.ndarray:
+    """Zeros of this shape, aligned in memory (`ALIGNMENT`)."""
+    count = int(np.prod(shape))
+    room = np.zeros(count + ALIGNMENT // 8)
+    first = (-room.ctypes.data % ALIGNMENT) // 8
+    return room[first : first + count].reshape(shape)
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Which slot holds which of n nodes.
+
+    Attributes
+    ----------
+    slot : (n,) int64, the slot of each node.
+    count : number of slots.
+    """
+
+    slot: np.ndarray
+    count: int
+
+    @classmethod
+    def plain(cls, nodes: int) -> "Layout":
+        """Every node in the slot of its own number."""
+        return cls(np.arange(nodes), nodes)
+
+    @cached_property
+    def node(self) -> np.ndarray:
+        """(slots,) the node in each slot, −1 where there is none."""
+        node = np.full(self.count, -1)
+        node[self.slot] = np.arange(len(self.slot))
+        return node
+
+    @cached_property
+    def is_plain(self) -> bool:
+        """Whether slots are the nodes in their order."""
+        return len(self.slot) == self.count and bool((self.slot == np.arange(self.count)).all())
+
+    def spread(self, values: np.ndarray) -> np.ndarray:
+        """Values (..., n) of nodes as a new array of slots (..., slots), zero where there is no node."""
+        spread = aligned_zeros(*values.shape[:-1], self.count)
+        spread[..., self.slot] = values
+        return spread
+
+    def gather(self, values: np.ndarray) -> np.ndarray:
+        """Values (..., slots) of slots as those of nodes (..., n), not to be written to; a view where it can be."""
+        gathered = values[...] if self.is_plain else values[..., self.slot]
+        gathered.flags.writeable = False
+        return gathered
