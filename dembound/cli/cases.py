@@ -14,6 +14,7 @@ from dembound.cli.app import (
     Cases,
     Name,
     Output,
+    PictureTitle,
     Settings,
     Side,
     Threads,
@@ -97,6 +98,7 @@ def run(
 def packing(
     cases: Cases,
     output: Annotated[Path, PICTURE] = Path("packing.png"),
+    title: PictureTitle = None,
     side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = RIGHT,
     brick: Annotated[bool, typer.Option("--brick", help="Show the first case's whole brick with its seams.")] = False,
     changes: Settings = None,
@@ -114,7 +116,7 @@ def packing(
                 for name, scene in scenes.items()
             }
         )
-    save(figure, output)
+    save(figure, output, title)
     out.print(f"wrote {output}")
 
 
