@@ -31,7 +31,7 @@ class Square(Packing):
             radii=np.full(1, self.radius),
             pairs=np.zeros((2, 2), np.int64),
             images=np.eye(2, dtype=np.int64),
-            rows=np.zeros((1, 2), bool),
+            edge_rows=np.zeros((1, 2), bool),
             stress=np.zeros(3),
             residual_ratio=0.0,
         )

@@ -74,7 +74,7 @@ class Hexagonal(Packing):
             radii=np.full(2, self.radius),
             pairs=np.array([[0, 0], [1, 1], [0, 1], [0, 1], [0, 1], [0, 1]]),
             images=np.array([[1, 0], [1, 0], [0, 0], [-1, 0], [0, -1], [-1, -1]]),
-            rows=np.zeros((2, 2), bool),
+            edge_rows=np.zeros((2, 2), bool),
             stress=np.zeros(3),
             residual_ratio=0.0,
         )
