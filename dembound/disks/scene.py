@@ -59,7 +59,7 @@ def build(case: DiskCase) -> DiskScene:
     ground = ground_of(case)
     periodic = (case.side("left").is_periodic, case.side("bottom").is_periodic)
     body = tile(ground.brick, case.packing.copies, periodic)
-    edges = find_edges(body, periodic)
+    edges = find_edges(body, periodic, case.packing.regular_sides)
     first, later = (tuple(hole for hole in case.hole if hole.stage == stage) for stage in ("before", "after"))
     if first:
         body, edges, _ = _hollowed(case, ground.brick, body, edges, first)
@@ -109,7 +109,7 @@ def column_alone(scene: DiskScene) -> DiskScene:
     everywhere = tuple(load for load in case.load if load.position is None and load.region is None)
     alone = replace(case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=())
     column = tile(brick, (1, scene.assembly.copies[1]), (True, False))
-    return _scene(alone, scene.ground, column, find_edges(column, (True, False)))
+    return _scene(alone, scene.ground, column, find_edges(column, (True, False), case.packing.regular_sides))
 
 
 def ground_of(case: DiskCase) -> PackedMaterial:

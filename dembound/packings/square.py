@@ -11,7 +11,7 @@ from dembound.packings.brick import Brick
 class Square(Packing):
     """Equal disks, one to a square cell, touching their four neighbours without force (Z section 2.3.1)."""
 
-    has_regular_edges: ClassVar[bool] = True
+    regular_sides: ClassVar[tuple[str, ...]] = ("left", "right", "bottom", "top")
 
     pattern: Literal["A"] = "A"
 

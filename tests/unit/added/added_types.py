@@ -58,6 +58,8 @@ class OtherInput(Dashpots, Driven):
 class Hexagonal(Packing):
     """Equal disks that touch six neighbours without force; two in a brick."""
 
+    regular_sides: ClassVar[tuple[str, ...]] = ("bottom", "top")
+
     pattern: Literal["hexagonal"]
 
     @property

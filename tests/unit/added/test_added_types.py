@@ -85,8 +85,17 @@ def test_a_packing_of_its_own_brick(found) -> None:
     assert found["not whole"] == [
         "packing.size: 5 m is not a whole number of bricks of 0.8660254038 m; 4.330127019 or 5.196152423 would be"
     ]
-    assert found["half cells"] == [
-        "boundary.right.half_mass: needs sides of disks in one row; pattern hexagonal has none"
+
+
+def test_a_packing_has_half_cells_on_its_regular_sides(found) -> None:
+    # ten disks of 0.25 m to a row, six bricks of 0.866 m high: of every side one row, that of the other beside it
+    # reaches past the corner
+    for side, first, height in (("bottom", 0.125, np.sqrt(0.75) / 4.0), ("top", 0.375, 5.75 * np.sqrt(0.75))):
+        positions, fraction = found["half cells"][side]
+        np.testing.assert_allclose(positions, [(first + 0.5 * i, height) for i in range(10)], rtol=1e-6)
+        assert fraction == [0.5] * 10
+    assert found["no half cells"] == [
+        "boundary.right.half_mass: needs a side of disks in one row; pattern hexagonal has such bottom and top"
     ]
 
 

@@ -102,7 +102,7 @@ def test_half_masses_are_for_regular_edges(kind: str, more: str) -> None:
     assert problems(table + "half_mass = true\n") == []
     for pattern, mistakes in (
         (edged, []),
-        (random, ["boundary.right.half_mass: needs sides of disks in one row; pattern B has none"]),
+        (random, ["boundary.right.half_mass: needs a side of disks in one row; pattern B has none"]),
     ):
         text = BASE.replace('pattern = "A"', pattern)
         assert problems(table + "half_mass = true\n", text) == mistakes
