@@ -2,8 +2,10 @@
 
 import pytest
 
+from dembound.casefile.types import HOLES
 from dembound.errors import CaseError
 from dembound.kinds import loads
+from dembound.table import name_of
 
 BASE = """\
 [packing]
@@ -17,6 +19,7 @@ p_wave_speed = 1000.0
 duration = 0.1
 """
 CIRCLE = 'type = "circle"\ncentre = [5.0, 2.5]\nradius = 1.0'
+SHAPES = ", ".join(sorted(f'"{name_of(shape)}"' for shape in HOLES))
 STATIC = "[static]\nstress = [-1e6, -1e6, 0.0]\n"
 
 
@@ -53,7 +56,7 @@ def test_holes_are_read_in_order_and_are_there_from_the_start() -> None:
 @pytest.mark.parametrize(
     ("keys", "line"),
     [
-        ("", 'hole[1, tunnel].type: is missing, must be one of "circle", "ellipse", "polygon", "rectangle"'),
+        ("", f"hole[1, tunnel].type: is missing, must be one of {SHAPES}"),
         ('type = "box"', 'hole[1, tunnel].type: is "box", must be one of '),
         (f"{CIRCLE}\nradios = 1", "hole[1, tunnel].radios: unknown key; allowed: "),
         ('type = "circle"\ncentre = [5, 2]\nradius = 0', "hole[1, tunnel].radius: is 0, must be greater than 0"),
