@@ -13,7 +13,7 @@ from dembound.bar.lattice import carrying_lattice
 from dembound.bar.scene import BarScene, end_supports
 from dembound.boundaries import OPPOSITE, normal_axis
 from dembound.casefile.bar import BarCase
-from dembound.casefile.magnitudes import grip_stress, stress_warnings, time_warnings
+from dembound.casefile.magnitudes import grip_stress, stress_in_words, stress_warnings, time_warnings
 from dembound.results.reader import open_record
 from dembound.results.warnings import still_moving
 
@@ -159,6 +159,6 @@ def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
     tension = max(0.0, *(float(np.max(group["stress"][:])) for group in groups))
     if tension < NOTHING * strength:
         yield (
-            f"bar: the largest tension reached is {tension:.3g} Pa, {100.0 * tension / strength:.2g} % of the "
-            f"strength, {strength:g} Pa; nothing can break"
+            f"bar: the largest tension reached is {stress_in_words(tension)}, {100.0 * tension / strength:.2g} % of "
+            f"the strength, {stress_in_words(strength)}; nothing can break"
         )
