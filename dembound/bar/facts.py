@@ -5,6 +5,7 @@ import numpy as np
 from dembound.bar.lattice import carrying_lattice
 from dembound.bar.scene import BarScene
 from dembound.bar.summary import describe_bar, describe_end
+from dembound.boundaries.words import side_in_words
 from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import Bar
 from dembound.casefile.magnitudes import stress_in_words, waves_used
@@ -32,7 +33,7 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
     if case.bar.attenuation > 0.0:
         facts["attenuation"] = f"α = {case.bar.attenuation:g} 1/m"
     for side in scene.edges:
-        facts[f"{side} end"] = str(describe_end(scene, side)["type"])
+        facts[f"{side} end"] = side_in_words(describe_end(scene, side))
     for load in case.load:
         largest = abs(load.pressure) * case.wave[load.wave].peak()
         facts[f"load {load.name}"] = (
