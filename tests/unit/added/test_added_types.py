@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +24,8 @@ REGISTERED = {
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory) -> dict[str, Any]:
-    """What the cases of use_them.py come to beside a package that registers added_types.py."""
+def python(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Runs Python beside a package that registers added_types.py."""
     site = tmp_path_factory.mktemp("site")
     shutil.copy(HERE / "added_types.py", site)
     info = site / "added-1.0.dist-info"
@@ -37,15 +38,25 @@ def found(tmp_path_factory) -> dict[str, Any]:
     groups[4] += "y = added_types:Nameless\n"
     (info / "entry_points.txt").write_text("".join(groups))
     path = os.pathsep.join([str(site), *filter(None, [os.environ.get("PYTHONPATH")])])
-    done = subprocess.run(
-        [sys.executable, str(HERE / "use_them.py")],
-        env={**os.environ, "PYTHONPATH": path},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        done = subprocess.run(
+            [sys.executable, *arguments],
+            env={**os.environ, "PYTHONPATH": path},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        return done
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def found(python) -> dict[str, Any]:
+    """What the cases of use_them.py come to."""
+    return json.loads(python(str(HERE / "use_them.py")).stdout)
 
 
 def test_a_law_without_moments_closes_its_books(found) -> None:
@@ -110,6 +121,11 @@ def test_what_cannot_be_used_is_said_and_left_out(found) -> None:
     assert stranger == "dembound.holes: z (added_types:Stranger) is not derived from Hole"
     assert nameless.startswith("dembound.waves: y (added_types:Nameless) lacks _displacement_shape, _velocity_shape, ")
     assert namesake == 'dembound.laws: y (added_types:Namesake) is called "elastic", which is taken'
+
+
+def test_the_command_line_says_it_without_python(python, found) -> None:
+    said = python("-m", "dembound", "--version").stderr.splitlines()
+    assert said == [f"warning: {warning}" for warning in found["warnings"]]
 
 
 def test_a_side_whose_wave_comes_too_late_is_not_calibrated(found) -> None:
