@@ -87,8 +87,14 @@ def test_each_mistake_gets_one_plain_line(keys: str, line: str) -> None:
 @pytest.mark.parametrize(("x", "y"), [(11.0, 2.5), (-1.0, 2.5), (5.0, 6.0), (5.0, -1.5)])
 def test_a_hole_beside_the_scene_is_refused(x: float, y: float) -> None:
     assert problems(hole(f'type = "circle"\ncentre = [{x}, {y}]\nradius = 1.0')) == [
-        "hole[1, tunnel]: lies outside the scene, [0, 0] to [10.0, 5.0] (m)"
+        "hole[1, tunnel]: lies outside the scene, [0, 0] to [10, 5] (m)"
     ]
+
+
+def test_a_scene_of_many_bricks_is_told_in_round_numbers() -> None:
+    odd = BASE.replace("size = [10.0, 5.0]", "bricks = [3, 1]").replace("0.25", "0.05")
+    with pytest.raises(CaseError, match=r"lies outside the scene, \[0, 0\] to \[0\.3, 0\.1\] \(m\)"):
+        loads(odd + hole())
 
 
 def test_a_hole_may_reach_beyond_the_scene() -> None:
