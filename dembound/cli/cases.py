@@ -107,7 +107,7 @@ def packing(
     loaded = [load_disks(path, changes) for path in cases]
     if brick:
         shown = build(loaded[0]).ground.brick
-        figure = plot_brick(shown.positions, shown.radii, shown.rows, shown.size, shown.pairs, shown.images)
+        figure = plot_brick(shown.positions, shown.radii, shown.edge_rows, shown.size, shown.pairs, shown.images)
     else:
         scenes = {case.name: build(case) for case in loaded}
         figure = plot_patterns(

@@ -11,7 +11,7 @@ from rich.table import Table
 from dembound.cli.app import PICTURE, PictureTitle, Settings, app, compact_table, load_case, out, writable
 from dembound.errors import CaseError
 from dembound.exact.dispersion import Lattice, Speed, cells_per_wavelength
-from dembound.plot.dispersion import Points, name, plot_dispersion
+from dembound.plot.dispersion import Points, horizon_in_words, name, plot_dispersion
 from dembound.plot.style import save
 from dembound.studies.dispersion import lattices, lattices_of, measure, write_table
 
@@ -90,7 +90,7 @@ def _overview(shown: Sequence[Lattice]) -> Table:
     overview = compact_table(*HEADS, title="Spacings per wavelength from which on waves run within 1 % of c")
     for lattice in shown:
         limit = lattice.courant_limit
-        sizes = (str(lattice.horizon), f"{lattice.spacing:g}", f"{lattice.time_step:g}")
+        sizes = (horizon_in_words(lattice), f"{lattice.spacing:g}", f"{lattice.time_step:g}")
         needed = (_needed(lattice, "phase"), _needed(lattice, "group"))
         overview.add_row(*sizes, f"{lattice.courant:.4f}", f"{limit:.4f}", *needed)
     return overview
