@@ -7,13 +7,17 @@ import numpy as np
 
 from dembound.bar.fracture import spalls
 from dembound.bar.part import BarPart
-from dembound.bar.scene import BarScene
+from dembound.bar.scene import BarScene, bar_medium
 from dembound.gauge.estimates import pull_back_strength
 from dembound.motion.trackers import Run
 from dembound.results.reader import open_record
 
 LATER_SPALLS = "spalls after the first do not converge as bar.spacing shrinks: it decides their number and places"
 """Said where a bar has spalled more than once."""
+
+
+OF_DISKS = {"beta_s", "half_mass"}
+"""Numbers of sides that a bar, which moves along itself alone and has half an end node, does not ask for."""
 
 
 def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
@@ -59,9 +63,10 @@ def describe_bar(scene: BarScene) -> dict[str, float | None]:
 
 
 def describe_end(scene: BarScene, side: str) -> dict[str, Any]:
-    """One end in numbers: its type, and β of a dashpot."""
+    """One end in numbers: its type, and those of its table that a bar asks for."""
     table = scene.case.side(side)
-    return {"type": table.type} | ({"beta_p": table.factors["p"]} if table.factors else {})
+    numbers = table.describe(scene.edges[side], bar_medium(scene.case))
+    return {"type": table.type} | {key: value for key, value in numbers.items() if key not in OF_DISKS}
 
 
 def _largest_stresses(record: Path) -> dict[str, dict[str, float]]:

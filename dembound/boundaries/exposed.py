@@ -12,6 +12,22 @@ DEPTH = 4.0
 look into every hole of a dense packing, and short of looking past a rough corner across the whole scene."""
 
 
+LEVEL = 1e-6
+"""How far the centres of one row may differ across it, in smallest radii: rounding."""
+
+
+def outer_row(positions: np.ndarray, radii: np.ndarray, side: str) -> np.ndarray:
+    """Indices of the particles in the outermost row at `side`, sorted along it; parameters as of `exposed`.
+
+    Of a side of disks in one row that is all of it. At a corner more may be exposed: every other row of a hexagonal
+    packing reaches past the rest.
+    """
+    axis = normal_axis(side)
+    outward = _sign(side) * positions[:, axis]
+    nodes = np.flatnonzero(outward > outward.max() - LEVEL * radii.min())
+    return nodes[np.argsort(positions[nodes, 1 - axis], kind="stable")]
+
+
 def exposed(positions: np.ndarray, radii: np.ndarray, side: str, period: float | None = None) -> np.ndarray:
     """Indices of the particles seen from outside `side`, sorted along it.
 
@@ -19,8 +35,7 @@ def exposed(positions: np.ndarray, radii: np.ndarray, side: str, period: float |
     or top; period (m) is the scene's length along the side when it is periodic there, else None.
     """
     axis = normal_axis(side)
-    sign = 1.0 if side in ("right", "top") else -1.0
-    outward, along = sign * positions[:, axis], positions[:, 1 - axis]
+    outward, along = _sign(side) * positions[:, axis], positions[:, 1 - axis]
     front = outward + radii
     near = np.flatnonzero(front > front.max() - DEPTH * radii.max())
     near = near[np.argsort(-front[near], kind="stable")]
@@ -44,3 +59,8 @@ def exposed(positions: np.ndarray, radii: np.ndarray, side: str, period: float |
         owner[slots[seen]] = i
     nodes = np.unique(owner[owner >= 0])
     return nodes[np.argsort(along[nodes], kind="stable")]
+
+
+def _sign(side: str) -> float:
+    """Direction of a side's outward normal along its axis."""
+    return 1.0 if side in ("right", "top") else -1.0

@@ -117,15 +117,15 @@ class DiskBody(Scene):
     @cached_property
     def mass(self) -> np.ndarray:
         """(n,) kg, of which particles on sides with half mass keep their half."""
-        return self.ground.mass[self.assembly.brick_particle] * self.share
+        return self.ground.mass[self.assembly.brick_particle] * self.cell_fraction
 
     @cached_property
     def inertia(self) -> np.ndarray:
         """(n,) kg·m², halved with the mass."""
-        return self.ground.inertia[self.assembly.brick_particle] * self.share
+        return self.ground.inertia[self.assembly.brick_particle] * self.cell_fraction
 
     @cached_property
-    def share(self) -> np.ndarray:
+    def cell_fraction(self) -> np.ndarray:
         """(n,) part of its cell that is a particle's own: 1, on a side of half cells ½, where two such meet ¼."""
         return mass_factor(self.count, self.edges, self.case.boundary)
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.rows import palette_of
+from dembound.disks.rows import elastic_constants
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import LaneRows
 from dembound.packings.tiling import Assembly
@@ -63,13 +63,13 @@ def lane_rows(
 
     begin : slot of the first block; slots : number of slots of the scene; fraction (n,) of its mass that each disk has.
     """
-    palette, line_of = palette_of(ground)
-    constants = matrices(palette)
+    table, row_of = elastic_constants(ground)
+    constants = matrices(table)
     first_block = begin // LANES
     first = first_block + plan.first
     rows, blocks = len(first) - 1, np.diff(plan.first)
     live = np.bincount(plan.row, minlength=rows)
-    ends = _Ends.of(assembly, plan, line_of)
+    ends = _Ends.of(assembly, plan, row_of)
     entries: list[_Entries] = []
     for _ in range(ROUNDS):
         if len(ends.line) == 0:
@@ -102,18 +102,18 @@ def lane_rows(
         own=own,
         special=special,
         **_strays(ends, begin),
-        palette=palette,
+        stray_constants=table,
         extra=np.zeros((3, slots if len(ends.line) else LANES)),
     )
 
 
-def matrices(palette: np.ndarray) -> np.ndarray:
-    """Constants (p, 11) of palette lines (p, 6): what a contact does as a matrix.
+def matrices(table: np.ndarray) -> np.ndarray:
+    """Constants (p, 11) of rows (p, 6) of elastic.py: what a contact does as a matrix.
 
     Of the force on i by Δx, Δy of j relative to i and by θ_j: [xx, xy, yy, xθ, yθ], of the moment [θx, θy, θθ], and
     what θ_i adds to force and moment, [x, y, θ].
     """
-    x, y, ratio, arm_i, arm_j, bending = palette.T
+    x, y, ratio, arm_i, arm_j, bending = table.T
     across, up = -ratio * y, ratio * x  # √k_s t
     return np.stack(
         [
@@ -135,7 +135,7 @@ def matrices(palette: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class _Ends:
-    """Ends of contacts: owner and neighbour slot (e,) from 0 on, row of the owner, line of the palette."""
+    """Ends of contacts: owner and neighbour slot (e,) from 0 on, row of the owner, line, of the table of constants."""
 
     slot: np.ndarray
     other: np.ndarray
@@ -143,11 +143,11 @@ class _Ends:
     line: np.ndarray
 
     @classmethod
-    def of(cls, assembly: Assembly, plan: RowPlan, line_of: np.ndarray) -> "_Ends":
+    def of(cls, assembly: Assembly, plan: RowPlan, row_of: np.ndarray) -> "_Ends":
         i, j = assembly.pairs.T
         slot = plan.slot
         owner, other = np.concatenate([i, j]), np.concatenate([j, i])
-        lines = np.concatenate([line_of[2 * assembly.kind], line_of[2 * assembly.kind + 1]])
+        lines = np.concatenate([row_of[2 * assembly.contact_type], row_of[2 * assembly.contact_type + 1]])
         return cls(slot[owner], slot[other], plan.row[owner], lines)
 
     def at(self, chosen: np.ndarray) -> "_Ends":
@@ -222,6 +222,6 @@ def _strays(ends: _Ends, begin: int) -> dict[str, np.ndarray]:
     return {
         "stray": begin + slot,
         "stray_start": np.append(start, len(ends.slot)),
-        "neighbour": (begin + ends.other).astype(np.uint32),
-        "kind": ends.line.astype(np.uint32),
+        "stray_neighbour": (begin + ends.other).astype(np.uint32),
+        "stray_type": ends.line.astype(np.uint32),
     }

@@ -8,7 +8,7 @@ import numpy as np
 from dembound.disks.contacts import ContactList, plain_contacts
 from dembound.disks.layout import Rows
 from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.rows import palette_of
+from dembound.disks.rows import elastic_constants
 from dembound.kernels import bonded, elastic, elastic_lanes  # noqa: F401  # laws to know before the loop is compiled
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contacts import REFERENCE, strain_energy
@@ -139,9 +139,9 @@ class FreeFieldSeam(Tie):
     def __init__(self, seam: ColumnSeam, column: DiskPart) -> None:
         self.seam = seam
         self.column = column
-        self._palette, line_of = palette_of(column.ground)
+        self._constants, row_of = elastic_constants(column.ground)
         slot = column.layout.slot
-        self._line = line_of[2 * seam.kind + seam.twin_is_second].astype(np.uint32)
+        self._row = row_of[2 * seam.contact_type + seam.twin_is_second].astype(np.uint32)
         self._neighbour = slot[seam.neighbour].astype(np.uint32)
         self._ends: tuple[Contacts, np.ndarray] | None = None
 
@@ -159,7 +159,7 @@ class FreeFieldSeam(Tie):
         np.cumsum(counts, out=start[1:])
         if not self.column.uses_history:
             twin = self.column.layout.slot[seam.twin[supported]]
-            return Seam(twin, start, self._neighbour, self._line, self._palette)
+            return Seam(twin, start, self._neighbour, self._row, self._constants)
         assert self.column.contacts is not None
         ends = self.ends(self.column.contacts).astype(np.uint32)
         return SeamEnds(start, ends, self.column.contacts.arrays.force)
@@ -169,7 +169,7 @@ class FreeFieldSeam(Tie):
         force = np.zeros((len(self.nodes), 3))
         layout = self.column.layout
         twin = layout.slot[self.seam.twin[self.nodes]]
-        seam = Seam(twin, self.seam.start, self._neighbour, self._line, self._palette)
+        seam = Seam(twin, self.seam.start, self._neighbour, self._row, self._constants)
         elastic.seam_forces(seam, layout.spread(displacement), force)
         return force.T
 

@@ -1,10 +1,10 @@
 """The history-free elastic law and the step of central differences, fused into one pass over the particles.
 
 Each particle gathers from its own row of contacts, so no two particles write to the same place: the sums come in
-the same order, hence with the same bits, for any number of threads. A contact's constants stand once in a small
-palette shared by all copies of the brick; a row holds only the neighbour and the palette line (8 bytes).
+the same order, hence with the same bits, for any number of threads. The constants of a contact stand once
+in a small table shared by all copies of the brick; a row holds only the neighbour and the contact type (8 bytes).
 
-A palette line (6,) of a contact seen from particle i with neighbour j, unit normal n = (c, s) from i to j or
+A row of constants (6,) of a contact seen from particle i with neighbour j, unit normal n = (c, s) from i to j or
 from j to i (the law is even in n, the arms carry the sign):
 
     [√k_n c, √k_n s, √(k_s/k_n), √k_s l_i, √k_s l_j, k_r]
@@ -24,7 +24,7 @@ from dembound.kernels.tables import Links, NeighbourTable, Seam, WatchedLinks
 
 
 @njit(**FAST, inline="always")
-def row_force(row, i, u, start, neighbour, kind, palette):
+def row_force(row, i, u, start, neighbour, contact_type, constants):
     """Force (x, y) and moment on particle i from a row of contacts (Z eqs 7-9; PFC2D linear parallel bond)."""
     x = u[U(0), i]
     y = u[U(1), i]
@@ -34,20 +34,20 @@ def row_force(row, i, u, start, neighbour, kind, palette):
     moment = 0.0
     for e in range(start[row], start[row + U(1)]):
         j = U(neighbour[e])
-        k = U(kind[e])
-        px = palette[k, U(0)]
-        py = palette[k, U(1)]
-        ratio = palette[k, U(2)]
-        arm = palette[k, U(3)]
+        k = U(contact_type[e])
+        px = constants[k, U(0)]
+        py = constants[k, U(1)]
+        ratio = constants[k, U(2)]
+        arm = constants[k, U(3)]
         turn_j = u[U(2), j]
         dx = u[U(0), j] - x
         dy = u[U(1), j] - y
         N = px * dx + py * dy
-        S = ratio * (px * dy - py * dx) - arm * turn - palette[k, U(4)] * turn_j
+        S = ratio * (px * dy - py * dx) - arm * turn - constants[k, U(4)] * turn_j
         T = ratio * S
         fx += px * N - py * T
         fy += py * N + px * T
-        moment += arm * S + palette[k, U(5)] * (turn_j - turn)
+        moment += arm * S + constants[k, U(5)] * (turn_j - turn)
     return fx, fy, moment
 
 
@@ -66,21 +66,23 @@ def move_rows(rows, u, v, body, u_next, fastest, arms, damped):
 
 @njit(**PARALLEL)
 def _fill(rows, u, force):
-    begin, start, neighbour, kind, palette = rows
+    begin, start, neighbour, contact_type, constants = rows
     n = start.size - 1 - begin
     for chunk in prange(CHUNKS):
         for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
-            force[U(0), i], force[U(1), i], force[U(2), i] = row_force(i, i, u, start, neighbour, kind, palette)
+            force[U(0), i], force[U(1), i], force[U(2), i] = row_force(
+                i, i, u, start, neighbour, contact_type, constants
+            )
 
 
 @njit(**FAST)
 def seam_forces(seam, u, force):
     """Add to force (k, 3) of the supported nodes what their twins have across the seam."""
-    twin, start, neighbour, kind, palette = seam
+    twin, start, neighbour, contact_type, constants = seam
     for s in range(twin.size):
         if start[s + 1] > start[s]:
-            fx, fy, moment = row_force(U(s), U(twin[s]), u, start, neighbour, kind, palette)
+            fx, fy, moment = row_force(U(s), U(twin[s]), u, start, neighbour, contact_type, constants)
             force[s, 0] += fx
             force[s, 1] += fy
             force[s, 2] += moment
@@ -88,7 +90,7 @@ def seam_forces(seam, u, force):
 
 @njit(**PARALLEL)
 def _move(rows, u, v, body, u_next, fastest, arms, damped):
-    begin, start, neighbour, kind, palette = rows
+    begin, start, neighbour, contact_type, constants = rows
     n = start.size - 1 - begin
     watched = arms.size > 0
     for chunk in prange(CHUNKS):
@@ -97,7 +99,7 @@ def _move(rows, u, v, body, u_next, fastest, arms, damped):
         half = 0.0
         for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
-            fx, fy, moment = row_force(i, i, u, start, neighbour, kind, palette)
+            fx, fy, moment = row_force(i, i, u, start, neighbour, contact_type, constants)
             taken, up_to = move_particle(i, fx, fy, moment, u, v, body, u_next)
             whole += taken
             half += up_to

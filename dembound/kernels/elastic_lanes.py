@@ -98,7 +98,9 @@ def _stray_forces(rows, first, last, u):
     extra = rows.extra
     for k in range(_first_at(rows.stray, LANES * first), _first_at(rows.stray, LANES * last)):
         i = U(rows.stray[k])
-        fx, fy, moment = row_force(U(k), i, u, rows.stray_start, rows.neighbour, rows.kind, rows.palette)
+        fx, fy, moment = row_force(
+            U(k), i, u, rows.stray_start, rows.stray_neighbour, rows.stray_type, rows.stray_constants
+        )
         extra[U(0), i] = fx
         extra[U(1), i] = fy
         extra[U(2), i] = moment

@@ -8,16 +8,16 @@ import numpy as np
 class NeighbourTable(NamedTuple):
     """Contacts of the elastic law, one row per particle, of the particles from number `begin` on.
 
-    Row i, that of particle i, is start[i]:start[i + 1] of neighbour (e,) and kind (e,), the latter a line of palette
-    (p, 6); see elastic.py. start ends with the last particle's row, and the rows before `begin` are empty.
+    Row i, that of particle i, is start[i]:start[i + 1] of neighbour (e,) and contact_type (e,), the latter the row of
+    constants (p, 6) to take; see elastic.py. start ends with the last particle's row; those before `begin` are empty.
     """
 
     begin: int
 
     start: np.ndarray
     neighbour: np.ndarray
-    kind: np.ndarray
-    palette: np.ndarray
+    contact_type: np.ndarray
+    constants: np.ndarray
 
 
 class LaneRows(NamedTuple):
@@ -28,7 +28,8 @@ class LaneRows(NamedTuple):
     the copies that have the contact begin in masks (m,) uint8, one byte a block, −1: all have it; constants (e, 8),
     turn (e, 3), own (r, 3) see there. special : (blocks,) bool, blocks with supported disks, strays, or masses of their
     own. Contacts that are in no entry are strays, of k disks in stray (k,), ascending slots; those of each begin in
-    neighbour (s,) and kind (s,), a line of palette (p, 6), at stray_start (k + 1,). extra : (3, slots) work space.
+    stray_neighbour (s,) and stray_type (s,), a row of stray_constants (p, 6), at stray_start (k + 1,). extra : (3,
+    slots) work space.
     """
 
     first: np.ndarray
@@ -44,16 +45,16 @@ class LaneRows(NamedTuple):
     special: np.ndarray
     stray: np.ndarray
     stray_start: np.ndarray
-    neighbour: np.ndarray
-    kind: np.ndarray
-    palette: np.ndarray
+    stray_neighbour: np.ndarray
+    stray_type: np.ndarray
+    stray_constants: np.ndarray
     extra: np.ndarray
 
 
 class Contacts(NamedTuple):
-    """Contacts with a history, each listed once; see contacts.py for the columns of palette and force.
+    """Contacts with a history, each listed once; see contacts.py for the columns of constants and force.
 
-    first, second, kind : (b,) uint32 particles and line of palette (p, 12).
+    first, second, contact_type : (b,) uint32 particles, and which row of constants (p, 12) is the pair's.
     state : (b,) uint8, see contacts.py; shear, slip : (b,) m, the tangential displacement since the start and the part
     of it that slid; cracked : (b,) int64, step in which the bond broke, else −1; place : (b, 2) m, mean displacement of
     the two disks in that step; force : (b, 4). start, end : rows of contact ends, one per particle, those before number
@@ -64,8 +65,8 @@ class Contacts(NamedTuple):
 
     first: np.ndarray
     second: np.ndarray
-    kind: np.ndarray
-    palette: np.ndarray
+    contact_type: np.ndarray
+    constants: np.ndarray
     state: np.ndarray
     shear: np.ndarray
     slip: np.ndarray
@@ -137,14 +138,14 @@ class Seam(NamedTuple):
     """What a free-field column under the elastic law does to k supported nodes across its seam.
 
     twin : (k,) the particle of the column at each one's place, −1 for none; start : (k + 1,) rows of what that one has
-    across the seam: its neighbours there (e,) and lines of palette (p, 6), kind (e,).
+    across the seam: its neighbours there (e,), and contact_type (e,), rows of constants (p, 6).
     """
 
     twin: np.ndarray
     start: np.ndarray
     neighbour: np.ndarray
-    kind: np.ndarray
-    palette: np.ndarray
+    contact_type: np.ndarray
+    constants: np.ndarray
 
 
 class SeamEnds(NamedTuple):

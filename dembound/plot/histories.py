@@ -27,6 +27,9 @@ MOST_PLACES = 2
 BESIDE_TWINS: tuple[Any, ...] = ("-", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 """Lines of runs beside free-field twins, whose own are dashed."""
 
+BEHIND: dict[str, Any] = {"linestyle": "--", "linewidth": 3.0, "alpha": 0.4, "zorder": 1.9}
+"""Looks of a twin: a monitor that moves as it does, as without a hole, must not hide it."""
+
 
 @styled
 def plot_histories(
@@ -86,7 +89,7 @@ def _draw(
     panel: Axes, run: Histories, monitor: str, column: int, seconds: float, label: str, style: dict[str, Any]
 ) -> None:
     """A monitor's history in one run, if it has it, and that of its twin, dashed; times in units of `seconds`."""
-    twin: dict[str, Any] = {"color": style["color"], "linestyle": "--", "linewidth": 0.9}
+    twin: dict[str, Any] = {"color": style["color"], **BEHIND}
     for name, words, looks in ((monitor, label, style), (_twin(monitor), f"{label}, free-field column", twin)):
         if name in run:
             history = run[name]

@@ -22,7 +22,7 @@ def row() -> Assembly:
         brick_particle=numbers,
         tile=np.zeros((4, 2), np.int32),
         pairs=np.zeros((0, 2), np.int32),
-        kind=numbers[:0],
+        contact_type=numbers[:0],
         copies=(1, 1),
         size=np.ones(2),
         extent=np.ones(2),
