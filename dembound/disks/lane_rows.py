@@ -1,6 +1,6 @@
 """Rows of the copies of each disk of the brick, and the contacts between rows, for kernels/elastic_lanes.py."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -18,42 +18,77 @@ STRAY_COST, BLOCK_COST, SKIP_COST = 30.0, 10.0, 2.0
 speed."""
 
 
+WASTE = 1.04
+"""What whole lengths of the shorter side for each lane may cost in blocks; masks are then the same for all lanes."""
+
+
 @dataclass(frozen=True, eq=False)
 class RowPlan:
-    """Where the disks of an assembly stand in rows of copies, r of them.
+    """Where the disks of an assembly stand: r rows of copies in g groups, each with as many columns of eight copies.
 
-    row (n,) row of each disk; lane (n,) its place there; first (r + 1,) the block of eight slots each row begins with,
-    from 0 on.
+    row (n,) row of each disk; column, lane (n,) its place there. group_row (g + 1,) the rows of each group, columns
+    (g,) its columns, group_block (g + 1,) its blocks from 0 on, column by column, in each one block for every row.
     """
 
     row: np.ndarray
+    column: np.ndarray
     lane: np.ndarray
-    first: np.ndarray
+    group_row: np.ndarray
+    columns: np.ndarray
+    group_block: np.ndarray
+
+    @property
+    def group(self) -> np.ndarray:
+        """(r,) group of each row."""
+        return np.repeat(np.arange(len(self.columns)), np.diff(self.group_row))
+
+    @property
+    def block(self) -> np.ndarray:
+        """(n,) block of each disk."""
+        group = self.group[self.row]
+        rows = np.diff(self.group_row)[group]
+        return self.group_block[group] + self.column * rows + self.row - self.group_row[group]
 
     @property
     def slot(self) -> np.ndarray:
         """(n,) slot of each disk, from 0 on."""
-        return LANES * self.first[self.row] + self.lane
+        return LANES * self.block + self.lane
 
 
 def plan_rows(assembly: Assembly) -> RowPlan:
-    """Rows of the copies of each disk of the brick, those in rows that close the frame apart.
+    """Rows of the copies of each disk of the brick, those in rows that close the frame in groups of their own.
 
-    Copies follow each other along the shorter side of the scene first.
+    Copies are numbered along the shorter side of the scene first, and cut into eight lengths, one for each lane: the
+    neighbour in the next copy is then in the next column, in the same lane.
     """
     (across, up), tile = assembly.copies, assembly.tile.astype(np.int64)
-    closes_x, closes_y = tile[:, 0] >= across, tile[:, 1] >= up
-    along_x = assembly.size[0] < assembly.size[1]
+    closing = 2 * (tile[:, 0] >= across) + (tile[:, 1] >= up)
+    along_x = bool(assembly.size[0] < assembly.size[1])
     regular = tile[:, 1] * across + tile[:, 0] if along_x else tile[:, 0] * up + tile[:, 1]
-    place = np.where(closes_x, tile[:, 1], np.where(closes_y, tile[:, 0], regular))
-    group = 4 * assembly.brick_particle.astype(np.int64) + 2 * closes_x + closes_y
-    _, row = np.unique(group, return_inverse=True)
-    count = int(row.max()) + 1
-    low, high = np.full(count, np.iinfo(np.int64).max), np.zeros(count, dtype=np.int64)
-    np.minimum.at(low, row, place)
-    np.maximum.at(high, row, place)
-    blocks = (high - low) // LANES + 1
-    return RowPlan(row, place - low[row], np.concatenate([[0], np.cumsum(blocks)]))
+    copy = np.choose(closing, [regular, tile[:, 0], tile[:, 1], 0])
+    short, long = (across, up) if along_x else (up, across)
+    columns = np.array([_columns(short, long), -(-across // LANES), -(-up // LANES), 1])
+    kinds, group = np.unique(closing, return_inverse=True)
+    brick_rows, row = np.unique(
+        group * (assembly.brick_particle.max() + 1) + assembly.brick_particle, return_inverse=True
+    )
+    group_row = np.searchsorted(brick_rows // (assembly.brick_particle.max() + 1), np.arange(len(kinds) + 1))
+    columns = columns[kinds]
+    return RowPlan(
+        row=row,
+        column=copy % columns[group],
+        lane=copy // columns[group],
+        group_row=group_row,
+        columns=columns,
+        group_block=np.concatenate([[0], np.cumsum(np.diff(group_row) * columns)]),
+    )
+
+
+def _columns(short: int, long: int) -> int:
+    """Columns for so many copies along the shorter and the longer side."""
+    least = -(-short * long // LANES)
+    even = -(-long // LANES) * short
+    return even if even <= WASTE * least else least
 
 
 def lane_rows(
@@ -65,24 +100,23 @@ def lane_rows(
     """
     table, row_of = elastic_constants(ground)
     constants = matrices(table)
-    first_block = begin // LANES
-    first = first_block + plan.first
-    rows, blocks = len(first) - 1, np.diff(plan.first)
-    live = np.bincount(plan.row, minlength=rows)
+    first_block, rows = begin // LANES, int(plan.group_row[-1])
     ends = _Ends.of(assembly, plan, row_of)
     entries: list[_Entries] = []
     for _ in range(ROUNDS):
         if len(ends.line) == 0:
             break
-        found, ends = _take_most(ends, plan, blocks, live)
+        found, ends = _take_most(ends, plan)
         entries.append(found)
     joined = _Entries.joined(entries)
-    order = np.argsort(joined.row, kind="stable")
     whole = joined.mask < 0
+    order = np.lexsort((~whole, joined.row))
     own = np.zeros((rows, 3))
     np.add.at(own, joined.row[whole], constants[joined.line[whole], 8:])
-    start = np.concatenate([[0], np.cumsum(np.bincount(joined.row, minlength=rows))])
-    special = np.zeros(first_block + plan.first[-1], dtype=np.bool_)
+    start = np.zeros((rows + 1, 2), dtype=np.int64)
+    start[1:, 0] = np.cumsum(np.bincount(joined.row, minlength=rows))
+    start[:-1, 1] = start[:-1, 0] + np.bincount(joined.row[whole], minlength=rows)
+    special = np.zeros(first_block + plan.group_block[-1], dtype=np.bool_)
     slot = begin + plan.slot
     special[slot[fraction != 1.0] // LANES] = True
     special[(begin + ends.slot) // LANES] = True
@@ -90,9 +124,10 @@ def lane_rows(
     mass[plan.row] = ground.mass[assembly.brick_particle]
     inertia[plan.row] = ground.inertia[assembly.brick_particle]
     return LaneRows(
-        first=first,
-        mass=mass,
-        inertia=inertia,
+        group_row=plan.group_row,
+        group_block=first_block + plan.group_block,
+        inverse_mass=1.0 / mass,
+        inverse_inertia=1.0 / inertia,
         start=start,
         shift=joined.shift[order],
         mask=joined.mask[order],
@@ -135,11 +170,13 @@ def matrices(table: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class _Ends:
-    """Ends of contacts: owner and neighbour slot (e,) from 0 on, row of the owner, line, of the table of constants."""
+    """Ends of contacts: slots of owner and neighbour (e,) from 0 on, rows and the owner's column, line of the table."""
 
     slot: np.ndarray
     other: np.ndarray
     row: np.ndarray
+    other_row: np.ndarray
+    column: np.ndarray
     line: np.ndarray
 
     @classmethod
@@ -148,10 +185,10 @@ class _Ends:
         slot = plan.slot
         owner, other = np.concatenate([i, j]), np.concatenate([j, i])
         lines = np.concatenate([row_of[2 * assembly.contact_type], row_of[2 * assembly.contact_type + 1]])
-        return cls(slot[owner], slot[other], plan.row[owner], lines)
+        return cls(slot[owner], slot[other], plan.row[owner], plan.row[other], plan.column[owner], lines)
 
     def at(self, chosen: np.ndarray) -> "_Ends":
-        return _Ends(self.slot[chosen], self.other[chosen], self.row[chosen], self.line[chosen])
+        return _Ends(*(getattr(self, each.name)[chosen] for each in fields(self)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,41 +215,34 @@ class _Entries:
         )
 
 
-def _take_most(ends: _Ends, plan: RowPlan, blocks: np.ndarray, live: np.ndarray) -> tuple[_Entries, _Ends]:
-    """One list for each row and line, of the ends whose neighbour is as many slots away; and the ends left over.
+def _take_most(ends: _Ends, plan: RowPlan) -> tuple[_Entries, _Ends]:
+    """One entry for each row and line, of the ends whose neighbour is as many slots away; and the ends left over.
 
-    Which distance is tried is that of the last end listed. Lists that are not worth a mask are given up as a whole.
+    Which distance is tried is that of the last end listed. Entries that are not worth a mask are given up as a whole.
     """
-    _, representative, group = np.unique(
-        ends.row * (int(ends.line.max()) + 1) + ends.line, return_index=True, return_inverse=True
-    )
+    keys = ends.row * (int(ends.line.max()) + 1) + ends.line
+    _, first, entry = np.unique(keys, return_index=True, return_inverse=True)
     shift = ends.other - ends.slot
-    tried = np.empty(len(representative), dtype=np.int64)
-    tried[group] = shift
-    alike = shift == tried[group]
-    lanes_used = np.bincount(group[alike], minlength=len(tried))
-    row, line = ends.row[representative], ends.line[representative]
-    block = ends.slot // LANES
-    block_used = np.unique(np.stack([group[alike], block[alike]]), axis=1)[0]
-    blocks_used = np.bincount(block_used, minlength=len(tried))
-    cost = BLOCK_COST * blocks_used + SKIP_COST * (blocks[row] - blocks_used)
+    tried = np.empty(len(first), dtype=np.int64)
+    last = np.empty(len(first), dtype=np.int64)
+    tried[entry], last[entry] = shift, np.arange(len(shift))
+    alike = shift == tried[entry]
+    row, line, to = ends.row[first], ends.line[first], ends.other_row[last]
+    live, columns, group = np.bincount(plan.row), plan.columns[plan.group], plan.group
+    lanes_used = np.bincount(entry[alike], minlength=len(tried))
+    blocks_used = np.bincount(np.unique(np.stack([entry[alike], ends.column[alike]]), axis=1)[0], minlength=len(tried))
+    cost = BLOCK_COST * blocks_used + SKIP_COST * (columns[row] - blocks_used)
     worth = cost <= STRAY_COST * lanes_used
-    to = np.searchsorted(LANES * plan.first, LANES * plan.first[row] + tried, side="right") - 1
-    inside = (to >= 0) & (to < len(blocks))
-    to = np.where(inside, to, 0)
-    whole = inside & (tried == LANES * (plan.first[to] - plan.first[row])) & (blocks[to] == blocks[row])
+    whole = (group[row] == group[to]) & (tried == LANES * (to - row))
     whole &= (lanes_used == live[row]) & (lanes_used == live[to])
     masked = worth & ~whole
-    mask = np.full(len(tried), -1)
-    size = np.where(masked, blocks[row], 0)
-    mask[masked] = (np.cumsum(size) - size)[masked]
+    size = np.where(masked, columns[row], 0)
+    mask = np.where(masked, np.cumsum(size) - size, -1)
     masks = np.zeros(int(size.sum()), dtype=np.uint8)
-    listed = alike & masked[group]
-    at = mask[group[listed]] + block[listed] - plan.first[ends.row[listed]]
-    np.bitwise_or.at(masks, at, np.left_shift(1, ends.slot[listed] % LANES).astype(np.uint8))
-    taken = alike & worth[group]
-    left = ends.at(~taken)
-    return _Entries(row[worth], line[worth], tried[worth], mask[worth], masks), left
+    listed = alike & masked[entry]
+    bit = np.left_shift(1, ends.slot[listed] % LANES).astype(np.uint8)
+    np.bitwise_or.at(masks, mask[entry[listed]] + ends.column[listed], bit)
+    return _Entries(row[worth], line[worth], tried[worth], mask[worth], masks), ends.at(~(alike & worth[entry]))
 
 
 def _strays(ends: _Ends, begin: int) -> dict[str, np.ndarray]:

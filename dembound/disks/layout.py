@@ -37,7 +37,7 @@ def lay_out(
     for part, plan in zip(each, plans, strict=True):
         begins.append(end)
         slots.append(end + (np.arange(len(part.radii)) if plan is None else plan.slot))
-        end += -(-len(part.radii) // LANES) * LANES if plan is None else LANES * int(plan.first[-1])
+        end += -(-len(part.radii) // LANES) * LANES if plan is None else LANES * int(plan.group_block[-1])
     layout = Layout(np.concatenate(slots), end + LANES)
     rows: list[Rows] = []
     for part, plan, begin, disks in zip(each, plans, begins, parts.values(), strict=True):
@@ -53,7 +53,7 @@ def _plan(part: Assembly) -> RowPlan | None:
     if np.prod(part.copies) == 1:
         return None
     plan = plan_rows(part)
-    return plan if len(part.radii) >= LEAST_FILL * LANES * plan.first[-1] else None
+    return plan if len(part.radii) >= LEAST_FILL * LANES * plan.group_block[-1] else None
 
 
 def with_supports(rows: Rows, slots: np.ndarray) -> Rows:

@@ -321,15 +321,16 @@ class _StaticScene:
         """Stop the motion as a whole of a body that nothing holds, which has no force to bring it to rest."""
         if not self._floats:
             return
-        mass, velocity = self.scene.mass, state.velocity
+        mass, velocity = self.scene.mass, state.velocity.copy()
         arm = self.scene.assembly.positions + state.displacement[:2].T
         arm = (arm - np.average(arm, axis=0, weights=mass)).T
         velocity[:2] -= np.average(velocity[:2], axis=1, weights=mass)[:, None] * self.scene.free[:2, None]
+        state.velocity = velocity
         if not self.scene.free.all():
             return
         spin = np.sum(mass * (arm[0] * velocity[1] - arm[1] * velocity[0])) + np.sum(self.scene.inertia * velocity[2])
         rate = spin / (np.sum(mass * (arm**2).sum(axis=0)) + self.scene.inertia.sum())
-        velocity -= rate * np.stack([-arm[1], arm[0], np.ones(self.scene.count)])
+        state.velocity = velocity - rate * np.stack([-arm[1], arm[0], np.ones(self.scene.count)])
 
     def unbalanced(self, system: DiskSystem, forces: np.ndarray) -> np.ndarray:
         """Unbalanced forces (2, n) N along the directions particles can move in, for contact forces (3, n)."""

@@ -21,41 +21,52 @@ from dembound.kernels.law import answer
 from dembound.kernels.tables import LaneRows
 
 _INLINED = FAST | {"inline": "always"}
+_ALL = np.uint8(2**LANES - 1)
 
 
 @njit(**_INLINED)
-def _block_force(rows, r, block, x, y, turn, ux, uy, ut):
-    """Forces and moments on the eight disks of a block of row r, displaced by x, y and turn, by what rows share."""
+def _matrix_force(k, e, j, x, y, ux, uy, ut):
+    """What the neighbours in slots j to j + 7 do to eight disks by entry e, but for the disks' own rotation."""
+    dx = load(ux, j) - x
+    dy = load(uy, j) - y
+    tj = load(ut, j)
+    gx = k[e, U(0)] * dx + (k[e, U(1)] * dy + k[e, U(3)] * tj)
+    gy = k[e, U(1)] * dx + (k[e, U(2)] * dy + k[e, U(4)] * tj)
+    about = k[e, U(5)] * dx + (k[e, U(6)] * dy + k[e, U(7)] * tj)
+    return gx, gy, about
+
+
+@njit(**_INLINED)
+def _block_force(rows, r, column, i, x, y, turn, ux, uy, ut):
+    """Forces and moments on eight disks of row r, displaced by x, y and turn, by the contacts that rows share.
+
+    Their slots begin at i.
+    """
     fx = rows.own[r, U(0)] * turn
     fy = rows.own[r, U(1)] * turn
     moment = rows.own[r, U(2)] * turn
-    at = block - rows.first[r]
-    for entry in range(rows.start[r], rows.start[r + 1]):
+    for entry in range(rows.start[r, U(0)], rows.start[r, U(1)]):
+        gx, gy, about = _matrix_force(rows.constants, U(entry), U(i + rows.shift[U(entry)]), x, y, ux, uy, ut)
+        fx += gx
+        fy += gy
+        moment += about
+    for entry in range(rows.start[r, U(1)], rows.start[r + 1, U(0)]):
         e = U(entry)
-        j = U(LANES * block + rows.shift[e])
-        mask = rows.mask[e]
-        k = rows.constants
-        if mask < 0:
-            dx = load(ux, j) - x
-            dy = load(uy, j) - y
-            tj = load(ut, j)
-            fx = k[e, U(0)] * dx + (k[e, U(1)] * dy + (k[e, U(3)] * tj + fx))
-            fy = k[e, U(1)] * dx + (k[e, U(2)] * dy + (k[e, U(4)] * tj + fy))
-            moment = k[e, U(5)] * dx + (k[e, U(6)] * dy + (k[e, U(7)] * tj + moment))
-        else:
-            byte = rows.masks[U(mask + at)]
-            if byte != 0:
-                exists = bits(byte)
-                own = rows.turn
-                dx = load(ux, j) - x
-                dy = load(uy, j) - y
-                tj = load(ut, j)
-                gx = k[e, U(0)] * dx + (k[e, U(1)] * dy + (k[e, U(3)] * tj + (own[e, U(0)] * turn + fx)))
-                gy = k[e, U(1)] * dx + (k[e, U(2)] * dy + (k[e, U(4)] * tj + (own[e, U(1)] * turn + fy)))
-                about = k[e, U(5)] * dx + (k[e, U(6)] * dy + (k[e, U(7)] * tj + (own[e, U(2)] * turn + moment)))
-                fx = choose(exists, gx, fx)
-                fy = choose(exists, gy, fy)
-                moment = choose(exists, about, moment)
+        byte = rows.masks[U(rows.mask[e] + column)]
+        if byte == 0:
+            continue
+        gx, gy, about = _matrix_force(rows.constants, e, U(i + rows.shift[e]), x, y, ux, uy, ut)
+        gx += rows.turn[e, U(0)] * turn
+        gy += rows.turn[e, U(1)] * turn
+        about += rows.turn[e, U(2)] * turn
+        if byte != _ALL:
+            exists = bits(byte)
+            gx = choose(exists, gx, 0.0)
+            gy = choose(exists, gy, 0.0)
+            about = choose(exists, about, 0.0)
+        fx += gx
+        fy += gy
+        moment += about
     return fx, fy, moment
 
 
@@ -106,17 +117,42 @@ def _stray_forces(rows, first, last, u):
         extra[U(2), i] = moment
 
 
+@njit(**_INLINED)
+def _place_of(rows, block):
+    """Group, column and row of a block."""
+    group = _first_at(rows.group_block, block + 1) - 1
+    begin, end = rows.group_row[group], rows.group_row[group + 1]
+    before = block - rows.group_block[group]
+    return group, before // (end - begin), begin + before % (end - begin)
+
+
+@njit(**_INLINED)
+def _next_place(rows, block, group, column, r):
+    """Those of a block, from those of the one before."""
+    r += 1
+    if r == rows.group_row[group + 1]:
+        if block == rows.group_block[group + 1]:
+            group += 1
+            column = -1
+        column += 1
+        r = rows.group_row[group]
+    return group, column, r
+
+
 @njit(**FAST)
 def _force_blocks(rows, first, last, u, force):
     """Fill force (3, slots) for blocks first to last − 1."""
+    if first == last:
+        return
     _stray_forces(rows, first, last, u)
     ux, uy, ut = u[0], u[1], u[2]
-    r = _first_at(rows.first, first + 1) - 1
+    group, column, r = _place_of(rows, first)
     for block in range(first, last):
-        while block >= rows.first[r + 1]:
-            r += 1
+        if block > first:
+            group, column, r = _next_place(rows, block, group, column, r)
         i = U(LANES * block)
-        fx, fy, moment = _block_force(rows, r, block, load(ux, i), load(uy, i), load(ut, i), ux, uy, ut)
+        x, y, turn = load(ux, i), load(uy, i), load(ut, i)
+        fx, fy, moment = _block_force(rows, r, column, LANES * block, x, y, turn, ux, uy, ut)
         if rows.special[block] and rows.stray.size > 0:
             fx += load(rows.extra[0], i)
             fy += load(rows.extra[1], i)
@@ -126,77 +162,97 @@ def _force_blocks(rows, first, last, u, force):
         store(force[2], i, moment)
 
 
-@njit(**FAST)
-def _move_blocks(rows, first, last, u, v, body, u_next, arms, result):
-    """One step of the disks in blocks first to last − 1; result (3,) gets surface speed and works."""
-    _stray_forces(rows, first, last, u)
+@njit(**_INLINED)
+def _gathered(rows, block, r, column, u, body):
+    """Forces on the disks of a block, but for steady loads, their displacements, and what turns forces into speeds.
+
+    Returns forces and moment, displacements, Δt over mass and over moment of inertia, and whether the block is special.
+    """
+    i = U(LANES * block)
     ux, uy, ut = u[0], u[1], u[2]
-    vx, vy, vt = v[0], v[1], v[2]
+    x, y, turn = load(ux, i), load(uy, i), load(ut, i)
+    fx, fy, moment = _block_force(rows, r, column, LANES * block, x, y, turn, ux, uy, ut)
+    b = splat(body.step * rows.inverse_mass[r])
+    b_turn = splat(body.step * rows.inverse_inertia[r])
+    special = rows.special[block]
+    if special:
+        b = load(body.mobility, i)
+        b_turn = load(body.inverse_inertia, i)
+        if rows.stray.size > 0:
+            fx += load(rows.extra[0], i)
+            fy += load(rows.extra[1], i)
+            moment += load(rows.extra[2], i)
+    return fx, fy, moment, x, y, turn, b, b_turn, special
+
+
+@njit(**_INLINED)
+def _go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, step, v, u_next):
+    """Store velocities and the displacements that follow; of supported disks forces in place of displacements."""
+    store(v[0], i, now_x)
+    store(v[1], i, now_y)
+    store(v[2], i, now_t)
+    x += step * now_x
+    y += step * now_y
+    turn += step * now_t
+    if special:
+        held = at_most(b, 0.0)
+        x = choose(held, fx, x)
+        y = choose(held, fy, y)
+        turn = choose(held, moment, turn)
+    store(u_next[0], i, x)
+    store(u_next[1], i, y)
+    store(u_next[2], i, turn)
+
+
+@njit(**FAST)
+def _move_blocks(rows, first, last, u, v, body, u_next):
+    """One step of the disks in blocks first to last − 1 without steady loads and local damping."""
+    if first == last:
+        return
+    _stray_forces(rows, first, last, u)
     across, up, about = body.free[0], body.free[1], body.free[2]
-    damp, step = body.damp, body.step
-    nothing = splat(0.0)
-    whole = nothing
-    half = nothing
-    speed = nothing
-    spin = nothing
-    r = _first_at(rows.first, first + 1) - 1
-    mobility = splat(step / rows.mass[r])
-    inverse_inertia = splat(step / rows.inertia[r])
+    group, column, r = _place_of(rows, first)
     for block in range(first, last):
-        if block >= rows.first[r + 1]:
-            r += 1
-            mobility = splat(step / rows.mass[r])
-            inverse_inertia = splat(step / rows.inertia[r])
+        if block > first:
+            group, column, r = _next_place(rows, block, group, column, r)
         i = U(LANES * block)
-        x = load(ux, i)
-        y = load(uy, i)
-        turn = load(ut, i)
-        fx, fy, moment = _block_force(rows, r, block, x, y, turn, ux, uy, ut)
-        special = rows.special[block]
-        b = mobility
-        b_turn = inverse_inertia
-        if special:
-            b = load(body.mobility, i)
-            b_turn = load(body.inverse_inertia, i)
-            if rows.stray.size > 0:
-                fx += load(rows.extra[0], i)
-                fy += load(rows.extra[1], i)
-                moment += load(rows.extra[2], i)
+        fx, fy, moment, x, y, turn, b, b_turn, special = _gathered(rows, block, r, column, u, body)
+        now_x = _kick(load(v[0], i), fx, across * b)
+        now_y = _kick(load(v[1], i), fy, up * b)
+        now_t = _kick(load(v[2], i), moment, about * b_turn)
+        _go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, body.step, v, u_next)
+
+
+@njit(**FAST)
+def _move_blocks_and_more(rows, first, last, u, v, body, u_next, arms, result):
+    """The same with steady loads and local damping; result (3,) gets surface speed and works, see elastic.move_rows."""
+    if first == last:
+        return
+    _stray_forces(rows, first, last, u)
+    across, up, about = body.free[0], body.free[1], body.free[2]
+    nothing = splat(0.0)
+    whole, half, speed, spin = nothing, nothing, nothing, nothing
+    group, column, r = _place_of(rows, first)
+    for block in range(first, last):
+        if block > first:
+            group, column, r = _next_place(rows, block, group, column, r)
+        i = U(LANES * block)
+        fx, fy, moment, x, y, turn, b, b_turn, special = _gathered(rows, block, r, column, u, body)
         if body.load.shape[1] > 0:
             fx += load(body.load[0], i)
             fy += load(body.load[1], i)
             moment += load(body.load[2], i)
-        was_x = load(vx, i)
-        was_y = load(vy, i)
-        was_t = load(vt, i)
-        if damp > 0.0:
-            dx = _local_damping(was_x, fx, damp)
-            dy = _local_damping(was_y, fy, damp)
-            dt = _local_damping(was_t, moment, damp)
-            now_x = _kick(was_x, fx - dx, across * b)
-            now_y = _kick(was_y, fy - dy, up * b)
-            now_t = _kick(was_t, moment - dt, about * b_turn)
-            held = at_most(b, 0.0)
-            half += choose(held, 0.0, across * dx * was_x + up * dy * was_y + about * dt * was_t)
-            whole += choose(held, 0.0, across * dx * now_x + up * dy * now_y + about * dt * now_t)
-        else:
-            now_x = _kick(was_x, fx, across * b)
-            now_y = _kick(was_y, fy, up * b)
-            now_t = _kick(was_t, moment, about * b_turn)
-        store(vx, i, now_x)
-        store(vy, i, now_y)
-        store(vt, i, now_t)
-        x += step * now_x
-        y += step * now_y
-        turn += step * now_t
-        if special:
-            held = at_most(b, 0.0)
-            x = choose(held, fx, x)
-            y = choose(held, fy, y)
-            turn = choose(held, moment, turn)
-        store(u_next[0], i, x)
-        store(u_next[1], i, y)
-        store(u_next[2], i, turn)
+        was_x, was_y, was_t = load(v[0], i), load(v[1], i), load(v[2], i)
+        dx = _local_damping(was_x, fx, body.damp)
+        dy = _local_damping(was_y, fy, body.damp)
+        dt = _local_damping(was_t, moment, body.damp)
+        now_x = _kick(was_x, fx - dx, across * b)
+        now_y = _kick(was_y, fy - dy, up * b)
+        now_t = _kick(was_t, moment - dt, about * b_turn)
+        held = at_most(b, 0.0)
+        half += choose(held, 0.0, across * dx * was_x + up * dy * was_y + about * dt * was_t)
+        whole += choose(held, 0.0, across * dx * now_x + up * dy * now_y + about * dt * now_t)
+        _go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, body.step, v, u_next)
         if arms.size > 0:
             speed = _larger(now_x * now_x + now_y * now_y, speed)
             spin = _larger(load(arms, i) * magnitude(now_t), spin)
@@ -210,27 +266,34 @@ def _move_blocks(rows, first, last, u, v, body, u_next, arms, result):
         taken += lane(whole, U(k))
         late += lane(half, U(k))
     result[0] = np.sqrt(fastest) + turning
-    result[1] = 0.5 * step * (taken + late)
-    result[2] = 0.5 * step * late
+    result[1] = 0.5 * body.step * (taken + late)
+    result[2] = 0.5 * body.step * late
 
 
 @njit(**PARALLEL)
 def _fill(rows, u, force):
-    begin, end = rows.first[0], rows.first[rows.first.size - 1]
+    begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]
     n = end - begin
     for chunk in prange(CHUNKS):
         _force_blocks(rows, begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS, u, force)
 
 
 @njit(**PARALLEL)
-def _move(rows, u, v, body, u_next, fastest, arms, damped):
-    begin, end = rows.first[0], rows.first[rows.first.size - 1]
+def _move(rows, u, v, body, u_next):
+    begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]
     n = end - begin
-    result = np.zeros((CHUNKS, 3))  # made anew: nothing is shared between threads
+    for chunk in prange(CHUNKS):
+        _move_blocks(rows, begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS, u, v, body, u_next)
+
+
+@njit(**PARALLEL)
+def _move_and_more(rows, u, v, body, u_next, fastest, arms, damped):
+    begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]
+    n = end - begin
+    result = np.zeros((CHUNKS, 3))
     for chunk in prange(CHUNKS):
         first, last = begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS
-        if first < last:
-            _move_blocks(rows, first, last, u, v, body, u_next, arms, result[chunk])
+        _move_blocks_and_more(rows, first, last, u, v, body, u_next, arms, result[chunk])
         fastest[chunk] = result[chunk, 0]
         damped[chunk, 0] = result[chunk, 1]
         damped[chunk, 1] = result[chunk, 2]
@@ -243,7 +306,10 @@ def _fill_lanes(rows, u, force):
 
 @njit(**FAST)
 def _move_lanes(rows, u, v, body, u_next, fastest, arms, damped):
-    _move(rows, u, v, body, u_next, fastest, arms, damped)
+    if body.load.shape[1] > 0 or body.damp > 0.0 or arms.size > 0:
+        _move_and_more(rows, u, v, body, u_next, fastest, arms, damped)
+    else:
+        _move(rows, u, v, body, u_next)
 
 
 answer(fill_forces, LaneRows, _fill_lanes)

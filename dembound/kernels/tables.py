@@ -21,20 +21,22 @@ class NeighbourTable(NamedTuple):
 
 
 class LaneRows(NamedTuple):
-    """Contacts of the elastic law between r rows of copies, see elastic_lanes.py.
+    """Contacts of the elastic law between r rows of copies in g groups, see elastic_lanes.py.
 
-    first : (r + 1,) the blocks of eight slots that each row begins with; mass kg, inertia kg·m² : (r,) of its disks.
-    start : (r + 1,) entries of each row; shift : (e,) slots from a disk to its neighbour; mask : (e,) where the bits of
-    the copies that have the contact begin in masks (m,) uint8, one byte a block, −1: all have it; constants (e, 8),
-    turn (e, 3), own (r, 3) see there. special : (blocks,) bool, blocks with supported disks, strays, or masses of their
-    own. Contacts that are in no entry are strays, of k disks in stray (k,), ascending slots; those of each begin in
-    stray_neighbour (s,) and stray_type (s,), a row of stray_constants (p, 6), at stray_start (k + 1,). extra : (3,
-    slots) work space.
+    group_row, group_block : (g + 1,) rows and blocks of eight slots of each group; column by column, every row of a
+    group has a block there. inverse_mass 1/kg, inverse_inertia 1/(kg·m²) : (r,) of a row's disks. start : (r + 1, 2)
+    where the entries of each row begin, and those of them that not all copies have. shift : (e,) slots from a disk to
+    its neighbour; mask : (e,) where the bits of the copies that have the contact begin in masks (m,) uint8, one byte a
+    column; constants (e, 8), turn (e, 3), own (r, 3) see there. special : (blocks,) bool, blocks with supported disks,
+    strays, or masses of their own. Contacts that are in no entry are strays, of k disks in stray (k,), ascending slots;
+    those of each begin in stray_neighbour (s,) and stray_type (s,), a row of stray_constants (p, 6), at stray_start
+    (k + 1,). extra : (3, slots) work space.
     """
 
-    first: np.ndarray
-    mass: np.ndarray
-    inertia: np.ndarray
+    group_row: np.ndarray
+    group_block: np.ndarray
+    inverse_mass: np.ndarray
+    inverse_inertia: np.ndarray
     start: np.ndarray
     shift: np.ndarray
     mask: np.ndarray

@@ -1,6 +1,7 @@
 """Small cases and a small recorded run that many tests start from."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,8 @@ import numpy as np
 import pytest
 
 from dembound.casefile import Case
+from dembound.disks.rows import contact_rows
+from dembound.disks.scene import DiskScene
 from dembound.kinds import loads, with_changes
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
@@ -206,3 +209,14 @@ def felt() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
         return time, stress + noise * stress.max() * np.random.default_rng(seed).standard_normal(len(time))
 
     return feel
+
+
+@pytest.fixture(scope="session")
+def in_order() -> Callable[[DiskScene], DiskScene]:
+    """Makes a scene's kernels hold its particles in their order, as those of a scene of one brick do."""
+
+    def make(scene: DiskScene) -> DiskScene:
+        rows = (contact_rows(scene.assembly.part(part), scene.ground, part.start) for part in scene.parts.values())
+        return replace(scene, slots=None, rows=tuple(rows))
+
+    return make

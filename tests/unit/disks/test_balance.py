@@ -21,11 +21,11 @@ STEP = 0.1
 
 
 @pytest.fixture
-def scene(bar):
+def scene(bar, in_order):
     """Makes five disks by four that nothing holds, or other packings under other boundaries."""
 
     def make(packing: dict = LATTICE, **boundary: dict) -> DiskScene:
-        return build(bar({**BODY, "packing": packing, "boundary": boundary}))
+        return in_order(build(bar({**BODY, "packing": packing, "boundary": boundary})))
 
     return make
 

@@ -21,12 +21,12 @@ Key = tuple[int, int, int, int]
 
 
 @pytest.fixture
-def scene(bar):
+def scene(bar, in_order):
     """Makes scenes of the history-dependent law: a random packing, or changed."""
 
     def make(sides: str = "open", **changes: object) -> DiskScene:
         tables = {"packing": RANDOM, "boundary": SIDES[sides], "wave": {}, "monitor": [], "motion.held": []}
-        return build(bar({**tables, "material.law": "linearpbond", **changes}))
+        return in_order(build(bar({**tables, "material.law": "linearpbond", **changes})))
 
     return make
 

@@ -22,12 +22,12 @@ PACKINGS = {
 
 
 @pytest.fixture
-def scene(bar):
+def scene(bar, in_order):
     """Makes scenes between free-field sides under the law with a history."""
 
     def make(packing: str = "B", **changes: object) -> DiskScene:
         tables = {"packing": PACKINGS[packing], "boundary": FREE_FIELD, "wave": {}, "monitor": [], "motion.held": []}
-        return build(bar({**tables, "material.law": "linearpbond", **changes}))
+        return in_order(build(bar({**tables, "material.law": "linearpbond", **changes})))
 
     return make
 
@@ -291,7 +291,7 @@ def half_cells(bar, **strength: float) -> tuple[ContactList, np.ndarray, np.ndar
     material = {"material.law": "linearpbond", "material.geometry": "reference", **strength}
     tables = {"packing": LATTICE, "boundary": HALF, "wave": {}, "monitor": [], "motion.held": []}
     contacts = build(bar({**tables, **material})).contact_lists()["body"]
-    first, second = (contacts.assembly.positions[end, 0] for end in (contacts.arrays.first, contacts.arrays.second))
+    first, second = (contacts.assembly.positions[end, 0] for end in contacts.pairs)
     return contacts, first == second, (first == second) & (first == 1.75)
 
 

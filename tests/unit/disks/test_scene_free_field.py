@@ -115,17 +115,18 @@ def test_a_lattice_pushes_across_the_seam_as_its_next_column_would(ground) -> No
 def test_the_seam_table_knows_all_supported_nodes(scene: DiskScene) -> None:
     ties = DiskSystem(scene, STEP).ties
     supports = NodeSupports(scene, ties, STEP)
-    nodes, table = supports.nodes, ties[0].bundle(supports.nodes)
+    nodes, table, slot = supports.nodes, ties[0].bundle(supports.nodes), scene.layout.slot
     many = np.diff(table.start.astype(int))
 
     assert np.array_equal(nodes, np.union1d(scene.supports.node, scene.seam.node))
     assert np.array_equal(nodes[many > 0], scene.seam.node)
     assert np.array_equal(many[many > 0], scene.seam.contact_counts)
-    assert np.array_equal(table.twin[many > 0], scene.seam.twin[scene.seam.node])
-    assert np.array_equal(supports.twin, np.where(nodes < scene.seam.count, -1, scene.seam.twin[nodes]))
+    assert np.array_equal(table.twin[many > 0], slot[scene.seam.twin[scene.seam.node]])
+    assert np.array_equal(supports.slots, slot[nodes])
+    assert np.array_equal(supports.twin, np.where(nodes < scene.seam.count, -1, slot[scene.seam.twin[nodes]]))
     assert not many[nodes < scene.seam.count].any()
     # nodes are stepped in their order, and a twin comes before who follows it
-    assert np.all(supports.twin < nodes)
+    assert np.all(scene.seam.twin[nodes] <= nodes)
 
 
 def test_along_half_cells_the_seam_is_of_half_contacts(ground) -> None:
@@ -249,8 +250,10 @@ def test_a_column_alone_is_that_beside_the_body_particle_by_particle(beside: tup
     assert not column.monitors
 
 
-def test_a_column_alone_has_the_contacts_of_that_beside_the_body(beside: tuple[DiskScene, DiskScene]) -> None:
-    scene, column = beside
+def test_a_column_alone_has_the_contacts_of_that_beside_the_body(
+    beside: tuple[DiskScene, DiskScene], in_order
+) -> None:
+    scene, column = map(in_order, beside)
     count = scene.seam.count
     inside = scene.assembly.pairs.max(axis=1) < count
     beside, (alone,) = scene.rows[0], column.rows

@@ -413,8 +413,8 @@ def test_what_a_stage_lacks_is_what_its_contacts_and_loads_come_to(bar) -> None:
     body = scene(bar, **{**STANDING, **tough, "static": static})
     with pytest.raises(StalledError) as caught:
         settle(body)
-    pairs, total = caught.value.run.system.contacts["body"].arrays, body.steady_load.copy()
-    for i, j, (fx, fy, *_) in zip(pairs.first, pairs.second, pairs.force, strict=True):
+    contacts, total = caught.value.run.system.contacts["body"], body.steady_load.copy()
+    for i, j, (fx, fy, *_) in zip(*contacts.pairs, contacts.arrays.force, strict=True):
         total[:2, i] += [fx, fy]
         total[:2, j] -= [fx, fy]
     total[:, body.edges["bottom"].nodes] = 0.0

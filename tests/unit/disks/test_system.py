@@ -227,7 +227,7 @@ def test_where_one_part_leaves_the_elastic_law_all_change_to_the_other(scene, bo
     body = scene(**TOUGH, boundary=boundary)
     system = DiskSystem(body, STEP)
     state = begun(system)
-    state.displacement[:], state.velocity[:], state.step = shaken(body, 1e-4), shaken(body, 1.0, 4), 7
+    state.displacement, state.velocity, state.step = shaken(body, 1e-4), shaken(body, 1.0, 4), 7
     expected = body.contact_lists()
     for contacts in expected.values():
         contacts.start_from_displacements(state.displacement - STEP * state.velocity)  # the first push adds this step
