@@ -1,4 +1,4 @@
-"""A bar's run in numbers, for scripts."""
+"""The results of a run of a bar as numbers, for scripts."""
 
 from pathlib import Path
 from typing import Any, cast
@@ -12,12 +12,12 @@ from dembound.gauge.estimates import pull_back_strength
 from dembound.motion.trackers import Run
 from dembound.results.reader import open_record
 
-LATER_SPALLS = "spalls after the first do not converge as bar.spacing shrinks: it decides their number and places"
-"""Said where a bar has spalled more than once."""
+LATER_SPALLS = "spalls after the first do not converge as bar.spacing decreases: their number and places depend on it"
+"""Added where a bar has spalled more than once."""
 
 
 def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
-    """What a bar's summary has beside that of every run: plain JSON values, SI units."""
+    """Entries of a bar's summary in addition to those of every run: plain JSON values, SI units."""
     bar = part_of(run)
     found = spalls(bar.bonds, scene.positions[:, 0], run.time_step)
     return {
@@ -35,7 +35,7 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
 
 
 def part_of(run: Run) -> BarPart:
-    """The one part of a bar's run."""
+    """The only part of a bar's run."""
     (bar,) = run.system.parts
     return cast(BarPart, bar)
 
@@ -75,9 +75,9 @@ def _largest_stresses(record: Path) -> dict[str, dict[str, float]]:
 
 
 def _pull_backs(scene: BarScene, record: Path) -> dict[str, float]:
-    """Pull-back strength (Pa) from the velocity of every monitor at a free end, where it falls and rises again.
+    """Pull-back strength (Pa) of every monitor at a free end whose velocity falls and rises again.
 
-    An end under load moves as that has it.
+    A loaded end is left out, as the load determines its motion.
     """
     loaded = {load.side for load in scene.case.load}
     free = [side for side in scene.edges if describe_end(scene, side)["type"] == "free" and side not in loaded]

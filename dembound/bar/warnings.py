@@ -1,4 +1,4 @@
-"""What a run of a bar will do that was probably not meant, as far as it is known before."""
+"""Warnings about probable mistakes in the case of a bar, before and after the run."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -17,10 +17,10 @@ from dembound.results.reader import open_record
 from dembound.results.warnings import still_moving
 
 NOTHING = 0.05
-"""Share of the strength that a tension must reach: what rings behind a pulse comes to some per cent of it."""
+"""Share of the strength that the largest tension must reach; oscillations behind a pulse reach some per cent of it."""
 
 MOMENTS = 500
-"""Moments, and places beside the free end, at which tension is looked for."""
+"""Number of times, and of places near the free end, at which tension is computed."""
 
 
 def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
@@ -29,14 +29,14 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
     times = list(time_warnings(case, time_step, case.bar.length / case.bar.speed))
     return [
         *_too_few_cells(scene, time_step),
-        *(times or ends_too_soon(case)),  # waves of odd times may spoil the latter
+        *(times or ends_too_soon(case)),  # with doubtful times of waves the second check means nothing
         *_dashpots_at_soft_ends(case),
         *stress_beside_strength(case),
     ]
 
 
 def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:
-    """Waves too short for the nodes."""
+    """Waves that are too short for the spacing of the nodes."""
     finer = "" if carrying_lattice(scene, time_step).horizon == 1 else " or method.horizon"
     for name, (cells, needed) in cells_of_waves(scene, time_step).items():
         if cells < needed:
@@ -47,17 +47,17 @@ def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:
 
 
 def _dashpots_at_soft_ends(case: BarCase) -> Iterator[str]:
-    """Dashpots at ends too soft for them."""
+    """Dashpots at the soft ends of plain peridynamics."""
     for side, table in case.boundary.items():
         if case.method.soft_ends and table.factors:
             yield (
-                f"boundary.{side}: stands at a soft end of peridynamics and returns a part of every wave; "
+                f"boundary.{side}: is at a soft end of peridynamics and reflects a part of every wave; "
                 "give method.corrected_ends = true"
             )
 
 
 def stress_beside_strength(case: BarCase) -> Iterator[str]:
-    """Loads and waves whose stress is a tiny part of the strength, or far beyond it."""
+    """Loads and waves whose stress is a very small part, or a large multiple, of the strength."""
     bar = case.bar
     strength = bar.breaking_stretch * bar.modulus
     if np.isinf(strength):
@@ -98,11 +98,11 @@ def ends_too_soon(case: BarCase) -> Iterator[str]:
 
 
 def _crest_and_break(case: BarCase) -> tuple[float | None, float | None]:
-    """When the crest of the pressure is at the loaded end, and when the bar breaks beside the other, less L/c; s.
+    """Times of the pressure's crest at the loaded end and of the break near the other end, less L/c; s.
 
-    Beside a free end pressures p(t) on the other make the tension p(s − y/c) − p(s + y/c) at a distance y, s the time
-    since the front has come there. Each is None where it does not happen: no pressure, too little of it, or so much
-    tension at first that the bar breaks on the way there.
+    A pressure p(t) on the loaded end gives the tension p(s − y/c) − p(s + y/c) at the distance y from the free end,
+    with s the time since the front arrived there. A time is None where the event does not occur: no pressure, too small
+    a pressure, or an initial tension so large that the bar breaks before the front arrives.
     """
     bar = case.bar
     strength = bar.breaking_stretch * bar.modulus
@@ -119,12 +119,12 @@ def _crest_and_break(case: BarCase) -> tuple[float | None, float | None]:
 
 
 def _waves_of(case: BarCase) -> list[str]:
-    """Names of the waves at the one end that is loaded or driven."""
+    """Names of the waves at the loaded or driven end."""
     return [load.wave for load in case.load] + [waves["p"] for waves in case.driving.values()]
 
 
 def _pressure(case: BarCase, time: np.ndarray) -> np.ndarray:
-    """Pressure (Pa), of the shape of times (s), of the wave that sets out from the loaded end."""
+    """Pressure (Pa), of the shape of times (s), of the wave that starts at the loaded end."""
     table = case.side(case.loaded)
     share = 1.0 / (1.0 + table.factors.get("p", 0.0))  # the dashpot takes the rest
     pressure = np.zeros_like(time)
@@ -137,7 +137,7 @@ def _pressure(case: BarCase, time: np.ndarray) -> np.ndarray:
 
 
 def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path) -> list[str]:
-    """What a run of a bar has shown that was probably not meant, one line each, from its summary and record."""
+    """Warnings from the summary and record of a run of a bar, one line each."""
     cuts = np.array([spall["end"] for spall in summary["spalls"]]).reshape(-1, 2).mean(axis=1)
     pieces = np.searchsorted(np.sort(cuts), scene.positions[:, 0])
     with open_record(record) as file:
@@ -149,7 +149,7 @@ def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path
 
 
 def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:
-    """A first spall where a load acts, before any wave can be back there."""
+    """A first spall at the load, before a reflected wave can have returned there."""
     if not summary["spalls"]:
         return
     first, bar, horizon = summary["spalls"][0], case.bar, case.method.largest_horizon
@@ -161,14 +161,14 @@ def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str
             cure = f"give load.{load.name}.nodes = {horizon}" if load.nodes < horizon else "take a smaller bar.spacing"
             yield (
                 f"load.{load.name}: the load itself tore the bar, at {first['time']:.4g} s and {distance:g} m from the "
-                f"loaded end, before any wave was back there; {cure}"
+                f"loaded end, before any reflected wave had returned there; {cure}"
             )
 
 
 def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
-    """A bar with a strength that no recorded tension comes near.
+    """A breakable bar whose recorded tension is far below its strength.
 
-    Silent where a warning before the run has said so.
+    No warning where one before the run has already reported it.
     """
     strength = case.bar.breaking_stretch * case.bar.modulus
     foreseen = [*stress_beside_strength(case), *ends_too_soon(case)]
