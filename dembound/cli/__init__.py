@@ -1,6 +1,6 @@
-"""The command line. Only this package prints and exits; what it does lives elsewhere."""
+"""The command line. Only this package prints and exits; the commands call functions of other packages."""
 
-from dembound.cli import (  # each names its commands to the application
+from dembound.cli import (  # each registers its commands with the application
     calibration,
     cases,
     dispersion,
