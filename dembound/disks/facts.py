@@ -1,4 +1,4 @@
-"""What a case of disks would come to, in words."""
+"""Facts about a case of disks, in words."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from dembound.disks.summary import describe_packing, describe_side
 from dembound.disks.warnings import particles_per_wavelength, strong_waves
 
 FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
-"""Keys of the factors of a side, and how they are written."""
+"""Keys of the factors of a side, and their symbols."""
 
 
 def disk_facts(scene: DiskScene) -> dict[str, str]:
@@ -41,18 +41,18 @@ def _monitor_facts(scene: DiskScene) -> dict[str, str]:
 
 
 def _tension_facts(scene: DiskScene) -> dict[str, str]:
-    """Waves that would open contacts, where the elastic law then hands over."""
+    """Waves that would open contacts, for a run in which the law then changes."""
     if not (scene.has_history and scene.case.material.elastic_start):
         return {}
     law = scene.case.material.law
     return {
-        f"stress of {name}": f"ρcv = {stress}; where it pulls contacts open, and {law} takes over"
+        f"stress of {name}": f"ρcv = {stress}; in tension contacts open, and the law changes to {law}"
         for name, stress in strong_waves(scene).items()
     }
 
 
 def _particles(scene: DiskScene) -> str:
-    """How many there are, and were."""
+    """Number of particles, also before an excavation."""
     loose = scene.assembly.loose
     before = f", {scene.before.count:,} before the excavation" if scene.before is not None else ""
     severed = f"; {loose:,} severed {'disk' if loose == 1 else 'disks'} left out" if loose else ""
@@ -60,8 +60,8 @@ def _particles(scene: DiskScene) -> str:
 
 
 def _hole_facts(case: DiskCase) -> dict[str, str]:
-    """Shape of every hole, and when it is made."""
-    stages = {"before": "there from the start", "after": "excavated once the body has settled"}
+    """Shape of every hole, and the stage in which it is made."""
+    stages = {"before": "present from the start", "after": "excavated once the body has settled"}
     return {f"hole {hole.name}": f"{hole.type}, {stages[hole.stage]}" for hole in case.hole}
 
 
@@ -84,7 +84,7 @@ def _packing_facts(scene: DiskScene) -> dict[str, str]:
 
 
 def _law_facts(scene: DiskScene) -> dict[str, str]:
-    """The law, and where contacts and bonds give way."""
+    """The law, and the limits of contacts and bonds."""
     material = scene.case.material
     if not scene.has_history:
         return {"law": f"{material.law}: contacts neither open nor slip, bonds do not break"}
@@ -103,8 +103,8 @@ def _law_facts(scene: DiskScene) -> dict[str, str]:
     }
     if scene.ground.moduli.emod > 0.0:
         facts["tension"] = (
-            f"meets {100.0 * scene.ground.bond_share:.0f} % of the stiffness where nothing presses contacts together: "
-            "they open and leave it to the bonds; confine them (static.stress) or lower material.contact_share"
+            f"has {100.0 * scene.ground.bond_share:.0f} % of the stiffness where nothing presses contacts together: "
+            "they open and only the bonds resist; confine them (static.stress) or lower material.contact_share"
         )
     if material.locked_in is not None:
         shares = [
@@ -117,7 +117,7 @@ def _law_facts(scene: DiskScene) -> dict[str, str]:
 
 
 def _static_facts(case: DiskCase) -> dict[str, str]:
-    """What acts during the static stage, and what holds."""
+    """Loads and supports of the static stage."""
     static = case.static
     if static is None:
         return {}
@@ -158,7 +158,7 @@ IN_WORDS = {
     *("type", "particles", "length", "diameter_min", "diameter_mean", "diameter_max", "diameter_sum_ratio"),
     *("beta_p", "beta_s", "half_mass", "alpha_n", "alpha_s", "shear_modulus", "distance_min", "distance_max"),
 }
-"""Numbers of a side that have words of their own."""
+"""Keys of a side that are printed in another way."""
 
 
 def _others(side: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""What the history-dependent law reads of a contact: its line of the palette, and where it gives way."""
+"""Contact data for the history-dependent law: lines of the palette, and the limits of contacts and bonds."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from dembound.kernels.tables import Limits
 
 
 def limits_of(material: Material) -> Limits:
-    """Where contacts and bonds of a material give way; those of a law without history never do."""
+    """Strengths and friction of a material; without limits for a law without history."""
     unbreakable = not LAWS[material.law].has_history
     return Limits(
         friction=float(material.fric),
@@ -24,7 +24,7 @@ def limits_of(material: Material) -> Limits:
 def brick_lines(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
     """Palette lines (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
 
-    The words are those of `pair_lines`.
+    Arguments as for `pair_lines`.
     """
     brick = ground.brick
     first, second = brick.radii[brick.pairs].T
@@ -39,14 +39,14 @@ def brick_lines(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -
     )
     half = lines.copy()
     half[:, 5:10] *= 0.5  # stiffnesses
-    half[:, 10:] *= 2.0  # and areas and sections with them, so that stresses stay
+    half[:, 10:] *= 2.0  # and areas and section moduli too, so that stresses do not change
     return np.vstack([lines, half])
 
 
 def shared_lines(lines: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
-    """Palette lines (p, 12) of pairs without those that are equal but for rounding, and each pair's line (b,).
+    """Palette lines (p, 12) of pairs, equal ones (to rounding) only once, and the line of each pair (b,).
 
-    Pairs at the same place of different bricks then share a line; length (m) is what rounding is small against.
+    Pairs at the same place of different bricks then share a line; length (m) is the scale for rounding errors.
     """
     places = np.round(lines[:, :5] / (1e-6 * length))
     _, first, line_of = np.unique(places, axis=0, return_index=True, return_inverse=True)

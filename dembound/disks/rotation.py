@@ -1,4 +1,4 @@
-"""The rotation of a body as a whole, which the law of small displacements follows along its tangent only."""
+"""The rigid rotation of a body, for which the law of small displacements is only a linear approximation."""
 
 from __future__ import annotations
 
@@ -8,18 +8,17 @@ from dembound.disks.body import DiskBody
 
 
 def turns_freely(scene: DiskBody) -> bool:
-    """Whether nothing but dashpots keeps a body from turning as a whole."""
+    """Whether only dashpots resist the rigid rotation of a body."""
     held = scene.supports.prescribed.any() or scene.supports.stiffness.any()
     periodic = any(table.type == "periodic" for table in scene.case.boundary.values())
     return bool(scene.free.all()) and scene.seam is None and not held and not periodic
 
 
 def turn_as_a_whole(scene: DiskBody, displacement: np.ndarray, velocity: np.ndarray, datum: np.ndarray) -> None:
-    """Take displacements and velocities (3, n) of small rotations for those of a body that has really turned.
+    """Convert displacements and velocities (3, n) of linearised rotation into those of a body rotated exactly.
 
-    The law of small displacements moves a body that turns by θ from r to r + θ ẑ × r + w, which is longer by ½θ². Its
-    motion is that of a body which has turned, r to R(θ)(r + w), seen along with it. datum : (3, n) displacements at the
-    start.
+    Under the law of small displacements a body that rotates by θ moves from r to r + θ ẑ × r + w, which stretches it by
+    ½θ². The corresponding exact motion is that from r to R(θ)(r + w). datum : (3, n) displacements at the start.
     """
     mass = scene.mass
     arm = scene.assembly.positions.T + datum[:2]

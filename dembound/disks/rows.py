@@ -1,4 +1,4 @@
-"""The contacts of the elastic law as its kernel reads them: a row per particle, over a palette of the brick's own."""
+"""The contacts of the elastic law for its kernel: a row per particle, with constants in a palette of the brick."""
 
 import numpy as np
 
@@ -8,12 +8,12 @@ from dembound.packings.tiling import Assembly
 
 
 def contact_rows(assembly: Assembly, ground: PackedMaterial, begin: int = 0) -> NeighbourTable:
-    """Sort the contacts into one row per particle, over a palette of the brick's contact constants.
+    """Sort the contacts into one row per particle, with a palette of the brick's contact constants.
 
     begin : number of the assembly's first particle in the scene.
 
-    The palette's lines are put in the order the rows use them, so that walking along the particles also walks
-    along the palette, which one core's cache then serves.
+    The palette's lines are in the order in which the rows use them. A loop over particles then reads the palette in
+    order as well, so that it stays in the cache of the core.
     """
     palette, line_of = palette_of(ground)
     i, j = assembly.pairs.T
@@ -29,9 +29,9 @@ def contact_rows(assembly: Assembly, ground: PackedMaterial, begin: int = 0) -> 
 
 
 def palette_of(ground: PackedMaterial) -> tuple[np.ndarray, np.ndarray]:
-    """Palette lines (4b, 6), and the line of contact k seen from its first (2k) and second disk (2k + 1).
+    """Palette lines (4b, 6), and the line of contact k for its first (2k) and second disk (2k + 1).
 
-    Contacts from b on are the brick's with half their stiffness, for sides of half cells.
+    Contacts from number b on are those of the brick with half their stiffness, for sides of half cells.
     """
     brick, law = ground.brick, ground.stiffness
     vectors = brick.vectors

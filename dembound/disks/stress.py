@@ -11,7 +11,7 @@ from dembound.kernels.contacts import REFERENCE, push
 from dembound.kernels.tables import Contacts, Limits
 
 UNYIELDING = Limits(friction=0.0, tension=np.inf, cohesion=np.inf, tan_fa=0.0, geometry=REFERENCE)
-"""Under the elastic law nothing gives way."""
+"""Under the elastic law there are no strength and friction limits."""
 
 PIECE = 2**18
 """Pairs evaluated at once: large scenes then take little memory beside their own."""
