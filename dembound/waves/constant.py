@@ -11,7 +11,7 @@ from dembound.waves.wave import Shape
 
 
 class Constant(Shape):
-    """v = M from `rise` seconds after the start on; on the way there v = M[s − sin(2πs)/2π], s = t/rise.
+    """v = M from `rise` seconds after the start on; during the rise v = M[s − sin(2πs)/2π], s = t/rise.
 
     The ramp's acceleration is one Hann lobe, so velocity and acceleration are continuous. rise = 0 is a step.
     """
