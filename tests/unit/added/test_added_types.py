@@ -105,4 +105,4 @@ def test_what_cannot_be_used_is_said_and_left_out(found) -> None:
 
 def test_a_side_whose_wave_comes_too_late_is_not_calibrated(found) -> None:
     assert found["late"].startswith("calibration of left: the pulse is not past its peak after ")
-    assert found["late"].endswith('"late_input" lets its waves in late or not at all')
+    assert found["late"].endswith('"late_input" transmits its waves late or not at all')

@@ -41,7 +41,7 @@ def test_differences_are_those_of_the_liveliest_component(tmp_path):
 
 def test_runs_without_a_common_monitor_are_refused(tmp_path):
     paths = [record(tmp_path / f"{name}.h5", name, {name: (TIME, TIME, TIME)}) for name in "ab"]
-    with pytest.raises(CaseError, match="shares no monitor"):
+    with pytest.raises(CaseError, match="has no monitor in common"):
         compare(paths[0], paths[1:], "velocity")
 
 
