@@ -34,5 +34,5 @@ def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
 
 
 def _range(ends: Sequence[float]) -> str:
-    """Ends of a range as "0.906–0.909", a single place as it is."""
+    """Ends of a range as "0.906–0.909", or a single position."""
     return "–".join(f"{end:.4g}" for end in sorted(set(ends)))

@@ -160,8 +160,8 @@ def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str
         if distance < near and first["time"] < start + 2.0 * bar.length / bar.speed:
             cure = f"give load.{load.name}.nodes = {horizon}" if load.nodes < horizon else "take a smaller bar.spacing"
             yield (
-                f"load.{load.name}: the load itself tore the bar, at {first['time']:.4g} s and {distance:g} m from the "
-                f"loaded end, before any reflected wave had returned there; {cure}"
+                f"load.{load.name}: the load itself broke the bar, at {first['time']:.4g} s and {distance:g} m from "
+                f"the loaded end, before any reflected wave had returned there; {cure}"
             )
 
 

@@ -16,7 +16,7 @@ Every disk is a vertex at its reference position moved by its displacement (z = 
 | ``coordNumber`` | 1 | (n,) | its intact bonds and closed contacts, under a history-dependent law (YADE's name) |
 | ``nbCracks`` | 1 | (n,) | its bonds that have broken so far (YADE's name) |
 | ``damage`` | 1 | (n,) | that number over the bonds it had at the start, 0 where it had none |
-| ``stress`` | Pa | (n, 6) | XX, YY, ZZ, XY, YZ, XZ, tension positive, those with Z being 0; if the case asks for it |
+| ``stress`` | Pa | (n, 6) | XX, YY, ZZ, XY, YZ, XZ, tension positive, with Z 0; if the case asks for it |
 | ``peakVelocity`` | m/s | (n,) | largest speed in the whole run, in every file; if the case asks for it |
 
 To see disks in ParaView, run ``paraview --script=view.py`` in the folder, or open ``particles.pvd``, press

@@ -145,7 +145,7 @@ def read_course(run: Path, fields: Sequence[str], snapshot: int | None = None) -
 
 
 def _along(dataset: h5py.Dataset) -> np.ndarray:
-    """A field along the bar, (n,): a stress or damage as it is, of a motion (n, 3) the part along x."""
+    """A field along the bar, (n,): stress or damage unchanged, of a motion (n, 3) the component along x."""
     return dataset[:] if dataset.ndim == 1 else dataset[:, 0]
 
 

@@ -25,7 +25,7 @@ MOST_PLACES = 2
 """Largest number of positions of a monitor in several runs that are listed; more are only counted."""
 
 BESIDE_TWINS: tuple[Any, ...] = ("-", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
-"""Lines of runs beside free-field twins, whose own are dashed."""
+"""Line style of monitors in runs with free-field twins, whose lines are dashed."""
 
 
 @styled
@@ -52,7 +52,7 @@ def plot_histories(
     monitors
         names of those to show, in this order; by default all. A twin that is given by its name has a separate panel.
 
-    Raises CaseError when a file cannot be read or holds no stress that is asked for, no run has a monitor, none has
+    Raises CaseError when a file cannot be read or has no stress where it is asked for, no run has a monitor, none has
     one of those asked for, or a component of a stress is asked for.
     """
     if quantity == "stress" and component is not None:

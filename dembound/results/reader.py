@@ -93,9 +93,9 @@ def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
     """The energy ledger of an open record: its columns (k,) by name, time in s and energies in J per metre (a bar: J).
 
     One more column, relative_error, is the error over the supplied energy: the kinetic energy at the start plus the
-    largest energies that boundaries and steady loads have each supplied up to any time. The work of the forces that
-    balance a settled stress and the energy absorbed by boundaries are not included, as both also grow in an unstable
-    run.
+    largest energies that boundaries with driven loads, and steady loads, have each supplied up to any time. The work of
+    the forces that balance a settled stress and the energy absorbed by boundaries are not included, as both also grow
+    in an unstable run.
 
     Raises CaseError when there is no entry.
     """

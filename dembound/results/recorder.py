@@ -13,14 +13,14 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
     boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2)
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
                             under a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
-                            and local damage (n,); of a static stage that stalled unbalanced (n, 2), what the forces on
-                            each particle come to; attribute time
+                            and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
+                            on each particle; attribute time
     energy/                 time and the columns of `motion.energy.Entry`, (k,) each
     cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
                             displacements, positions count from the start of the run
     laws/                   name (l,) of each law or method used and time (l,) it began at
-    static/                 attributes: what the static stage came to, if there was one; displacement (n, 3) at its end
-    static/before/          the same before an excavation, of the particles that are left by it
+    static/ attributes: results of the static stage, if there was one; displacement (n, 3) at its end static/before/ the
+    same before an excavation, of the particles that are left by it
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ SMALLEST, LARGEST = 1e-30, 1e30
 class Bar(Table):
     """Length, section and material of a bar, and the spacing of its nodes.
 
-    Nodes stand at x = 0, Δx, … L; the two at the ends have half a volume. The section is given by its area or by the
+    Nodes are at x = 0, Δx, … L; the two at the ends have half a volume. The section is given by its area or by the
     diameter of a round bar, the stiffness by wave speed c = √(E/ρ) or Young's modulus E, the strength by the stress or
     the stretch at which a bond breaks, s₀ = σ_t/E. Without a strength nothing breaks.
     """

@@ -27,7 +27,7 @@ class Material(Table):
     match: Literal["lattice", "assembly"] = quantity(
         "lattice",
         unit="1",
-        help="what shall have that speed: the square lattice of Z eq. 11, or the packing itself along x",
+        help="medium with that speed: the square lattice of Z eq. 11, or the packing itself along x",
     )
     contact_share: float = quantity(
         0.5,
