@@ -132,7 +132,7 @@ def test_tension_meets_the_bonds_share_of_the_stiffness(bar, material: dict, sha
     if share is None:
         assert "tension" not in facts
     else:
-        assert facts["tension"].startswith(f"meets {share} % of the stiffness where")
+        assert facts["tension"].startswith(f"has {share} % of the stiffness where")
 
 
 PACKED = {

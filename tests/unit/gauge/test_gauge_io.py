@@ -203,5 +203,5 @@ def test_a_bar_that_is_not_loaded_at_one_end_is_refused(record, loaded, said):
         with pytest.raises(CaseError) as caught:
             read(record, "far")
         assert caught.value.problems == [
-            f"{record}: is of a bar loaded at {said}, must be loaded at the left or the right"
+            f"{record}: has a bar loaded at {said}, must be loaded at the left or the right"
         ]
