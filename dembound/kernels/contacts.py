@@ -22,10 +22,10 @@ NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
 """States of a pair: without bond, bonded, bond broken in tension, bond broken in shear."""
 
 UPDATED, BONDED, REFERENCE = 0, 1, 2
-"""Geometries: updated, reference, and that of the elastic law.
+"""Geometries of normals and arms.
 
-Normals and arms follow the motion; those of intact bonds keep their initial values; all keep them, and contacts that
-are closed at the start neither open nor slide.
+UPDATED: they follow the motion. BONDED, for ``geometry = "reference"``: those of intact bonds keep their initial
+values. REFERENCE: all keep them, and contacts that are closed at the start neither open nor slide.
 """
 
 CLOSING = 1.05

@@ -332,7 +332,7 @@ def test_differences_are_told_with_what_they_are_parts_of(dembound, written, mon
         ["two", "middle", "x"],
         ["other", "middle", "x"],
     ]
-    assert answer.out.splitlines()[-1] == "middle stands at (6.00, 0.50) m in other, at (5.00, 0.50) m in the reference"
+    assert answer.out.splitlines()[-1] == "middle is at (6.00, 0.50) m in other, at (5.00, 0.50) m in the reference"
     assert "in two, at" not in answer.out
 
 
@@ -585,8 +585,8 @@ def test_what_bars_and_disks_do_not_have_is_bad_input(dembound, spalled_run, sma
         (["plot", small_run, "--field", "damage"], "field: is damage, must be one of velocity, "),
         (["plot", small_run, "--field", "velocity", "--table", "a.csv"], "--table: is of lines, a field has none"),
         (["plot", small_run, "--field", "velocity", "--component", "x"], "--component: is not allowed together with"),
-        (["plot", small_run, "--quantity", "stress"], "holds no stress of its monitors"),
-        (["compare", small_run, small_run, "--quantity", "stress"], "holds no stress of its monitors"),
+        (["plot", small_run, "--quantity", "stress"], "has no stress of its monitors"),
+        (["compare", small_run, small_run, "--quantity", "stress"], "has no stress of its monitors"),
         (["view", spalled_run], "is a bar, view shows disks"),
         (["view", small_run, "--field", "stress"], "--field"),
     ):
