@@ -41,7 +41,7 @@ LAWS = {
 
 def ends(scene: DiskScene) -> int:
     """Contact ends of a scene's elastic law."""
-    return sum(len(rows.kind) for rows in scene.rows)
+    return sum(len(rows.contact_type) for rows in scene.rows)
 
 
 def listed(simulation: Simulation) -> int:
@@ -50,12 +50,13 @@ def listed(simulation: Simulation) -> int:
 
 
 def bytes_per_step(simulation: Simulation) -> float:
-    """Least memory traffic of one step in bytes: every array once, palette excluded (it stays in cache).
+    """Least memory traffic of one step in bytes: every array once, without the constants, which stay in cache.
 
     Per particle: u read (24), its successor written and fetched for writing (48), v read and written (48), Δt/m and
-    Δt/I (16), start of row (4); per contact end: neighbour and palette line (8). With a history each pair is read first
-    (particles and line 12, state 1, slip 8), its shear read and written (16), its force written, fetched for writing
-    and read again (96), its two ends named (8), and u, v and the steady load read once more (72 per particle).
+    Δt/I (16), start of row (4); per contact end: neighbour and contact type (8). With a history each pair is read
+    first (particles and contact type 12, state 1, slip 8), its shear read and written (16), its force written, fetched
+    for writing and read again (96), its two ends named (8), and u, v and the steady load read once more (72 per
+    particle).
     """
     count, pairs = simulation.scene.count, listed(simulation)
     if pairs == 0:

@@ -24,11 +24,8 @@ HEADS = ("m", "Δx (mm)", "phase speed within 1 % from Δx per wavelength", "gro
 def main() -> None:
     """Draw the picture."""
     lattices = [Lattice(m, HORIZON / m, TIME_STEP, WAVE_SPEED) for m in (1, 2, 3, 4)]
-    figure = plot_dispersion(lattices)
-    figure.suptitle(
-        "Lu & Wang (2016), fig. 5c: dispersion on a horizon of 20 mm, cut into 1 to 4 spacings", fontsize=11
-    )
-    save(figure, Path(sys.argv[1]))
+    title = "Lu & Wang (2016), fig. 5c: dispersion on a horizon of 20 mm, cut into 1 to 4 spacings"
+    save(plot_dispersion(lattices), Path(sys.argv[1]), title)
     print(markdown(HEADS, [_row(lattice) for lattice in lattices]))
 
 

@@ -66,7 +66,7 @@ def _draw(panel: Axes, runs: Sequence[Path]) -> None:
         duration = case.wave[case.load[0].wave].duration()
         found = errors(run)
         label = f"{name_of(case)}, Δx = {case.bar.spacing / MILLI:g} mm, t₀ = {duration / MILLI:.2f} ms"
-        label += f": {found[0]:.1%}, {found[-1]:.1%}"
+        label += f": {100.0 * found[0]:.1f} %, {100.0 * found[-1]:.1f} %"
         panel.plot(time / MILLI, stress / MEGA, label=label, **line_style(index))
     pulses = {case_of(run).wave["triangle"].duration(): run for run in runs}
     for label, run in zip(["d'Alembert", *[None] * len(pulses)], pulses.values(), strict=False):

@@ -8,12 +8,14 @@ python3 -c 'import dembound' # ends here, before anything is run, where this is 
 cases=$(cd "$(dirname "$0")" && pwd)
 results=${1:-results/lu2016}
 figures=$results/figures
+figure="Lu & Wang (2016), fig."
 mkdir -p "$figures"
 patch='method={type="patch",horizon=3}'
 
 echo "== Figure 10: wave speed and attenuation from a weak pulse"
 dembound run "$cases/rod_test_weak.toml" --output "$results"
-dembound gauge "$results/rod_test_weak" --peaks 5 --output "$figures/fig10_attenuation.png"
+dembound gauge "$results/rod_test_weak" --peaks 5 --title "$figure 10: a weak pulse at the gauge, its tension peaks" \
+    --output "$figures/fig10_attenuation.png"
 
 echo "== Figure 11: strength from a strong pulse, on a bar that attenuates and one that does not"
 for setting in "0.52 53.0e6" "0.0 25.6e6"; do
@@ -23,7 +25,8 @@ for setting in "0.52 53.0e6" "0.0 25.6e6"; do
         --set run.duration=0.7e-3 --set "bar.attenuation=$attenuation" \
         --set "load=[{name=\"pulse\",pressure=$pressure,wave=\"triangle\"}]" --name "$name" --output "$results"
     dembound gauge "$results/$name" --monitor gauge --spall 0.79 --free-end end --wave-speed 2740 \
-        --attenuation "$attenuation" --output "$figures/fig11_$attenuation.png"
+        --attenuation "$attenuation" --output "$figures/fig11_$attenuation.png" \
+        --title "$figure 11: a strong pulse at the gauge, and with its image near the free end; α = $attenuation 1/m"
 done
 
 echo "== Figure 12, table 2: five methods, spacings and steps of the paper, a quarter and a tenth of them"

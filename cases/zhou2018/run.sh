@@ -28,15 +28,15 @@ done
 dembound plot "$results"/from_{0.5,2.0}_calibration_right_p_ratio --output "$figures/fig06_iteration.png"
 
 echo "== Figures 7, 8: P4 in the passes of that iteration"
-beta_of_pass() { # START PASS, the last pass if there are fewer
+beta_of_pass() { # START PASS, a number or last
     python3 -c "import json, sys
 passes = json.load(open(sys.argv[1]))['beta']
-print(passes[min(int(sys.argv[2]), len(passes)) - 1])" \
+print(passes[-1 if sys.argv[2] == 'last' else int(sys.argv[2]) - 1])" \
         "$results/from_${1}_calibration_right_p_ratio/summary.json" "$2"
 }
 for start in 0.5 2.0; do
     runs=()
-    for pass in 1 2 3 5 11; do
+    for pass in 1 2 3 5 last; do
         name=start_${start}_pass_$pass
         dembound run "$b" --set boundary.right.beta_p="$(beta_of_pass $start $pass)" --set output.snapshots=1 \
             --name "$name" --output "$results"

@@ -179,7 +179,8 @@ def _largest_eigenvalue(stiffness: csr_array, scale: np.ndarray) -> float:
 def write_record(path: Path, name: str, histories: dict[str, History]) -> None:
     """Write histories as the record of a run of that name; nodes do not rotate and are no particles."""
     with replacing(path) as part, h5py.File(part, "w") as file:
-        file.attrs.update({"name": name, "case": "", "version": __version__, "complete": True})
+        size = 2.0 * CENTRE, SURFACE
+        file.attrs.update({"name": name, "case": "", "version": __version__, "size": size, "complete": True})
         for monitor, history in histories.items():
             group = file.create_group(f"histories/{monitor}")
             group.attrs.update({"particle": -1, "position": history.position, "wanted": history.position, "unit": "m"})

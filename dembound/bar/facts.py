@@ -5,9 +5,10 @@ import numpy as np
 from dembound.bar.lattice import carrying_lattice
 from dembound.bar.scene import BarScene
 from dembound.bar.summary import describe_bar, describe_end
+from dembound.boundaries.words import side_in_words
 from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import Bar
-from dembound.casefile.magnitudes import waves_used
+from dembound.casefile.magnitudes import stress_in_words, waves_used
 from dembound.exact.dispersion import cells_per_wavelength
 
 ERROR = 0.01
@@ -32,11 +33,11 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
     if case.bar.attenuation > 0.0:
         facts["attenuation"] = f"α = {case.bar.attenuation:g} 1/m"
     for side in scene.edges:
-        facts[f"{side} end"] = str(describe_end(scene, side)["type"])
+        facts[f"{side} end"] = side_in_words(describe_end(scene, side))
     for load in case.load:
         largest = abs(load.pressure) * case.wave[load.wave].peak()
         facts[f"load {load.name}"] = (
-            f"up to {largest / 1e6:.4g} MPa, {_pressure_in_words(load.pressure)} times wave {load.wave}, "
+            f"up to {largest / 1e6:.4g} MPa, {stress_in_words(load.pressure)} times wave {load.wave}, "
             f"on {load.nodes} node(s) at the {load.side} end"
         )
     for name, node in scene.monitors.items():
@@ -52,14 +53,6 @@ def method_in_words(case: BarCase) -> str:
     """The method and its keys."""
     keys = case.method.model_dump(exclude={"type"})
     return f"{case.method.type}" + "".join(f", {key} = {value}" for key, value in keys.items())
-
-
-def _pressure_in_words(pressure: float) -> str:
-    """A pressure in Pa as text: in MPa, or in Pa where it is small.
-
-    It is small, such as 1 Pa, for a load whose wave contains the pressures.
-    """
-    return f"{pressure / 1e6:.4g} MPa" if abs(pressure) >= 1e4 else f"{pressure:.4g} Pa"
 
 
 def _strength_in_words(bar: Bar) -> str:

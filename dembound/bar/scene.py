@@ -31,12 +31,23 @@ def build_bar(case: BarCase) -> BarScene:
     rod = Rod(bar.cells + 1, bar.length / bar.cells, bar.area, bar.modulus, bar.breaking_stretch)
     positions = np.zeros((rod.count, 2))
     positions[:, 0] = np.arange(rod.count) * rod.spacing
-    edges = {
-        side: Edge(side, np.array([node]), positions[[node]], np.array([bar.area]), bar.area)
-        for side, node in (("left", 0), ("right", rod.count - 1))
-    }
+    edges = {side: _edge(case, side) for side in ("left", "right")}
     monitors = {monitor.name: round(monitor.position / rod.spacing) for monitor in case.monitor}
     return BarScene(case, rod, positions, edges, _supports(case, rod, edges), monitors)
+
+
+def end_supports(case: BarCase, side: str) -> Supports:
+    """Support table of the boundary of one end, without loads and attenuation; empty for a free end."""
+    builder = SupportBuilder(held=HELD)
+    case.side(side).support(_edge(case, side), bar_medium(case), case.wave, builder)
+    return builder.table()
+
+
+def _edge(case: BarCase, side: str) -> Edge:
+    """An end, which consists of one node."""
+    bar = case.bar
+    node, place = (0, 0.0) if side == "left" else (bar.cells, bar.length)
+    return Edge(side, np.array([node]), np.array([[place, 0.0]]), np.array([bar.area]), bar.area)
 
 
 def bar_medium(case: BarCase) -> BoundaryMedium:

@@ -7,13 +7,17 @@ import numpy as np
 
 from dembound.bar.fracture import spalls
 from dembound.bar.part import BarPart
-from dembound.bar.scene import BarScene
+from dembound.bar.scene import BarScene, bar_medium
 from dembound.gauge.estimates import pull_back_strength
 from dembound.motion.trackers import Run
 from dembound.results.reader import open_record
 
 LATER_SPALLS = "spalls after the first do not converge as bar.spacing decreases: their number and places depend on it"
 """Added where a bar has spalled more than once."""
+
+
+OF_DISKS = {"beta_s", "half_mass"}
+"""Keys of sides that do not apply to bars, which move only along their axis and whose end nodes are half cells."""
 
 
 def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
@@ -59,9 +63,10 @@ def describe_bar(scene: BarScene) -> dict[str, float | None]:
 
 
 def describe_end(scene: BarScene, side: str) -> dict[str, Any]:
-    """One end in numbers: its type, and β of a dashpot."""
+    """One end in numbers: its type, and the numbers of its table that apply to bars."""
     table = scene.case.side(side)
-    return {"type": table.type} | ({"beta_p": table.factors["p"]} if table.factors else {})
+    numbers = table.describe(scene.edges[side], bar_medium(scene.case))
+    return {"type": table.type} | {key: value for key, value in numbers.items() if key not in OF_DISKS}
 
 
 def _largest_stresses(record: Path) -> dict[str, dict[str, float]]:

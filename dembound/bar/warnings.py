@@ -7,20 +7,18 @@ from typing import Any
 import h5py
 import numpy as np
 
+from dembound.bar.entering import MOMENTS, entering_pressure, moments
 from dembound.bar.facts import PERCENT, cells_of_waves
 from dembound.bar.lattice import carrying_lattice
-from dembound.bar.scene import BarScene
+from dembound.bar.scene import BarScene, end_supports
 from dembound.boundaries import OPPOSITE, normal_axis
 from dembound.casefile.bar import BarCase
-from dembound.casefile.magnitudes import grip_stress, stress_warnings, time_warnings
+from dembound.casefile.magnitudes import grip_stress, stress_in_words, stress_warnings, time_warnings
 from dembound.results.reader import open_record
 from dembound.results.warnings import still_moving
 
 NOTHING = 0.05
 """Share of the strength that the largest tension must reach; oscillations behind a pulse reach some per cent of it."""
-
-MOMENTS = 500
-"""Number of times, and of places near the free end, at which tension is computed."""
 
 
 def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
@@ -70,7 +68,8 @@ def stress_beside_strength(case: BarCase) -> Iterator[str]:
         if 0 in case.side(side).prescribed(normal_axis(side)):
             found = grip_stress(wave, bar.density, bar.speed, bar.length, case.run.duration, strength)
         else:
-            found = "its stress ρcv", bar.density * bar.speed * wave.peak()
+            pressure = entering_pressure(case, side, moments(case, side), loads=False)
+            found = "its stress ρcv", float(np.abs(pressure).max())
         stresses[f"wave.{waves['p']}"] = found
     key = "bar.strength" if bar.critical_stretch is None else "bar.critical_stretch"
     yield from stress_warnings(stresses, strength, key)
@@ -102,38 +101,21 @@ def _crest_and_break(case: BarCase) -> tuple[float | None, float | None]:
 
     A pressure p(t) on the loaded end gives the tension p(s − y/c) − p(s + y/c) at the distance y from the free end,
     with s the time since the front arrived there. A time is None where the event does not occur: no pressure, too small
-    a pressure, or an initial tension so large that the bar breaks before the front arrives.
+    a pressure, or an initial tension so large that the bar breaks before the front arrives. Both are None where the
+    loaded end has springs.
     """
-    bar = case.bar
+    bar, side = case.bar, case.loaded
+    if end_supports(case, side).stiffness.any():
+        return None, None
     strength = bar.breaking_stretch * bar.modulus
-    waves = [case.wave[name] for name in _waves_of(case)]
-    last = max(wave.duration() if np.isfinite(wave.duration()) else wave.peak_time() for wave in waves)
-    since = np.linspace(0.0, last, MOMENTS)
-    way = np.linspace(0.0, min(last, bar.length / bar.speed), MOMENTS)
-    pressure = _pressure(case, since)
+    time = moments(case, side)
+    pressure = entering_pressure(case, side, time)
     if not pressure.max() > 0.0 or -pressure.min() >= strength:
         return None, None
-    tension = _pressure(case, since[:, None] - way) - _pressure(case, since[:, None] + way)
-    reached = tension.max(axis=1) >= strength
-    return float(since[pressure.argmax()]), float(since[reached.argmax()]) if reached.any() else None
-
-
-def _waves_of(case: BarCase) -> list[str]:
-    """Names of the waves at the loaded or driven end."""
-    return [load.wave for load in case.load] + [waves["p"] for waves in case.driving.values()]
-
-
-def _pressure(case: BarCase, time: np.ndarray) -> np.ndarray:
-    """Pressure (Pa), of the shape of times (s), of the wave that starts at the loaded end."""
-    table = case.side(case.loaded)
-    share = 1.0 / (1.0 + table.factors.get("p", 0.0))  # the dashpot takes the rest
-    pressure = np.zeros_like(time)
-    for load in case.load:
-        pressure += share * load.pressure * case.wave[load.wave].velocity(time)
-    if "p" in table.waves:
-        inwards = 1.0 if case.loaded == "left" else -1.0
-        pressure += inwards * case.bar.density * case.bar.speed * case.wave[table.waves["p"]].velocity(time)
-    return pressure
+    way = np.linspace(0.0, min(time[-1] - time[0], bar.length / bar.speed), MOMENTS)
+    before, after = (entering_pressure(case, side, time[:, None] + sign * way) for sign in (-1.0, 1.0))
+    reached = (before - after).max(axis=1) >= strength
+    return float(time[pressure.argmax()]), float(time[reached.argmax()]) if reached.any() else None
 
 
 def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path) -> list[str]:
@@ -178,6 +160,6 @@ def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
     tension = max(0.0, *(float(np.max(group["stress"][:])) for group in groups))
     if tension < NOTHING * strength:
         yield (
-            f"bar: the largest tension reached is {tension:.3g} Pa, {100.0 * tension / strength:.2g} % of the "
-            f"strength, {strength:g} Pa; nothing can break"
+            f"bar: the largest tension reached is {stress_in_words(tension)}, {100.0 * tension / strength:.2g} % of "
+            f"the strength, {stress_in_words(strength)}; nothing can break"
         )

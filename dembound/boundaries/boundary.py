@@ -21,8 +21,8 @@ class Boundary(Table):
     is_free : whether no forces act on the side.
     is_periodic : whether the side is connected to the opposite side.
     is_mirror : whether the side is a mirror plane.
-    needs_column : whether the side needs a free-field column, which moves with the waves of the ground. beyond_dashpots
-    : text for reports, naming what `dashpots_alone` leaves out.
+    needs_column : whether the side needs a free-field column, which moves with the waves of the ground.
+    beyond_dashpots : text for reports, naming what `dashpots_alone` leaves out.
     """
 
     for_bars: ClassVar[bool] = False

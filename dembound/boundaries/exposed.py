@@ -15,6 +15,22 @@ cross the whole scene.
 """
 
 
+LEVEL = 1e-6
+"""Largest deviation of the centres of one row from a line, in smallest radii: rounding errors."""
+
+
+def outer_row(positions: np.ndarray, radii: np.ndarray, side: str) -> np.ndarray:
+    """Indices of the particles in the outermost row at `side`, sorted along it; parameters as for `exposed`.
+
+    If the disks of a side form one row, this is the whole side. `exposed` may also return disks at a corner: every
+    second row of a hexagonal packing extends beyond the others.
+    """
+    axis = normal_axis(side)
+    outward = _sign(side) * positions[:, axis]
+    nodes = np.flatnonzero(outward > outward.max() - LEVEL * radii.min())
+    return nodes[np.argsort(positions[nodes, 1 - axis], kind="stable")]
+
+
 def exposed(positions: np.ndarray, radii: np.ndarray, side: str, period: float | None = None) -> np.ndarray:
     """Indices of the particles visible from outside `side`, sorted along it.
 
@@ -22,8 +38,7 @@ def exposed(positions: np.ndarray, radii: np.ndarray, side: str, period: float |
     or top; period (m) is the scene's length along the side when it is periodic there, else None.
     """
     axis = normal_axis(side)
-    sign = 1.0 if side in ("right", "top") else -1.0
-    outward, along = sign * positions[:, axis], positions[:, 1 - axis]
+    outward, along = _sign(side) * positions[:, axis], positions[:, 1 - axis]
     front = outward + radii
     near = np.flatnonzero(front > front.max() - DEPTH * radii.max())
     near = near[np.argsort(-front[near], kind="stable")]
@@ -47,3 +62,8 @@ def exposed(positions: np.ndarray, radii: np.ndarray, side: str, period: float |
         owner[slots[seen]] = i
     nodes = np.unique(owner[owner >= 0])
     return nodes[np.argsort(along[nodes], kind="stable")]
+
+
+def _sign(side: str) -> float:
+    """Direction of a side's outward normal along its axis."""
+    return 1.0 if side in ("right", "top") else -1.0

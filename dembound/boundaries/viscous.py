@@ -38,8 +38,9 @@ class Dashpots(Boundary):
         """Half cells on a side whose particles do not form one row."""
         yield from super().problems(side, tables)
         packing = tables.get("packing")
-        if self.half_mass and packing and not packing.has_regular_edges:
-            yield (f"boundary.{side}.half_mass: needs sides of disks in one row; pattern {packing.pattern} has none")
+        if self.half_mass and packing and side not in packing.regular_sides:
+            has = f"has such {' and '.join(packing.regular_sides)}" if packing.regular_sides else "has none"
+            yield f"boundary.{side}.half_mass: needs a side of disks in one row; pattern {packing.pattern} {has}"
 
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
         """The factors, and whether masses are halved."""

@@ -108,16 +108,24 @@ def grip_stress(
     return ("its stress ρcv", sudden) if sudden >= even else ("its stress ρc²u/L", even)
 
 
+def stress_in_words(stress: float) -> str:
+    """A stress in Pa as text: in MPa, or in Pa where it is small.
+
+    It is small, such as 1 Pa, for a load whose wave contains the pressures.
+    """
+    return f"{stress / 1e6:.4g} MPa" if abs(stress) >= 1e4 else f"{stress:.4g} Pa"
+
+
 def stress_warnings(stresses: Mapping[str, tuple[str, float]], strength: float, key: str) -> Iterator[str]:
     """Stresses many times the strength, or the largest of all where it is a tiny part of the strength.
 
     stresses : table -> description of the stress, and its value in Pa. strength : Pa. key : that of the strength.
     """
-    against = f"{key}, {strength:g} Pa: Pa and MPa?"
+    against = f"{key}, {stress_in_words(strength)}: Pa and MPa?"
     for place, (what, stress) in stresses.items():
         if stress > STRONG * strength:
-            yield f"{place}: {what} is {stress:g} Pa, {stress / strength:,.0f} times {against}"
+            yield f"{place}: {what} is {stress_in_words(stress)}, {stress / strength:,.0f} times {against}"
     if stresses:
         place, (what, stress) = max(stresses.items(), key=lambda item: item[1][1])
         if stress < WEAK * strength:
-            yield f"{place}: {what} is {stress:g} Pa, {100.0 * stress / strength:.2g} % of {against}"
+            yield f"{place}: {what} is {stress_in_words(stress)}, {100.0 * stress / strength:.2g} % of {against}"

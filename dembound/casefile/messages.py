@@ -127,6 +127,11 @@ def show(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
+def corners(width: float, height: float) -> str:
+    """Two corners of a scene (m) as text, without the rounding errors of whole bricks: ``[0, 0] to [10, 5] (m)``."""
+    return f"[0, 0] to [{width:.10g}, {height:.10g}] (m)"
+
+
 def allowed(schema: Mapping[str, Any]) -> str:
     """The values a JSON schema allows, in words: ``a number greater than 0 (s)``."""
     unit = schema.get("unit", "1")

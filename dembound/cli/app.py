@@ -63,6 +63,7 @@ def png(param: typer.CallbackParam, path: Path | None) -> Path | None:
 
 
 PICTURE = typer.Option("--output", "-o", help="Picture to write (PNG).", callback=png)
+PictureTitle = Annotated[str | None, typer.Option("--title", help="Title of the picture; by default its content.")]
 
 Cases = Annotated[list[Path], typer.Argument(metavar="CASE...", help="Case files (TOML).")]
 Output = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")]

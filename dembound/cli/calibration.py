@@ -9,9 +9,9 @@ from typing import Annotated, Any
 import typer
 from rich.table import Table
 
+from dembound.boundaries.words import FACTORS
 from dembound.casefile import to_toml
 from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, out, use_threads
-from dembound.disks.facts import FACTORS
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.plot.convergence import plot_convergence

@@ -14,6 +14,7 @@ from dembound.cli.app import (
     Cases,
     Name,
     Output,
+    PictureTitle,
     Settings,
     Side,
     Threads,
@@ -97,6 +98,7 @@ def run(
 def packing(
     cases: Cases,
     output: Annotated[Path, PICTURE] = Path("packing.png"),
+    title: PictureTitle = None,
     side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = RIGHT,
     brick: Annotated[bool, typer.Option("--brick", help="Show the first case's whole brick with its seams.")] = False,
     changes: Settings = None,
@@ -105,7 +107,7 @@ def packing(
     loaded = [load_disks(path, changes) for path in cases]
     if brick:
         shown = build(loaded[0]).ground.brick
-        figure = plot_brick(shown.positions, shown.radii, shown.rows, shown.size, shown.pairs, shown.images)
+        figure = plot_brick(shown.positions, shown.radii, shown.edge_rows, shown.size, shown.pairs, shown.images)
     else:
         scenes = {case.name: build(case) for case in loaded}
         figure = plot_patterns(
@@ -114,7 +116,7 @@ def packing(
                 for name, scene in scenes.items()
             }
         )
-    save(figure, output)
+    save(figure, output, title)
     out.print(f"wrote {output}")
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import typer
 from rich.table import Table
 
-from dembound.cli.app import PICTURE, Settings, app, compact_table, load_case, out, writable
+from dembound.cli.app import PICTURE, PictureTitle, Settings, app, compact_table, load_case, out, writable
 from dembound.errors import CaseError
 from dembound.exact.dispersion import Lattice, Speed, cells_per_wavelength
-from dembound.plot.dispersion import Points, name, plot_dispersion
+from dembound.plot.dispersion import Points, horizon_in_words, name, plot_dispersion
 from dembound.plot.style import save
 from dembound.studies.dispersion import lattices, lattices_of, measure, write_table
 
@@ -53,6 +53,7 @@ def dispersion(
     ] = None,
     check: Annotated[bool, typer.Option("--check", help="Simulate some waves, and print their differences.")] = False,
     output: Annotated[Path, PICTURE] = Path("dispersion.png"),
+    title: PictureTitle = None,
     table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
     changes: Settings = None,
 ) -> None:
@@ -70,7 +71,7 @@ def dispersion(
         speed = WAVE_SPEED if wave_speed is None else wave_speed
         shown = lattices(horizons or HORIZONS, spacings or SPACINGS, time_steps or TIME_STEPS, speed)
     out.print(_overview(shown))
-    save(plot_dispersion(shown, _simulated(shown) if check else ()), output)
+    save(plot_dispersion(shown, _simulated(shown) if check else ()), output, title)
     out.print(f"wrote {output}")
     if table is not None:
         write_table(shown, table)
@@ -89,7 +90,7 @@ def _overview(shown: Sequence[Lattice]) -> Table:
     overview = compact_table(*HEADS, title="Spacings per wavelength from which on waves run within 1 % of c")
     for lattice in shown:
         limit = lattice.courant_limit
-        sizes = (str(lattice.horizon), f"{lattice.spacing:g}", f"{lattice.time_step:g}")
+        sizes = (horizon_in_words(lattice), f"{lattice.spacing:g}", f"{lattice.time_step:g}")
         needed = (_needed(lattice, "phase"), _needed(lattice, "group"))
         overview.add_row(*sizes, f"{lattice.courant:.4f}", f"{limit:.4f}", *needed)
     return overview

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from dembound.cli.app import PICTURE, app, compact_table, out
+from dembound.cli.app import PICTURE, PictureTitle, app, compact_table, out
 from dembound.cli.results import results_file
 from dembound.gauge.estimates import Estimate
 from dembound.gauge.gauge_io import read_free_end, read_gauge
@@ -48,6 +48,7 @@ def gauge(
         float | None, typer.Option(help="Attenuation (1/m) of another test; else as the speed.")
     ] = None,
     output: Annotated[Path | None, PICTURE] = None,
+    title: PictureTitle = None,
 ) -> None:
     """Estimate from a gauge on a bar: wave speed, attenuation, and the stress at which the bar spalled.
 
@@ -67,7 +68,7 @@ def gauge(
     )
     out.print(_overview(found, *("results" if given is None else "given" for given in (wave_speed, attenuation))))
     if output is not None:
-        save(plot_gauge(gauge, found), output)
+        save(plot_gauge(gauge, found), output, title)
         out.print(f"wrote {output}")
 
 

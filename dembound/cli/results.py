@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.table import Column
 
-from dembound.cli.app import PICTURE, Side, app, compact_table, out, png, writable
+from dembound.cli.app import PICTURE, PictureTitle, Side, app, compact_table, out, png, writable
 from dembound.errors import CaseError
 from dembound.kinds import kind_of_record
 from dembound.packings.cache import cache_folder, clear
@@ -68,6 +68,7 @@ class SceneField(StrEnum):
 def plot(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     output: Annotated[Path, PICTURE] = Path("plot.png"),
+    title: PictureTitle = None,
     quantity: Annotated[
         Quantity | None,
         typer.Option(
@@ -132,7 +133,7 @@ def plot(
             quantity=(quantity or Quantity.velocity).value,
             monitors=monitor or None,
         )
-    save(figure, output)
+    save(figure, output, title)
     out.print(f"wrote {output}")
     if table is not None:
         write_lines(figure, table)

@@ -110,15 +110,15 @@ class DiskBody(Scene):
     @cached_property
     def mass(self) -> np.ndarray:
         """(n,) kg; half of it for particles on sides with half mass."""
-        return self.ground.mass[self.assembly.brick_particle] * self.share
+        return self.ground.mass[self.assembly.brick_particle] * self.cell_fraction
 
     @cached_property
     def inertia(self) -> np.ndarray:
         """(n,) kg·m², halved with the mass."""
-        return self.ground.inertia[self.assembly.brick_particle] * self.share
+        return self.ground.inertia[self.assembly.brick_particle] * self.cell_fraction
 
     @cached_property
-    def share(self) -> np.ndarray:
+    def cell_fraction(self) -> np.ndarray:
         """(n,) part of a particle's cell inside the scene: 1, on a side of half cells ½, where two such meet ¼."""
         return mass_factor(self.count, self.edges, self.case.boundary)
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from dembound.casefile.disks.material import Material
+from dembound.disks.constants import brick_constants, limits_of, shared_constants
 from dembound.disks.neighbours import near_pairs, pair_keys
 from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.palette import brick_lines, limits_of, shared_lines
 from dembound.kernels import contacts as kernel
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
@@ -25,12 +25,12 @@ The list is renewed once a particle has moved by half of it.
 
 @dataclass(frozen=True)
 class Pairs:
-    """Pairs: first, second (b,) particles, image (b, 2) whole periods between them, line (b,) of the palette."""
+    """Pairs: first, second (b,) particles, image (b, 2) whole periods between them, contact_type (b,)."""
 
     first: np.ndarray
     second: np.ndarray
     image: np.ndarray
-    line: np.ndarray
+    contact_type: np.ndarray
 
 
 class ContactList:
@@ -74,12 +74,13 @@ class ContactList:
         self.searches = self.limits.geometry != REFERENCE
         self.skin = SKIN * ground.brick.mean_diameter
         self.origin = np.zeros((2, len(assembly.radii)))
-        self.bonds = brick_lines(ground, gaps_close=self.searches, locked_in=self.locked_in)
+        self.bonds = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
         first, second = assembly.pairs.T.astype(np.int64)
-        pairs = Pairs(first, second, self.images(first, second, self.bonds[assembly.kind, :2]), assembly.kind)
+        images = self.images(first, second, self.bonds[assembly.contact_type, :2])
+        pairs = Pairs(first, second, images, assembly.contact_type)
         bonded = np.full(len(first), INTACT if ground.moduli.pb_emod > 0.0 else NONE, dtype=np.uint8)
         zero = np.zeros(len(first))
-        self._palette = self.bonds
+        self._constants = self.bonds
         self._list(pairs, bonded, zero, zero, np.full(len(first), -1))
         widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
         arms = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
@@ -124,7 +125,7 @@ class ContactList:
         old, count = self.arrays, len(radii)
         old_first, old_second = self.pairs
         near, image = near_pairs(here, radii, self.skin, self.periods)
-        vectors = moved[old_second] - moved[old_first] + old.palette[old.kind, :2]
+        vectors = moved[old_second] - moved[old_first] + old.constants[old.contact_type, :2]
         gap = np.hypot(*vectors.T) - radii[old_first] - radii[old_second]
         kept = (old.state == INTACT) | (gap <= self.skin)
         if self._held is not None:
@@ -134,22 +135,22 @@ class ContactList:
         first, second = near[fresh].T
         between = self.assembly.positions[second] - self.assembly.positions[first]
         vectors = between + image[fresh] * [length or 0.0 for length in self.periods]
-        lines = self.ground.law.pair_lines(
+        constants = self.ground.law.pair_constants(
             self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
         )
-        lines, line_of_new = shared_lines(lines, self.skin)
-        # lines of earlier searches that are still in use are moved up to follow those of the brick
+        constants, row_of_new = shared_constants(constants, self.skin)
+        # rows of earlier searches that are still in use are moved up to follow those of the brick
         own = len(self.bonds)
-        used, line = np.unique(old.kind[kept], return_inverse=True)
+        used, row = np.unique(old.contact_type[kept], return_inverse=True)
         extra = used >= own
         place = used.astype(np.int64)
         place[extra] = own + np.arange(np.count_nonzero(extra))
-        self._palette = np.vstack([self.bonds, self._palette[used[extra]], lines])
+        self._constants = np.vstack([self.bonds, self._constants[used[extra]], constants])
         pairs = Pairs(
             np.concatenate([old_first[kept], first]),
             np.concatenate([old_second[kept], second]),
             np.concatenate([self.image[kept], image[fresh]]),
-            np.concatenate([place[line], own + np.count_nonzero(extra) + line_of_new]),
+            np.concatenate([place[row], own + np.count_nonzero(extra) + row_of_new]),
         )
         self._list(
             pairs,
@@ -167,8 +168,8 @@ class ContactList:
         old, (old_first, old_second) = other.arrays, other.pairs
         first, second = number[old_first], number[old_second]
         left = (first >= 0) & (second >= 0)
-        self._palette, self.origin = other._palette, other.origin[:, kept]
-        pairs = Pairs(first[left], second[left], other.image[left], old.kind[left])
+        self._constants, self.origin = other._constants, other.origin[:, kept]
+        pairs = Pairs(first[left], second[left], other.image[left], old.contact_type[left])
         self._list(pairs, old.state[left], old.shear[left], old.slip[left], old.cracked[left], old.place[left])
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
@@ -180,7 +181,7 @@ class ContactList:
         self.search(displacement)
         pairs = self.arrays
         first, second = (twin[particles] for particles in self.pairs)
-        found, at = column.find(first, second, pairs.palette[pairs.kind, :2])
+        found, at = column.find(first, second, pairs.constants[pairs.contact_type, :2])
         there = column.arrays
         for ours, theirs in ((pairs.state, there.state), (pairs.shear, there.shear), (pairs.slip, there.slip)):
             ours[found] = theirs[at[found]]
@@ -210,7 +211,7 @@ class ContactList:
         if len(broken) == 0:
             return
         first, second = (particles[broken] for particles in self.pairs)
-        half = 0.5 * pairs.palette[pairs.kind[broken], :2]
+        half = 0.5 * pairs.constants[pairs.contact_type[broken], :2]
         middle = self.assembly.positions[first] + half + pairs.place[broken]
         both = np.column_stack([first, second]) + self.nodes.start
         self._cracks.append(Cracks(pairs.cracked[broken], both, middle, pairs.state[broken] == SHEAR))
@@ -252,16 +253,16 @@ class ContactList:
         """The pairs with their history, and cracks not yet recorded."""
         self.note_cracks()
         memory = {name: getattr(self.arrays, name) for name in _KEPT}
-        memory |= {"image": self.image, "palette": self._palette, "origin": self.origin}
+        memory |= {"image": self.image, "constants": self._constants, "origin": self.origin}
         cracks = joined(self._cracks)
         return memory | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
 
     def recall(self, memory: Arrays) -> None:
         """Restore what `memory` has returned in another run of the same case."""
-        self._palette, self.origin = memory["palette"], memory["origin"]
+        self._constants, self.origin = memory["constants"], memory["origin"]
         begin = self.nodes.start
         first, second = (memory[name].astype(np.int64) - begin for name in ("first", "second"))
-        pairs = Pairs(first, second, memory["image"], memory["kind"])
+        pairs = Pairs(first, second, memory["image"], memory["contact_type"])
         columns = (memory[name] for name in ("state", "shear", "slip", "cracked"))
         self._list(pairs, *columns)
         self.arrays.force[:] = memory["force"]
@@ -289,8 +290,8 @@ class ContactList:
             begin=begin,
             first=(begin + first).astype(np.uint32),
             second=(begin + second).astype(np.uint32),
-            kind=pairs.line[order].astype(np.uint32),
-            palette=self._palette,
+            contact_type=pairs.contact_type[order].astype(np.uint32),
+            constants=self._constants,
             state=state[order],
             shear=shear[order],
             slip=slip[order],
@@ -302,7 +303,7 @@ class ContactList:
         )
 
 
-_KEPT = ("first", "second", "kind", "state", "shear", "slip", "cracked", "force")
+_KEPT = ("first", "second", "contact_type", "state", "shear", "slip", "cracked", "force")
 """The arrays of the pairs that memory() returns."""
 
 
@@ -318,8 +319,8 @@ def plain_contacts(ground: PackedMaterial, assembly: Assembly, begin: int = 0) -
         begin=begin,
         first=first,
         second=second,
-        kind=assembly.kind.astype(np.uint32),
-        palette=brick_lines(ground, gaps_close=False, locked_in=0.0),
+        contact_type=assembly.contact_type.astype(np.uint32),
+        constants=brick_constants(ground, gaps_close=False, locked_in=0.0),
         state=np.full(len(first), bonded, dtype=np.uint8),
         shear=nothing,
         slip=nothing,

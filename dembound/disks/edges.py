@@ -5,22 +5,25 @@ from collections.abc import Mapping
 import numpy as np
 
 from dembound.boundaries import SIDES, normal_axis
-from dembound.boundaries.exposed import exposed
+from dembound.boundaries.exposed import exposed, outer_row
 from dembound.boundaries.support import Edge
 from dembound.errors import CaseError
 from dembound.packings.column import Seam
 from dembound.packings.tiling import Assembly
 
 
-def find_edges(assembly: Assembly, periodic: tuple[bool, bool]) -> dict[str, Edge]:
-    """The exposed particles of every side that is not periodic."""
+def find_edges(assembly: Assembly, periodic: tuple[bool, bool], regular_sides: tuple[str, ...] = ()) -> dict[str, Edge]:
+    """The exposed particles of every side that is not periodic; for regular sides, the particles of the outer row."""
     edges = {}
     for side in SIDES:
         axis = normal_axis(side)
         if periodic[axis]:
             continue
         length = float(assembly.extent[1 - axis])
-        nodes = exposed(assembly.positions, assembly.radii, side, period=length if periodic[1 - axis] else None)
+        if side in regular_sides:
+            nodes = outer_row(assembly.positions, assembly.radii, side)
+        else:
+            nodes = exposed(assembly.positions, assembly.radii, side, period=length if periodic[1 - axis] else None)
         edges[side] = Edge(side, nodes, assembly.positions[nodes], 2.0 * assembly.radii[nodes], length)
     return edges
 

@@ -1,16 +1,12 @@
 """Facts about a case of disks, in words."""
 
-from typing import Any
-
+from dembound.boundaries.words import side_in_words
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.summary import describe_packing, describe_side
 from dembound.disks.warnings import particles_per_wavelength, strong_waves
-
-FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
-"""Keys of the factors of a side, and their symbols."""
 
 
 def disk_facts(scene: DiskScene) -> dict[str, str]:
@@ -146,33 +142,7 @@ def _load_facts(scene: DiskScene) -> dict[str, str]:
 
 def _side_fact(scene: DiskScene, side: str) -> str:
     facts = describe_side(scene, side)
-    factors = "".join(f", {sign} = {facts[key]:g}" for key, sign in FACTORS.items() if key in facts)
-    half = ", half mass" if facts.get("half_mass") else ""
     return (
-        f"{facts['type']}{factors}{half}{_springs_in_words(facts)}{_others(facts)}; {facts['particles']} particles, "
+        f"{side_in_words(facts)}; {facts['particles']} particles, "
         f"D = {facts['diameter_min']:.3f}…{facts['diameter_max']:.3f} m, ΣD/H = {facts['diameter_sum_ratio']:.4f}"
-    )
-
-
-IN_WORDS = {
-    *("type", "particles", "length", "diameter_min", "diameter_mean", "diameter_max", "diameter_sum_ratio"),
-    *("beta_p", "beta_s", "half_mass", "alpha_n", "alpha_s", "shear_modulus", "distance_min", "distance_max"),
-}
-"""Keys of a side that are printed in another way."""
-
-
-def _others(side: dict[str, Any]) -> str:
-    """All other numbers of a described side, as another package's type may have."""
-    return "".join(f", {key} = {value}" for key, value in side.items() if key not in IN_WORDS)
-
-
-def _springs_in_words(side: dict[str, Any]) -> str:
-    """The springs of a described side, if it has any."""
-    if "alpha_n" not in side:
-        return ""
-    nearest, farthest = side["distance_min"], side["distance_max"]
-    reach = f"{nearest:.4g}" + (f"…{farthest:.4g}" if farthest > nearest else "")
-    return (
-        f"; springs α_n = {side['alpha_n']:g}, α_s = {side['alpha_s']:g}, "
-        f"G = {side['shear_modulus'] / 1e9:.4g} GPa, L = {reach} m"
     )

@@ -7,7 +7,7 @@ import numpy as np
 
 from dembound.disks.contacts import ContactList, plain_contacts
 from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.rows import palette_of
+from dembound.disks.rows import elastic_constants
 from dembound.kernels import bonded, elastic  # they register their laws before the loop is compiled
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contacts import REFERENCE, strain_energy
@@ -126,7 +126,7 @@ class FreeFieldSeam(Tie):
     def __init__(self, seam: ColumnSeam, column: DiskPart) -> None:
         self.seam = seam
         self.column = column
-        self._line = palette_of(column.ground)[1][2 * seam.kind + seam.twin_is_second]
+        self._row = elastic_constants(column.ground)[1][2 * seam.contact_type + seam.twin_is_second]
         self._ends: tuple[Contacts, np.ndarray] | None = None
 
     @property
@@ -142,8 +142,8 @@ class FreeFieldSeam(Tie):
         start = np.zeros(len(supported) + 1, dtype=np.uint32)
         np.cumsum(counts, out=start[1:])
         if not self.column.uses_history:
-            near, line = seam.neighbour.astype(np.uint32), self._line.astype(np.uint32)
-            return Seam(seam.twin[supported], start, near, line, self.column.rows.palette)
+            near, row = seam.neighbour.astype(np.uint32), self._row.astype(np.uint32)
+            return Seam(seam.twin[supported], start, near, row, self.column.rows.constants)
         assert self.column.contacts is not None
         ends = self.ends(self.column.contacts).astype(np.uint32)
         return SeamEnds(start, ends, self.column.contacts.arrays.force)
@@ -151,9 +151,9 @@ class FreeFieldSeam(Tie):
     def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
         """Forces and moments (3, k) on its nodes at displacements (3, n) under the elastic law."""
         force = np.zeros((len(self.nodes), 3))
-        near, line = self.seam.neighbour.astype(np.uint32), self._line.astype(np.uint32)
+        near, row = self.seam.neighbour.astype(np.uint32), self._row.astype(np.uint32)
         twin = self.seam.twin[self.nodes]
-        elastic.seam_forces(Seam(twin, self.seam.start, near, line, self.column.rows.palette), displacement, force)
+        elastic.seam_forces(Seam(twin, self.seam.start, near, row, self.column.rows.constants), displacement, force)
         return force.T
 
     def last_forces(self, contacts: ContactList) -> np.ndarray:

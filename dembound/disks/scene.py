@@ -60,7 +60,7 @@ def build(case: DiskCase) -> DiskScene:
     ground = ground_of(case)
     periodic = (case.side("left").is_periodic, case.side("bottom").is_periodic)
     body = tile(ground.brick, case.packing.copies, periodic)
-    edges = find_edges(body, periodic)
+    edges = find_edges(body, periodic, case.packing.regular_sides)
     first, later = (tuple(hole for hole in case.hole if hole.stage == stage) for stage in ("before", "after"))
     if first:
         body, edges, _ = _hollowed(case, ground.brick, body, edges, first)
@@ -110,7 +110,7 @@ def column_alone(scene: DiskScene) -> DiskScene:
     everywhere = tuple(load for load in case.load if load.position is None and load.region is None)
     alone = replace(case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=())
     column = tile(brick, (1, scene.assembly.copies[1]), (True, False))
-    return _scene(alone, scene.ground, column, find_edges(column, (True, False)))
+    return _scene(alone, scene.ground, column, find_edges(column, (True, False), case.packing.regular_sides))
 
 
 def ground_of(case: DiskCase) -> PackedMaterial:
@@ -153,17 +153,18 @@ def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
 def _with_half_contacts(
     case: DiskCase, brick: Brick, assembly: Assembly, seam: Seam | None, edges: Mapping[str, Edge]
 ) -> tuple[Assembly, Seam | None]:
-    """Replace contacts along sides of half cells, also across a seam, by those with half the stiffness."""
+    """Replace contacts along sides of half cells, also across a seam, by types with half the stiffness."""
     vectors, whole = brick.vectors, len(brick.pairs)
 
-    def halved(kind: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-        plain = kind % whole
-        return plain + whole * half_contacts(first, second, vectors[plain], edges, case.boundary).astype(kind.dtype)
+    def halved(contact_type: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        plain = contact_type % whole
+        half = half_contacts(first, second, vectors[plain], edges, case.boundary)
+        return plain + whole * half.astype(contact_type.dtype)
 
-    assembly = replace(assembly, kind=halved(assembly.kind, *assembly.pairs.T))
+    assembly = replace(assembly, contact_type=halved(assembly.contact_type, *assembly.pairs.T))
     if seam is not None:
         owner = np.repeat(seam.twin[seam.node], seam.contact_counts)
-        seam = replace(seam, kind=halved(seam.kind, owner, seam.neighbour))
+        seam = replace(seam, contact_type=halved(seam.contact_type, owner, seam.neighbour))
     return assembly, seam
 
 

@@ -44,14 +44,14 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
     moments = np.zeros((3, scene.count))
     for piece, force in _pieces(contacts, displacement, elastic=elastic):
         first, second = contacts.first[piece].astype(np.int64), contacts.second[piece].astype(np.int64)
-        lines = contacts.palette[contacts.kind[piece]]
-        x, y = lines[:, :2].T if elastic else lines[:, :2].T + displacement[:2, second] - displacement[:2, first]
-        part = 0.5 + lines[:, 4] / np.hypot(x, y)  # part of the vector on the side of the first disk
+        rows = contacts.constants[contacts.contact_type[piece]]
+        x, y = rows[:, :2].T if elastic else rows[:, :2].T + displacement[:2, second] - displacement[:2, first]
+        part = 0.5 + rows[:, 4] / np.hypot(x, y)  # part of the vector on the side of the first disk
         pull_x, pull_y = force[:, :2].T
         for total, dyad in zip(moments, (pull_x * x, pull_y * y, 0.5 * (pull_x * y + pull_y * x)), strict=True):
             np.add.at(total, first, part * dyad)
             np.add.at(total, second, (1.0 - part) * dyad)
-    area = np.pi * scene.assembly.radii**2 * scene.share / scene.ground.brick.solid_fraction
+    area = np.pi * scene.assembly.radii**2 * scene.cell_fraction / scene.ground.brick.solid_fraction
     return (moments / area).T
 
 
@@ -66,7 +66,7 @@ def _pieces(contacts: Contacts, displacement: np.ndarray, *, elastic: bool) -> I
         pairs = contacts._replace(
             first=contacts.first[piece],
             second=contacts.second[piece],
-            kind=contacts.kind[piece],
+            contact_type=contacts.contact_type[piece],
             state=contacts.state[piece],
             shear=np.zeros(count),
             slip=np.zeros(count),

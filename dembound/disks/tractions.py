@@ -3,7 +3,7 @@
 import numpy as np
 
 from dembound.disks.balance import mean_rotations
-from dembound.disks.palette import limits_of
+from dembound.disks.constants import limits_of
 from dembound.disks.scene import DiskScene
 from dembound.kernels.contacts import UPDATED
 
@@ -78,7 +78,7 @@ def mean_stress(scene: DiskScene, stress: np.ndarray) -> np.ndarray:
     The mean is taken over the area of the particles, or with a hole over the whole rectangle inside the rim.
     """
     inside = _inside(scene)
-    area = (scene.assembly.radii**2 * scene.share)[inside]
+    area = (scene.assembly.radii**2 * scene.cell_fraction)[inside]
     mean = np.average(stress[inside], axis=0, weights=area)
     if not scene.case.hole or inside.all():
         return mean

@@ -5,7 +5,7 @@ A pair's motion is three numbers: the distance of the centres, the tangential di
 its unloaded state; the contact resists overlap and the part of `shear` that has not slid. No other history is needed:
 in two dimensions a shear force has one component, which rotates with the pair automatically.
 
-A palette line (12,) of a pair with first disk i and second disk j:
+A row of constants (12,) of a pair with first disk i and second disk j:
 
     [d_x, d_y, |d|, touch, (R_i − R_j)/2, k_n, k_s, k̄_n A, k̄_s A, k̄_n J, 1/A, R̄/J]
 
@@ -44,45 +44,45 @@ TURN = 0.01
 
 
 @njit(**FAST, inline="always")
-def _pair(c, u, first, second, kind, palette):
-    """Particles of a pair, its palette line, and the displacements of j relative to i."""
+def _pair(c, u, first, second, contact_type, constants):
+    """Particles of a pair, its row of constants, and the displacements of j relative to i."""
     i = U(first[c])
     j = U(second[c])
-    k = U(kind[c])
+    k = U(contact_type[c])
     return i, j, k, u[U(0), j] - u[U(0), i], u[U(1), j] - u[U(1), i]
 
 
 @njit(**FAST, inline="always")
-def _reference_strain(i, j, k, dx, dy, u, palette):
+def _reference_strain(i, j, k, dx, dy, u, constants):
     """Normal and tangent at the start, distance, stretch, shear of a pair for small displacements."""
-    rest = palette[k, U(2)]
-    nx = palette[k, U(0)] / rest
-    ny = palette[k, U(1)] / rest
+    rest = constants[k, U(2)]
+    nx = constants[k, U(0)] / rest
+    ny = constants[k, U(1)] / rest
     stretch = nx * dx + ny * dy
-    arm_i = 0.5 * rest + palette[k, U(4)]
+    arm_i = 0.5 * rest + constants[k, U(4)]
     shear = nx * dy - ny * dx - arm_i * u[U(2), i] - (rest - arm_i) * u[U(2), j]
     return nx, ny, rest, stretch, shear
 
 
 @njit(**FAST, inline="always")
-def _updated_stretch(k, dx, dy, palette):
+def _updated_stretch(k, dx, dy, constants):
     """Normal and distance of a pair whose vector has changed by dx, dy, and its stretch.
 
     The stretch is (d² − d_0²)/(d + d_0), which keeps the digits that d − d_0 loses.
     """
-    x = palette[k, U(0)]
-    y = palette[k, U(1)]
-    rest = palette[k, U(2)]
+    x = constants[k, U(0)]
+    y = constants[k, U(1)]
+    rest = constants[k, U(2)]
     distance = np.sqrt((x + dx) * (x + dx) + (y + dy) * (y + dy))
     stretch = ((x + x + dx) * dx + (y + y + dy) * dy) / (distance + rest)
     return (x + dx) / distance, (y + dy) / distance, distance, stretch
 
 
 @njit(**FAST, inline="always")
-def _updated_strain(i, j, k, dx, dy, was, v, step, palette):
+def _updated_strain(i, j, k, dx, dy, was, v, step, constants):
     """The same with normal and arms that follow the motion; was: the shear before the step (s)."""
-    nx, ny, distance, stretch = _updated_stretch(k, dx, dy, palette)
-    arm_i = 0.5 * distance + palette[k, U(4)]
+    nx, ny, distance, stretch = _updated_stretch(k, dx, dy, constants)
+    arm_i = 0.5 * distance + constants[k, U(4)]
     slide = nx * (v[U(1), j] - v[U(1), i]) - ny * (v[U(0), j] - v[U(0), i])
     shear = was + step * (slide - arm_i * v[U(2), i] - (distance - arm_i) * v[U(2), j])
     return nx, ny, distance, stretch, shear
@@ -108,7 +108,7 @@ def push(u, v, step, number, contacts, limits, lost):
     Contacts and bonds at their limits slide and break; number is that of the step. lost (chunks, 2) receives the energy
     taken by friction and by cracks in this step, J. Returns the number of bonds that broke.
     """
-    _, first, second, kind, palette, state, all_shear, all_slip, cracked, _, force, _, _ = contacts
+    _, first, second, contact_type, constants, state, all_shear, all_slip, cracked, _, force, _, _ = contacts
     friction, geometry = limits.friction, limits.geometry
     b = first.size
     breaks = 0
@@ -117,39 +117,39 @@ def push(u, v, step, number, contacts, limits, lost):
         broken = 0.0
         for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
             c = U(p)
-            i, j, k, dx, dy = _pair(c, u, first, second, kind, palette)
+            i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
             was = all_shear[c]
             intact = state[c] == INTACT
             if geometry == REFERENCE or (geometry == BONDED and intact):
-                nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, palette)
+                nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, constants)
             else:
-                nx, ny, distance, stretch, shear = _updated_strain(i, j, k, dx, dy, was, v, step, palette)
-            overlap = palette[k, U(3)] - palette[k, U(2)] - stretch
-            arm_i = 0.5 * distance + palette[k, U(4)]
+                nx, ny, distance, stretch, shear = _updated_strain(i, j, k, dx, dy, was, v, step, constants)
+            overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
+            arm_i = 0.5 * distance + constants[k, U(4)]
             arm_j = distance - arm_i
             all_shear[c] = shear
-            N = palette[k, U(5)] * overlap
-            S = palette[k, U(6)] * (shear - all_slip[c])
+            N = constants[k, U(5)] * overlap
+            S = constants[k, U(6)] * (shear - all_slip[c])
             opening = nx * (v[U(0), j] - v[U(0), i]) + ny * (v[U(1), j] - v[U(1), i])
-            if geometry != REFERENCE or palette[k, U(3)] < palette[k, U(2)]:
+            if geometry != REFERENCE or constants[k, U(3)] < constants[k, U(2)]:
                 N = max(N, 0.0)
                 if overlap + step * opening <= 0.0:  # it was open one step earlier
                     N *= CLOSING
                 most = friction * N
                 if abs(S) > most:
-                    before = palette[k, U(6)] * (was - all_slip[c])
+                    before = constants[k, U(6)] * (was - all_slip[c])
                     S = np.copysign(most, S)
-                    slip = shear - (S / palette[k, U(6)])
+                    slip = shear - (S / constants[k, U(6)])
                     rubbed += 0.5 * (before + S) * (slip - all_slip[c])
                     all_slip[c] = slip
             pull = -N
             moment = 0.0
             if intact:
                 turn = u[U(2), j] - u[U(2), i]
-                Fn = palette[k, U(7)] * stretch
-                Fs = palette[k, U(8)] * shear
-                M = palette[k, U(9)] * turn
-                state[c] = _bond_state(Fn, Fs, M, palette[k, U(10)], palette[k, U(11)], limits)
+                Fn = constants[k, U(7)] * stretch
+                Fs = constants[k, U(8)] * shear
+                M = constants[k, U(9)] * turn
+                state[c] = _bond_state(Fn, Fs, M, constants[k, U(10)], constants[k, U(11)], limits)
                 if state[c] == INTACT:
                     pull += Fn
                     S += Fs
@@ -211,13 +211,13 @@ def sum_forces(contacts, total):
 @njit(**PARALLEL)
 def start_from_displacements(u, contacts):
     """Set the pairs' tangential displacements to those of small displacements u (3, n), without slip."""
-    _, first, second, kind, palette, _, shear, slip, _, _, _, _, _ = contacts
+    _, first, second, contact_type, constants, _, shear, slip, _, _, _, _, _ = contacts
     for p in prange(first.size):
         c = U(p)
-        i, j, k, dx, dy = _pair(c, u, first, second, kind, palette)
-        _, _, _, stretch, sheared = _reference_strain(i, j, k, dx, dy, u, palette)
+        i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
+        _, _, _, stretch, sheared = _reference_strain(i, j, k, dx, dy, u, constants)
         shear[c] = sheared
-        slip[c] = sheared if palette[k, U(3)] - palette[k, U(2)] < stretch else 0.0
+        slip[c] = sheared if constants[k, U(3)] - constants[k, U(2)] < stretch else 0.0
 
 
 @njit(**PARALLEL)
@@ -242,7 +242,7 @@ def slack(u, contacts, limits):
     motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation change by no more than the relative
     motion of the surfaces, which gives a lower bound for each condition.
     """
-    _, first, second, kind, palette, state, _, _, _, _, _, _, _ = contacts
+    _, first, second, contact_type, constants, state, _, _, _, _, _, _, _ = contacts
     friction, tension, cohesion, tan_fa, geometry = limits
     b = first.size
     least = np.empty(CHUNKS)
@@ -250,14 +250,14 @@ def slack(u, contacts, limits):
         room = np.inf
         for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
             c = U(p)
-            i, j, k, dx, dy = _pair(c, u, first, second, kind, palette)
-            nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, palette)
+            i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
+            nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, constants)
             if geometry == UPDATED:
                 room = min(room, TURN * distance - abs(nx * dy - ny * dx))
-            kn = palette[k, U(5)]
-            ks = palette[k, U(6)]
-            overlap = palette[k, U(3)] - palette[k, U(2)] - stretch
-            if palette[k, U(3)] >= distance:
+            kn = constants[k, U(5)]
+            ks = constants[k, U(6)]
+            overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
+            if constants[k, U(3)] >= distance:
                 room = min(room, overlap)
                 if ks > 0.0:
                     room = min(room, (friction * kn * overlap - ks * abs(shear)) / (ks + friction * kn))
@@ -265,12 +265,12 @@ def slack(u, contacts, limits):
                 room = min(room, -overlap)
             if state[c] == INTACT:
                 # per length of relative motion: tension k̄, bending k̄ R̄·(1/R̄), shear k̄_s
-                per_area = palette[k, U(10)]
-                bending = palette[k, U(9)] * palette[k, U(11)]
-                stress = palette[k, U(7)] * stretch * per_area
+                per_area = constants[k, U(10)]
+                bending = constants[k, U(9)] * constants[k, U(11)]
+                stress = constants[k, U(7)] * stretch * per_area
                 turned = bending * abs(u[U(2), j] - u[U(2), i])
-                normal = palette[k, U(7)] * per_area
-                sheared = palette[k, U(8)] * per_area
+                normal = constants[k, U(7)] * per_area
+                sheared = constants[k, U(8)] * per_area
                 room = min(room, (tension - stress - turned) / (2.0 * normal))
                 strength = cohesion - stress * tan_fa - sheared * abs(shear)
                 room = min(room, strength / (sheared + normal * tan_fa))
@@ -284,7 +284,7 @@ def strain_energy(u, contacts, geometry):
 
     With the geometry REFERENCE shear and slip are not read.
     """
-    _, first, second, kind, palette, state, all_shear, slip, _, _, _, _, _ = contacts
+    _, first, second, contact_type, constants, state, all_shear, slip, _, _, _, _, _ = contacts
     b = first.size
     stored = np.empty((CHUNKS, 2))
     for chunk in prange(CHUNKS):
@@ -292,26 +292,26 @@ def strain_energy(u, contacts, geometry):
         in_bonds = 0.0
         for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
             c = U(p)
-            i, j, k, dx, dy = _pair(c, u, first, second, kind, palette)
+            i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
             intact = state[c] == INTACT
             if geometry == REFERENCE or (geometry == BONDED and intact):
-                _, _, _, stretch, shear = _reference_strain(i, j, k, dx, dy, u, palette)
+                _, _, _, stretch, shear = _reference_strain(i, j, k, dx, dy, u, constants)
             else:
-                _, _, _, stretch = _updated_stretch(k, dx, dy, palette)
+                _, _, _, stretch = _updated_stretch(k, dx, dy, constants)
                 shear = all_shear[c]
-            overlap = palette[k, U(3)] - palette[k, U(2)] - stretch
+            overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
             slid = shear
-            if palette[k, U(3)] < palette[k, U(2)] and overlap <= 0.0:  # open, as at the start
+            if constants[k, U(3)] < constants[k, U(2)] and overlap <= 0.0:  # open, as at the start
                 overlap = 0.0
                 slid = 0.0
             elif geometry != REFERENCE:
                 overlap = max(overlap, 0.0)
                 slid -= slip[c]
-            in_contacts += 0.5 * (palette[k, U(5)] * overlap * overlap + palette[k, U(6)] * slid * slid)
+            in_contacts += 0.5 * (constants[k, U(5)] * overlap * overlap + constants[k, U(6)] * slid * slid)
             if intact:
                 turn = u[U(2), j] - u[U(2), i]
-                in_bonds += 0.5 * (palette[k, U(7)] * stretch * stretch + palette[k, U(8)] * shear * shear)
-                in_bonds += 0.5 * palette[k, U(9)] * turn * turn
+                in_bonds += 0.5 * (constants[k, U(7)] * stretch * stretch + constants[k, U(8)] * shear * shear)
+                in_bonds += 0.5 * constants[k, U(9)] * turn * turn
         stored[chunk, 0] = in_contacts
         stored[chunk, 1] = in_bonds
     return column_sum(stored, 0), column_sum(stored, 1)

@@ -2,9 +2,9 @@
 
 Each particle gathers from its own row of contacts, so no two particles write to the same place: the sums are added in
 the same order, and so give the same bits, for any number of threads. The constants of a contact are stored once, in a
-small palette for all copies of the brick; a row contains only the neighbour and the palette line (8 bytes).
+small table for all copies of the brick; a row contains only the neighbour and the contact type (8 bytes).
 
-A palette line (6,) of a contact, for particle i with neighbour j, unit normal n = (c, s) from i to j or from j to i
+A row of constants (6,) of a contact, for particle i with neighbour j, unit normal n = (c, s) from i to j or from j to i
 (the law is even in n, the arms have the sign):
 
     [√k_n c, √k_n s, √(k_s/k_n), √k_s l_i, √k_s l_j, k_r]
@@ -24,7 +24,7 @@ from dembound.kernels.tables import Links, Seam, WatchedLinks
 
 
 @njit(**FAST, inline="always")
-def _row_force(row, i, u, start, neighbour, kind, palette):
+def _row_force(row, i, u, start, neighbour, contact_type, constants):
     """Force (x, y) and moment on particle i from a row of contacts (Z eqs 7-9; PFC2D linear parallel bond)."""
     x = u[U(0), i]
     y = u[U(1), i]
@@ -34,41 +34,43 @@ def _row_force(row, i, u, start, neighbour, kind, palette):
     moment = 0.0
     for e in range(start[row], start[row + U(1)]):
         j = U(neighbour[e])
-        k = U(kind[e])
-        px = palette[k, U(0)]
-        py = palette[k, U(1)]
-        ratio = palette[k, U(2)]
-        arm = palette[k, U(3)]
+        k = U(contact_type[e])
+        px = constants[k, U(0)]
+        py = constants[k, U(1)]
+        ratio = constants[k, U(2)]
+        arm = constants[k, U(3)]
         turn_j = u[U(2), j]
         dx = u[U(0), j] - x
         dy = u[U(1), j] - y
         N = px * dx + py * dy
-        S = ratio * (px * dy - py * dx) - arm * turn - palette[k, U(4)] * turn_j
+        S = ratio * (px * dy - py * dx) - arm * turn - constants[k, U(4)] * turn_j
         T = ratio * S
         fx += px * N - py * T
         fy += py * N + px * T
-        moment += arm * S + palette[k, U(5)] * (turn_j - turn)
+        moment += arm * S + constants[k, U(5)] * (turn_j - turn)
     return fx, fy, moment
 
 
 @njit(**PARALLEL)
 def contact_forces(u, rows, force):
     """Fill force (3, n) of the rows' particles with contact forces and moments (N, N·m) at displacements u (3, n)."""
-    begin, start, neighbour, kind, palette = rows
+    begin, start, neighbour, contact_type, constants = rows
     n = start.size - 1 - begin
     for chunk in prange(CHUNKS):
         for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
-            force[U(0), i], force[U(1), i], force[U(2), i] = _row_force(i, i, u, start, neighbour, kind, palette)
+            force[U(0), i], force[U(1), i], force[U(2), i] = _row_force(
+                i, i, u, start, neighbour, contact_type, constants
+            )
 
 
 @njit(**FAST)
 def seam_forces(seam, u, force):
     """Add to force (k, 3) of the supported nodes the forces on their twins across the seam."""
-    twin, start, neighbour, kind, palette = seam
+    twin, start, neighbour, contact_type, constants = seam
     for s in range(twin.size):
         if start[s + 1] > start[s]:
-            fx, fy, moment = _row_force(U(s), U(twin[s]), u, start, neighbour, kind, palette)
+            fx, fy, moment = _row_force(U(s), U(twin[s]), u, start, neighbour, contact_type, constants)
             force[s, 0] += fx
             force[s, 1] += fy
             force[s, 2] += moment
@@ -80,7 +82,7 @@ def _move(u, v, rows, body, u_next, fastest, arms, damped):
 
     fastest (chunks,) gets surface speeds if there are arms, damped (chunks, 2) the work of local damping.
     """
-    begin, start, neighbour, kind, palette = rows
+    begin, start, neighbour, contact_type, constants = rows
     n = start.size - 1 - begin
     watched = arms.size > 0
     for chunk in prange(CHUNKS):
@@ -89,7 +91,7 @@ def _move(u, v, rows, body, u_next, fastest, arms, damped):
         half = 0.0
         for p in range(begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS):
             i = U(p)
-            fx, fy, moment = _row_force(i, i, u, start, neighbour, kind, palette)
+            fx, fy, moment = _row_force(i, i, u, start, neighbour, contact_type, constants)
             taken, up_to = move_particle(i, fx, fy, moment, u, v, body, u_next)
             whole += taken
             half += up_to

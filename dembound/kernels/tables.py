@@ -8,22 +8,22 @@ import numpy as np
 class NeighbourTable(NamedTuple):
     """Contacts of the elastic law, one row per particle, of the particles from number `begin` on.
 
-    Row i, that of particle i, is start[i]:start[i + 1] of neighbour (e,) and kind (e,), the latter a line of palette
-    (p, 6); see elastic.py. start ends with the last particle's row, and the rows before `begin` are empty.
+    Row i, that of particle i, is start[i]:start[i + 1] of neighbour (e,) and contact_type (e,), its row of
+    constants (p, 6); see elastic.py. start ends with the last particle's row; those before `begin` are empty.
     """
 
     begin: int
 
     start: np.ndarray
     neighbour: np.ndarray
-    kind: np.ndarray
-    palette: np.ndarray
+    contact_type: np.ndarray
+    constants: np.ndarray
 
 
 class Contacts(NamedTuple):
-    """Contacts with a history, each listed once; see contacts.py for the columns of palette and force.
+    """Contacts with a history, each listed once; see contacts.py for the columns of constants and force.
 
-    first, second, kind : (b,) uint32 particles and line of palette (p, 12).
+    first, second, contact_type : (b,) uint32 particles, and the row of the pair in constants (p, 12).
     state : (b,) uint8, see contacts.py; shear, slip : (b,) m, the tangential displacement since the start and the part
     of it that slid; cracked : (b,) int64, step in which the bond broke, else −1; place : (b, 2) m, mean displacement of
     the two disks in that step; force : (b, 4). start, end : rows of contact ends, one per particle, those before number
@@ -34,8 +34,8 @@ class Contacts(NamedTuple):
 
     first: np.ndarray
     second: np.ndarray
-    kind: np.ndarray
-    palette: np.ndarray
+    contact_type: np.ndarray
+    constants: np.ndarray
     state: np.ndarray
     shear: np.ndarray
     slip: np.ndarray
@@ -102,14 +102,14 @@ class Seam(NamedTuple):
     """The forces of a free-field column under the elastic law on k supported nodes across its seam.
 
     twin : (k,) the column's particle at the same place of the brick, −1 for none; start : (k + 1,) rows of its contacts
-    across the seam: neighbour (e,) there, and kind (e,), lines of palette (p, 6).
+    across the seam: neighbour (e,) there, and contact_type (e,), rows of constants (p, 6).
     """
 
     twin: np.ndarray
     start: np.ndarray
     neighbour: np.ndarray
-    kind: np.ndarray
-    palette: np.ndarray
+    contact_type: np.ndarray
+    constants: np.ndarray
 
 
 class SeamEnds(NamedTuple):

@@ -80,7 +80,7 @@ class Law(ABC):
             arm_j=(distance + radius_j - radius_i) / 2.0,
         )
 
-    def pair_lines(
+    def pair_constants(
         self,
         moduli: Moduli,
         radius_i: np.ndarray,

@@ -30,11 +30,11 @@ class Packing(Table, ABC):
     Attributes
     ----------
     packed_under_stress : whether a brick is packed under stress, which needs contacts with a stiffness.
-    has_regular_edges : whether the disks of each side form one row, so that they can be half cells.
+    regular_sides : sides (left, right, bottom, top) whose disks form one row, so that they can be half cells.
     """
 
     packed_under_stress: ClassVar[bool] = False
-    has_regular_edges: ClassVar[bool] = False
+    regular_sides: ClassVar[tuple[str, ...]] = ()
 
     pattern: str
     size: Extent | None = quantity(None, unit="m", help="width and height of the scene, whole bricks")

@@ -36,7 +36,7 @@ class Brick:
     radii : (n,) m.
     pairs : (b, 2) int64, contacts i → j, each once.
     images : (b, 2) int64, the contact vector is ``positions[j] + images * size - positions[i]``.
-    rows : (n, 2) bool, member of the regular row on x = 0 (column 0) or on y = 0 (column 1).
+    edge_rows : (n, 2) bool, member of the regular row on x = 0 (column 0) or on y = 0 (column 1).
     stress : (3,) xx, yy, xy of the packed state over the contact modulus E_c, compression negative.
     residual_ratio : mean |unbalanced force| / mean contact force, over the disks not held on a row.
     """
@@ -46,7 +46,7 @@ class Brick:
     radii: np.ndarray
     pairs: np.ndarray
     images: np.ndarray
-    rows: np.ndarray
+    edge_rows: np.ndarray
     stress: np.ndarray
     residual_ratio: float
 

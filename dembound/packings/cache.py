@@ -20,7 +20,7 @@ import platformdirs
 
 from dembound.packings.brick import Brick
 
-FORMAT = 1  # raise it whenever the packing procedure or the file layout changes
+FORMAT = 2  # raise it whenever the packing procedure or the file layout changes
 UNREADABLE = (OSError, ValueError, KeyError, EOFError, TypeError, zipfile.BadZipFile, zlib.error)
 
 

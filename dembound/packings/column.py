@@ -26,10 +26,13 @@ class Seam:
     count : number of the column's particles, which come first in the assembly.
     width : m, of the column, its period.
     twin : (n,) int64, the column's particle at the same place of the brick; particles of the column are their own
-    twins. node : (k,) int64, particles of the body that have contacts beyond a side, sorted. start : (k + 1,) uint32:
-    the contacts of node[s] are start[s]:start[s + 1] of the next three. neighbour : (e,) int64, the column's particle
-    in the place of the neighbour. kind : (e,) int64, the contact of the brick. twin_is_second : (e,) bool, whether the
-    node's twin is the contact's second disk. image : (e,) int64, periods of the column from the twin to that neighbour.
+        twins.
+    node : (k,) int64, particles of the body that have contacts beyond a side, sorted.
+    start : (k + 1,) uint32: the contacts of node[s] are start[s]:start[s + 1] of the next three.
+    neighbour : (e,) int64, the column's particle in the place of the neighbour.
+    contact_type : (e,) int64, the contact of the brick.
+    twin_is_second : (e,) bool, whether the node's twin is the contact's second disk.
+    image : (e,) int64, periods of the column from the twin to that neighbour.
     """
 
     count: int
@@ -38,7 +41,7 @@ class Seam:
     node: np.ndarray
     start: np.ndarray
     neighbour: np.ndarray
-    kind: np.ndarray
+    contact_type: np.ndarray
     twin_is_second: np.ndarray
     image: np.ndarray
 
@@ -50,8 +53,8 @@ class Seam:
     def pairs(self, brick: Brick) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """First and second particle (e,) of the column and vectors (e, 2) m of the nodes' contacts."""
         owner = np.repeat(self.twin[self.node], self.contact_counts)
-        vectors = brick.vectors[self.kind % len(brick.pairs)] * np.where(self.twin_is_second, -1.0, 1.0)[:, None]
-        return owner, self.neighbour, vectors
+        vectors = brick.vectors[self.contact_type % len(brick.pairs)]
+        return owner, self.neighbour, vectors * np.where(self.twin_is_second, -1.0, 1.0)[:, None]
 
 
 def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[Assembly, Seam]:
@@ -78,7 +81,7 @@ def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[A
         radii=np.concatenate([column.radii, body.radii]),
         brick_particle=np.concatenate([column.brick_particle, body.brick_particle]),
         pairs=np.vstack([column.pairs, body.pairs + np.int32(count)]),
-        kind=np.concatenate([column.kind, body.kind]),
+        contact_type=np.concatenate([column.contact_type, body.contact_type]),
         loose=column.loose + body.loose,
     )
     node, start = np.unique(seam["node"], return_index=True)
@@ -89,7 +92,7 @@ def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[A
         node=node + count,
         start=np.append(start, len(seam["node"])).astype(np.uint32),
         neighbour=seam["neighbour"],
-        kind=seam["kind"],
+        contact_type=seam["contact_type"],
         twin_is_second=seam["twin_is_second"],
         image=seam["image"],
     )
@@ -114,9 +117,9 @@ def _seam(
     many = last_of - first_of
     node = np.repeat(edge, many)
     entry = np.repeat(first_of, many) + np.arange(many.sum()) - np.repeat(np.cumsum(many) - many, many)
-    kind, second = contact[entry], second[entry]
-    other = np.where(second, brick.pairs[kind, 0], brick.pairs[kind, 1])
-    image = np.where(second[:, None], -brick.images[kind], brick.images[kind])
+    contact_type, second = contact[entry], second[entry]
+    other = np.where(second, brick.pairs[contact_type, 0], brick.pairs[contact_type, 1])
+    image = np.where(second[:, None], -brick.images[contact_type], brick.images[contact_type])
     tile_there = where[node] + image
     height = tile_there[:, 1]
     standing = (height >= 0) & (height < len(numbers))
@@ -124,7 +127,13 @@ def _seam(
     out = {"left": tile_there[:, 0] < 0, "right": tile_there[:, 0] >= body.copies[0]}
     absent = ~np.isin(_key(tile_there, other, brick), _key(where, body.brick_particle, brick))
     beyond = (near >= 0) & absent & np.logical_or.reduce([out[side] for side in sides])
-    columns = {"node": node, "neighbour": near, "kind": kind, "twin_is_second": second, "image": image[:, 0]}
+    columns = {
+        "node": node,
+        "neighbour": near,
+        "contact_type": contact_type,
+        "twin_is_second": second,
+        "image": image[:, 0],
+    }
     return {name: values[beyond] for name, values in columns.items()}
 
 

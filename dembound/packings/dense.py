@@ -132,7 +132,7 @@ def finish(bed: Bed, recipe: Recipe, rows: RegularRows) -> Brick:
         radii=radii,
         pairs=pairs,
         images=images,
-        rows=member,
+        edge_rows=member,
         stress=contact_stress(vectors, overlaps, bed.box),
         residual_ratio=float(np.hypot(*forces[free].T).mean() / mean),
     )

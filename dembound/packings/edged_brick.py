@@ -18,7 +18,7 @@ class EdgedBrick(DensePacking):
     The rows share the disk at the origin and are held on their lines while the core is packed around them.
     """
 
-    has_regular_edges: ClassVar[bool] = True
+    regular_sides: ClassVar[tuple[str, ...]] = ("left", "right", "bottom", "top")
 
     pattern: Literal["C"] = "C"
     edge_radius: float = quantity(

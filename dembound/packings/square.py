@@ -11,7 +11,7 @@ from dembound.packings.brick import Brick
 class Square(Packing):
     """Equal disks, one to a square cell, touching their four neighbours without force (Z section 2.3.1)."""
 
-    has_regular_edges: ClassVar[bool] = True
+    regular_sides: ClassVar[tuple[str, ...]] = ("left", "right", "bottom", "top")
 
     pattern: Literal["A"] = "A"
 
@@ -31,7 +31,7 @@ class Square(Packing):
             radii=np.full(1, self.radius),
             pairs=np.zeros((2, 2), np.int64),
             images=np.eye(2, dtype=np.int64),
-            rows=np.zeros((1, 2), bool),
+            edge_rows=np.zeros((1, 2), bool),
             stress=np.zeros(3),
             residual_ratio=0.0,
         )

@@ -19,8 +19,8 @@ class Assembly:
     positions : (n, 2) m.
     radii : (n,) m.
     brick_particle : (n,) int32, the disk of the brick that this one is a copy of (its twin).
-    pairs : (b, 2) int32, contacts i → j, sorted by i, then by kind.
-    kind : (b,) int32, the contact of the brick that this one is a copy of: its vector points from i to j.
+    pairs : (b, 2) int32, contacts i → j, sorted by i, then by contact type.
+    contact_type : (b,) int32, the contact of the brick that this one is a copy of: its vector points from i to j.
     copies : number of bricks along x and y.
     size : (2,) m, the scene: copies · brick size.
     extent : (2,) m, the body: as `size`, plus the row that closes the frame if there is one. loose : number of disks
@@ -31,7 +31,7 @@ class Assembly:
     radii: np.ndarray
     brick_particle: np.ndarray
     pairs: np.ndarray
-    kind: np.ndarray
+    contact_type: np.ndarray
     copies: tuple[int, int]
     size: np.ndarray
     extent: np.ndarray
@@ -46,7 +46,7 @@ class Assembly:
             radii=self.radii[disks],
             brick_particle=self.brick_particle[disks],
             pairs=self.pairs[chosen] - np.int32(disks.start),
-            kind=self.kind[chosen],
+            contact_type=self.contact_type[chosen],
             loose=0,
         )
 
@@ -68,7 +68,7 @@ class Assembly:
             radii=self.radii[kept],
             brick_particle=self.brick_particle[kept],
             pairs=number[self.pairs[contacts]],
-            kind=self.kind[contacts],
+            contact_type=self.contact_type[contacts],
             loose=self.loose + int(np.count_nonzero(~removed & ~kept)),
         )
         return left, np.flatnonzero(kept)
@@ -87,7 +87,7 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
     numbered along its length; within a tile they keep the order of the brick.
     """
     size = brick.size * copies
-    present = _present(brick.rows, copies, periodic)
+    present = _present(brick.edge_rows, copies, periodic)
     # tiles in order of numbers: an axis swap makes the index along the shorter side the faster one
     swap = (0, 1, 2) if size[1] <= size[0] else (1, 0, 2)
     numbers = np.full(present.shape, -1, np.int32)
@@ -95,13 +95,13 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
     ordered[present.transpose(swap)] = np.arange(np.count_nonzero(present))
     slow, fast, twin = np.nonzero(present.transpose(swap))
     tiles = np.column_stack([slow, fast] if swap[0] == 0 else [fast, slow])
-    pairs, kind = _contacts(brick, numbers, copies, periodic)
+    pairs, contact_type = _contacts(brick, numbers, copies, periodic)
     whole = Assembly(
         positions=brick.positions[twin] + tiles * brick.size,
         radii=brick.radii[twin],
         brick_particle=twin.astype(np.int32),
         pairs=pairs,
-        kind=kind,
+        contact_type=contact_type,
         copies=copies,
         size=size,
         extent=size + _closing_width(brick, periodic),
@@ -120,24 +120,23 @@ def _body(assembly: Assembly, present: np.ndarray) -> np.ndarray:
 
 def _closing_width(brick: Brick, periodic: tuple[bool, bool]) -> np.ndarray:
     """Width (2,) m that the repeated rows add along x and y: one disk, half of it beyond each outer line."""
-    return np.array(
-        [0.0 if periodic[axis] else 2.0 * float(brick.radii[brick.rows[:, axis]].max(initial=0.0)) for axis in range(2)]
-    )
+    widths = [2.0 * float(brick.radii[row].max(initial=0.0)) for row in brick.edge_rows.T]
+    return np.where(periodic, 0.0, widths)
 
 
-def _present(rows: np.ndarray, copies: tuple[int, int], periodic: tuple[bool, bool]) -> np.ndarray:
+def _present(edge_rows: np.ndarray, copies: tuple[int, int], periodic: tuple[bool, bool]) -> np.ndarray:
     """Which disks (tile x, tile y, disk) exist: all of the tiles, and the rows that close the frame."""
-    extra = [not periodic[axis] and bool(rows[:, axis].any()) for axis in range(2)]
-    present = np.ones((copies[0] + extra[0], copies[1] + extra[1], len(rows)), bool)
-    present[copies[0] :] &= rows[:, 0]
-    present[:, copies[1] :] &= rows[:, 1]
+    extra = [not periodic[axis] and bool(edge_rows[:, axis].any()) for axis in range(2)]
+    present = np.ones((copies[0] + extra[0], copies[1] + extra[1], len(edge_rows)), bool)
+    present[copies[0] :] &= edge_rows[:, 0]
+    present[:, copies[1] :] &= edge_rows[:, 1]
     return present
 
 
 def _contacts(
     brick: Brick, numbers: np.ndarray, copies: tuple[int, int], periodic: tuple[bool, bool]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs (b, 2) and kinds (b,) of all contacts whose two disks exist; numbers (tile x, tile y, disk)."""
+    """Pairs (b, 2) and contact types (b,) of all contacts whose two disks exist; numbers (tile x, tile y, disk)."""
     first, second = brick.pairs.T
     target = []
     inside = []
@@ -150,7 +149,7 @@ def _contacts(
     ends = numbers[target[0][:, None, :], target[1][None, :, :], second]
     ends[~(inside[0][:, None, :] & inside[1][None, :, :])] = -1
     exists = (starts >= 0) & (ends >= 0)
-    kind = np.nonzero(exists)[2].astype(np.int32)
+    contact_type = np.nonzero(exists)[2].astype(np.int32)
     pairs = np.column_stack([starts[exists], ends[exists]])
-    order = np.lexsort((kind, pairs[:, 0]))
-    return pairs[order], kind[order]
+    order = np.lexsort((contact_type, pairs[:, 0]))
+    return pairs[order], contact_type[order]

@@ -69,11 +69,16 @@ def line_widths(lattices: Sequence[Lattice]) -> list[float]:
 
 
 def name(lattice: Lattice) -> str:
-    """A lattice in words, such as "horizon 3, Δx = 5 mm, Δt = 1 µs"; shares other than L's in brackets."""
+    """A lattice in words, such as "horizon 3, Δx = 5 mm, Δt = 1 µs"."""
     step = f"Δt = {1e6 * lattice.time_step:g} µs" if lattice.time_step else "exact in time"
     unstable = "" if lattice.stable else ", unstable"
+    return f"horizon {horizon_in_words(lattice)}, Δx = {1e3 * lattice.spacing:.4g} mm, {step}{unstable}"
+
+
+def horizon_in_words(lattice: Lattice) -> str:
+    """The horizon of a lattice; shares of the stress that differ from L's follow in brackets."""
     shares = "" if lattice.shares is None else f" ({'/'.join(f'{share:.3g}' for share in lattice.shares)})"
-    return f"horizon {lattice.horizon}{shares}, Δx = {1e3 * lattice.spacing:.4g} mm, {step}{unstable}"
+    return f"{lattice.horizon}{shares}"
 
 
 def _exact_lines(panel: Axes, lattices: Sequence[Lattice]) -> None:

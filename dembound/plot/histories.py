@@ -27,6 +27,9 @@ MOST_PLACES = 2
 BESIDE_TWINS: tuple[Any, ...] = ("-", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 """Line style of monitors in runs with free-field twins, whose lines are dashed."""
 
+BEHIND: dict[str, Any] = {"linestyle": "--", "linewidth": 3.0, "alpha": 0.4, "zorder": 1.9}
+"""Line style of a twin: visible also below the line of a monitor with the same motion, as without a hole."""
+
 
 @styled
 def plot_histories(
@@ -86,7 +89,7 @@ def _draw(
     panel: Axes, run: Histories, monitor: str, column: int, seconds: float, label: str, style: dict[str, Any]
 ) -> None:
     """A monitor's history in one run, if it has it, and that of its twin, dashed; times in units of `seconds`."""
-    twin: dict[str, Any] = {"color": style["color"], "linestyle": "--", "linewidth": 0.9}
+    twin: dict[str, Any] = {"color": style["color"], **BEHIND}
     for name, words, looks in ((monitor, label, style), (_twin(monitor), f"{label}, free-field column", twin)):
         if name in run:
             history = run[name]

@@ -111,7 +111,9 @@ def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None
         legend.remove()
 
 
-def save(figure: Figure, path: Path) -> None:
-    """Write the figure as a PNG file, either completely or not at all."""
+def save(figure: Figure, path: Path, title: str | None = None) -> None:
+    """Write the figure as a PNG file, either completely or not at all; `title` replaces the title of the figure."""
+    if title is not None:
+        figure.suptitle(title, fontsize=11)
     with replacing(path) as part:
         figure.savefig(part, format="png")

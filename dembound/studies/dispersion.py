@@ -29,13 +29,17 @@ COLUMNS = (
     "spacing",
     "time_step",
     "wave_speed",
+    "shares",
     "wavenumber",
     "cells_per_wavelength",
     "frequency_hz",
     "phase_velocity",
     "group_velocity",
 )
-"""Columns of the table; SI units, wave numbers in rad/m."""
+"""Columns of the table; SI units, wave numbers in rad/m.
+
+Shares that differ from those of L are separated by slashes, see `Lattice`.
+"""
 
 STEPS = 20
 """Steps simulated to measure a frequency. Two would be enough; more reduce rounding errors."""
@@ -163,5 +167,6 @@ def _lines(lattice: Lattice) -> Iterator[list[str]]:
         lattice.group_velocity(wavenumber),
     )
     same = [str(value) for value in (lattice.horizon, lattice.spacing, lattice.time_step, lattice.wave_speed)]
+    same.append("/".join(f"{share:.10g}" for share in lattice.shares or ()))
     for numbers in zip(*columns, strict=True):
         yield same + ["" if np.isnan(number) else f"{number:.10g}" for number in numbers]

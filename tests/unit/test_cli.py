@@ -662,6 +662,23 @@ def test_dispersion_is_told_drawn_and_written(dembound, tmp_path) -> None:
     assert files(tmp_path) == {"dispersion.png", "table.csv"}
 
 
+def test_a_picture_may_be_given_a_title(dembound, felt, monkeypatch) -> None:
+    time, stress = felt()
+    np.savetxt("gauge.txt", np.column_stack([time, 1e6 * stress]))
+    titles = []
+
+    def savefig(figure: Figure, path: Path, **_: object) -> None:
+        path.touch()
+        titles.append(figure.get_suptitle())
+
+    monkeypatch.setattr(Figure, "savefig", savefig)
+    for arguments in (["dispersion"], ["gauge", "gauge.txt", "--position", 0.6, "--length", 0.99, "-o", "gauge.png"]):
+        assert dembound(*arguments).code == 0
+        assert dembound(*arguments, "--title", "figure 1").code == 0
+        own, given = titles[-2:]
+        assert own != given == "figure 1"
+
+
 def test_bars_of_cases_are_told_and_simulated(dembound, tmp_path) -> None:
     tables = {
         "bar": {"length": 0.5, "spacing": 0.005, "density": 2620.0, "wave_speed": 2500.0, "strength": 1e7},

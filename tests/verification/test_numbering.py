@@ -31,14 +31,14 @@ def renumbered(scene, number):
     """The scene under new numbers, put together as if it had been tiled so."""
     old, body = np.argsort(number), scene.assembly
     pairs = number[body.pairs]
-    order = np.lexsort((body.kind, pairs[:, 0]))
+    order = np.lexsort((body.contact_type, pairs[:, 0]))
     body = replace(
         body,
         positions=body.positions[old],
         radii=body.radii[old],
         brick_particle=body.brick_particle[old],
         pairs=pairs[order],
-        kind=body.kind[order],
+        contact_type=body.contact_type[order],
     )
     edges = find_edges(body, (False, False))
     scene = replace(scene, assembly=body, rows=(contact_rows(body, scene.ground),), edges=edges)
@@ -55,8 +55,8 @@ def rows_in_old_order(scene, number):
         0,
         start.astype(np.uint32),
         number[contacts.neighbour[entries]].astype(np.uint32),
-        contacts.kind[entries],
-        contacts.palette,
+        contacts.contact_type[entries],
+        contacts.constants,
     )
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from dembound.casefile.messages import numbered, show
+from dembound.casefile.messages import corners, numbered
 from dembound.holes import Hole
 
 
@@ -24,7 +24,7 @@ def _outside(place: str, hole: Hole, size: tuple[float, float]) -> Iterator[str]
     """A hole outside the scene."""
     x0, y0, x1, y1 = hole.box
     if x1 <= 0.0 or y1 <= 0.0 or x0 >= size[0] or y0 >= size[1]:
-        yield f"{place}: lies outside the scene, [0, 0] to {show(size)} (m)"
+        yield f"{place}: lies outside the scene, {corners(*size)}"
 
 
 def _places_in_it(place: str, hole: Hole, key: str, tables: Any) -> Iterator[str]:

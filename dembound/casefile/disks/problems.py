@@ -10,7 +10,7 @@ from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
 from dembound.casefile.disks.static_problems import static_problems
-from dembound.casefile.messages import numbered, show
+from dembound.casefile.messages import corners, numbered, show
 from dembound.packings import Packing
 
 
@@ -72,4 +72,4 @@ def _places_outside(key: str, tables: Sequence[Load | Monitor | None], size: tup
         for where in ("position", "region"):
             values = getattr(table, where, None) or ()
             if not all(0.0 <= value <= size[i % 2] for i, value in enumerate(values)):
-                yield f"{place}.{where}: is {show(values)}, must be in the scene, [0, 0] to {show(size)} (m)"
+                yield f"{place}.{where}: is {show(values)}, must be in the scene, {corners(*size)}"

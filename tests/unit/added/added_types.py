@@ -58,6 +58,8 @@ class OtherInput(Dashpots, Driven):
 class Hexagonal(Packing):
     """Equal disks that touch six neighbours without force; two in a brick."""
 
+    regular_sides: ClassVar[tuple[str, ...]] = ("bottom", "top")
+
     pattern: Literal["hexagonal"]
 
     @property
@@ -74,7 +76,7 @@ class Hexagonal(Packing):
             radii=np.full(2, self.radius),
             pairs=np.array([[0, 0], [1, 1], [0, 1], [0, 1], [0, 1], [0, 1]]),
             images=np.array([[1, 0], [1, 0], [0, 0], [-1, 0], [0, -1], [-1, -1]]),
-            rows=np.zeros((2, 2), bool),
+            edge_rows=np.zeros((2, 2), bool),
             stress=np.zeros(3),
             residual_ratio=0.0,
         )

@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +24,8 @@ REGISTERED = {
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory) -> dict[str, Any]:
-    """What the cases of use_them.py come to beside a package that registers added_types.py."""
+def python(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Runs Python beside a package that registers added_types.py."""
     site = tmp_path_factory.mktemp("site")
     shutil.copy(HERE / "added_types.py", site)
     info = site / "added-1.0.dist-info"
@@ -37,15 +38,25 @@ def found(tmp_path_factory) -> dict[str, Any]:
     groups[4] += "y = added_types:Nameless\n"
     (info / "entry_points.txt").write_text("".join(groups))
     path = os.pathsep.join([str(site), *filter(None, [os.environ.get("PYTHONPATH")])])
-    done = subprocess.run(
-        [sys.executable, str(HERE / "use_them.py")],
-        env={**os.environ, "PYTHONPATH": path},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+
+    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+        done = subprocess.run(
+            [sys.executable, *arguments],
+            env={**os.environ, "PYTHONPATH": path},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        return done
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def found(python) -> dict[str, Any]:
+    """What the cases of use_them.py come to."""
+    return json.loads(python(str(HERE / "use_them.py")).stdout)
 
 
 def test_a_law_without_moments_closes_its_books(found) -> None:
@@ -85,8 +96,17 @@ def test_a_packing_of_its_own_brick(found) -> None:
     assert found["not whole"] == [
         "packing.size: 5 m is not a whole number of bricks of 0.8660254038 m; 4.330127019 or 5.196152423 would be"
     ]
-    assert found["half cells"] == [
-        "boundary.right.half_mass: needs sides of disks in one row; pattern hexagonal has none"
+
+
+def test_a_packing_has_half_cells_on_its_regular_sides(found) -> None:
+    # ten disks of 0.25 m to a row, six bricks of 0.866 m high: of every side one row, that of the other beside it
+    # reaches past the corner
+    for side, first, height in (("bottom", 0.125, np.sqrt(0.75) / 4.0), ("top", 0.375, 5.75 * np.sqrt(0.75))):
+        positions, fraction = found["half cells"][side]
+        np.testing.assert_allclose(positions, [(first + 0.5 * i, height) for i in range(10)], rtol=1e-6)
+        assert fraction == [0.5] * 10
+    assert found["no half cells"] == [
+        "boundary.right.half_mass: needs a side of disks in one row; pattern hexagonal has such bottom and top"
     ]
 
 
@@ -101,6 +121,11 @@ def test_what_cannot_be_used_is_said_and_left_out(found) -> None:
     assert stranger == "dembound.holes: z (added_types:Stranger) is not derived from Hole"
     assert nameless.startswith("dembound.waves: y (added_types:Nameless) lacks _displacement_shape, _velocity_shape, ")
     assert namesake == 'dembound.laws: y (added_types:Namesake) is called "elastic", which is taken'
+
+
+def test_the_command_line_says_it_without_python(python, found) -> None:
+    said = python("-m", "dembound", "--version").stderr.splitlines()
+    assert said == [f"warning: {warning}" for warning in found["warnings"]]
 
 
 def test_a_side_whose_wave_comes_too_late_is_not_calibrated(found) -> None:

@@ -106,11 +106,23 @@ def refusal(text: str, **changes: object) -> list[str]:
     return []
 
 
+def halved(made) -> dict[str, list]:
+    """Positions of the disks of the bottom and the top of a scene, and the part of their mass that they have."""
+    scene = plan(made).scene
+    edges = {side: scene.edges[side].nodes for side in ("bottom", "top")}
+    return {
+        side: [scene.assembly.positions[nodes].tolist(), scene.cell_fraction[nodes].tolist()]
+        for side, nodes in edges.items()
+    }
+
+
 shaft = {"type": "diamond", "name": "shaft", "centre": [12.0, 2.5], "half": 1.2}
 periodic = {"type": "periodic"}
 strip = {"boundary.bottom": periodic, "boundary.top": periodic, "packing.size": [20.0, 2.0], "motion.held": ["x"]}
 sent = case(GROUND, **strip, **{"boundary.left.beta_s": 0.9})
 hexagons = {"packing.pattern": "hexagonal", "material.law": "elastic"}
+wide = {"packing.size": [5.0, 5.19615]}
+half = {"type": "viscous", "half_mass": True}
 full = calibrate(sent, "right", full=True)
 lattices = lattices_of(case(BAR))
 wavenumbers = lattices[0].shortest * np.array([0.2, 0.5, 0.9])
@@ -120,10 +132,11 @@ json.dump(
         "types": [table.__name__ for table in BOUNDARIES],
         "warnings": [str(each.message) for each in said],
         "linear": stepped(case(GROUND, hole=[shaft])),
-        "hexagonal": stepped(case(GROUND, **hexagons, **{"packing.size": [5.0, 5.19615]})),
+        "hexagonal": stepped(case(GROUND, **hexagons, **wide)),
         "counted": stepped(case(GROUND.replace("size = [20.0, 5.0]", "bricks = [8, 3]"), **hexagons)),
         "not whole": refusal(GROUND, **hexagons),
-        "half cells": refusal(GROUND, **hexagons, **{"packing.size": [5.0, 5.19615], "boundary.right.half_mass": True}),
+        "half cells": halved(case(GROUND, **hexagons, **wide, **{"boundary.bottom": half, "boundary.top": half})),
+        "no half cells": refusal(GROUND, **hexagons, **wide, **{"boundary.right.half_mass": True}),
         "unknown": refusal(GROUND, **{"boundary.left.type": "quarter_input"}),
         "across": refusal(GROUND, **{"motion.held": ["y"]}),
         "calibrated": [full.kind, full.result, full.ratio[-1]],

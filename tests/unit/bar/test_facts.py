@@ -1,11 +1,14 @@
 """What a bar's case would come to."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from dembound.bar.facts import bar_facts, cells_of_waves, method_in_words
 from dembound.bar.scene import build_bar
 from dembound.bar.warnings import bar_warnings
+from dembound.boundaries import Viscous
 from dembound.check import check
 from dembound.exact.dispersion import cells_per_wavelength, courant_limit
 from dembound.running import plan
@@ -20,7 +23,7 @@ def facts_of(case) -> dict[str, str]:
 
 
 def test_facts_are_those_of_the_bar(spalling) -> None:
-    ends = {"boundary.right": {"type": "viscous"}, "bar.attenuation": 0.2}
+    ends = {"boundary.right": {"type": "viscous", "beta_p": 0.9}, "bar.attenuation": 0.2}
     facts = facts_of(spalling(ends))
 
     assert facts["nodes"] == "41, 0.025 m apart"
@@ -30,9 +33,20 @@ def test_facts_are_those_of_the_bar(spalling) -> None:
     assert facts["stiffness"] == "E = 2.5 GPa, c = 1000 m/s"
     assert facts["strength"] == "8 MPa, critical stretch 0.0032"
     assert facts["attenuation"] == "α = 0.2 1/m"
-    assert (facts["left end"], facts["right end"]) == ("free", "viscous")
+    assert (facts["left end"], facts["right end"]) == ("free", "viscous, β_P = 0.9")
     assert facts["load hit"] == "up to 12 MPa, 12 MPa times wave hit, on 3 node(s) at the left end"
     assert facts["monitor gauge"] == "node 21 at 0.525 m"
+
+
+def test_numbers_of_an_end_of_another_type_are_told(spalling) -> None:
+    class Layered(Viscous):
+        """A dashpot whose description includes its depth."""
+
+        def describe(self, edge, medium):
+            return super().describe(edge, medium) | {"depth": 2.5}
+
+    case = replace(spalling(), boundary={"right": Layered(type="viscous")})
+    assert bar_facts(build_bar(case), 2.5e-5)["right end"] == "viscous, β_P = 1, depth = 2.5"
 
 
 def test_what_a_bar_lacks_is_not_told(spalling) -> None:

@@ -1,11 +1,14 @@
 """What a run of a bar will do that was probably not meant."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from dembound.bar.facts import cells_of_waves
 from dembound.bar.scene import build_bar
 from dembound.bar.warnings import bar_warnings, ends_too_soon, stress_beside_strength
+from dembound.boundaries import ViscousInput
 from dembound.exact.bar import triangle_spall
 
 UNBROKEN = {"bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}}
@@ -110,14 +113,14 @@ def test_a_wave_is_compared_with_the_way_along_the_bar(spalling) -> None:
 @pytest.mark.parametrize(("pressure", "said"), [(808.0, None), (-792.0, "792 Pa, 0.0099 % of")])
 def test_a_weak_load_beside_the_strength(spalling, pressure: float, said: str | None) -> None:
     load = {"name": "blow", "pressure": pressure, "wave": "hit"}
-    expected = [] if said is None else [f"load.blow: its pressure is {said} bar.strength, 8e+06 Pa: Pa and MPa?"]
+    expected = [] if said is None else [f"load.blow: its pressure is {said} bar.strength, 8 MPa: Pa and MPa?"]
     assert of_key("load.blow", bar_warnings(build_bar(spalling({"load": [load]})), 2.5e-5)) == expected
 
 
 @pytest.mark.parametrize(("pressure", "warned"), [(7.92e9, False), (8.08e9, True)])
 def test_a_load_far_beyond_the_strength(spalling, pressure: float, warned: bool) -> None:
     load = {"name": "blow", "pressure": pressure, "wave": "hit"}
-    said = "load.blow: its pressure is 8.08e+09 Pa, 1,010 times bar.strength, 8e+06 Pa: Pa and MPa?"
+    said = "load.blow: its pressure is 8080 MPa, 1,010 times bar.strength, 8 MPa: Pa and MPa?"
     assert bar_warnings(build_bar(spalling({**EXACT, "load": [load]})), 2.5e-5) == warned * [said]
 
 
@@ -128,7 +131,7 @@ def test_waves_at_ends_beside_the_strength(spalling) -> None:
         for kind in ("viscous_input", "velocity"):
             ends = {"boundary.left": {"type": kind, "wave_p": "hit"}, "wave.hit.amplitude": velocity}
             found = list(stress_beside_strength(spalling({"bar": bar, "load": [], **ends})))
-            said = "wave.hit: its stress ρcv is 775 Pa, 0.0097 % of bar.critical_stretch, 8e+06 Pa: Pa and MPa?"
+            said = "wave.hit: its stress ρcv is 775 Pa, 0.0097 % of bar.critical_stretch, 8 MPa: Pa and MPa?"
             assert found == weak * [said]
 
 
@@ -202,6 +205,51 @@ def test_a_dashpot_takes_half_of_a_load(spalling) -> None:
 )
 def test_there_is_nothing_to_wait_for(spalling, changes: dict) -> None:
     assert list(ends_too_soon(spalling(ends_at(1e-4, changes)))) == []
+
+
+class LateInput(ViscousInput):
+    """Transmits its wave half a millisecond later, with twice the amplitude."""
+
+    def support(self, edge, medium, waves, supports) -> None:
+        ((name, damping),) = zip(self.waves.values(), self.dampings(edge, medium)[0], strict=True)
+        supports.add(edge.nodes, 0, damping=damping)
+        supports.add(edge.nodes, 0, drive=4.0 * damping, signal=lambda t: waves[name].velocity(t - 5e-4))
+
+
+class Grip(LateInput):
+    """Moves as its wave, half a millisecond later."""
+
+    def prescribed(self, normal_axis: int) -> tuple[int, ...]:
+        return (0,)
+
+    def support(self, edge, medium, waves, supports) -> None:
+        (name,) = self.waves.values()
+        supports.add(edge.nodes, 0, drive=1.0, signal=lambda t: waves[name].velocity(t - 5e-4), prescribed=True)
+
+
+@pytest.mark.parametrize(("end", "factor"), [(LateInput, 2.0), (Grip, 1.0)])
+def test_a_wave_is_where_and_as_strong_as_its_boundary_lets_it_in(spalling, end: type, factor: float) -> None:
+    # ρc = 2.5e6 Pa·s/m: 12 MPa, of which the strength is 8
+    _, spalled = triangle_spall(1.0, 1000.0, 2e-4, 2e-4, 12e6, 8e6)
+    case = spalling({"load": [], "wave.hit.amplitude": 4.8 / factor, "run.duration": 1.4e-3})
+    late = {"left": end(type="viscous_input", wave_p="hit")}
+
+    (warning,) = ends_too_soon(replace(case, boundary=late))
+    assert float(warning.split()[-2]) == pytest.approx(5e-4 + spalled, abs=4e-6)
+    longer = replace(case, run=case.run.model_copy(update={"duration": 5e-4 + spalled + 5e-6}))
+    assert not list(ends_too_soon(replace(longer, boundary=late)))
+
+
+def test_a_wave_that_never_comes_in_is_not_told_of(spalling) -> None:
+    case = spalling({"load": [], "run.duration": 4e-4})
+    assert not list(ends_too_soon(replace(case, boundary={"left": LateInput(type="viscous_input", wave_p="hit")})))
+
+
+def test_the_stress_of_a_wave_is_what_its_boundary_lets_in(spalling) -> None:
+    for beta, amplitude in ((1.0, 3.1e-4), (3.0, 3.1e-4 / 1.5)):  # 2β/(1 + β) of it
+        ends = {"boundary.left": {"type": "viscous_input", "wave_p": "hit", "beta_p": beta}}
+        found = list(stress_beside_strength(spalling({"load": [], **ends, "wave.hit.amplitude": amplitude})))
+        assert found == ["wave.hit: its stress ρcv is 775 Pa, 0.0097 % of bar.strength, 8 MPa: Pa and MPa?"]
 
 
 def test_a_pressure_that_stays_makes_no_tension_but_a_crest(spalling) -> None:

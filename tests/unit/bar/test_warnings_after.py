@@ -84,7 +84,7 @@ def test_a_bar_that_nothing_pulls_is_warned_of(run) -> None:
     (warning,) = run(FIRM)
 
     assert warning.startswith("bar: the largest tension reached is ")
-    assert warning.endswith(" % of the strength, 8e+06 Pa; nothing can break")
+    assert warning.endswith(" % of the strength, 8 MPa; nothing can break")
     assert run({**FIRM, "bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}}) == []
 
 
@@ -93,7 +93,7 @@ def test_the_largest_tension_beside_the_strength(spalling, tmp_path, tension: fl
     folder = run_case(spalling({"output.pictures": False, **FIRM}), tmp_path)
     with h5py.File(folder / "run.h5", "r+") as file:
         file["histories/gauge/stress"][3] = tension
-    said = "bar: the largest tension reached is 3.9e+05 Pa, 4.9 % of the strength, 8e+06 Pa; nothing can break"
+    said = "bar: the largest tension reached is 0.39 MPa, 4.9 % of the strength, 8 MPa; nothing can break"
 
     assert warnings_after_bar(build_bar(spalling(FIRM)), _summary(folder), folder / "run.h5") == warned * [said]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.boundaries.exposed import exposed
+from dembound.boundaries.exposed import exposed, outer_row
 
 COLUMNS, ROWS = 6, 4
 
@@ -76,6 +76,25 @@ def test_a_periodic_side_sees_disks_reach_over_its_ends() -> None:
 
     assert exposed(positions, radii, "left", period=4.0).tolist() == [1, 2, 3, 4]
     assert exposed(positions, radii, "left").tolist() == [0, 1, 2, 3, 4]
+
+
+@pytest.mark.parametrize(("side", "seen"), [("bottom", [0, 1, 2, 5]), ("top", [6, 7, 8, 5])])
+def test_an_outer_row_ends_where_the_next_one_is_seen_past_it(side: str, seen: list[int]) -> None:
+    # three rows of three, hexagonally: the middle one reaches past the corners on the right
+    x, y = np.meshgrid(np.arange(3.0), np.arange(3.0))
+    positions, radii = np.column_stack([(x + 0.5 * (y == 1.0)).ravel(), np.sqrt(0.75) * y.ravel()]), np.full(9, 0.5)
+    rounded = positions + 1e-12 * np.random.default_rng(0).normal(size=positions.shape)
+
+    assert exposed(positions, radii, side).tolist() == seen
+    for places in (positions, rounded):
+        assert outer_row(places, radii, side).tolist() == seen[:3]
+
+
+@pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
+def test_the_outer_row_of_a_flat_side_is_all_that_is_exposed(side: str) -> None:
+    positions, radii = lattice()
+
+    assert outer_row(positions, radii, side).tolist() == exposed(positions, radii, side).tolist()
 
 
 def test_a_rough_side_is_seen_to_its_ground_but_not_across_the_scene() -> None:

@@ -7,7 +7,7 @@ import pytest
 import tomli_w
 from pydantic import Field, TypeAdapter, ValidationError
 
-from dembound.casefile.messages import allowed, describe, show, unknown
+from dembound.casefile.messages import allowed, corners, describe, show, unknown
 from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.table import Table, quantity
@@ -131,3 +131,7 @@ def test_allowed_puts_schemas_into_words() -> None:
 def test_unknown_offers_the_nearest_name_only_if_there_is_one() -> None:
     assert unknown("key", "kratoi", ["fric", "kratio"]) == "unknown key; allowed: fric, kratio (did you mean kratio?)"
     assert unknown("key", "zzz", ["fric", "kratio"]) == "unknown key; allowed: fric, kratio"
+
+
+def test_a_scene_is_told_without_the_rounding_of_its_bricks() -> None:
+    assert corners(3 * 0.1, 6.0 * 0.8660254037844386) == "[0, 0] to [0.3, 5.196152423] (m)"

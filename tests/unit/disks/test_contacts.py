@@ -59,7 +59,7 @@ def ordered(i: int, j: int, image: np.ndarray) -> Key:
 def keys(contacts: ContactList) -> list[Key]:
     """All listed pairs, their images told from the vectors they started with."""
     pairs, places = contacts.arrays, contacts.assembly.positions
-    beyond = pairs.palette[pairs.kind, :2] - (places[pairs.second] - places[pairs.first])
+    beyond = pairs.constants[pairs.contact_type, :2] - (places[pairs.second] - places[pairs.first])
     images = np.rint(beyond / contacts.assembly.size).astype(int)
     # vectors are those of the brick or differences of places
     np.testing.assert_allclose(beyond, images * contacts.assembly.size, atol=1e-12)
@@ -140,19 +140,29 @@ def test_pairs_that_stay_keep_their_memory_and_new_ones_have_none(contacts: Cont
     pairs.state[::5] = TENSION
     pairs.shear[:], pairs.slip[:] = np.arange(count) + 1.0, -np.arange(count) - 1.0
     memory = {
-        key: (*values, *line)
-        for key, *values, line in zip(
-            keys(contacts), pairs.state, pairs.shear, pairs.slip, np.abs(pairs.palette[pairs.kind]), strict=True
+        key: (*values, *row)
+        for key, *values, row in zip(
+            keys(contacts),
+            pairs.state,
+            pairs.shear,
+            pairs.slip,
+            np.abs(pairs.constants[pairs.contact_type]),
+            strict=True,
         )
     }
     for seed in (1, 2):
         contacts.search(shaken(contacts, 0.1, seed))
         listed = contacts.arrays
-        for key, state, shear, slip, line in zip(
-            keys(contacts), listed.state, listed.shear, listed.slip, np.abs(listed.palette[listed.kind]), strict=True
+        for key, state, shear, slip, row in zip(
+            keys(contacts),
+            listed.state,
+            listed.shear,
+            listed.slip,
+            np.abs(listed.constants[listed.contact_type]),
+            strict=True,
         ):
             if key in memory and shear != 0.0:  # not lost and found again
-                assert (state, shear, slip, *line) == memory[key]
+                assert (state, shear, slip, *row) == memory[key]
             else:
                 assert (state, shear, slip) == (NONE, 0.0, 0.0)
     assert np.count_nonzero(contacts.arrays.shear) >= np.count_nonzero(pairs.state == INTACT)
@@ -169,12 +179,12 @@ def test_a_search_changes_no_force(contacts: ContactList) -> None:
     np.testing.assert_allclose(forces_of(contacts, moved), before, rtol=0.0, atol=1e-14 * np.abs(before).max() * 10.0)
 
 
-def test_the_palette_does_not_grow_from_search_to_search(contacts: ContactList) -> None:
+def test_the_constants_do_not_grow_from_search_to_search(contacts: ContactList) -> None:
     own = 2 * len(contacts.ground.brick.pairs)  # whole and half
     for seed in range(30):
         contacts.search(shaken(contacts, 0.2, seed))
-        others = contacts.arrays.kind >= own
-        assert len(contacts.arrays.palette) == own + len(np.unique(contacts.arrays.kind[others]))
+        others = contacts.arrays.contact_type >= own
+        assert len(contacts.arrays.constants) == own + len(np.unique(contacts.arrays.contact_type[others]))
 
 
 def test_pairs_are_listed_in_one_order_whatever_went_before(scene) -> None:
@@ -259,7 +269,7 @@ def test_bonds_and_contacts_that_push_count_as_neighbours(scene) -> None:
     forces_of(contacts, still(contacts))
     pairs = contacts.arrays
     radii = contacts.assembly.radii
-    overlaps = radii[pairs.first] + radii[pairs.second] > pairs.palette[pairs.kind, 2]
+    overlaps = radii[pairs.first] + radii[pairs.second] > pairs.constants[pairs.contact_type, 2]
     pairs.state[pairs.state == INTACT] = SHEAR
     ends = np.concatenate([pairs.first[overlaps], pairs.second[overlaps]])
 
@@ -297,10 +307,11 @@ def test_with_the_geometry_of_the_start_nothing_gives_way(scene) -> None:
 def test_arms_reach_to_the_contacts_and_to_the_ends_of_the_bonds(scene, share: float) -> None:
     body = scene(**{"material.pb_rmul": share})
     contacts = list_of(body)
-    lines, radii = plain_contacts(body.ground, body.assembly).palette[body.assembly.kind], body.assembly.radii
+    radii = body.assembly.radii
+    rows = plain_contacts(body.ground, body.assembly).constants[body.assembly.contact_type]
     reached = np.zeros(len(radii))
     for particle, sign in zip(body.assembly.pairs.T, (1.0, -1.0), strict=True):
-        np.maximum.at(reached, particle, 0.5 * lines[:, 2] + sign * lines[:, 4])  # half the distance and (Ri − Rj)/2
+        np.maximum.at(reached, particle, 0.5 * rows[:, 2] + sign * rows[:, 4])  # half the distance and (Ri − Rj)/2
         np.maximum.at(reached, particle, share * radii[body.assembly.pairs].min(axis=1))
 
     # bonds are `share` times the smaller disk's radius long to either side; 1e-15 is rounding
@@ -319,7 +330,7 @@ def test_the_elastic_law_has_its_contacts_and_looks_for_no_others(scene) -> None
     assert len(contacts.arrays.first) == len(body.assembly.pairs)
     order = np.lexsort((plain.second, plain.first))
     assert np.array_equal(contacts.arrays.second, plain.second[order])
-    assert np.array_equal(contacts.arrays.palette, plain.palette)
+    assert np.array_equal(contacts.arrays.constants, plain.constants)
 
 
 @pytest.mark.parametrize("sides", SIDES)

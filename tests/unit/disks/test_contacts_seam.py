@@ -64,9 +64,9 @@ def check_ends(beside: DiskSystem) -> None:
     assert len(ends) == len(seam.neighbour)
     assert np.array_equal(disks[side, column], twin)
     assert np.array_equal(disks[1 - side, column], seam.neighbour)
-    outward = np.where(side, -1.0, 1.0)[:, None] * pairs.palette[pairs.kind[pair], :2]
+    outward = np.where(side, -1.0, 1.0)[:, None] * pairs.constants[pairs.contact_type[pair], :2]
     brick = beside.scene.ground.brick
-    expected = np.where(seam.twin_is_second, -1.0, 1.0)[:, None] * np.tile(brick.vectors, (2, 1))[seam.kind]
+    expected = np.where(seam.twin_is_second, -1.0, 1.0)[:, None] * np.tile(brick.vectors, (2, 1))[seam.contact_type]
     assert np.array_equal(outward, expected)
 
 
@@ -117,7 +117,7 @@ def plain_near(
 def listed(contacts: ContactList, ground: DiskScene, width: float) -> list[tuple[int, ...]]:
     """All pairs (i, j, periods) of a list as `plain_near` has them."""
     pairs, places = contacts.arrays, ground.positions
-    beyond = pairs.palette[pairs.kind, :2] - (places[pairs.second] - places[pairs.first])
+    beyond = pairs.constants[pairs.contact_type, :2] - (places[pairs.second] - places[pairs.first])
     images = np.rint(beyond[:, 0] / width)
     return [
         tuple(int(number) for number in min((i, j, image), (j, i, -image)))
@@ -185,7 +185,9 @@ def twins_keys(lists: dict[str, ContactList], ground: DiskScene) -> list[tuple[i
     """Of each pair (i, j, periods) of its twin in the column, as `plain_near` has them."""
     places, twin = ground.positions, ground.seam.twin
     first, second = twin[both(lists, "first")], twin[both(lists, "second")]
-    vectors = np.concatenate([contacts.arrays.palette[contacts.arrays.kind, :2] for contacts in lists.values()])
+    vectors = np.concatenate(
+        [contacts.arrays.constants[contacts.arrays.contact_type, :2] for contacts in lists.values()]
+    )
     images = np.rint((vectors - (places[second] - places[first]))[:, 0] / ground.seam.width)
     return [
         tuple(int(number) for number in min((i, j, image), (j, i, -image)))

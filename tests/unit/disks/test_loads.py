@@ -21,7 +21,7 @@ def row() -> Assembly:
         radii=numbers + 1.0,
         brick_particle=numbers,
         pairs=np.zeros((0, 2), np.int32),
-        kind=numbers[:0],
+        contact_type=numbers[:0],
         copies=(1, 1),
         size=np.ones(2),
         extent=np.ones(2),

@@ -40,8 +40,8 @@ def test_every_contact_stands_in_two_rows(case: Case) -> None:
     assert (rows.begin, len(rows.start)) == (0, scene.count + 1)
     assert list(zip(owner, rows.neighbour, strict=True)) == expected
     # seen from either end, whole and half
-    assert rows.palette.shape == (4 * len(scene.ground.brick.pairs), 6)
-    assert all(array.dtype == np.uint32 for array in (rows.start, rows.neighbour, rows.kind))
+    assert rows.constants.shape == (4 * len(scene.ground.brick.pairs), 6)
+    assert all(array.dtype == np.uint32 for array in (rows.start, rows.neighbour, rows.contact_type))
 
 
 def forces(scene: DiskScene, u: np.ndarray) -> np.ndarray:
@@ -51,13 +51,13 @@ def forces(scene: DiskScene, u: np.ndarray) -> np.ndarray:
     return found
 
 
-def test_rows_and_palette_make_the_forces_of_the_assemblys_contacts(case: Case) -> None:
+def test_rows_and_constants_make_the_forces_of_the_assemblys_contacts(case: Case) -> None:
     scene = build(case)
     body, law = scene.assembly, scene.ground.stiffness
     halves = scene.edges["right"].nodes if case.boundary["right"].half_mass else []
     u = np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count))
     expected = np.zeros_like(u)
-    for (i, j), k in zip(body.pairs, body.kind % len(law.normal), strict=True):
+    for (i, j), k in zip(body.pairs, body.contact_type % len(law.normal), strict=True):
         share = 0.5 if i in halves and j in halves else 1.0
         along = body.positions[j] - body.positions[i]
         n = along / np.hypot(*along)
@@ -203,7 +203,7 @@ def test_a_gap_without_a_bond_carries_nothing(bar) -> None:
     )
 
     assert (scene.ground.brick.gaps > 0.0).any()
-    assert all(np.isfinite(rows.palette).all() for rows in scene.rows)
+    assert all(np.isfinite(rows.constants).all() for rows in scene.rows)
 
 
 TUNNEL = {"name": "tunnel", "type": "circle", "centre": [6.0, 5.0], "radius": 2.0}

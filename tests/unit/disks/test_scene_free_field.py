@@ -135,9 +135,9 @@ def test_along_half_cells_the_seam_is_of_half_contacts(ground) -> None:
     low = scene.assembly.positions[np.repeat(seam.node, seam.contact_counts), 1] == 0.25
 
     assert 0 < np.count_nonzero(low) < len(low)
-    assert np.array_equal(seam.kind >= whole, low)
+    assert np.array_equal(seam.contact_type >= whole, low)
     along = np.isin(scene.assembly.pairs, halves).all(axis=1)
-    assert np.array_equal(scene.assembly.kind >= whole, along)
+    assert np.array_equal(scene.assembly.contact_type >= whole, along)
     # column and body alike: a row of 8 disks has 7 contacts, the column's one disk touches itself
     assert np.count_nonzero(along) == 8
     assert set(scene.mass[halves]) == {0.5 * scene.ground.mass[0]}
@@ -156,7 +156,7 @@ def test_boundaries_that_are_built_into_the_body_build_it_anew(ground, change: s
     for before, after in ((plain, changed), (changed, plain)):
         found, expected = with_boundaries(build(before), after), build(after)
         assert np.array_equal(found.mass, expected.mass)
-        assert np.array_equal(found.assembly.kind, expected.assembly.kind)
+        assert np.array_equal(found.assembly.contact_type, expected.assembly.contact_type)
         assert (found.seam is None) == (expected.seam is None)
         if expected.seam is not None:
             assert np.array_equal(found.seam.node, expected.seam.node)
@@ -256,9 +256,9 @@ def test_a_column_alone_has_the_contacts_of_that_beside_the_body(beside: tuple[D
     beside, (alone,) = scene.rows[0], column.rows
 
     assert np.array_equal(column.assembly.pairs, scene.assembly.pairs[inside])
-    assert np.array_equal(column.assembly.kind, scene.assembly.kind[inside])
+    assert np.array_equal(column.assembly.contact_type, scene.assembly.contact_type[inside])
     assert alone.begin == beside.begin == 0
-    for name in ("start", "neighbour", "kind", "palette"):
+    for name in ("start", "neighbour", "contact_type", "constants"):
         assert np.array_equal(getattr(alone, name), getattr(beside, name))
     assert column.contact_lists()["body"].periods == scene.contact_lists()["column"].periods == (scene.seam.width, None)
 

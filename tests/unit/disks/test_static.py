@@ -89,7 +89,7 @@ def test_mean_stress_is_that_of_the_contacts_inside(bar) -> None:
     contacts = body.contact_lists()["body"]
     # one force on the first disk of all pairs along x, another along y
     pairs = contacts.arrays
-    pairs.force[:, :2] = np.where(np.abs(pairs.palette[pairs.kind, :1]) > 0.0, [3.0, 4.0], [5.0, 6.0])
+    pairs.force[:, :2] = np.where(np.abs(pairs.constants[pairs.contact_type, :1]) > 0.0, [3.0, 4.0], [5.0, 6.0])
     stress = mean_stress(body, particle_stress(body, pairs, np.zeros((3, 256)), elastic=False))
 
     # f ⊗ d / D² with d = (D, 0) or (0, D), the shear the mean of both

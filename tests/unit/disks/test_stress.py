@@ -48,13 +48,13 @@ def test_half_cells_answer_as_whole_ones_do(bar) -> None:
     displacement = np.stack([xx * x, yy * y, 0.0 * x])
     stress = elastic_stress(scene, displacement)
 
-    assert set(scene.share) == {0.25, 0.5, 1.0}
+    assert set(scene.cell_fraction) == {0.25, 0.5, 1.0}
     kept = (x < 3.5) & (y < 3.5)  # right and top are whole cells with one contact less
     # rounding as above
     np.testing.assert_allclose(stress[kept, :2], np.tile([K * xx, K * yy], (kept.sum(), 1)), atol=1e-14 * K * abs(yy))
     # a scene this small is averaged whole, disks of one size by what they have of their cells
-    mean = mean_stress(scene, np.repeat(scene.share[:, None], 3, axis=1))
-    np.testing.assert_allclose(mean, (scene.share**2).sum() / scene.share.sum(), rtol=1e-12)
+    mean = mean_stress(scene, np.repeat(scene.cell_fraction[:, None], 3, axis=1))
+    np.testing.assert_allclose(mean, (scene.cell_fraction**2).sum() / scene.cell_fraction.sum(), rtol=1e-12)
 
 
 @pytest.mark.parametrize("piece", [100, module.PIECE])

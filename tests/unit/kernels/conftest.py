@@ -157,15 +157,15 @@ class PlainPairs:
     def strain(self, c, u_i, u_j, v_i, v_j, step):
         """Normal, arms, stretch, shear and its velocity along the normal of a pair."""
         p, geometry = self.arrays, self.limits.geometry
-        line = p.palette[p.kind[c]]
+        row = p.constants[p.contact_type[c]]
         apart, along = (u_j - u_i)[:2], (v_j - v_i)[:2]
         still = geometry == REFERENCE or (geometry == BONDED and p.state[c] == INTACT)
-        vector = line[:2] if still else line[:2] + apart
+        vector = row[:2] if still else row[:2] + apart
         length = np.hypot(*vector)
         n = vector / length
         t = np.array([-n[1], n[0]])
-        arms = np.array([length / 2.0 + line[4], length / 2.0 - line[4]])
-        stretch = n @ apart if still else length - line[2]
+        arms = np.array([length / 2.0 + row[4], length / 2.0 - row[4]])
+        stretch = n @ apart if still else length - row[2]
         if still:
             shear = t @ apart - arms @ [u_i[2], u_j[2]]
         else:
@@ -175,7 +175,7 @@ class PlainPairs:
     def _push_one(self, c, u_i, u_j, v_i, v_j, step, number):
         """Force on the first disk, and the moments on both."""
         p, limits = self.arrays, self.limits
-        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend = p.palette[p.kind[c]]
+        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend = p.constants[p.contact_type[c]]
         n, t, arms, stretch, shear, opening = self.strain(c, u_i, u_j, v_i, v_j, step)
         before, p.shear[c] = p.shear[c], shear
         push, rub = k_n * (touch - rest - stretch), k_s * (shear - p.slip[c])
@@ -207,24 +207,24 @@ class PlainPairs:
 
 
 def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> tables.Contacts:
-    """A list of pairs as kernels take it, each with a palette line of its own in the order of the pairs.
+    """A list of pairs as kernels take it, each with a row of constants of its own in the order of the pairs.
 
     vectors (b, 2); columns first, second, state (b,); touch, offset, normal, shear, bond_normal, bond_shear, bending,
     area, bond_radius (b,).
     """
     first, second = columns["first"], columns["second"]
     b = len(first)
-    constants = ("touch", "offset", "normal", "shear", "bond_normal", "bond_shear", "bending")
-    springs = [columns[name] for name in constants]
+    names = ("touch", "offset", "normal", "shear", "bond_normal", "bond_shear", "bending")
+    springs = [columns[name] for name in names]
     bonds = [1.0 / columns["area"], 1.5 / columns["bond_radius"] ** 2]  # R̄/J with J = 2 R̄³/3
-    palette = np.column_stack([vectors, np.hypot(*vectors.T), *springs, *bonds])
+    constants = np.column_stack([vectors, np.hypot(*vectors.T), *springs, *bonds])
     owner, end = np.concatenate([first, second]), np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
     return tables.Contacts(
         0,
         first.astype(np.uint32),
         second.astype(np.uint32),
         np.arange(b, dtype=np.uint32),
-        palette,
+        constants,
         columns["state"].astype(np.uint8),
         np.zeros(b),
         np.zeros(b),

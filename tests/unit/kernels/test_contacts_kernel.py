@@ -83,7 +83,7 @@ def test_forces_and_moments_of_a_pair_balance(random_pairs, geometry: int) -> No
         still = (geometry == REFERENCE) | ((geometry == BONDED) & (pairs.state == INTACT))
         pushed(pairs, WEAK._replace(geometry=geometry), u, v)
         apart = (u[:2, pairs.second] - u[:2, pairs.first]).T
-        x, y = (pairs.palette[:, :2] + np.where(still[:, None], 0.0, apart)).T
+        x, y = (pairs.constants[:, :2] + np.where(still[:, None], 0.0, apart)).T
 
         # forces are opposite by the way they are listed; the couple of −F on j about i is balanced by the moments
         close(pairs.force[:, 2] + pairs.force[:, 3] - (x * pairs.force[:, 1] - y * pairs.force[:, 0]), 0.0)
@@ -201,7 +201,7 @@ def test_a_push_returns_how_many_bonds_it_breaks(random_pairs, geometry: int) ->
 def test_tiny_overlaps_of_large_distances_push_to_the_last_digit(one_pair, size: float) -> None:
     # a pair 0.5 m apart along (0.6, 0.8), far from where it stood; |d| of that is exact, and so is the touch
     pair = one_pair()
-    pair.palette[0, :4] = [0.3, 0.4, 0.5, 0.5]
+    pair.constants[0, :4] = [0.3, 0.4, 0.5, 0.5]
     u = np.array([[0.0, -0.6 * size], [0.0, -0.8 * size], [0.0, 0.0]])
     pushed(pair, UNBREAKABLE, u, two())
     stored, _ = strain_energy(u, pair, UPDATED)
@@ -304,7 +304,7 @@ def test_adopted_pairs_start_where_small_motions_brought_them(random_pairs, plai
     law = plain(pairs, UNBREAKABLE._replace(geometry=REFERENCE))
     for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
         _, _, _, stretch, shear, _ = law.strain(c, u[:, i], u[:, j], u[:, i], u[:, j], STEP)
-        closed = pairs.palette[c, 3] >= pairs.palette[c, 2] + stretch
+        closed = pairs.constants[c, 3] >= pairs.constants[c, 2] + stretch
         close(pairs.shear[c], shear)
         close(pairs.slip[c], 0.0 if closed else shear)
     assert 0 < np.count_nonzero(pairs.slip) < PAIRS
@@ -327,7 +327,7 @@ def outside(u: np.ndarray, pairs: Contacts, limits: Limits, law) -> np.ndarray:
     excess = np.zeros(len(pairs.first))
     for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
         _, _, _, stretch, shear, _ = law.strain(c, u[:, i], u[:, j], u[:, i], u[:, j], STEP)
-        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend = pairs.palette[c]
+        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend = pairs.constants[c]
         overlap = touch - rest - stretch
         conditions = [-overlap, k_s * abs(shear) - limits.friction * k_n * overlap] if touch >= rest else [overlap]
         if pairs.state[c] == INTACT:
@@ -391,7 +391,7 @@ def test_the_slack_of_one_contact_by_hand(one_pair, motion: np.ndarray, room: fl
 def test_a_pair_that_turns_leaves_small_displacements(one_pair) -> None:
     pair = one_pair(overlap=10.0)
     limits = UNBREAKABLE._replace(friction=100.0)
-    distance = pair.palette[0, 2]
+    distance = pair.constants[0, 2]
     assert slack(two(0.0, 0.004 * distance), pair, limits) == pytest.approx(0.006 * distance, rel=1e-9)
     assert slack(two(0.0, -0.011 * distance), pair, limits) < 0.0
     assert slack(two(0.0, -0.011 * distance), pair, limits._replace(geometry=BONDED)) > 0.0
@@ -429,7 +429,7 @@ def test_stored_energy_is_that_of_all_springs(random_pairs, plain, geometry: int
     law, contact, bond = plain(pairs, limits), 0.0, 0.0
     for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
         _, _, _, stretch, shear, _ = law.strain(c, u[:, i], u[:, j], v[:, i], v[:, j], 0.0)
-        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, _, _ = pairs.palette[c]
+        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, _, _ = pairs.constants[c]
         overlap = touch - rest - stretch
         rub = k_s * (shear - (0.0 if geometry == REFERENCE else pairs.slip[c]))
         if overlap > 0.0 or (geometry == REFERENCE and touch >= rest):
@@ -443,8 +443,8 @@ def test_stored_energy_is_that_of_all_springs(random_pairs, plain, geometry: int
 
 def test_forces_are_the_slope_of_the_stored_energy(random_pairs) -> None:
     pairs = random_pairs(PARTICLES, PAIRS)
-    closed = pairs._replace(palette=pairs.palette.copy())
-    closed.palette[:, 3] = closed.palette[:, 2] + 0.05
+    closed = pairs._replace(constants=pairs.constants.copy())
+    closed.constants[:, 3] = closed.constants[:, 2] + 0.05
     limits, (u, v) = UNBREAKABLE._replace(geometry=REFERENCE), motion(1)[0]
     pushed(closed, limits, u, v)
     force = np.empty_like(u)

@@ -48,19 +48,19 @@ class Bodies:
 
     def rows(self, begin: int = 0) -> tables.NeighbourTable:
         """The contacts as the kernels take them; begin : number of the first particle."""
-        lines, owner, neighbour = [], [], []
+        constants, owner, neighbour = [], [], []
         for b, (i, j) in enumerate(self.pairs):
             root_n, root_s = np.sqrt(self.k_n[b]), np.sqrt(self.k_s[b])
             common = [root_n * self.normal[b, 0], root_n * self.normal[b, 1], root_s / root_n]
-            lines.append([*common, root_s * self.arm_i[b], root_s * self.arm_j[b], self.k_r[b]])
-            lines.append([*common, -root_s * self.arm_j[b], -root_s * self.arm_i[b], self.k_r[b]])
+            constants.append([*common, root_s * self.arm_i[b], root_s * self.arm_j[b], self.k_r[b]])
+            constants.append([*common, -root_s * self.arm_j[b], -root_s * self.arm_i[b], self.k_r[b]])
             owner += [i, j]
             neighbour += [j, i]
         order = np.argsort(owner, kind="stable")
         start = np.concatenate([np.zeros(begin + 1), np.cumsum(np.bincount(owner, minlength=PARTICLES))])
         index = np.uint32
         neighbour = (begin + np.array(neighbour)[order]).astype(index)
-        return tables.NeighbourTable(begin, start.astype(index), neighbour, order.astype(index), np.array(lines))
+        return tables.NeighbourTable(begin, start.astype(index), neighbour, order.astype(index), np.array(constants))
 
     def links(self, begin: int = 0) -> tables.Links:
         """The law on them."""

@@ -11,7 +11,7 @@ from dembound.kernels.bonded import seam_ends_forces
 from dembound.kernels.elastic import seam_forces
 from dembound.kernels.step import move_supported, note_before
 
-PARTICLES, LINES = 12, 9
+PARTICLES, TYPES = 12, 9
 TWINS = np.array([-1, 3, 7, 3, 5])
 """Of five nodes; the first has none, the last one nothing across the seam."""
 MANY = np.array([0, 3, 1, 2, 0])
@@ -24,11 +24,11 @@ def ids(values: np.ndarray) -> np.ndarray:
 
 @dataclass
 class Contacts:
-    """Contacts of the twins with random neighbours, of random lines and ends."""
+    """Contacts of the twins with random neighbours, of random types and ends."""
 
     start: np.ndarray
     neighbour: np.ndarray
-    kind: np.ndarray
+    contact_type: np.ndarray
     end: np.ndarray
 
 
@@ -36,8 +36,12 @@ class Contacts:
 def contacts() -> Contacts:
     rng = np.random.default_rng(4)
     start, e = np.concatenate([[0], np.cumsum(MANY)]), MANY.sum()
-    neighbour, kind, end = rng.integers(0, PARTICLES, e), rng.integers(0, LINES, e), rng.integers(0, 2 * LINES, e)
-    return Contacts(ids(start), ids(neighbour), ids(kind), ids(end))
+    neighbour, contact_type, end = (
+        rng.integers(0, PARTICLES, e),
+        rng.integers(0, TYPES, e),
+        rng.integers(0, 2 * TYPES, e),
+    )
+    return Contacts(ids(start), ids(neighbour), ids(contact_type), ids(end))
 
 
 def already() -> np.ndarray:
@@ -56,21 +60,21 @@ def summed(contacts: Contacts, force: Callable[[int, int], np.ndarray]) -> np.nd
 
 def test_the_elastic_laws_seam_forces_are_sums_over_the_twins_contacts(contacts: Contacts) -> None:
     rng = np.random.default_rng(5)
-    u, angle = rng.uniform(-1.0, 1.0, (3, PARTICLES)), rng.uniform(0.0, 2.0 * np.pi, LINES)
-    k_n, k_s, k_r, arm_i, arm_j = rng.uniform(0.5, 2.0, (5, LINES))
+    u, angle = rng.uniform(-1.0, 1.0, (3, PARTICLES)), rng.uniform(0.0, 2.0 * np.pi, TYPES)
+    k_n, k_s, k_r, arm_i, arm_j = rng.uniform(0.5, 2.0, (5, TYPES))
     n, t = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
     root_s = np.sqrt(k_s)
-    palette = np.column_stack([*(np.sqrt(k_n) * n), root_s / np.sqrt(k_n), root_s * arm_i, root_s * arm_j, k_r])
+    constants = np.column_stack([*(np.sqrt(k_n) * n), root_s / np.sqrt(k_n), root_s * arm_i, root_s * arm_j, k_r])
 
     def force(i: int, e: int) -> np.ndarray:
-        j, k = contacts.neighbour[e], contacts.kind[e]
+        j, k = contacts.neighbour[e], contacts.contact_type[e]
         apart = u[:2, j] - u[:2, i]
         slip = t[:, k] @ apart - arm_i[k] * u[2, i] - arm_j[k] * u[2, j]
         moment = arm_i[k] * k_s[k] * slip + k_r[k] * (u[2, j] - u[2, i])
         return np.array([*(k_n[k] * (n[:, k] @ apart) * n[:, k] + k_s[k] * slip * t[:, k]), moment])
 
     across = np.zeros((len(TWINS), 3))
-    seam = tables.Seam(TWINS, contacts.start, contacts.neighbour, contacts.kind, palette)
+    seam = tables.Seam(TWINS, contacts.start, contacts.neighbour, contacts.contact_type, constants)
     seam_forces(seam, u, across)
 
     # sums of three forces of some ten
@@ -82,7 +86,7 @@ def test_the_elastic_laws_seam_forces_are_sums_over_the_twins_contacts(contacts:
 
 
 def test_the_seam_forces_of_pairs_with_a_memory_are_sums_over_the_twins_ends(contacts: Contacts, random_pairs) -> None:
-    pairs = random_pairs(PARTICLES, LINES)
+    pairs = random_pairs(PARTICLES, TYPES)
     pairs.force[:] = np.random.default_rng(6).uniform(-1.0, 1.0, pairs.force.shape)
 
     def force(_: int, e: int) -> np.ndarray:

@@ -12,8 +12,8 @@ VECTORS = np.array([[0.3, 0.4], [0.0, -0.6], [0.65, 0.0]])
 """An overlap of 0.1 m, disks that touch, and a gap of 0.05 m."""
 
 
-def lines(**words: float) -> np.ndarray:
-    return LAWS["linearpbond"].pair_lines(MODULI, *RADII, VECTORS, **{"bonded": True, **words})
+def constants(**words: float) -> np.ndarray:
+    return LAWS["linearpbond"].pair_constants(MODULI, *RADII, VECTORS, **{"bonded": True, **words})
 
 
 def test_the_columns_are_those_of_the_law() -> None:
@@ -22,42 +22,42 @@ def test_the_columns_are_those_of_the_law() -> None:
     expected = [0.3, 0.4, 0.5, 0.5, -0.1, 6e9, 3e9]
     expected += [per_area * area, per_area * area / 3.0, per_area * moment, 1.0 / area, 0.1 / moment]
 
-    np.testing.assert_allclose(lines()[0], expected, rtol=1e-14)
+    np.testing.assert_allclose(constants()[0], expected, rtol=1e-14)
 
 
 def test_overlapping_disks_just_touch() -> None:
-    np.testing.assert_allclose(lines()[:, 3], [0.5, 0.6, 0.6], rtol=1e-15)
+    np.testing.assert_allclose(constants()[:, 3], [0.5, 0.6, 0.6], rtol=1e-15)
 
 
 @pytest.mark.parametrize("part", [0.25, 1.0, 3.0])
 def test_of_a_locked_in_stress_overlaps_push_by_their_part(part: float) -> None:
-    np.testing.assert_allclose(lines(locked_in=part)[:, 3], [0.5 + part * 0.1, 0.6, 0.6], rtol=1e-15)
+    np.testing.assert_allclose(constants(locked_in=part)[:, 3], [0.5 + part * 0.1, 0.6, 0.6], rtol=1e-15)
 
 
 def test_disks_that_touch_but_for_rounding_touch() -> None:
     ahead = np.array([[0.6 * (1.0 + 1e-12), 0.0]])
-    (line,) = LAWS["linearpbond"].pair_lines(MODULI, *(radii[:1] for radii in RADII), ahead, bonded=True)
+    (row,) = LAWS["linearpbond"].pair_constants(MODULI, *(radii[:1] for radii in RADII), ahead, bonded=True)
 
-    assert line[3] == line[2]
+    assert row[3] == row[2]
 
 
 @pytest.mark.parametrize(("gaps_close", "stiffness"), [(True, 6e9), (False, 0.0)])
 def test_gaps_close_or_not(gaps_close: bool, stiffness: float) -> None:
-    normal, shear = lines(gaps_close=gaps_close)[:, 5:7].T
+    normal, shear = constants(gaps_close=gaps_close)[:, 5:7].T
 
     assert normal.tolist() == [6e9, 6e9, stiffness]
     assert shear.tolist() == [3e9, 3e9, stiffness / 2.0]
 
 
 def test_pairs_without_bonds_have_no_bond_stiffness() -> None:
-    bonded, loose = lines(), lines(bonded=False)
+    bonded, loose = constants(), constants(bonded=False)
 
     assert not loose[:, 7:10].any()
     assert np.array_equal(np.delete(loose, [7, 8, 9], axis=1), np.delete(bonded, [7, 8, 9], axis=1))
 
 
 def test_at_rest_a_pair_is_as_stiff_as_under_the_elastic_law() -> None:
-    found = lines(gaps_close=False)
+    found = constants(gaps_close=False)
     elastic = LAWS["elastic"].stiffness(MODULI, *RADII, np.hypot(*VECTORS.T))
 
     np.testing.assert_allclose(found[:, 5] + found[:, 7], elastic.normal, rtol=1e-15)

@@ -26,7 +26,7 @@ def made_by_hand(size: tuple[float, float], radii: list[float], contacts: list[t
         radii=np.array(radii),
         pairs=columns[:, :2],
         images=columns[:, 2:],
-        rows=np.zeros((len(radii), 2), dtype=bool),
+        edge_rows=np.zeros((len(radii), 2), dtype=bool),
         stress=np.zeros(3),
         residual_ratio=0.0,
     )
@@ -62,12 +62,12 @@ def cut_contacts(brick: Brick, copies: tuple[int, int], sides: tuple[str, ...]) 
     wide = tile(brick, (copies[0] + 2 * MARGIN, copies[1]), OPEN)
     where = [(x - MARGIN, y, disk) for x, y, disk in places(wide, brick)]
     found: Counter = Counter()
-    for pair, kind in zip(wide.pairs, wide.kind, strict=True):
+    for pair, contact_type in zip(wide.pairs, wide.contact_type, strict=True):
         for second, (here, there) in enumerate((pair, pair[::-1])):
             node, (x, y, disk) = where[here], where[there]
             beyond = (x < 0 and "left" in sides) or (x >= copies[0] and "right" in sides)
             if node in body and (x, y, disk) not in body and beyond:
-                found[node, (y, disk), int(kind), second, x - node[0]] += 1
+                found[node, (y, disk), int(contact_type), second, x - node[0]] += 1
     return found
 
 
@@ -77,9 +77,9 @@ def listed_contacts(brick: Brick, joint: Assembly, seam: Seam, body: Assembly) -
     where = places(body, brick)
     node = np.repeat(seam.node, seam.contact_counts) - seam.count
     return Counter(
-        (where[n], column[near][1:], int(kind), int(second), int(image))
-        for n, near, kind, second, image in zip(
-            node, seam.neighbour, seam.kind, seam.twin_is_second, seam.image, strict=True
+        (where[n], column[near][1:], int(contact_type), int(second), int(image))
+        for n, near, contact_type, second, image in zip(
+            node, seam.neighbour, seam.contact_type, seam.twin_is_second, seam.image, strict=True
         )
     )
 
@@ -99,7 +99,7 @@ def test_seam_contacts_reach_from_the_twin_to_the_neighbour(dense_brick):
     joint, seam = with_column(dense_brick, tile(dense_brick, (2, 2), OPEN), BOTH)
     twin = np.repeat(seam.twin[seam.node], seam.contact_counts)
     reach = joint.positions[seam.neighbour] + np.outer(seam.image, [seam.width, 0.0]) - joint.positions[twin]
-    vectors = dense_brick.vectors[seam.kind] * np.where(seam.twin_is_second, -1.0, 1.0)[:, None]
+    vectors = dense_brick.vectors[seam.contact_type] * np.where(seam.twin_is_second, -1.0, 1.0)[:, None]
 
     assert np.abs(reach - vectors).max() < 1e-13  # round-off of 20 m
     assert np.all(np.diff(seam.node) > 0)
@@ -126,7 +126,7 @@ def test_column_and_body_stand_side_by_side_in_one_assembly(dense_brick):
     assert seam.count == len(column.radii)
     assert seam.width == dense_brick.size[0]
     assert np.array_equal(joint.positions[seam.count :], body.positions)
-    for name in ("radii", "brick_particle", "kind"):
+    for name in ("radii", "brick_particle", "contact_type"):
         assert np.array_equal(getattr(joint, name), np.concatenate([getattr(column, name), getattr(body, name)]))
     assert np.array_equal(joint.pairs, np.concatenate([column.pairs, body.pairs + seam.count]))
     assert joint.pairs.dtype == body.pairs.dtype

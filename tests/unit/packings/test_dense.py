@@ -42,7 +42,7 @@ def test_forces_balance(dense_brick):
     np.subtract.at(sums, dense_brick.pairs[:, 0], forces)
     np.add.at(sums, dense_brick.pairs[:, 1], forces)
     sizes = np.linalg.norm(forces, axis=1)
-    free = ~dense_brick.rows.any(axis=1)
+    free = ~dense_brick.edge_rows.any(axis=1)
     ratio = np.linalg.norm(sums[free], axis=1).mean() / sizes[sizes > 0].mean()
     # round-off: one coordinate of 10 m is known to 1e-15 m, the mean overlap is 3e-3 m, so 1e-12 at most
     assert ratio == pytest.approx(dense_brick.residual_ratio, abs=1e-11)
@@ -51,7 +51,7 @@ def test_forces_balance(dense_brick):
 
 def test_no_loose_disks(dense_brick):
     contacts = np.bincount(dense_brick.pairs.ravel(), minlength=len(dense_brick.radii))
-    assert contacts[~dense_brick.rows.any(axis=1)].min() >= 3
+    assert contacts[~dense_brick.edge_rows.any(axis=1)].min() >= 3
 
 
 def test_contacts_are_those_of_brute_force_over_all_images(dense_brick, recipe):
@@ -92,19 +92,19 @@ def test_disks_lie_in_the_box(dense_brick):
 
 def test_rows_are_straight_equal_and_touching(edged_brick):
     for row, (across, along) in enumerate([(0, 1), (1, 0)]):
-        member = edged_brick.rows[:, row]
+        member = edged_brick.edge_rows[:, row]
         assert np.all(edged_brick.positions[member, across] == 0.0)
-        inner = member & ~edged_brick.rows.all(axis=1)
+        inner = member & ~edged_brick.edge_rows.all(axis=1)
         assert np.ptp(edged_brick.radii[inner]) == 0.0
         assert 2 * edged_brick.radii[member].sum() == pytest.approx(edged_brick.size[along], rel=1e-14)
         within = member[edged_brick.pairs].all(axis=1)
         assert np.count_nonzero(within) == np.count_nonzero(member)  # a ring through the periodic face
         assert np.abs(edged_brick.gaps[within]).max() < 1e-13  # round-off of 10 m
-    assert np.count_nonzero(edged_brick.rows.all(axis=1)) == 1
+    assert np.count_nonzero(edged_brick.edge_rows.all(axis=1)) == 1
 
 
 def test_row_disks_keep_their_size_while_the_core_is_scaled(edged_brick, recipe):
-    core = edged_brick.radii[~edged_brick.rows.any(axis=1)]
+    core = edged_brick.radii[~edged_brick.edge_rows.any(axis=1)]
     assert core.mean() == pytest.approx(recipe.radius, rel=2e-3)
 
 

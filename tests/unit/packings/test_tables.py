@@ -95,5 +95,5 @@ def test_bricks_are_packed_once(monkeypatch):
 
 def test_edged_table_packs_its_rows():
     brick = read({**C, "size": [5.2, 5.2], "brick": [5.2, 5.2]}).pack(1.25e9)
-    assert np.count_nonzero(brick.rows, axis=0).tolist() == [10, 10]
-    assert brick.radii[brick.rows.any(axis=1)] == pytest.approx(np.full(19, 0.26))
+    assert np.count_nonzero(brick.edge_rows, axis=0).tolist() == [10, 10]
+    assert brick.radii[brick.edge_rows.any(axis=1)] == pytest.approx(np.full(19, 0.26))

@@ -25,7 +25,7 @@ def square():
 def test_square_lattice_counts(square, periodic, bonds):
     body = tile(square, (7, 4), periodic)
     assert len(body.radii) == 28
-    assert len(body.pairs) == len(body.kind) == bonds
+    assert len(body.pairs) == len(body.contact_type) == bonds
     assert body.size.tolist() == [7.0, 4.0]
 
 
@@ -42,7 +42,7 @@ def test_one_periodic_copy_keeps_its_contacts_with_itself(square):
     body = tile(square, (3, 1), (False, True))
     itself = body.pairs[:, 0] == body.pairs[:, 1]
     assert np.count_nonzero(itself) == 3
-    assert np.all(body.kind[itself] == 1)
+    assert np.all(body.contact_type[itself] == 1)
 
 
 @pytest.mark.parametrize("periodic", [(False, False), (True, False), (False, True), (True, True)])
@@ -51,28 +51,28 @@ def test_every_contact_has_the_vector_of_its_kind(dense_brick, periodic):
     first, second = body.pairs.T
     apart = body.positions[second] - body.positions[first]
     wraps = np.where(periodic, body.size, np.inf)
-    miss = apart - dense_brick.vectors[body.kind]
+    miss = apart - dense_brick.vectors[body.contact_type]
     miss -= np.where(periodic, np.rint(miss / wraps) * body.size, 0.0)
     assert np.abs(miss).max() < 1e-13  # round-off of 30 m
-    assert np.array_equal(body.brick_particle[body.pairs], dense_brick.pairs[body.kind])
+    assert np.array_equal(body.brick_particle[body.pairs], dense_brick.pairs[body.contact_type])
 
 
 def test_contacts_are_sorted_and_unique(dense_brick):
     body = tile(dense_brick, (2, 2), (False, True))
-    keys = body.pairs[:, 0].astype(np.int64) * len(dense_brick.pairs) + body.kind
+    keys = body.pairs[:, 0].astype(np.int64) * len(dense_brick.pairs) + body.contact_type
     assert np.all(np.diff(keys) > 0)
 
 
 def test_seams_are_those_of_the_brick(random_brick):
     body = tile(random_brick, (3, 3), (True, True))
     assert len(body.pairs) == 9 * len(random_brick.pairs)
-    assert np.all(np.bincount(body.kind) == 9)
+    assert np.all(np.bincount(body.contact_type) == 9)
 
 
 def test_an_open_edge_loses_exactly_the_contacts_across_it(random_brick):
     body = tile(random_brick, (3, 2), (False, False))
     ix, iy = np.abs(random_brick.images).T
-    assert np.array_equal(np.bincount(body.kind), (3 - ix) * (2 - iy))
+    assert np.array_equal(np.bincount(body.contact_type), (3 - ix) * (2 - iy))
 
 
 def test_open_contacts_are_those_of_brute_force(edged_brick):
@@ -92,15 +92,15 @@ def test_rows_frame_the_scene_on_all_sides(edged_brick):
             along = np.sort(body.positions[line, 1 - axis])
             assert along[0] == 0.0
             assert along[-1] == body.size[1 - axis]
-            assert np.all(edged_brick.rows[body.brick_particle[line], row])
-            ring = np.count_nonzero(edged_brick.rows[:, row])
+            assert np.all(edged_brick.edge_rows[body.brick_particle[line], row])
+            ring = np.count_nonzero(edged_brick.edge_rows[:, row])
             assert len(line) == ring * body.copies[1 - axis] + 1
     assert np.all(body.positions <= body.size)
 
 
 def test_rows_are_repeated_only_at_open_edges(edged_brick):
     count = len(edged_brick.radii)
-    on_x, on_y = np.count_nonzero(edged_brick.rows, axis=0)
+    on_x, on_y = np.count_nonzero(edged_brick.edge_rows, axis=0)
     assert len(tile(edged_brick, (2, 3), (True, True)).radii) == 6 * count
     assert len(tile(edged_brick, (2, 3), (False, True)).radii) == 6 * count + 3 * on_x
     assert len(tile(edged_brick, (2, 3), (False, False)).radii) == 6 * count + 3 * on_x + 2 * on_y + 1
@@ -118,7 +118,7 @@ def test_what_is_left_is_what_was_there(dense_brick, periodic):
         assert np.array_equal(getattr(left, name), getattr(body, name)[kept])
     among = np.isin(body.pairs, kept).all(axis=1)
     assert np.array_equal(kept[left.pairs], body.pairs[among])
-    assert np.array_equal(left.kind, body.kind[among])
+    assert np.array_equal(left.contact_type, body.contact_type[among])
     assert left.pairs.dtype == body.pairs.dtype
 
 

@@ -49,6 +49,7 @@ def test_lattices_are_told_apart_in_words():
     assert name(COARSE) == "horizon 3, Δx = 10 mm, Δt = 1 µs"
     assert name(FINE) == "horizon 1, Δx = 5 mm, exact in time"
     assert name(UNSTABLE) == "horizon 1, Δx = 5 mm, Δt = 3 µs, unstable"
+    assert name(Lattice(2, 0.01, 1e-6, 2500.0, (0.25, 0.75))) == "horizon 2 (0.25/0.75), Δx = 10 mm, Δt = 1 µs"
 
 
 def test_lattices_of_one_horizon_can_be_seen_below_each_other():

@@ -100,6 +100,8 @@ def test_twins_are_dashed_in_the_panel_of_their_monitor(twin_run):
     own, twin = front.lines
     assert (own.get_linestyle(), twin.get_linestyle()) == ("-", "--")
     assert own.get_color() == twin.get_color()
+    assert twin.get_linewidth() > own.get_linewidth()  # and below it, so that it is seen where they are equal
+    assert twin.get_zorder() < own.get_zorder()
     np.testing.assert_array_equal(twin.get_ydata(), 0.5 * own.get_ydata())
     assert len(back.lines) == 1
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["small", "small, free-field column"]

@@ -13,6 +13,15 @@ def test_a_saved_figure_is_a_png_of_its_size(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["figure.png"]
 
 
+def test_a_title_given_takes_the_place_of_the_figures_own(tmp_path):
+    figure = new_figure(2.0, 1.0)
+    figure.suptitle("what it shows")
+    save(figure, tmp_path / "figure.png")
+    assert figure.get_suptitle() == "what it shows"
+    save(figure, tmp_path / "figure.png", "figure 1")
+    assert figure.get_suptitle() == "figure 1"
+
+
 def test_the_same_figure_saves_to_the_same_bytes(tmp_path):
     for name in ("first.png", "second.png"):
         save(new_figure(2.0, 1.0), tmp_path / name)

@@ -78,7 +78,8 @@ def test_table_holds_the_curves(tmp_path):
         head, *lines = csv.reader(file)
     assert tuple(head) == COLUMNS
     assert len(lines) == 2 * ROWS
-    numbers = np.array(lines[:ROWS], dtype=float)
+    assert {line[4] for line in lines} == {""}
+    numbers = np.array([line[:4] + line[5:] for line in lines[:ROWS]], dtype=float)
     assert np.all(numbers[:, :4] == [1, 0.005, 1e-6, 2500.0])
     wavenumber = numbers[:, 4]
     assert wavenumber[-1] == pytest.approx(stable.shortest, rel=1e-9)  # written with ten digits, here and below
@@ -87,8 +88,18 @@ def test_table_holds_the_curves(tmp_path):
     np.testing.assert_allclose(numbers[:, 7], stable.phase_velocity(wavenumber), rtol=1e-9)
     # wave numbers are rounded by up to 5e-8 rad/m, and the group velocity changes by up to cΔx = 12.5 m²/s
     np.testing.assert_allclose(numbers[:, 8], stable.group_velocity(wavenumber), rtol=0, atol=1e-6)
-    assert lines[-1][6:] == ["", "", ""]
-    assert "" not in lines[ROWS]
+    assert lines[-1][7:] == ["", "", ""]
+    assert "" not in lines[ROWS][5:]
+
+
+def test_the_table_tells_lattices_of_other_shares_apart(tmp_path: Path) -> None:
+    shares = [None, (0.25, 0.75), (1.0 / 3.0, 2.0 / 3.0)]
+    write_table([Lattice(2, 0.005, 1e-6, 2500.0, each) for each in shares], tmp_path / "table.csv")
+    with (tmp_path / "table.csv").open(newline="") as file:
+        lines = list(csv.DictReader(file))
+
+    assert [line["shares"] for line in lines[::ROWS]] == ["", "0.25/0.75", "0.3333333333/0.6666666667"]
+    assert len({line["phase_velocity"] for line in lines[ROWS - 1 :: ROWS]}) == 3
 
 
 @pytest.mark.parametrize(

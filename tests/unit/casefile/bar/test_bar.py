@@ -1,14 +1,17 @@
 """The case of a bar: what a good one becomes, and the line every mistake gets."""
 
 import math
+from collections.abc import Iterable
 
 import pytest
 
 from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.types import BOUNDARIES, METHODS
 from dembound.errors import CaseError
 from dembound.kinds import loads, with_changes
 from dembound.starting import starting_point
+from dembound.table import name_of
 
 STARTER = starting_point()
 
@@ -195,17 +198,19 @@ def test_mistakes_in_the_bar(old: str, new: str, line: str) -> None:
     assert found.startswith(f"bar.{line}")
 
 
-METHODS = '"finite_difference", "patch", "peridynamics", "switch"'
+def names(types: Iterable[type], key: str = "type") -> str:
+    """What messages list: the names of the registered types that have a key."""
+    return ", ".join(sorted(f'"{name_of(table)}"' for table in types if key in table.model_fields))
 
 
 @pytest.mark.parametrize(
     ("method", "line"),
     [
-        ('type = "fem"', f'type: is "fem", must be one of {METHODS}'),
-        ("horizon = 3", f"type: is missing, must be one of {METHODS}"),
+        ('type = "fem"', f'type: is "fem", must be one of {names(METHODS)}'),
+        ("horizon = 3", f"type: is missing, must be one of {names(METHODS)}"),
         (
             'type = "finite_difference"\nhorizon = 3',
-            'horizon: is for "patch", "peridynamics", "switch"; allowed here: type',
+            f"horizon: is for {names(METHODS, 'horizon')}; allowed here: type",
         ),
         ('type = "peridynamics"', "horizon: is missing, must be a whole number no less than 1"),
         ('type = "peridynamics"\nhorizon = 0', "horizon: is 0, must be at least 1"),
@@ -214,7 +219,7 @@ METHODS = '"finite_difference", "patch", "peridynamics", "switch"'
         ('type = "switch"\nhorizon = 51', "horizon: is 51, must be at most 50, half the bar's spacings"),
         (
             'type = "peridynamics"\nhorizon = 3\ntrigger = 0.9',
-            'trigger: is for "patch", "switch"; allowed here: type, horizon, corrected_ends',
+            f"trigger: is for {names(METHODS, 'trigger')}; allowed here: type, horizon, corrected_ends",
         ),
         (
             'type = "peridynamics"\nhorizon = 3\nhorizons = 3',
@@ -244,7 +249,7 @@ def test_a_horizon_may_be_half_the_bar() -> None:
         (
             'type = "viscous"\n',
             'type = "roller"\n',
-            'boundary.right.type: is "roller", must be one of "fixed", "free", "velocity", "viscous", "viscous_input"',
+            f'boundary.right.type: is "roller", must be one of {names(end for end in BOUNDARIES if end.for_bars)}',
         ),
         (
             'type = "viscous"\n',

@@ -2,8 +2,10 @@
 
 import pytest
 
+from dembound.casefile.types import HOLES
 from dembound.errors import CaseError
 from dembound.kinds import loads
+from dembound.table import name_of
 
 BASE = """\
 [packing]
@@ -17,6 +19,7 @@ p_wave_speed = 1000.0
 duration = 0.1
 """
 CIRCLE = 'type = "circle"\ncentre = [5.0, 2.5]\nradius = 1.0'
+SHAPES = ", ".join(sorted(f'"{name_of(shape)}"' for shape in HOLES))
 STATIC = "[static]\nstress = [-1e6, -1e6, 0.0]\n"
 
 
@@ -53,7 +56,7 @@ def test_holes_are_read_in_order_and_are_there_from_the_start() -> None:
 @pytest.mark.parametrize(
     ("keys", "line"),
     [
-        ("", 'hole[1, tunnel].type: is missing, must be one of "circle", "ellipse", "polygon", "rectangle"'),
+        ("", f"hole[1, tunnel].type: is missing, must be one of {SHAPES}"),
         ('type = "box"', 'hole[1, tunnel].type: is "box", must be one of '),
         (f"{CIRCLE}\nradios = 1", "hole[1, tunnel].radios: unknown key; allowed: "),
         ('type = "circle"\ncentre = [5, 2]\nradius = 0', "hole[1, tunnel].radius: is 0, must be greater than 0"),
@@ -84,8 +87,14 @@ def test_each_mistake_gets_one_plain_line(keys: str, line: str) -> None:
 @pytest.mark.parametrize(("x", "y"), [(11.0, 2.5), (-1.0, 2.5), (5.0, 6.0), (5.0, -1.5)])
 def test_a_hole_beside_the_scene_is_refused(x: float, y: float) -> None:
     assert problems(hole(f'type = "circle"\ncentre = [{x}, {y}]\nradius = 1.0')) == [
-        "hole[1, tunnel]: lies outside the scene, [0, 0] to [10.0, 5.0] (m)"
+        "hole[1, tunnel]: lies outside the scene, [0, 0] to [10, 5] (m)"
     ]
+
+
+def test_a_scene_of_many_bricks_is_told_in_round_numbers() -> None:
+    odd = BASE.replace("size = [10.0, 5.0]", "bricks = [3, 1]").replace("0.25", "0.05")
+    with pytest.raises(CaseError, match=r"lies outside the scene, \[0, 0\] to \[0\.3, 0\.1\] \(m\)"):
+        loads(odd + hole())
 
 
 def test_a_hole_may_reach_beyond_the_scene() -> None:

@@ -81,11 +81,11 @@ def test_complete_loads_say_what_acts_along_which_axes(
         # beside the other tables
         (
             ["force = [1.0, 0.0]", "position = [10.5, 1.0]"],
-            ["load[1, a].position: is [10.5, 1.0], must be in the scene, [0, 0] to [10.0, 5.0] (m)"],
+            ["load[1, a].position: is [10.5, 1.0], must be in the scene, [0, 0] to [10, 5] (m)"],
         ),
         (
             ["force = [1.0, 0.0]", "region = [0.0, 0.0, 6.0, 5.5]"],
-            ["load[1, a].region: is [0.0, 0.0, 6.0, 5.5], must be in the scene, [0, 0] to [10.0, 5.0] (m)"],
+            ["load[1, a].region: is [0.0, 0.0, 6.0, 5.5], must be in the scene, [0, 0] to [10, 5] (m)"],
         ),
         (
             ["acceleration = [1.0, 0.0]", 'wave = "top"'],

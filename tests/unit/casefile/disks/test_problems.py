@@ -102,7 +102,7 @@ def test_half_masses_are_for_regular_edges(kind: str, more: str) -> None:
     assert problems(table + "half_mass = true\n") == []
     for pattern, mistakes in (
         (edged, []),
-        (random, ["boundary.right.half_mass: needs sides of disks in one row; pattern B has none"]),
+        (random, ["boundary.right.half_mass: needs a side of disks in one row; pattern B has none"]),
     ):
         text = BASE.replace('pattern = "A"', pattern)
         assert problems(table + "half_mass = true\n", text) == mistakes
@@ -158,8 +158,8 @@ def monitor(name: str, position: str) -> str:
 def test_monitors_lie_in_the_scene() -> None:
     assert problems(monitor("a", "[0, 0]") + monitor("b", "[10, 5]")) == []
     assert problems(monitor("a", "[0, 0]") + monitor("b", "[10.5, 5]") + monitor("c", "[1, -1]")) == [
-        "monitor[2, b].position: is [10.5, 5.0], must be in the scene, [0, 0] to [10.0, 5.0] (m)",
-        "monitor[3, c].position: is [1.0, -1.0], must be in the scene, [0, 0] to [10.0, 5.0] (m)",
+        "monitor[2, b].position: is [10.5, 5.0], must be in the scene, [0, 0] to [10, 5] (m)",
+        "monitor[3, c].position: is [1.0, -1.0], must be in the scene, [0, 0] to [10, 5] (m)",
     ]
 
 

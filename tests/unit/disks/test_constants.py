@@ -1,9 +1,9 @@
-"""The lines of the palette, and where contacts give way."""
+"""The constants of contacts, and where contacts give way."""
 
 import numpy as np
 import pytest
 
-from dembound.disks.palette import limits_of, shared_lines
+from dembound.disks.constants import limits_of, shared_constants
 from dembound.kernels.contacts import BONDED, UPDATED
 
 LAW = {"material.law": "linearpbond"}
@@ -20,11 +20,11 @@ def test_limits_are_those_of_the_material(bar) -> None:
     assert (unbreakable.tension, unbreakable.cohesion, unbreakable.tan_fa) == (np.inf, np.inf, 0.0)
 
 
-def test_lines_that_differ_by_rounding_alone_are_shared() -> None:
-    line = np.arange(1.0, 13.0)
+def test_rows_that_differ_by_rounding_alone_are_shared() -> None:
+    row = np.arange(1.0, 13.0)
     apart = np.array([0.0, 1e-9, 1.0, 1.0 + 1e-9, 0.0])[:, None] * np.eye(12)[2]
-    lines, line_of = shared_lines(line + apart, length=0.1)
+    constants, row_of = shared_constants(row + apart, length=0.1)
 
     # what lies within 1e-6 of the length is one place
-    assert np.array_equal(lines[:, 2], [3.0, 4.0])
-    assert line_of.tolist() == [0, 0, 1, 1, 0]
+    assert np.array_equal(constants[:, 2], [3.0, 4.0])
+    assert row_of.tolist() == [0, 0, 1, 1, 0]

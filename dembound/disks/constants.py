@@ -1,4 +1,4 @@
-"""Contact data for the history-dependent law: lines of the palette, and the limits of contacts and bonds."""
+"""Contact data for the history-dependent law: constants, and the limits of contacts and bonds."""
 
 import numpy as np
 
@@ -21,14 +21,14 @@ def limits_of(material: Material) -> Limits:
     )
 
 
-def brick_lines(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
-    """Palette lines (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
+def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
+    """Constants (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
 
-    Arguments as for `pair_lines`.
+    Arguments as for `pair_constants`.
     """
     brick = ground.brick
     first, second = brick.radii[brick.pairs].T
-    lines = ground.law.pair_lines(
+    constants = ground.law.pair_constants(
         ground.moduli,
         first,
         second,
@@ -37,17 +37,17 @@ def brick_lines(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -
         gaps_close=gaps_close,
         locked_in=locked_in,
     )
-    half = lines.copy()
+    half = constants.copy()
     half[:, 5:10] *= 0.5  # stiffnesses
     half[:, 10:] *= 2.0  # and areas and section moduli too, so that stresses do not change
-    return np.vstack([lines, half])
+    return np.vstack([constants, half])
 
 
-def shared_lines(lines: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
-    """Palette lines (p, 12) of pairs, equal ones (to rounding) only once, and the line of each pair (b,).
+def shared_constants(constants: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Constants (p, 12) of pairs, equal rows (to rounding) only once, and the row of each pair (b,).
 
-    Pairs at the same place of different bricks then share a line; length (m) is the scale for rounding errors.
+    Pairs at the same place of different bricks then share a row; length (m) is the scale for rounding errors.
     """
-    places = np.round(lines[:, :5] / (1e-6 * length))
-    _, first, line_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
-    return lines[first], line_of.reshape(-1)
+    places = np.round(constants[:, :5] / (1e-6 * length))
+    _, first, row_of = np.unique(places, axis=0, return_index=True, return_inverse=True)
+    return constants[first], row_of.reshape(-1)

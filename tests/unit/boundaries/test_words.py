@@ -1,0 +1,15 @@
+"""Sides in words."""
+
+from dembound.boundaries.words import side_in_words
+
+
+def test_a_side_is_told_with_its_numbers() -> None:
+    assert side_in_words({"type": "free", "particles": 3}) == "free"
+    assert side_in_words({"type": "viscous", "beta_p": 0.9, "beta_s": 1.0, "half_mass": True}) == (
+        "viscous, β_P = 0.9, β_S = 1, half mass"
+    )
+    springs = {"alpha_n": 1.0, "alpha_s": 0.5, "shear_modulus": 2e9, "distance_min": 3.0, "distance_max": 4.0}
+    assert side_in_words({"type": "viscoelastic", "half_mass": False, **springs}) == (
+        "viscoelastic; springs α_n = 1, α_s = 0.5, G = 2 GPa, L = 3…4 m"
+    )
+    assert side_in_words({"type": "deep", "depth": 2.5}) == "deep, depth = 2.5"
