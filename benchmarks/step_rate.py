@@ -50,7 +50,7 @@ def listed(simulation: Simulation) -> int:
 
 
 def bytes_per_step(simulation: Simulation) -> float:
-    """Least memory traffic of one step in bytes: every array once, constants excluded (they stay in cache).
+    """Least memory traffic of one step in bytes: every array once, without the constants, which stay in cache.
 
     Per particle: u read (24), its successor written and fetched for writing (48), v read and written (48), Δt/m and
     Δt/I (16), start of row (4); per contact end: neighbour and contact type (8). With a history each pair is read

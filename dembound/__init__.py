@@ -1,4 +1,4 @@
-"""dembound: waves in bonded particles, with artificial boundaries that really absorb.
+"""dembound: waves in bonded particles, with artificial boundaries that absorb.
 
 From Python: `load`, `case`, `change`, `run`, `calibrate`, `calibrate_all` and `Results`; see `dembound.api` and
 docs/python.md.
@@ -50,7 +50,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """What `api` has, which is imported with the first of it: the kernels need none of it."""
+    """A name of `api`; `api` is imported when the first one is used, as the kernels do not need it."""
     if name in __all__:
         return getattr(import_module("dembound.api"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -51,17 +51,17 @@ def loads(text: str, folder: Path | str = ".", name: str = "case") -> Case:
 
 
 def case(name: str = "case", folder: Path | str = ".", **tables: Any) -> Case:
-    """Make a case of its tables, as they stand in a case file (docs/case_file.md).
+    """Make a case from its tables, with the keys of a case file (docs/case_file.md).
 
-    Keys that are left out have their defaults, and mistakes are those of a file.
+    Keys that are left out have their defaults. The tables are checked like those of a file.
 
     Parameters
     ----------
     name : of the results folder.
     folder : where relative paths in the case start.
-    tables : table -> keys, such as ``packing={"pattern": "A", "size": (100.0, 10.0), "radius": 0.25}``; of sides and
-        waves name -> table, of loads, holes and monitors a list of tables. Values may also be numpy's, paths, tables
-        of another case, and None for a key that is left out.
+    tables : table -> keys, such as ``packing={"pattern": "A", "size": (100.0, 10.0), "radius": 0.25}``; sides and
+        waves are given as name -> table; loads, holes and monitors as a list of tables. Values may also be numpy
+        values, paths, tables of another case, and None for a key that is left out.
 
     Raises CaseError with one line per mistake.
     """
@@ -69,11 +69,11 @@ def case(name: str = "case", folder: Path | str = ".", **tables: Any) -> Case:
 
 
 def change(case: Case, changes: Mapping[str, Any], name: str | None = None) -> Case:
-    """The case with some keys changed, and under another name if one is given; the case itself stays as it is.
+    """A copy of the case with some keys changed, and another name if one is given; the case itself is not changed.
 
     changes : dotted key -> value, as of ``--set``: ``{"boundary.right.beta_p": 0.81, "monitor.P4.position": (1, 2)}``.
 
-    Raises CaseError for keys that lead nowhere, and as `load`.
+    Raises CaseError for keys that do not exist, and for the same mistakes as `load`.
     """
     plain = {key: _in_toml_words(value, key) for key, value in changes.items()}
     changed = kinds.with_changes(case, plain)
@@ -87,14 +87,14 @@ def run(
     progress: Progress | None = None,
     threads: int | None = None,
 ) -> Results:
-    """Run a case, or a case file, and leave ``results/<case name>/``, as ``dembound run`` does; returns what is in it.
+    """Run a case, or a case file, and write ``results/<case name>/``, as ``dembound run`` does; returns the results.
 
     Parameters
     ----------
-    progress : receives progress and warnings; by default warnings are Python's.
-    threads : cores to use; by default as many as there are. Results do not depend on it.
+    progress : receives progress and warnings; by default warnings are issued as Python warnings. threads : cores to
+    use; by default as many as there are. Results do not depend on it.
 
-    Raises CaseError, PackingError or RunError: the case cannot be run, its brick not be packed, or the run failed.
+    Raises CaseError if the case cannot be run, PackingError if its brick cannot be packed, RunError if the run fails.
     """
     chosen = case if isinstance(case, Case) else load(case)
     before = numba.get_num_threads()
@@ -106,32 +106,32 @@ def run(
 
 
 def calibrate(case: Case, side: str, **options: Any) -> tuple[Case, Calibration]:
-    """Find the factor β of one side for P or S waves; returns the case with it, and how it was found.
+    """Find the factor β of one side for P or S waves; returns the case with this β, and the record of the calibration.
 
     options : those of `dembound.studies.calibration.calibrate`: motion, method, start, tolerance, full, report.
 
-    Raises CaseError when the side has no dashpots or cannot move that way, RunError when β does not converge.
+    Raises CaseError when the side has no dashpots or its motion is held, RunError when β does not converge.
     """
     found = calibration.calibrate(_of_disks(case), side, **options)
     return change(case, {f"boundary.{side}.{found.factor}": found.result}), found
 
 
 def calibrate_all(case: Case, **options: Any) -> tuple[Case, list[Calibration]]:
-    """Find all factors β of all sides with dashpots, for the waves whose motion is not held; as `calibrate`.
+    """Find all factors β of all sides with dashpots, for the waves whose motion is not held; see `calibrate`.
 
-    options : those of `calibrate` but motion.
+    options : those of `calibrate`, except motion.
     """
     found = all_sides.calibrate_all(_of_disks(case), **options)
     return change(case, all_sides.changes_of(found)), found
 
 
 def _of_disks(case: Case) -> DiskCase:
-    """The case, checked; raises CaseError for that of a bar."""
+    """The case, checked; raises CaseError for the case of a bar."""
     return as_kind(kinds.checked(case), DiskCase, "is the case of a bar; β of disks is calibrated")
 
 
 class _Warns(Progress):
-    """Turns warnings of a run into Python's."""
+    """Issues the warnings of a run as Python warnings."""
 
     def warned(self, message: str) -> None:
         """Warn."""
@@ -139,7 +139,7 @@ class _Warns(Progress):
 
 
 def _in_toml_words(value: Any, place: str) -> Any:
-    """A value as TOML has it; raises CaseError for what it has no word for. place : its key."""
+    """A value in TOML's types; raises CaseError for a type that TOML does not have. place : its key."""
     if isinstance(value, Table):
         return as_toml(value)
     if isinstance(value, Mapping):

@@ -1,4 +1,4 @@
-"""What a case would come to, without running it."""
+"""Facts and warnings about a case, computed without running it."""
 
 import time
 
@@ -49,7 +49,7 @@ def _threads_in_words(count: int) -> str:
 def _estimate(planned: Plan) -> float:
     """Seconds the run will take, from the quickest of a few short trials."""
     simulation = Simulation(planned.scene, planned.time_step)
-    simulation.advance(TRIAL_STEPS)  # compiles, and wakes the threads
+    simulation.advance(TRIAL_STEPS)  # compiles the kernels and starts the threads
     trials = []
     for _ in range(TRIALS):
         began = time.perf_counter()

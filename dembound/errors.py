@@ -1,7 +1,7 @@
-"""What can go wrong, and the exit code each kind of failure ends with.
+"""The errors dembound raises, and the exit code of each kind of failure.
 
-Every error a user can cause is a `DemboundError`; the command line prints its message once and exits with
-its code. Anything else is a bug and shows a traceback.
+Every error a user can cause is a `DemboundError`; the command line prints its message once and exits with its code. Any
+other exception is a bug and prints a traceback.
 
 | code | meaning |
 |---|---|
@@ -18,9 +18,9 @@ from collections.abc import Iterable
 
 
 class DemboundError(Exception):
-    """A failure the user can act on.
+    """A failure the user can correct.
 
-    `exit_code` is what the process ends with, `source` the case or file it is about, where that is known.
+    `exit_code` is the exit code of the process, `source` the case or file concerned, where there is one.
     """
 
     exit_code = 3
@@ -39,7 +39,7 @@ class CaseError(DemboundError):
 
 
 class RunError(DemboundError):
-    """A run that could not go on: it says when and where."""
+    """A run that had to stop; the message gives time and place."""
 
     exit_code = 3
 

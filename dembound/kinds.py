@@ -1,4 +1,4 @@
-"""The kinds of bodies there are: the one file that names them."""
+"""The list of all kinds of bodies. Only this file names them."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,10 +11,10 @@ from dembound.motion.kind import Kind
 from dembound.results.reader import open_record
 
 KINDS: tuple[Kind[Any, Any], ...] = (Bars(), Disks())
-"""In the order in which a case file is asked for their tables."""
+"""In the order in which a case file is searched for their tables."""
 
 SCHEMAS = tuple(kind.schema for kind in KINDS)
-"""What their case files consist of."""
+"""The tables of their case files."""
 
 
 def load(path: Path) -> Case:
@@ -23,7 +23,7 @@ def load(path: Path) -> Case:
 
 
 def loads(text: str, folder: Path = Path(), name: str = "case") -> Case:
-    """Read a case from TOML text, as if it stood in the file `name` of the folder; errors as `load`."""
+    """Read a case from TOML text, as if it were the file `name` in the folder; errors as `load`."""
     return reader.loads(text, SCHEMAS, folder, name)
 
 
@@ -38,12 +38,12 @@ def checked(case: Case) -> Case:
 
 
 def kind_of(case: Case) -> Kind[Any, Any]:
-    """What kind of body a case is of."""
+    """The kind of body a case describes."""
     return next(kind for kind in KINDS if isinstance(case, kind.schema.case))
 
 
 def kind_of_record(path: Path) -> Kind[Any, Any]:
-    """What kind of body a record is of; raises CaseError when it cannot be read."""
+    """The kind of body a record belongs to; raises CaseError when it cannot be read."""
     with open_record(path) as file:
-        name = file.attrs.get("kind", "disks")  # exact histories name none, and are those of disks
+        name = file.attrs.get("kind", "disks")  # files of exact histories have no kind; they belong to cases of disks
     return next(kind for kind in KINDS if kind.name == name)

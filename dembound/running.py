@@ -1,4 +1,4 @@
-"""One case, from tables to a folder of results."""
+"""Runs one case: from its tables to a folder of results."""
 
 import json
 import shutil
@@ -23,35 +23,35 @@ from dembound.results.summary import summarise
 from dembound.results.vtk import write_vtu
 
 MOST_STEPS = 1e11
-"""Steps that no run of a few nodes finishes within a day: a mistake in a time."""
+"""Largest number of steps. Even a few nodes would take more than a day for it: a mistake in a time."""
 
 ENTRIES = 100
-"""Entries of the energy ledger where the case does not say how often."""
+"""Entries of the energy ledger where the case does not give an interval."""
 
 
 SECTIONS = ("import", "compile", "build", "settle", "step", "record", "export", "pictures")
-"""What a run spends its time on, in the order of its summary."""
+"""The parts of a run whose time is measured, in the order of the summary."""
 
 
 class Progress:
     """Receives progress and warnings of a run; the default ignores them."""
 
     def warned(self, message: str) -> None:
-        """Something was probably not meant; said before the first step or when the record is complete."""
+        """A warning about a probable mistake, issued before the first step or when the record is complete."""
 
     def settling(self, steps: int, ratio: float) -> None:
-        """The static stage has done so many steps and come to a force ratio."""
+        """The static stage has done this many steps and has reached this force ratio."""
 
     def running(self, run: Run, steps: int) -> None:
-        """A block is done, of so many steps in all."""
+        """A block of steps is done; steps: the number in the whole run."""
 
 
 def plan(case: Case, clock: Clock | None = None) -> Plan:
-    """Build the scene and choose the step; clock counts the time as that of "build".
+    """Build the scene and choose the step; the clock counts the time under "build".
 
-    Raises PackingError for an impossible brick, and CaseError for a case that was not read from a file and would not
-    be accepted there, a load that hits no particle, a material without
-    stiffness, a step above the stability limit and one so small that the run would never end.
+    Raises PackingError for an impossible brick. Raises CaseError for an invalid case that was not read from a file, a
+    load that acts on no particle, a material without stiffness, a step above the stability limit, and a step so small
+    that the run would take more than `MOST_STEPS`.
     """
     case = checked(case)
     kind = kind_of(case)
@@ -67,7 +67,7 @@ def plan(case: Case, clock: Clock | None = None) -> Plan:
 
 @contextmanager
 def _about(case: Case) -> Iterator[None]:
-    """Failures within say which case they are about."""
+    """Adds the name of the case to failures raised inside."""
     try:
         yield
     except DemboundError as error:
@@ -76,10 +76,10 @@ def _about(case: Case) -> Iterator[None]:
 
 
 def preflight(case: Case) -> None:
-    """Find what would stop a case later, as far as it can be found cheaply.
+    """Find errors that would stop a case later, as far as this takes little time.
 
-    Builds the scene, whose brick is then cached, and where the step is found quickly plans the run, see `plan`,
-    whose errors it raises.
+    Builds the scene, whose brick is then cached. Where the time step is found quickly, it also plans the run. Raises
+    the errors of `plan`.
     """
     kind = kind_of(case)
     if kind.is_planned_quickly(case):
@@ -90,20 +90,20 @@ def preflight(case: Case) -> None:
 
 
 def warnings_before(planned: Plan) -> list[str]:
-    """What the run will do that was probably not meant, one line each."""
+    """Warnings about probable mistakes, known before the run, one line each."""
     return planned.kind.warnings_before(planned.scene, planned.time_step)
 
 
 def run_case(
     case: Case, results: Path, progress: Progress | None = None, seconds: Mapping[str, float] | None = None
 ) -> Path:
-    """Run a case and leave ``results/<case name>/``; returns that folder.
+    """Run a case and write ``results/<case name>/``; returns that folder.
 
-    Everything is written to ``<case name>.partial`` first and takes its name when the run is complete, so a
-    finished folder is always whole. A run that fails leaves the partial folder with the histories so far, a static
-    stage that stalls with a snapshot of the state it reached.
+    Everything is written to ``<case name>.partial``, which is renamed when the run is complete, so a finished folder is
+    always complete. After a run that fails the partial folder contains the histories so far; after a static stage that
+    stalls it contains a snapshot of the state it reached.
 
-    Warnings go to the progress and, all of them, to the summary; seconds are those already spent, by `SECTIONS`.
+    All warnings are sent to the progress and written to the summary; seconds: time already spent, by `SECTIONS`.
 
     Raises the errors of `plan`, and RunError when the static stage does not settle or the motion grows without bound.
     """
@@ -145,7 +145,7 @@ def _passed_on(warnings: list[str], progress: Progress) -> list[str]:
 
 
 def _draw(planned: Plan, folder: Path) -> None:
-    """The pictures of a run beside its record: the monitors' velocities, and those of its kind."""
+    """Draw the pictures of a run into its folder: the monitors' velocities, and those of its kind of body."""
     record = folder / "run.h5"
     for name, figure in planned.kind.pictures(record):
         save(figure, folder / f"{name}.png")
@@ -154,19 +154,19 @@ def _draw(planned: Plan, folder: Path) -> None:
 
 
 def _must_be_replaceable(folder: Path) -> None:
-    """Raise CaseError where a new run would delete something that no run has written."""
+    """Raise CaseError where a new run would delete a folder that does not contain a run."""
     if folder.exists() and not (folder / "run.h5").is_file() and not _is_empty(folder):
         raise CaseError([f"{folder}: exists and holds no run, give another --output or --name"])
 
 
 def _is_empty(folder: Path) -> bool:
-    """Whether a path is a folder without anything in it."""
+    """Whether a path is an empty folder."""
     return folder.is_dir() and not any(folder.iterdir())
 
 
 @contextmanager
 def _gone_if_empty(folder: Path) -> Iterator[None]:
-    """Where something within fails, do not leave the folder behind with nothing in it."""
+    """Remove the folder after a failure inside if it is empty."""
     try:
         yield
     finally:
@@ -175,7 +175,7 @@ def _gone_if_empty(folder: Path) -> Iterator[None]:
 
 
 def _simulate(planned: Plan, path: Path, progress: Progress, clock: Clock) -> tuple[Simulation, Beginning]:
-    """Begin as the kind of body does, then advance to the end while trackers record it."""
+    """Start from the state given by the kind of body, then advance to the end while trackers record."""
     scene, case, steps = planned.scene, planned.scene.case, planned.steps
     with clock.of("settle"):
         beginning = _begin(planned, path, progress)
@@ -198,7 +198,7 @@ def _simulate(planned: Plan, path: Path, progress: Progress, clock: Clock) -> tu
 
 
 class _Reports(Tracker):
-    """Reports to the progress whenever the loop comes back."""
+    """Reports to the progress after every block of steps."""
 
     name = "reports"
 
@@ -206,7 +206,7 @@ class _Reports(Tracker):
         self._progress, self._steps = progress, steps
 
     def handle(self, run: Run) -> None:
-        """It is never due."""
+        """Does nothing, as it is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Report."""
@@ -214,7 +214,7 @@ class _Reports(Tracker):
 
 
 def _begin(planned: Plan, path: Path, progress: Progress) -> Beginning:
-    """Where the run begins; where a stage before it stalls, the record keeps the state it reached."""
+    """The state at which the run begins; if a stage before it stalls, its state is written to the record."""
     try:
         return planned.kind.begin(planned.scene, planned.time_step, progress.settling)
     except StalledError as stalled:

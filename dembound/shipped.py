@@ -1,7 +1,7 @@
-"""The cases that come with the package: what there is, and copies of it with the files it needs.
+"""The cases that come with the package: their names, and copies of them with the files they need.
 
-They stand in the folder ``cases`` of the repository, which a wheel carries as ``dembound/_cases``. A case goes by its
-path there without ending, ``zhou2018/tunnel``; a folder of cases is a group, with scripts and tables of its own.
+They are in the folder ``cases`` of the repository, and in ``dembound/_cases`` of a wheel. The name of a case is its
+path there without ending, ``zhou2018/tunnel``. A folder of cases is a group, with its own scripts and tables.
 """
 
 import shutil
@@ -20,9 +20,9 @@ NOT_COPIED = "__pycache__"
 
 
 def folder() -> Path:
-    """Where the cases are: in the installed package, or beside the package in a checkout.
+    """Folder of the cases: in the installed package, or next to the package in a checkout.
 
-    Raises CaseError where they are in neither.
+    Raises CaseError if there is neither.
     """
     for place in (PACKAGE / "_cases", PACKAGE.parent / "cases"):
         if place.is_dir():
@@ -31,7 +31,7 @@ def folder() -> Path:
 
 
 def names() -> list[str]:
-    """Names of all cases, those of no group first."""
+    """Names of all cases; those without a group come first."""
     found = [path.relative_to(folder()).with_suffix("").as_posix() for path in folder().rglob("*.toml")]
     return sorted(found, key=lambda name: ("/" in name, name))
 
@@ -42,7 +42,7 @@ def titles() -> dict[str, str]:
 
 
 def groups() -> list[str]:
-    """Names of the folders that cases are in."""
+    """Names of the folders that contain cases."""
     return sorted({name.rpartition("/")[0] for name in names() if "/" in name})
 
 
@@ -50,7 +50,7 @@ def copy(name: str, target: Path) -> list[Path]:
     """Copy a case and the files it reads into the folder `target`, or a group into a folder of its name there.
 
     Returns the copies, the case first. Raises CaseError, with nothing written, for an unknown name and for files that
-    are there already.
+    already exist.
     """
     copies = dict(_files(name))
     taken = [str(target / place) for place in copies if (target / place).exists()]
@@ -69,7 +69,7 @@ def _file(name: str) -> Path:
 
 
 def _files(name: str) -> Iterator[tuple[Path, Path]]:
-    """The files of a case or a group: each one's place below the target, and where it is."""
+    """The files of a case or a group: path of each one below the target, and its present path."""
     if name in names():
         path = _file(name)
         for file in (path, *_read_by(load(path))):

@@ -13,22 +13,22 @@ T = TypeVar("T")
 
 
 class Table(BaseModel):
-    """One TOML table. Unknown keys are refused, so a mistyped key never goes unnoticed."""
+    """One TOML table. Unknown keys are refused, so a mistyped key is always reported."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     def given(self) -> dict[str, Any]:
-        """The keys that have been given, as a TOML file has them; the key that distinguishes types always is."""
+        """The keys that have been given, in TOML's types; the key that distinguishes types is always included."""
         keys = [name for name in type(self).model_fields if name in self.model_fields_set | DISCRIMINATORS]
         return {name: as_toml(getattr(self, name)) for name in keys if getattr(self, name) is not None}
 
 
 DISCRIMINATORS = {"type", "pattern"}
-"""Keys whose literal says of which type a table is."""
+"""Keys whose literal gives the type of a table."""
 
 
 def as_toml(value: Any) -> Any:
-    """Tables, and tuples or mappings of tables, as dictionaries and lists of what a TOML file holds."""
+    """Tables, and tuples or mappings of tables, as dictionaries and lists of TOML values."""
     if isinstance(value, Table):
         return value.given()
     if isinstance(value, Mapping):
@@ -37,13 +37,13 @@ def as_toml(value: Any) -> Any:
 
 
 def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:
-    """A physical field: its unit and meaning travel with it into docs and error texts.
+    """A physical field, with the unit and meaning that docs and error texts print.
 
     Parameters
     ----------
     default : the value when the key is absent; ``...`` makes the key required.
     unit : SI unit, "1" for a pure number.
-    help : one sentence saying what it is.
+    help : one sentence with the meaning of the key.
     limits : pydantic constraints (``gt``, ``ge``, ``lt``, ``le``, ``min_length`` …).
     """
     return Field(default, description=help, json_schema_extra={"unit": unit}, **limits)
@@ -52,7 +52,7 @@ def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:
 def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tuple[type[T], ...]:
     """These types of tables, and those that other installed packages register under the entry point group `group`.
 
-    One that cannot be used is left out with a Python warning that says why.
+    A type that cannot be used is left out, with a Python warning that gives the reason.
     """
     found = list(types)
     taken = {name_of(table) for table in found}
@@ -73,7 +73,7 @@ def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tu
 
 
 def name_of(table: type[Any]) -> str | None:
-    """What case files call a type: the literal at its key, or a law's `name`; None without one."""
+    """Name of a type in case files: the literal at its key, or a law's `name`; None without one."""
     fields = getattr(table, "model_fields", {})
     literals = [get_args(fields[key].annotation) for key in DISCRIMINATORS if key in fields]
     name = literals[0][0] if literals and literals[0] else getattr(table, "name", None)
@@ -81,25 +81,25 @@ def name_of(table: type[Any]) -> str | None:
 
 
 def _flaw(table: Any, base: type[Any], taken: Collection[str | None]) -> str | None:
-    """Why a registered type cannot be used."""
+    """The reason why a registered type cannot be used; None for a usable one."""
     if not (isinstance(table, type) and issubclass(table, base)):
         return f"is not derived from {base.__name__}"
     if missing := sorted(getattr(table, "__abstractmethods__", ())):
         return f"lacks {', '.join(missing)}"
     if (name := name_of(table)) is None:
-        return "does not say what case files call it: a Literal at type or pattern, of a law its name"
+        return "has no name for case files: needs a Literal at type or pattern, or for a law its name"
     return f'is called "{name}", which is taken' if name in taken else None
 
 
 @cache
 def _registered() -> Any:
-    """What all installed packages register."""
+    """The entry points of all installed packages."""
     return entry_points()
 
 
 def one_of(key: str, types: Iterable[type[Any]]) -> Any:
     """The annotation of a table that is of one of several types, distinguished by the literal at `key`."""
-    return Annotated[Union[tuple(types)], Field(discriminator=key)]  # noqa: UP007  # of types known only now
+    return Annotated[Union[tuple(types)], Field(discriminator=key)]  # noqa: UP007  # types known at run time
 
 
 def _serves_as_file_name(name: str) -> str:
@@ -109,4 +109,4 @@ def _serves_as_file_name(name: str) -> str:
 
 
 FileName = Annotated[str, AfterValidator(_serves_as_file_name)]
-"""A name that may become a file's on every system."""
+"""A name that is allowed as a file name on every system."""

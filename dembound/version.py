@@ -5,4 +5,4 @@ import time
 __version__ = "0.1.0"
 
 IMPORT_BEGAN = time.perf_counter()
-"""For the summary of what a run spent its time on."""
+"""Used for the summary's list of the time each part of a run took."""

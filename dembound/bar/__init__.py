@@ -1,5 +1,5 @@
-"""Rock bars: nodes in a row, how they are stepped, and what is reported of them.
+"""Rock bars: nodes in a row, their time stepping, and reports about them.
 
-body and scene: the arrays; part: the steps; banded and stability: their step limit; facts, warnings, summary, outcome,
-mesh: reports; fracture: where and when a bar came apart. Methods stand in `dembound.methods`.
+body and scene: the arrays; part: the steps; banded and stability: the limit of the time step; facts, warnings, summary,
+outcome, mesh: reports; fracture: place and time of spalls. Methods are in `dembound.methods`.
 """

@@ -4,16 +4,16 @@ import numpy as np
 from scipy.linalg import LinAlgError, cholesky_banded
 
 ROUNDING = 1e-9
-"""Share by which a step may pass its limit, which rounding can put on either side of a round number."""
+"""Share by which a step may exceed its limit, as rounding may shift the limit to either side of a round number."""
 
 BISECTIONS = 60
-"""Halvings of the bracket of the largest eigenvalue: more than a float has bits."""
+"""Number of bisections of the bracket of the largest eigenvalue: more than the bits of a float."""
 
 
 def largest_stable_step(bands: np.ndarray, mass: np.ndarray, held: np.ndarray) -> float:
     """Largest stable step 2/ω_max of central differences, s; infinite where nothing vibrates.
 
-    bands (b, n) N/m: the stiffness matrix, row d having its entries K[i + d, i]; mass (n,) kg; held (h,) nodes that
+    bands (b, n) N/m: the stiffness matrix, row d contains the entries K[i + d, i]; mass (n,) kg; held (h,) nodes that
     cannot move. ω_max² is the largest eigenvalue of M⁻¹K, the least λ for which λM − K has a Cholesky factor; it is
     found to the last bits by bisection.
     """

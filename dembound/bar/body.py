@@ -1,4 +1,4 @@
-"""A bar as arrays."""
+"""The arrays of a bar."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,14 +20,14 @@ class BarBody(Scene):
 
     Attributes
     ----------
-    case : where it came from.
+    case : the case it was built from.
     rod : nodes, section and stiffness.
     nodes : (n, 2) m, their places, with y = 0.
-    edges : the two ends, left and right; what a node stands for there, its "diameter", is the section.
-    supports : the table of what pushes from outside, loads included.
+    edges : the two ends, left and right; the "diameter" of an end node is the section.
+    supports : the table of forces from outside, loads included.
     monitors : name -> node.
 
-    Stress is the seventh column of a probe's record; blocks of steps are long, as steps are short.
+    Stress is the seventh column of a probe's record. Blocks contain many steps, as a step takes little time.
     """
 
     case: BarCase
@@ -44,10 +44,10 @@ class BarBody(Scene):
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """What a record's header has beside that of every run.
+        """The attributes of a record's header in addition to those of every run.
 
-        Density in kg/m³, section in m², wave speed in m/s, attenuation in 1/m, which end is loaded, and what the left
-        and the right one are.
+        Density in kg/m³, section in m², wave speed in m/s, attenuation in 1/m, which end is loaded, and the types of
+        the left and the right end.
         """
         bar = self.case.bar
         return {
@@ -61,12 +61,12 @@ class BarBody(Scene):
 
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
-        """What a record keeps of every node, by name: values (n, …) and unit."""
+        """Data of every node for the record, by name: values (n, …) and unit."""
         return {"position": (self.positions, "m"), "volume": (self.rod.volumes, "m³")}
 
     @property
     def places(self) -> dict[str, tuple[float, float]]:
-        """Where monitors were wanted, m."""
+        """The positions given for the monitors, m."""
         return {monitor.name: (monitor.position, 0.0) for monitor in self.case.monitor}
 
     @property
@@ -91,12 +91,12 @@ class BarBody(Scene):
 
     @property
     def free(self) -> np.ndarray:
-        """(3,) 1 for a component that moves: x alone."""
+        """(3,) 1 for a component that moves: only x."""
         return np.array([1.0, 0.0, 0.0])
 
     @property
     def steady_load(self) -> np.ndarray:
-        """(3, n) N: nothing, every load of a bar follows a wave."""
+        """(3, n) N: zero, as every load of a bar follows a wave."""
         return np.zeros((3, self.count))
 
     @property
@@ -111,7 +111,7 @@ class BarBody(Scene):
 
     @property
     def threads(self) -> int:
-        """One: a bar is stepped in a time that threads would spend waiting for each other."""
+        """One: a step of a bar takes less time than the synchronisation of threads."""
         return 1
 
     def step_limit(self) -> float:
@@ -123,7 +123,7 @@ class BarBody(Scene):
         return largest_stable_step(bonds.stiffness(), self.mass, self._held)
 
     def is_stable(self, bonds: Bonds, step: float) -> bool:
-        """Whether a time step (s) is stable with these bonds; quicker than `stable_step`."""
+        """Whether a time step (s) is stable with these bonds; faster than `stable_step`."""
         return is_stable(step, bonds.stiffness(), self.mass, self._held)
 
     @cached_property

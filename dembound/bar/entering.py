@@ -1,4 +1,4 @@
-"""The wave that enters a bar at the end where loads push or a boundary drives it, before any reflection is back."""
+"""The wave that enters a bar at an end with loads or a driving boundary, before any reflection returns."""
 
 import numpy as np
 
@@ -6,14 +6,14 @@ from dembound.bar.scene import end_supports
 from dembound.casefile.bar import BarCase
 
 MOMENTS = 500
-"""Moments at which it is looked at."""
+"""Number of times at which this wave is computed."""
 
 
 def entering_pressure(case: BarCase, side: str, time: np.ndarray, *, loads: bool = True) -> np.ndarray:
-    """Pressure (Pa), of the shape of times (s), of the wave that enters at an end, with its loads or without.
+    """Pressure (Pa), of the shape of times (s), of the wave that enters at an end, with or without its loads.
 
-    Of the forces there the bar takes ρcA·v and the end's dashpots C·v, so that the pressure ρcv is ρc/(ρcA + C) times
-    them; an end whose motion is prescribed moves with its own v. Springs are not asked.
+    The forces F at the end are balanced by ρcA·v of the bar and C·v of the dashpots, so that the pressure ρcv is
+    F·ρc/(ρcA + C). An end whose motion is prescribed has the prescribed v. The forces of springs are neglected.
     """
     bar = case.bar
     inwards = 1.0 if side == "left" else -1.0
@@ -30,9 +30,10 @@ def entering_pressure(case: BarCase, side: str, time: np.ndarray, *, loads: bool
 
 
 def moments(case: BarCase, side: str) -> np.ndarray:
-    """Times (s), ascending, at which to look at what enters at an end: from when it begins until it is over.
+    """Times (s), ascending, at which to compute the wave that enters at an end: from its beginning until it is over.
 
-    That is looked for within the run and the times of the waves, whichever are longer. Crests of waves are among them.
+    These are searched within the duration of the run or of the waves, whichever is longer. The times of the waves'
+    crests are included.
     """
     waves = [case.wave[load.wave] for load in case.load if load.side == side]
     waves += [case.wave[name] for name in case.side(side).waves.values()]

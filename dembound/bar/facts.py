@@ -1,4 +1,4 @@
-"""What a bar's case would come to, without running it."""
+"""Facts about the case of a bar, computed without running it."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ ERROR = 0.01
 """Error of the phase speed that the shortest wavelength may have without a warning."""
 
 PERCENT = f"{100.0 * ERROR:g} %"
-"""The same in words."""
+"""The same as text."""
 
 
 def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
@@ -56,7 +56,7 @@ def method_in_words(case: BarCase) -> str:
 
 
 def _strength_in_words(bar: Bar) -> str:
-    """Stress and stretch at which it breaks."""
+    """Stress and stretch at which the bar breaks."""
     stretch = bar.breaking_stretch
     if np.isinf(stretch):
         return "unbreakable"
@@ -64,7 +64,7 @@ def _strength_in_words(bar: Bar) -> str:
 
 
 def cells_of_waves(scene: BarScene, time_step: float) -> dict[str, tuple[float, float]]:
-    """Of every wave in use the cells in its shortest wavelength, and how many keep the error of its speed below ERROR.
+    """For every wave in use: cells in its shortest wavelength, and cells needed for a speed error below ERROR.
 
     The shortest wavelength is that of the wave's highest frequency.
     """

@@ -1,4 +1,4 @@
-"""Where and when a bar came apart, from the steps in which its bonds broke."""
+"""Place and time of spalls, from the steps in which bonds broke."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,7 +13,8 @@ from dembound.methods.bonds import Bonds
 class Spall:
     """One place where local damage has reached 0.3 (L section 1.2).
 
-    time : s, when it first did; start : m, the range of cracked nodes at that moment; end : m, their range in the end.
+    time : s, at which this first happened; start : m, range of the cracked nodes at that time; end : m, their range at
+    the end of the run.
     """
 
     time: float
@@ -21,20 +22,20 @@ class Spall:
     end: tuple[float, float]
 
     def describe(self) -> dict[str, Any]:
-        """As plain JSON values to twelve digits; beyond them stands the rounding of steps and spacings."""
+        """As plain JSON values, rounded to twelve digits; further digits are rounding errors of steps and spacings."""
         ranges = {"start": self.start, "end": self.end}
         return {"time": _short(self.time)} | {key: [_short(x) for x in ends] for key, ends in ranges.items()}
 
 
 def _short(value: float) -> float:
-    """A number to twelve digits."""
+    """A number rounded to twelve digits."""
     return float(f"{value:.12g}")
 
 
 def cracked_since(bonds: Bonds) -> np.ndarray:
-    """Step (n,) in which the damage of each node reached 0.3, −1 where it never did.
+    """Step (n,) in which the damage of each node reached 0.3; −1 where it did not.
 
-    Beside a crack damage is often 0.3 in exact arithmetic, so it is compared within rounding.
+    Next to a crack, damage is often exactly 0.3, so rounding errors are allowed for in the comparison.
     """
     since = np.full(bonds.rod.count, -1)
     for step in np.unique(bonds.breaks(0)[0]):
@@ -44,7 +45,7 @@ def cracked_since(bonds: Bonds) -> np.ndarray:
 
 
 def spalls(bonds: Bonds, positions: np.ndarray, time_step: float) -> list[Spall]:
-    """Every spall of a bar in the order they happened; positions (n,) m of its nodes, time_step s."""
+    """Every spall of a bar in order of time; positions (n,) m of its nodes, time_step s."""
     since = cracked_since(bonds)
     cracked = np.concatenate([[False], since >= 0, [False]])
     edges = np.flatnonzero(np.diff(cracked))

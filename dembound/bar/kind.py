@@ -45,11 +45,11 @@ class Bars(Kind[BarCase, BarScene]):
         return choose_step(scene)
 
     def is_planned_quickly(self, case: BarCase) -> bool:
-        """Always, as the step limit of a bar is found at once."""
+        """Always true, as the step limit of a bar is computed within milliseconds."""
         return True
 
     def begin(self, scene: BarScene, time_step: float, on_look: OnLook) -> Beginning:
-        """At rest as built."""
+        """The bar at rest."""
         return Beginning(scene.system(time_step))
 
     def facts(self, scene: BarScene, time_step: float) -> dict[str, str]:
@@ -57,11 +57,11 @@ class Bars(Kind[BarCase, BarScene]):
         return bar_facts(scene, time_step)
 
     def warnings_before(self, scene: BarScene, time_step: float) -> list[str]:
-        """What is known before the run."""
+        """Warnings that are known before the run."""
         return bar_warnings(scene, time_step)
 
     def warnings_after(self, scene: BarScene, summary: Mapping[str, Any], record: Path) -> list[str]:
-        """What the run has shown."""
+        """Warnings from the results of the run."""
         return warnings_after_bar(scene, summary, record)
 
     def summarise(self, scene: BarScene, run: Run, beginning: Beginning, record: Path) -> dict[str, Any]:

@@ -1,11 +1,11 @@
 """Snapshots of a bar for ParaView: one line from each node to the next, and a script that shows them.
 
-Every node stands at its reference position moved by its displacement (y = z = 0), with these point data:
+Every node is drawn at its reference position plus its displacement (y = z = 0), with these point data:
 
 | name | unit | shape | what |
 |---|---|---|---|
 | ``id`` | 1 | (n,) | number of the node, from the left end |
-| ``volume`` | m³ | (n,) | what the node stands for; half at the ends |
+| ``volume`` | m³ | (n,) | volume of the node; half at the ends |
 | ``displacement`` | m | (n, 3) | since the start of the run, along x |
 | ``velocity`` | m/s | (n, 3) | half a time step earlier, along x |
 | ``stress`` | Pa | (n,) | along the bar, tension positive |

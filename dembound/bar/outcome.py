@@ -1,17 +1,17 @@
-"""What happened in a run of a bar, in words, from its summary."""
+"""The results of a run of a bar in words, from its summary."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 GAINED = 1e-3
-"""Share of the energy that fracture may give instead of taking it before a run reports it."""
+"""Share of the energy that breaking bonds may add instead of removing it; above it the run reports it."""
 
 LISTED = 3
-"""Spalls that are named one by one."""
+"""Number of spalls that are printed one by one."""
 
 
 def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
-    """What became of a bar: changes of method, and where and when it spalled, and what of that converges."""
+    """Changes of method, place and time of the spalls, and which of these results converge."""
     facts = [f"{used['law']} from {used['from'] * 1e3:.4g} ms" for used in summary["laws"][1:]]
     facts += [
         f"spall at {_range(spall['start'])} m, {spall['time'] * 1e3:.4f} ms" for spall in summary["spalls"][:LISTED]
@@ -25,7 +25,7 @@ def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
     gained = -summary["energy"]["crack"]
     if gained > GAINED * abs(summary["energy"]["outside"]):
         facts.append(
-            f"bonds broke within single steps and gave {gained / abs(summary['energy']['outside']):.1%} of the energy, "
+            f"bonds broke within single steps, adding {gained / abs(summary['energy']['outside']):.1%} of the energy, "
             "take a smaller bar.spacing or run.courant"
         )
     if error := summary["energy"]["relative_error"]:
@@ -34,5 +34,5 @@ def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
 
 
 def _range(ends: Sequence[float]) -> str:
-    """Ends of a range as "0.906–0.909", a single place as it is."""
+    """Ends of a range as "0.906–0.909", or a single position."""
     return "–".join(f"{end:.4g}" for end in sorted(set(ends)))

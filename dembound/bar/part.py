@@ -1,4 +1,4 @@
-"""The part of a bar: its bonds as the method lays them, and changes them when springs are stretched far."""
+"""The part of a bar: the bonds its method creates, and changes when springs reach a given stretch."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from dembound.motion.part import Part
 from dembound.motion.state import Arrays, State
 
 SWING = 1e-6
-"""Share by which a node with a prescribed velocity may swing beyond the bound of a stable step."""
+"""Share by which the motion of a node with a prescribed velocity may exceed the bound of a stable step."""
 
 
 class BarPart(Part):
@@ -49,9 +49,9 @@ class BarPart(Part):
         return self._arrays
 
     def react(self, why: int, steps: int, state: State) -> None:
-        """Let the method change the bonds where a spring has triggered it.
+        """Let the method change the bonds at a spring that has reached its limit.
 
-        Raises RunError where that makes the time step unstable.
+        Raises RunError if the time step is unstable with the new bonds.
         """
         self.bond_updates += steps * self.bonds.alive
         if why == TRIGGERED:
@@ -59,7 +59,10 @@ class BarPart(Part):
             self._change_bonds(u, u - self._step * state.v[0], state)
 
     def _change_bonds(self, u: np.ndarray, before: np.ndarray, state: State) -> None:
-        """Let the method change the bonds at displacements u (n,), a step ago `before`, and book the energy added."""
+        """Let the method change the bonds, and add the energy difference to the ledger.
+
+        u : (n,) m, displacements now; before : one step earlier.
+        """
         stored, alive = self._between(u, before), self.bonds.alive
         self.law_name = self.scene.case.method.on_trigger(self.bonds, u)
         self._arrays = self._lay()
@@ -72,7 +75,7 @@ class BarPart(Part):
             )
 
     def _is_stable(self) -> bool:
-        """Whether the time step is stable with the bonds as they are; it stays so while they only break."""
+        """Whether the time step is stable with the present bonds; it remains so while bonds only break."""
         return self.scene.is_stable(self.bonds, self._step * (1.0 - ROUNDING))
 
     def stored(self, displacement: np.ndarray) -> tuple[float, float]:
@@ -80,24 +83,24 @@ class BarPart(Part):
         return bar.stored(displacement[0], self._arrays)
 
     def _between(self, u: np.ndarray, before: np.ndarray) -> float:
-        """Strain energy (J) half a step ago, ½ uᵀK u⁻: what central differences conserve."""
+        """Strain energy (J) half a step earlier, ½ uᵀK u⁻, which central differences conserve."""
         return 0.25 * (sum(bar.stored(u + before, self._arrays)) - sum(bar.stored(u - before, self._arrays)))
 
     def blown_up(self, velocity: np.ndarray) -> int | None:
-        """The node at which a run gains energy from nothing; None for a sound one. velocity (3, n) m/s.
+        """The node at which a run is unstable and gains energy; None for a stable run. velocity (3, n) m/s.
 
-        A stable step has ½ vᵀMv ≥ ½ (½Δt v)ᵀK(½Δt v) for any v, so velocities that break this swing beyond what the
-        step can follow. Where bonds break first, what is left may be soft enough to look sound: then it counts whether
-        the step was stable before they did.
+        A stable step has ½ vᵀMv ≥ ½ (½Δt v)ᵀK(½Δt v) for any v, so velocities that violate this belong to an
+        instability. If bonds break first, the remaining bar may be so soft that the condition holds; then the step is
+        judged by the bonds before they broke.
         """
-        v = velocity[0] / max(1.0, np.abs(velocity[0]).max())  # whose squares do not overflow
+        v = velocity[0] / max(1.0, np.abs(velocity[0]).max())  # scaled so that squares do not overflow
         kinetic = 0.5 * float(np.sum(self.scene.mass * v**2))
         swing = sum(bar.stored(0.5 * self._step * v, self._arrays))
         broken = self._unstable and len(self.bonds.breaks(0)[0]) > 0
         return int(np.argmax(np.abs(v))) if broken or swing > kinetic * (1.0 + SWING) else None
 
     def take_cracks(self, steps: int) -> Cracks:
-        """The bonds that broke since this was last called; steps: those done by now."""
+        """The bonds that broke since this was last called; steps: number of steps done."""
         step, pair = self.bonds.breaks(self._reported)
         self._reported = steps
         middle = self.scene.positions[pair].mean(axis=1)
@@ -114,7 +117,7 @@ class BarPart(Part):
         return stress
 
     def memory(self) -> Arrays:
-        """Springs, bonds and zones, the method in use, and what has been counted and reported."""
+        """Springs, bonds and zones, the method in use, and the counters."""
         return {
             "law": np.array(self.law_name),
             "bond_updates": np.array(self.bond_updates),
@@ -124,7 +127,7 @@ class BarPart(Part):
         }
 
     def recall(self, memory: Arrays) -> None:
-        """Take over what `memory` has returned in another run of the same case."""
+        """Restore the arrays that `memory` has returned in another run of the same case."""
         self.law_name = str(memory["law"])
         self.bond_updates, self._reported = int(memory["bond_updates"]), int(memory["reported"])
         self._unstable = bool(memory["unstable"])

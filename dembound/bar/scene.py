@@ -1,4 +1,4 @@
-"""From a case with a ``[bar]`` to its scene: place the nodes, support and load them."""
+"""Builds the scene of a case with a ``[bar]``: places the nodes, supports and loads them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ from dembound.methods.bonds import Rod
 from dembound.motion.part import System
 
 HELD = (1, 2)
-"""A bar moves along x alone."""
+"""A bar moves only along x."""
 
 
 @dataclass(frozen=True)
 class BarScene(BarBody):
-    """A case of a bar turned into arrays."""
+    """The arrays of a case of a bar."""
 
     def system(self, time_step: float) -> System:
         """The bar at rest as its method begins, to be stepped by time_step (s)."""
@@ -37,27 +37,27 @@ def build_bar(case: BarCase) -> BarScene:
 
 
 def end_supports(case: BarCase, side: str) -> Supports:
-    """What the boundary of one end does to its node, without loads and attenuation; nothing where it is free."""
+    """Support table of the boundary of one end, without loads and attenuation; empty for a free end."""
     builder = SupportBuilder(held=HELD)
     case.side(side).support(_edge(case, side), bar_medium(case), case.wave, builder)
     return builder.table()
 
 
 def _edge(case: BarCase, side: str) -> Edge:
-    """The one node of an end."""
+    """An end, which consists of one node."""
     bar = case.bar
     node, place = (0, 0.0) if side == "left" else (bar.cells, bar.length)
     return Edge(side, np.array([node]), np.array([[place, 0.0]]), np.array([bar.area]), bar.area)
 
 
 def bar_medium(case: BarCase) -> BoundaryMedium:
-    """What an end stands for: more of the same bar."""
+    """The medium that an absorbing end represents: the same bar, continued."""
     none = np.zeros(1)
     return BoundaryMedium(case.bar.density, case.bar.speed, 0.0, lambda diameters: (none, none))
 
 
 def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge]) -> Supports:
-    """Both ends' recipes, all loads, and the attenuation of the nodes they act on, in one table."""
+    """The support table: rows of both ends, of all loads, and the attenuation of the nodes they act on."""
     builder = SupportBuilder(held=HELD)
     for side, table in case.boundary.items():
         table.support(edges[side], bar_medium(case), case.wave, builder)

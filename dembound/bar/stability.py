@@ -6,7 +6,7 @@ from dembound.errors import CaseError
 
 
 def choose_step(scene: BarScene) -> tuple[float, float]:
-    """Time step to run with and its stability limit (s) at every stage of the bar's method, exact but for rounding.
+    """Time step to run with and its stability limit (s) at every stage of the bar's method, exact to rounding.
 
     The step may be given by its Courant number. Raises CaseError when the case gives a step above the limit.
     """

@@ -1,4 +1,4 @@
-"""A bar's run in numbers, for scripts."""
+"""The results of a run of a bar as numbers, for scripts."""
 
 from pathlib import Path
 from typing import Any, cast
@@ -12,16 +12,16 @@ from dembound.gauge.estimates import pull_back_strength
 from dembound.motion.trackers import Run
 from dembound.results.reader import open_record
 
-LATER_SPALLS = "spalls after the first do not converge as bar.spacing shrinks: it decides their number and places"
-"""Said where a bar has spalled more than once."""
+LATER_SPALLS = "spalls after the first do not converge as bar.spacing decreases: their number and places depend on it"
+"""Added where a bar has spalled more than once."""
 
 
 OF_DISKS = {"beta_s", "half_mass"}
-"""Numbers of sides that a bar, which moves along itself alone and has half an end node, does not ask for."""
+"""Keys of sides that do not apply to bars, which move only along their axis and whose end nodes are half cells."""
 
 
 def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
-    """What a bar's summary has beside that of every run: plain JSON values, SI units."""
+    """Entries of a bar's summary in addition to those of every run: plain JSON values, SI units."""
     bar = part_of(run)
     found = spalls(bar.bonds, scene.positions[:, 0], run.time_step)
     return {
@@ -39,7 +39,7 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
 
 
 def part_of(run: Run) -> BarPart:
-    """The one part of a bar's run."""
+    """The only part of a bar's run."""
     (bar,) = run.system.parts
     return cast(BarPart, bar)
 
@@ -63,7 +63,7 @@ def describe_bar(scene: BarScene) -> dict[str, float | None]:
 
 
 def describe_end(scene: BarScene, side: str) -> dict[str, Any]:
-    """One end in numbers: its type, and those of its table that a bar asks for."""
+    """One end in numbers: its type, and the numbers of its table that apply to bars."""
     table = scene.case.side(side)
     numbers = table.describe(scene.edges[side], bar_medium(scene.case))
     return {"type": table.type} | {key: value for key, value in numbers.items() if key not in OF_DISKS}
@@ -80,9 +80,9 @@ def _largest_stresses(record: Path) -> dict[str, dict[str, float]]:
 
 
 def _pull_backs(scene: BarScene, record: Path) -> dict[str, float]:
-    """Pull-back strength (Pa) from the velocity of every monitor at a free end, where it falls and rises again.
+    """Pull-back strength (Pa) of every monitor at a free end whose velocity falls and rises again.
 
-    An end under load moves as that has it.
+    A loaded end is left out, as the load determines its motion.
     """
     loaded = {load.side for load in scene.case.load}
     free = [side for side in scene.edges if describe_end(scene, side)["type"] == "free" and side not in loaded]

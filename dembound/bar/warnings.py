@@ -1,4 +1,4 @@
-"""What a run of a bar will do that was probably not meant, as far as it is known before."""
+"""Warnings about probable mistakes in the case of a bar, before and after the run."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -18,7 +18,7 @@ from dembound.results.reader import open_record
 from dembound.results.warnings import still_moving
 
 NOTHING = 0.05
-"""Share of the strength that a tension must reach: what rings behind a pulse comes to some per cent of it."""
+"""Share of the strength that the largest tension must reach; oscillations behind a pulse reach some per cent of it."""
 
 
 def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
@@ -27,14 +27,14 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
     times = list(time_warnings(case, time_step, case.bar.length / case.bar.speed))
     return [
         *_too_few_cells(scene, time_step),
-        *(times or ends_too_soon(case)),  # waves of odd times may spoil the latter
+        *(times or ends_too_soon(case)),  # with doubtful times of waves the second check means nothing
         *_dashpots_at_soft_ends(case),
         *stress_beside_strength(case),
     ]
 
 
 def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:
-    """Waves too short for the nodes."""
+    """Waves that are too short for the spacing of the nodes."""
     finer = "" if carrying_lattice(scene, time_step).horizon == 1 else " or method.horizon"
     for name, (cells, needed) in cells_of_waves(scene, time_step).items():
         if cells < needed:
@@ -45,17 +45,17 @@ def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:
 
 
 def _dashpots_at_soft_ends(case: BarCase) -> Iterator[str]:
-    """Dashpots at ends too soft for them."""
+    """Dashpots at the soft ends of plain peridynamics."""
     for side, table in case.boundary.items():
         if case.method.soft_ends and table.factors:
             yield (
-                f"boundary.{side}: stands at a soft end of peridynamics and returns a part of every wave; "
+                f"boundary.{side}: is at a soft end of peridynamics and reflects a part of every wave; "
                 "give method.corrected_ends = true"
             )
 
 
 def stress_beside_strength(case: BarCase) -> Iterator[str]:
-    """Loads and waves whose stress is a tiny part of the strength, or far beyond it."""
+    """Loads and waves whose stress is a very small part, or a large multiple, of the strength."""
     bar = case.bar
     strength = bar.breaking_stretch * bar.modulus
     if np.isinf(strength):
@@ -97,11 +97,12 @@ def ends_too_soon(case: BarCase) -> Iterator[str]:
 
 
 def _crest_and_break(case: BarCase) -> tuple[float | None, float | None]:
-    """When the crest of the pressure is at the loaded end, and when the bar breaks beside the other, less L/c; s.
+    """Times of the pressure's crest at the loaded end and of the break near the other end, less L/c; s.
 
-    Beside a free end pressures p(t) on the other make the tension p(s − y/c) − p(s + y/c) at a distance y, s the time
-    since the front has come there. Each is None where it does not happen: no pressure, too little of it, or so much
-    tension at first that the bar breaks on the way there. Of an end with springs neither is known.
+    A pressure p(t) on the loaded end gives the tension p(s − y/c) − p(s + y/c) at the distance y from the free end,
+    with s the time since the front arrived there. A time is None where the event does not occur: no pressure, too small
+    a pressure, or an initial tension so large that the bar breaks before the front arrives. Both are None where the
+    loaded end has springs.
     """
     bar, side = case.bar, case.loaded
     if end_supports(case, side).stiffness.any():
@@ -118,7 +119,7 @@ def _crest_and_break(case: BarCase) -> tuple[float | None, float | None]:
 
 
 def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path) -> list[str]:
-    """What a run of a bar has shown that was probably not meant, one line each, from its summary and record."""
+    """Warnings from the summary and record of a run of a bar, one line each."""
     cuts = np.array([spall["end"] for spall in summary["spalls"]]).reshape(-1, 2).mean(axis=1)
     pieces = np.searchsorted(np.sort(cuts), scene.positions[:, 0])
     with open_record(record) as file:
@@ -130,7 +131,7 @@ def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path
 
 
 def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:
-    """A first spall where a load acts, before any wave can be back there."""
+    """A first spall at the load, before a reflected wave can have returned there."""
     if not summary["spalls"]:
         return
     first, bar, horizon = summary["spalls"][0], case.bar, case.method.largest_horizon
@@ -141,15 +142,15 @@ def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str
         if distance < near and first["time"] < start + 2.0 * bar.length / bar.speed:
             cure = f"give load.{load.name}.nodes = {horizon}" if load.nodes < horizon else "take a smaller bar.spacing"
             yield (
-                f"load.{load.name}: the load itself tore the bar, at {first['time']:.4g} s and {distance:g} m from the "
-                f"loaded end, before any wave was back there; {cure}"
+                f"load.{load.name}: the load itself broke the bar, at {first['time']:.4g} s and {distance:g} m from "
+                f"the loaded end, before any reflected wave had returned there; {cure}"
             )
 
 
 def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
-    """A bar with a strength that no recorded tension comes near.
+    """A breakable bar whose recorded tension is far below its strength.
 
-    Silent where a warning before the run has said so.
+    No warning where one before the run has already reported it.
     """
     strength = case.bar.breaking_stretch * case.bar.modulus
     foreseen = [*stress_beside_strength(case), *ends_too_soon(case)]

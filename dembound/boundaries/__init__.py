@@ -1,4 +1,4 @@
-"""Boundary types: each file holds one type's TOML table and its recipe for the support table.
+"""Boundary types: each file contains the TOML table of one type and fills its rows of the support table.
 
 A new type is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """

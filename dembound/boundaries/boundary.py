@@ -1,4 +1,4 @@
-"""The base of all boundary types: the traits of a side that cases, scenes and studies use."""
+"""The base of all boundary types: the properties of a side that cases, scenes and studies use."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Self
@@ -11,18 +11,18 @@ from dembound.table import Table
 class Boundary(Table):
     """A side's table: the base of all types.
 
-    A type is a subclass with a literal `type`, its keys, and the recipe `support`. The other members default to
-    those of a side without waves, dashpots and prescribed motion.
+    A type is a subclass with a literal `type`, its keys, and the method `support`. The defaults of the other members
+    are those of a side without waves, dashpots and prescribed motion.
 
     Attributes
     ----------
     for_bars : whether an end of a bar may have this type.
     for_static : whether a side may have it during the static stage, in which no wave runs.
-    is_free : whether nothing pushes.
-    is_periodic : whether the body goes on with its own opposite side.
-    is_mirror : whether the body goes on as its own mirror image.
-    needs_column : whether a free-field column stands beyond the side, and may move with the waves that pass there.
-    beyond_dashpots : what `dashpots_alone` leaves out, in words for reports.
+    is_free : whether no forces act on the side.
+    is_periodic : whether the side is connected to the opposite side.
+    is_mirror : whether the side is a mirror plane.
+    needs_column : whether the side needs a free-field column, which moves with the waves of the ground.
+    beyond_dashpots : text for reports, naming what `dashpots_alone` leaves out.
     """
 
     for_bars: ClassVar[bool] = False
@@ -38,13 +38,13 @@ class Boundary(Table):
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """Fill rows of the support table for the particles of an edge; by default none.
 
-        medium is what the side stands for, waves those of the case by name.
+        medium : the medium that the side represents; waves : those of the case by name.
         """
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """Mistakes that show only beside other tables, one line each; this one is that of `side`.
+        """Mistakes of the table of `side` that depend on other tables, one line each.
 
-        tables : those of the case by name, None for one that is invalid; ``boundary`` has the sides'.
+        tables : those of the case by name, None for one that is invalid; ``boundary`` contains those of the sides.
         """
         yield from ()
 
@@ -56,7 +56,7 @@ class Boundary(Table):
     def waves(self) -> Mapping[Motion, str]:
         """The waves that drive the side: kind -> name; by default none.
 
-        Calibration of a side with waves and dashpots takes it that they come in with the force 2βρcD·v_i (Z eq. 6).
+        Calibration of a side with waves and dashpots assumes that the waves enter by the force 2βρcD·v_i (Z eq. 6).
         """
         return {}
 
@@ -71,7 +71,7 @@ class Boundary(Table):
         return False
 
     def driven_by(self, waves: Mapping[Motion, str]) -> Self:
-        """The side, which some wave drives, under other waves: kind -> name."""
+        """The side with other waves: kind -> name."""
         keys = {f"wave_{motion}": waves.get(motion) for motion in ("p", "s")}
         return self.model_copy(update=keys)
 
@@ -80,7 +80,7 @@ class Boundary(Table):
         return self.driven_by({}) if self.waves else self
 
     def dashpots_alone(self) -> "Boundary":
-        """What plane waves at normal incidence meet that β is to be found for: without springs and columns."""
+        """The side used to calibrate β for plane waves at normal incidence: without springs and columns."""
         return self
 
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:

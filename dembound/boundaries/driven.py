@@ -1,4 +1,4 @@
-"""What all wave-driven sides have in common: which named wave moves them in which direction."""
+"""The base of wave-driven sides: the named waves and the directions in which they move the side."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -13,7 +13,7 @@ from dembound.table import quantity
 class Driven(Boundary):
     """A side that names its waves by type: P moves along the side's normal, S across it.
 
-    Positive velocities point along +x and +y whatever the side. Both may be given at once.
+    Positive velocities point along +x and +y on every side. Both waves may be given together.
     """
 
     wave_p: str | None = quantity(None, unit="1", help="name of the wave that moves along the side's normal")
@@ -35,7 +35,7 @@ class Driven(Boundary):
 
     @property
     def waves(self) -> Mapping[Motion, str]:
-        """The waves named."""
+        """The waves that are given."""
         named: dict[Motion, str | None] = {"p": self.wave_p, "s": self.wave_s}
         return {motion: name for motion, name in named.items() if name is not None}
 

@@ -1,4 +1,4 @@
-"""Which particles make up a side: those that can be seen when looking at it along its normal."""
+"""Which particles make up a side: those visible from outside along its normal."""
 
 import numpy as np
 
@@ -8,19 +8,22 @@ SAMPLES_PER_RADIUS = 100
 """Lines of sight per smallest radius: a disk that shows less than 1 % of it counts as hidden."""
 
 DEPTH = 4.0
-"""How far behind the outermost face a disk may lie and still belong to the side, in largest radii: enough to
-look into every hole of a dense packing, and short of looking past a rough corner across the whole scene."""
+"""Largest distance of a side's disk from the outermost face, in largest radii.
+
+It is large enough for every hole of a dense packing, and too small for lines of sight that pass a rough corner and
+cross the whole scene.
+"""
 
 
 LEVEL = 1e-6
-"""How far the centres of one row may differ across it, in smallest radii: rounding."""
+"""Largest deviation of the centres of one row from a line, in smallest radii: rounding errors."""
 
 
 def outer_row(positions: np.ndarray, radii: np.ndarray, side: str) -> np.ndarray:
-    """Indices of the particles in the outermost row at `side`, sorted along it; parameters as of `exposed`.
+    """Indices of the particles in the outermost row at `side`, sorted along it; parameters as for `exposed`.
 
-    Of a side of disks in one row that is all of it. At a corner more may be exposed: every other row of a hexagonal
-    packing reaches past the rest.
+    If the disks of a side form one row, this is the whole side. `exposed` may also return disks at a corner: every
+    second row of a hexagonal packing extends beyond the others.
     """
     axis = normal_axis(side)
     outward = _sign(side) * positions[:, axis]
@@ -29,7 +32,7 @@ def outer_row(positions: np.ndarray, radii: np.ndarray, side: str) -> np.ndarray
 
 
 def exposed(positions: np.ndarray, radii: np.ndarray, side: str, period: float | None = None) -> np.ndarray:
-    """Indices of the particles seen from outside `side`, sorted along it.
+    """Indices of the particles visible from outside `side`, sorted along it.
 
     A depth buffer over parallel lines of sight. positions (n, 2) and radii (n,) in m; side is left, right, bottom
     or top; period (m) is the scene's length along the side when it is periodic there, else None.

@@ -7,7 +7,7 @@ from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Wa
 
 
 class Fixed(Boundary):
-    """A rigid wall the edge particles are glued to; an arriving wave is reflected with its sign turned."""
+    """A rigid wall to which the edge particles are fixed; it reflects a wave with the opposite sign of the velocity."""
 
     for_bars: ClassVar[bool] = True
     for_static: ClassVar[bool] = True

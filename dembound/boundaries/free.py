@@ -1,4 +1,4 @@
-"""A free side: nothing pushes. It is also what a side without a table is."""
+"""A free side: no forces act on it. A side without a table is free."""
 
 from typing import ClassVar, Literal
 
@@ -6,7 +6,7 @@ from dembound.boundaries.boundary import Boundary
 
 
 class Free(Boundary):
-    """No support; an arriving wave is reflected with the motion doubled."""
+    """No support; a wave is reflected, and doubles the motion of the side."""
 
     for_bars: ClassVar[bool] = True
     for_static: ClassVar[bool] = True

@@ -1,8 +1,8 @@
-"""A free-field side: beyond it the ground moves as it would without the body.
+"""A free-field side: the ground beyond it moves as it would without the body.
 
-Z eq. 21. The force that the ground beyond puts on a particle is what acts on its twin in the free-field column across
-the same seam, moment included: static part and motion at once, nothing to calibrate (see packings/column.py). Dashpots
-on the velocity relative to the twin absorb what the body sends out.
+Z eq. 21. The force and moment of the ground on a particle are those that act on its twin in the free-field column
+across the same seam. They include the static and the dynamic part and need no calibration (see packings/column.py).
+Dashpots on the velocity relative to the twin absorb the waves from the body.
 """
 
 from collections.abc import Iterator, Mapping
@@ -26,16 +26,16 @@ class FreeField(Dashpots):
     @model_validator(mode="after")
     def _whole_masses(self) -> "FreeField":
         if self.half_mass:
-            raise ValueError("half_mass: is not for a free-field side, whose other half stands in the column")
+            raise ValueError("half_mass: is not allowed on a free-field side, whose other half is in the column")
         return self
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """A side along which no column can stand."""
+        """A side that cannot have a column."""
         yield from super().problems(side, tables)
         if normal_axis(side) == 1:
             yield (
                 f'boundary.{side}.type: "{self.type}" is for left and right; '
-                "its column stands upright and ends where the body does"
+                "its column is vertical and as high as the body"
             )
 
     def dashpots_alone(self) -> Viscous:

@@ -1,8 +1,8 @@
 """Sides whose particles are half cells: half their mass, and half the contacts along the side.
 
-The end disk of a chain stands half a diameter beyond what its dashpot should bound, with its whole mass: it returns
-|R| = tan(qa/4) of a wave. With half the mass it returns tan²(qa/4). A row of such disks is half a row of the lattice:
-the contacts between them, which S waves turn the disks against, are half contacts, too.
+The end disk of a chain has its whole mass, so it extends half a diameter beyond the position of its dashpot, and
+reflects |R| = tan(qa/4) of a wave. With half the mass it reflects tan²(qa/4). A row of such disks is half a row of the
+lattice. So the contacts between them, which resist the rotation of the disks under S waves, are half contacts, too.
 """
 
 from collections.abc import Iterator, Mapping

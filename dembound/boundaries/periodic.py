@@ -1,4 +1,4 @@
-"""A periodic side: the scene goes on with its own opposite side. Sides come in pairs."""
+"""A periodic side: it is connected to the opposite side, which is periodic too."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
@@ -8,14 +8,14 @@ from dembound.boundaries.sides import OPPOSITE, normal_axis
 
 
 class Periodic(Boundary):
-    """Bonds run on across the seam; the tiling makes them, no support is needed."""
+    """Bonds cross the seam; the tiling creates them, and no support is needed."""
 
     is_periodic: ClassVar[bool] = True
 
     type: Literal["periodic"]
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """An opposite side that is something else, and a column that would have no ends."""
+        """An opposite side of another type, and a column without a bottom or top side."""
         sides, opposite = tables["boundary"], OPPOSITE[side]
         missing = opposite not in sides
         if missing or (sides[opposite] and not sides[opposite].is_periodic):
@@ -23,4 +23,4 @@ class Periodic(Boundary):
         beside = [name for name, table in sides.items() if table and table.needs_column]
         if beside and normal_axis(side) == 1:
             other = f"boundary.{beside[0]}"
-            yield f'boundary.{side}.type: is "{self.type}", but beside {other} stands a column with two ends'
+            yield f'boundary.{side}.type: is "{self.type}", but the column of {other} needs two ends'

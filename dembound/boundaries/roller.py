@@ -1,4 +1,4 @@
-"""A roller: the side slides along itself, but neither leaves its plane nor enters it."""
+"""A roller: the particles of the side move along it, but not along its normal."""
 
 from typing import ClassVar, Literal
 

@@ -5,7 +5,7 @@ from typing import Literal
 SIDES = ("left", "right", "bottom", "top")
 
 Motion = Literal["p", "s"]
-"""Kind of wave: P moves particles along the normal of the side it meets, S across it."""
+"""Kind of wave: P moves particles along the normal of the side it reaches, S across it."""
 
 OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 """Side -> the side across the scene."""
@@ -17,5 +17,5 @@ def normal_axis(side: str) -> int:
 
 
 def axis_of_motion(side: str, motion: Motion) -> int:
-    """Axis along which a wave moves the particles of a side it meets at right angles."""
+    """Axis along which a wave moves the particles of a side at normal incidence."""
     return normal_axis(side) if motion == "p" else 1 - normal_axis(side)

@@ -1,12 +1,12 @@
-"""The support table: how the outside pushes on the body, one row per supported degree of freedom.
+"""The support table: forces from outside on the body, one row per supported degree of freedom.
 
-Every boundary type is a recipe that fills rows of this one table, and one kernel applies it::
+Every boundary type fills rows of this one table, and one kernel applies it::
 
     F = Σ drive · signal(t) − damping · v + follow · v_ff − stiffness · u          (Z eqs 4-6, 13-18, 21)
 
 with v_ff the velocity of the particle's twin in the free-field column, or, for a prescribed row,
-v = Σ drive · signal(t) whatever the forces. A side may meet another at a corner:
-rows on the same degree of freedom then add up, and a prescribed one outranks the rest.
+v = Σ drive · signal(t) whatever the forces. Where two sides meet at a corner, rows on the same degree of freedom add
+up, and a prescribed row replaces all others.
 """
 
 from collections.abc import Callable, Mapping
@@ -22,7 +22,7 @@ Signal = Callable[[np.ndarray], np.ndarray]
 
 
 class Incident(Protocol):
-    """A wave that a side may let in."""
+    """A wave that may enter through a side."""
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
         """Particle velocity, m/s, at the times t, s; same shape as t."""
@@ -37,7 +37,7 @@ Waves = Mapping[str, Incident]
 
 @dataclass(frozen=True)
 class BoundaryMedium:
-    """What a side is made to stand for.
+    """The medium that a side represents.
 
     density kg/m³, bulk; p_wave_speed, s_wave_speed m/s, nominal; mirror_stiffness: diameters (k,) m -> stiffness of
     the contact and bond between two touching disks of that diameter, normal (k,) N/m and bending (k,) N·m/rad.
@@ -62,7 +62,7 @@ class BoundaryMedium:
 
 @dataclass(frozen=True)
 class Edge:
-    """One side of the scene: the exposed particles and the length they stand for.
+    """One side of the scene: the exposed particles and the length of the side.
 
     side left, right, bottom or top; nodes (k,) particle indices; positions (k, 2) m; diameters (k,) m; length m.
     """
@@ -108,22 +108,22 @@ class Supports:
         return len(self.node)
 
     def springs_at(self, displacement: np.ndarray) -> np.ndarray:
-        """Forces (3, n) N that take the springs' zero to displacements (3, n)."""
+        """Forces (3, n) N that shift the zero of the springs to displacements (3, n)."""
         force = np.zeros_like(displacement)
         force[self.component, self.node] = self.stiffness * displacement[self.component, self.node]
         return force
 
     def sample(self, times: np.ndarray, half_step: float) -> np.ndarray:
-        """All that drives every row at each time, (steps, r): forces at `times`, prescribed velocities half a step on.
+        """Sum of the drives of every row at each time, (steps, r): forces at `times`, velocities half a step later.
 
-        Forces act at whole steps; velocities live at half steps, so a prescribed one is sampled there.
+        Forces act at whole steps; velocities are defined at half steps, so prescribed velocities are sampled there.
         """
         values = np.zeros((len(times), len(self)))
         late = self.prescribed[self.drive_row]
         for index, signal in enumerate(self.signals):
             for prescribed, shift in ((False, 0.0), (True, half_step)):
                 chosen = np.flatnonzero((self.drive_signal == index) & (late == prescribed))
-                if len(chosen):  # a signal drives a row once, so that no row stands here twice
+                if len(chosen):  # a signal drives a row only once, so no row occurs twice here
                     values[:, self.drive_row[chosen]] += signal(times + shift)[:, None] * self.drive[chosen]
         return values
 
@@ -203,7 +203,7 @@ class SupportBuilder:
 
 
 def _outranked(row_of: np.ndarray, count: int, prescribed: np.ndarray, moving: np.ndarray) -> np.ndarray:
-    """Which of the rows added another one on the same degree of freedom replaces; all (a,), bool but for row_of."""
+    """Which added rows are replaced by another row on the same degree of freedom; all (a,), bool except row_of."""
     rank = prescribed * (1 + moving.astype(int))
     best = np.zeros(count, dtype=int)
     np.maximum.at(best, row_of, rank)

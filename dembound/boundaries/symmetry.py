@@ -1,4 +1,4 @@
-"""A plane of symmetry: the body goes on as its own mirror image."""
+"""A plane of symmetry: the body continues beyond the side as its mirror image."""
 
 from typing import ClassVar, Literal
 
@@ -9,11 +9,11 @@ from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Wa
 class Symmetry(Boundary):
     """Every edge disk touches its own mirror image and is bonded to it.
 
-    The mirror stands half a disk diameter outside the disk's centre. The image of (u_n, u_s, θ) is (−u_n, u_s, −θ):
-    the elongation between the two is 2u_n, their bond bends by 2θ, and as both roll towards each other alike the
-    contact does not shear. With k_n and k_b a contact's and bond's stiffness, the image pushes with −2k_n·u_n and
-    −2k_b·θ. That is exact where the edge disks stand in one row, as in pattern A; elsewhere each disk has a mirror
-    of its own.
+    The mirror plane is half a disk diameter outside the disk's centre. The image of (u_n, u_s, θ) is (−u_n, u_s, −θ):
+    the elongation between the two is 2u_n, their bond bends by 2θ, and as both rotate by opposite angles the contact
+    does not shear. With k_n and k_b the normal and bending stiffness of contact and bond, the force of the image is
+    −2k_n·u_n and its moment −2k_b·θ. This is exact where the edge disks form one row, as in pattern A; elsewhere each
+    disk has its own mirror plane.
     """
 
     is_mirror: ClassVar[bool] = True

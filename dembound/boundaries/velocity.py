@@ -9,7 +9,7 @@ from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Wa
 
 
 class Velocity(Driven):
-    """A rigid grip that moves with the waves named; the component without a wave is held, rotation is free."""
+    """A rigid grip that moves with the given waves; the component without a wave is held, rotation is free."""
 
     for_bars: ClassVar[bool] = True
 

@@ -1,7 +1,7 @@
-"""Viscoelastic boundaries for disks: viscous ones with springs to a far fixed point, which stop the drift.
+"""Viscoelastic boundaries for disks: viscous ones with springs to the ground, which prevent drift.
 
-Z eqs 13-18. For waves that spread from a source at distance L, springs of α_n G/L along the normal and α_s G/L
-across it stand for the medium beyond besides the dashpots. G is given as a modulus, or is that of the medium.
+Z eqs 13-18. For waves that spread from a source at distance L, the medium beyond is represented by the dashpots and by
+springs of α_n G/L along the normal and α_s G/L across it. G follows from a given modulus, or is that of the medium.
 """
 
 from collections.abc import Iterator, Mapping
@@ -42,11 +42,11 @@ class Springs(Boundary):
         if self.poisson_ratio is not None and self.young_modulus is None:
             raise ValueError("poisson_ratio: needs young_modulus; without it G is that of the medium")
         if (self.distance is None) == (self.source is None):
-            raise ValueError("must have exactly one of distance and source, which say how far away waves begin")
+            raise ValueError("must have exactly one of distance and source, which give the distance L")
         return self
 
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
-        """Factors α, modulus G (Pa) and distances L (m) of the springs, too."""
+        """Adds the factors α, the modulus G (Pa) and the distances L (m) of the springs."""
         distances = self.distances(edge)
         return super().describe(edge, medium) | {
             "alpha_n": self.alpha_n,
@@ -98,7 +98,7 @@ class Viscoelastic(Dashpots, Springs):
 
 
 class ViscoelasticInput(Dashpots, Springs, Driven):
-    """Absorbs, holds and lets a wave in: F = −βρcD·v − K·D·u + 2βρcD·v_i + K·D·u_i (Z eq. 18).
+    """Absorbs, holds and transmits an incident wave: F = −βρcD·v − K·D·u + 2βρcD·v_i + K·D·u_i (Z eq. 18).
 
     v_i and u_i are velocity and displacement of the incident wave.
     """
@@ -106,17 +106,17 @@ class ViscoelasticInput(Dashpots, Springs, Driven):
     type: Literal["viscoelastic_input"]
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """Springs that differ along a side on which a free-field column stands, too."""
+        """Springs that differ along a bottom or top side that also supports a free-field column."""
         yield from super().problems(side, tables)
         beside = [name for name, table in tables["boundary"].items() if table and table.needs_column]
         if beside and normal_axis(side) == 1 and self.source is not None:
             yield (
-                f"boundary.{side}.source: makes springs differ along the side, and the column beside "
-                f"boundary.{beside[0]} with them; give distance"
+                f"boundary.{side}.source: makes springs differ along the side, and those of the column at "
+                f"boundary.{beside[0]} differ from them; give distance"
             )
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """Dashpots and springs, plus the forces that make the incident wave pass."""
+        """Dashpots and springs, plus the forces that introduce the incident wave."""
         dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
         for component, name in enumerate(self.waves_by_axis(edge.axis)):
             damping, stiffness = dampings[component], stiffnesses[component]

@@ -1,7 +1,8 @@
-"""Viscous (Lysmer) boundaries for disks: absorbing, and absorbing while a wave comes in.
+"""Viscous (Lysmer) boundaries for disks: absorbing, and absorbing with an incident wave.
 
-Z eqs 3-6. A dashpot of constant βρcD per edge particle of diameter D stands for the medium beyond: c = c_p with
-β_P along the normal, c = c_s with β_S across it. β repairs what uneven disks do to ΣD; `dembound calibrate` finds it.
+Z eqs 3-6. A dashpot of constant βρcD per edge particle of diameter D represents the medium beyond: c = c_p with β_P
+along the normal, c = c_s with β_S across it. β corrects for ΣD, which differs from the length of the side if the disks
+are uneven; `dembound calibrate` computes it.
 """
 
 from collections.abc import Iterator, Mapping
@@ -17,7 +18,7 @@ from dembound.table import quantity
 
 
 class Dashpots(Boundary):
-    """A side with dashpots: their two calibration factors, and how much mass they stand at."""
+    """A side with dashpots: their two calibration factors, and whether the particles have half their mass."""
 
     beta_p: float = quantity(1.0, unit="1", help="factor of the P dashpots, along the side's normal", ge=0.0)
     beta_s: float = quantity(1.0, unit="1", help="factor of the S dashpots, across the side's normal", ge=0.0)
@@ -25,16 +26,16 @@ class Dashpots(Boundary):
 
     @property
     def factors(self) -> Mapping[Motion, float]:
-        """Of P and of S waves."""
+        """The factors of P and of S waves."""
         return {"p": self.beta_p, "s": self.beta_s}
 
     @property
     def half_cells(self) -> bool:
-        """The key half_mass."""
+        """The value of half_mass."""
         return self.half_mass
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """Half cells on a side whose particles do not stand in one row."""
+        """Half cells on a side whose particles do not form one row."""
         yield from super().problems(side, tables)
         packing = tables.get("packing")
         if self.half_mass and packing and side not in packing.regular_sides:
@@ -64,7 +65,7 @@ class Viscous(Dashpots):
 
 
 class ViscousInput(Dashpots, Driven):
-    """Absorbs and lets a wave in: F = −βρcD·v + 2βρcD·v_i (Z eq. 6), v_i the incident wave's velocity."""
+    """Absorbs and transmits an incident wave: F = −βρcD·v + 2βρcD·v_i (Z eq. 6), v_i the incident wave's velocity."""
 
     for_bars: ClassVar[bool] = True
 
@@ -75,7 +76,7 @@ class ViscousInput(Dashpots, Driven):
         return Viscous(type="viscous", **self.model_dump(include=set(Dashpots.model_fields) - {"type"}))
 
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
-        """The absorbing dashpots, plus the force that makes the incident wave pass."""
+        """The absorbing dashpots, plus the force that introduces the incident wave."""
         names = self.waves_by_axis(edge.axis)
         for component, damping in enumerate(self.dampings(edge, medium)):
             supports.add(edge.nodes, component, damping=damping)

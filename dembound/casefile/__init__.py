@@ -1,4 +1,4 @@
-"""The case: what a TOML file may say, and the one clear line for everything it may say wrongly."""
+"""The case file: its tables, and one clear line for every mistake in them."""
 
 from dembound.casefile.model import Case
 from dembound.casefile.writer import to_toml

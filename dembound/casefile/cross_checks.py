@@ -1,4 +1,4 @@
-"""Mistakes between tables that cases of disks and of bars share."""
+"""Checks between tables, used for cases of disks and of bars."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
@@ -10,7 +10,7 @@ from dembound.casefile.run import Run
 
 
 def unknown_waves(named: Iterable[tuple[str, str]], waves: Mapping[str, object]) -> Iterator[str]:
-    """Keys that name a wave the case does not define; named: each key with the name it gives."""
+    """Keys that name a wave the case does not define; named: each key with the name in it."""
     for place, name in named:
         if name not in waves:
             defined = f"defined: {choices(name, waves)}" if waves else "none is defined"
@@ -18,7 +18,7 @@ def unknown_waves(named: Iterable[tuple[str, str]], waves: Mapping[str, object])
 
 
 def driving_waves(sides: Mapping[str, Boundary | None]) -> Iterator[tuple[str, str]]:
-    """Keys of sides that name a wave, each with the name it gives."""
+    """Keys of sides that name a wave, each with the name in it."""
     for side, table in sides.items():
         for motion, name in table.waves.items() if table else ():
             yield f"boundary.{side}.wave_{motion}", name
@@ -33,7 +33,7 @@ def repeated_names(key: str, tables: Sequence[Any]) -> Iterator[str]:
 
 
 def steps_too_long(run: Run, output: Output | None) -> Iterator[str]:
-    """Intervals that the run is over before."""
+    """Time step and intervals that are longer than the run."""
     if run.time_step != "auto" and run.time_step > run.duration:
         yield f"run.time_step: is {run.time_step:g}, must be at most run.duration, {run.duration:g} (s)"
     for key in ("history_interval", "energy_interval"):

@@ -1,11 +1,11 @@
-"""A JSON schema (draft 2020-12) of the case file, by which editors complete and check it.
+"""A JSON schema (draft 2020-12) of the case file, with which editors complete and check it.
 
-It holds what one table says by itself: keys, types, units, limits, defaults. What shows only between keys or tables
-stays with `dembound check`.
+It contains the rules for single keys: names, types, units, limits, defaults. Rules between keys or between tables are
+checked by `dembound check`.
 
-Where there is one of several, the one is chosen by ``if`` and ``then``, so that a mistake is reported where it is; of a
-``oneOf`` editors report that nothing in all of it is valid. They take completions from ``anyOf``, which stands beside
-and allows everything.
+Where a table has one of several types, ``if`` and ``then`` choose the type, so that editors mark the mistake itself.
+With ``oneOf`` they would report the whole table as invalid. Completions are taken from an additional ``anyOf``, which
+allows everything.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,7 +17,7 @@ from dembound.casefile.schema import WAVE, Schema
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 IDENTIFIER = "urn:dembound:case-file"
-"""What makes a JSON file known as this schema."""
+"""The key that identifies a JSON file as this schema."""
 
 TITLE = {"type": "string", "description": "one line for pictures and reports"}
 
@@ -25,7 +25,7 @@ Json = dict[str, Any]
 
 
 def json_schema(schemas: Sequence[Schema]) -> Json:
-    """The schema of case files of any of these kinds, of which the first that has its tables there is taken."""
+    """The schema of case files of any of these kinds, of which the first whose tables occur in the file is used."""
     made, shared = TypeAdapter.json_schemas(
         [(id(kind), "validation", kind) for schema in schemas for kind in _kinds(schema)]
     )
@@ -49,13 +49,13 @@ def json_schema(schemas: Sequence[Schema]) -> Json:
 
 
 def _kinds(schema: Schema) -> list[TypeAdapter[Any]]:
-    """All that is validated in files of a kind."""
+    """All types that are validated in files of a kind."""
     staged = [kind for pair in schema.staged.values() for kind in pair]
     return [*schema.tables.values(), *schema.lists.values(), *staged, schema.side, WAVE]
 
 
 def _case(schema: Schema, tables: Mapping[int, Json], definitions: Json) -> Json:
-    """A whole file of one kind; tables : by the identity of what validates them. Adds what it refers to."""
+    """A whole file of one kind; tables : by the identity of their validators. Adds the definitions it refers to."""
     of = {key: tables[id(kind)] for key, kind in schema.tables.items()}
     of["boundary"] = _sides(schema, "side", tables[id(schema.side)], definitions)
     definitions["wave"] = tables[id(WAVE)]
@@ -76,11 +76,11 @@ def _case(schema: Schema, tables: Mapping[int, Json], definitions: Json) -> Json
 
 
 def _sides(schema: Schema, name: str, side: Json, definitions: Json) -> Json:
-    """The table of sides, of which any may be absent; what one of them may be is defined under a name."""
+    """The table of sides, any of which may be absent; the types of a side are a definition of their own."""
     definitions[f"{schema.case.__name__}_{name}"] = side
     return {
         "type": "object",
-        "description": "what is at the sides; one that is absent is free",
+        "description": "the boundaries at the sides; an absent side is free",
         "properties": dict.fromkeys(schema.sides, _place(f"{schema.case.__name__}_{name}")),
         "additionalProperties": False,
     }
@@ -92,7 +92,7 @@ def _place(name: str) -> Json:
 
 
 def _is_needed(kind: TypeAdapter[Any]) -> bool:
-    """Whether a table without keys would not do."""
+    """Whether a table has required keys."""
     try:
         kind.validate_python({})
     except ValidationError:
@@ -127,7 +127,7 @@ def _one_of_types(table: Json) -> Json:
 
 
 def _value(value: Json) -> Json:
-    """What a key may hold: with its unit in the description, and without null, which TOML does not have."""
+    """The allowed values of a key, with the unit in the description, and without null, which TOML does not have."""
     value = _plain(value)
     options = [option for option in value.pop("anyOf", ()) if option.get("type") != "null"]
     if len(options) > 1:
@@ -143,5 +143,5 @@ def _value(value: Json) -> Json:
 
 
 def _plain(value: Json) -> Json:
-    """A schema without titles, which only repeat the key."""
+    """A schema without titles, as they only repeat the key."""
     return {key: inner for key, inner in value.items() if key != "title"}

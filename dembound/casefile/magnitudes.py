@@ -1,4 +1,4 @@
-"""Times and stresses so far from what they act on that they are probably in another unit."""
+"""Warnings about times and stresses of unlikely size, which are probably in another unit."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -9,33 +9,33 @@ from dembound.casefile import Case
 from dembound.waves import Wave
 
 FAR = 1000.0
-"""Ratio of two times from which on one of them is probably in another unit.
+"""Ratio of two times above which one of them is probably in another unit.
 
-ms for s, or mm for m in a travel time, shift a ratio by this much. Waves commonly last from a few hundredths of the run
-to all of it.
+ms for s, or mm for m in a travel time, change a ratio by this factor. Waves commonly last from a few hundredths of the
+run to all of it.
 """
 
 SLOW = 100.0
-"""Periods over the way through the scene from which on no wave runs there: all of it moves as one.
+"""Ratio of period to travel time above which the scene moves as a rigid body and no wave is visible.
 
 Common ratios are 0.01 to 10.
 """
 
 FEWEST_STEPS = 10.0
-"""Steps in a period below which a wave is not carried: samples half a step off lose up to 2.4 % of a cosine's crest."""
+"""Least number of steps in a period: samples half a step from the crest of a cosine are up to 2.4 % below it."""
 
 SMALL_PART = 0.1
-"""Share of its peak that a wave must reach within the run: less is the foot of a wave that is not seen."""
+"""Share of its peak that a wave must reach within the run; below it only the first rise of the wave is simulated."""
 
 WEAK, STRONG = 1e-4, 1e3
 """Stresses over the strength, below and above which one of them is probably in another unit.
 
-Pa for MPa shifts this ratio by 1e6, so that it falls from anything between 0.01 and 100 below the one or above the
-other. A wave at the lower one is in no need of a strength; one at the upper one is of GPa in rock.
+Pa for MPa shifts this ratio by 1e6, so that any ratio between 0.01 and 100 leaves the range between the two limits. At
+the lower limit a strength is not needed; at the upper limit the stress in rock would be of the order of GPa.
 """
 
 SAMPLES = 1001
-"""Times at which a wave is looked at."""
+"""Number of times at which a wave is sampled."""
 
 
 def waves_used(case: Case) -> set[str]:
@@ -45,9 +45,9 @@ def waves_used(case: Case) -> set[str]:
 
 
 def time_warnings(case: Case, time_step: float, travel: float) -> Iterator[str]:
-    """At most one warning for every wave in use: far longer or shorter than the run, the step or the travel time.
+    """At most one warning for every wave far longer or shorter than the run, the step or the travel time.
 
-    time_step : s. travel : time (s) a wave takes through the scene; nan where none can run.
+    time_step : s. travel : time (s) a wave takes through the scene; nan where no wave can run.
     """
     used = waves_used(case)
     for name, wave in case.wave.items():
@@ -57,7 +57,7 @@ def time_warnings(case: Case, time_step: float, travel: float) -> Iterator[str]:
 
 
 def _too_long(wave: Wave, duration: float, travel: float) -> Iterator[str]:
-    """In which respect a wave is far too long; times in s."""
+    """Reasons why a wave is far too long, in words; times in s."""
     length, period = wave.duration() - wave.start, wave.dominant_period()
     reached = _share_reached(wave, duration)
     if reached < SMALL_PART:
@@ -67,12 +67,12 @@ def _too_long(wave: Wave, duration: float, travel: float) -> Iterator[str]:
         )
     if FAR * duration < length < math.inf:
         yield f"lasts {length:g} s, {length / duration:,.0f} times the run of {duration:g} s"
-    if period > SLOW * travel and not wave.stays:  # a slow grip strains a body evenly
+    if period > SLOW * travel and not wave.stays:  # a slow grip strains a body uniformly
         yield f"has a period of {period:g} s, {period / travel:,.0f} times its way through the scene, {travel:.3g} s"
 
 
 def _too_short(wave: Wave, duration: float, time_step: float, travel: float) -> Iterator[str]:
-    """In which respect a wave is far too short; times in s. A constant is not: a short rise is a sudden load."""
+    """Reasons why a wave is far too short, in words; times in s. A constant may have any rise: it is a sudden load."""
     if wave.stays:
         return
     length = wave.duration() - wave.start
@@ -97,7 +97,7 @@ def grip_stress(
 ) -> tuple[str, float]:
     """Largest stress of a grip moved by a wave, in words and in Pa.
 
-    ρcv at once, or ρc²u/L once the body is strained evenly, which it bears up to its strength.
+    ρcv at the first arrival, or ρc²u/L once the body is strained uniformly, at most its strength.
 
     density : kg/m³. speed : of the waves the grip sends, m/s. length : of the body along their way, m. duration : of
     the run, s. strength : Pa.
@@ -109,14 +109,17 @@ def grip_stress(
 
 
 def stress_in_words(stress: float) -> str:
-    """A stress in Pa as MPa, or as it is where that would be tiny, as of a load whose wave has the size."""
+    """A stress in Pa as text: in MPa, or in Pa where it is small.
+
+    It is small, such as 1 Pa, for a load whose wave contains the pressures.
+    """
     return f"{stress / 1e6:.4g} MPa" if abs(stress) >= 1e4 else f"{stress:.4g} Pa"
 
 
 def stress_warnings(stresses: Mapping[str, tuple[str, float]], strength: float, key: str) -> Iterator[str]:
     """Stresses many times the strength, or the largest of all where it is a tiny part of the strength.
 
-    stresses : table -> what it is in words, and Pa. strength : Pa. key : its own.
+    stresses : table -> description of the stress, and its value in Pa. strength : Pa. key : that of the strength.
     """
     against = f"{key}, {stress_in_words(strength)}: Pa and MPa?"
     for place, (what, stress) in stresses.items():

@@ -14,28 +14,28 @@ LIMITS = {
     "less_than": "less than {lt:g}",
     "less_than_equal": "at most {le:g}",
 }
-"""Mistakes of a value that is of the right kind."""
+"""Mistakes of a value that has the right type."""
 
 KINDS = {
     *("float_type", "int_type", "bool_type", "string_type", "tuple_type", "literal_error"),
     *("missing", "too_short", "too_long", "string_too_short"),
 }
-"""Mistakes that are best answered with all that is allowed."""
+"""Mistakes whose message lists all allowed values."""
 
 
 def describe(error: ValidationError, path: str, raw: object, schema: Mapping[str, Any]) -> list[str]:
-    """Say what is wrong with one table.
+    """Describe the mistakes in one table.
 
     Parameters
     ----------
     error
-        What validating the table raised.
+        The error raised by the validation of the table.
     path
         The table's place in the file, such as ``boundary.left``.
     raw
         The table as it was read.
     schema
-        JSON schema of what was expected: a table, tables distinguished by a key, or a plain value.
+        JSON schema of the expected value: a table, tables distinguished by a key, or a plain value.
     """
     if not isinstance(raw, Mapping) or not {"properties", "discriminator"} & schema.keys():
         return [f"{path}: is {show(raw)}, must be {allowed(schema)}"]
@@ -66,7 +66,7 @@ def _lines(
 ) -> Iterator[str]:
     """The lines about one key, or about the table as a whole when the key is empty.
 
-    raw is the table, keys the schemas of what it may have, others the keys of its other types.
+    raw : the table; keys : the schemas of its allowed keys; others : the keys of the other types of this table.
     """
     first = details[0]
     if first["type"] == "value_error":
@@ -88,13 +88,13 @@ def _lines(
 
 
 def _stray(key: str, keys: Collection[str], others: Mapping[str, Collection[str]]) -> str:
-    """Say that a table has no such key, and which other types of it do."""
+    """Message that a table has no such key, with the other types that have it."""
     having = [show(name) for name, known in others.items() if key in known]
     return f"is for {', '.join(having)}; allowed here: {', '.join(keys)}" if having else unknown("key", key, keys)
 
 
 def _join(path: str, key: str, message: str, keys: Iterable[str]) -> str:
-    """Put the place before a table's own message, which may start with the key it is about: ``key: …``."""
+    """Put the place before a table's own message, which may start with the key concerned: ``key: …``."""
     about, colon, rest = message.partition(": ")
     if not key and colon and about in keys:
         return f"{path}.{about}: {rest}"
@@ -102,12 +102,12 @@ def _join(path: str, key: str, message: str, keys: Iterable[str]) -> str:
 
 
 def unknown(what: str, name: str, known: Collection[str]) -> str:
-    """Say that nothing is called so, and what is."""
+    """Message for an unknown name, with the known names."""
     return f"unknown {what}; allowed: {choices(name, known)}"
 
 
 def choices(name: str, known: Collection[str]) -> str:
-    """The names there are, and the one that was probably meant by `name`."""
+    """The known names, and the one that is most similar to `name`."""
     alike = difflib.get_close_matches(name, known, n=1)
     return ", ".join(known) + (f" (did you mean {alike[0]}?)" if alike else "")
 
@@ -120,7 +120,7 @@ def numbered(key: str, tables: Iterable[Any]) -> Iterator[tuple[str, Any]]:
 
 
 def show(value: object) -> str:
-    """A value as the case file spells it; tables and long values are shortened."""
+    """A value as written in the case file; tables and long values are shortened."""
     if isinstance(value, Mapping):
         return "a table"
     text = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False, default=str)
@@ -128,12 +128,12 @@ def show(value: object) -> str:
 
 
 def corners(width: float, height: float) -> str:
-    """Where a scene reaches (m), without the rounding of whole bricks: ``[0, 0] to [10, 5] (m)``."""
+    """Two corners of a scene (m) as text, without the rounding errors of whole bricks: ``[0, 0] to [10, 5] (m)``."""
     return f"[0, 0] to [{width:.10g}, {height:.10g}] (m)"
 
 
 def allowed(schema: Mapping[str, Any]) -> str:
-    """What a JSON schema allows, in words: ``a number greater than 0 (s)``."""
+    """The values a JSON schema allows, in words: ``a number greater than 0 (s)``."""
     unit = schema.get("unit", "1")
     return _kind(schema) + ("" if unit == "1" else f" ({unit})")
 

@@ -1,4 +1,4 @@
-"""The case itself: all tables of one file, as far as every kind of body has them."""
+"""The case: those tables of a file that all kinds of bodies have."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
@@ -17,7 +17,7 @@ from dembound.waves import Wave
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """All tables of one case. Those that `kinds.load` and `kinds.loads` make are checked.
+    """All tables of one case. Cases made by `kinds.load` and `kinds.loads` are checked.
 
     Attributes
     ----------
@@ -28,10 +28,10 @@ class Case:
     run, output : the tables of these names.
     name : the file's name without folder and ending.
     folder : where relative paths in the case start.
-    text : the TOML text the case was read from; of a case made otherwise one that says the same.
-    checked : the tables that have been read from `text` and checked against each other, by field.
+    text : the TOML text the case was read from; for a case made in another way, an equivalent text. checked : the
+    tables that have been read from `text` and checked against each other, by field.
 
-    Two cases are equal when their tables are; the last four do not count.
+    Two cases are equal if their tables are equal; the last four attributes are not compared.
     """
 
     title: str = ""
@@ -47,7 +47,7 @@ class Case:
     checked: Mapping[str, Any] | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if not self.is_checked:  # one that `dataclasses.replace` has changed, too
+        if not self.is_checked:  # also a case changed by `dataclasses.replace`
             given = {name: as_toml(table) for name, table in self.tables.items()}
             text = tomli_w.dumps({name: table for name, table in given.items() if table not in (None, "", {}, [])})
             object.__setattr__(self, "text", text)

@@ -4,7 +4,7 @@ from dembound.table import Table, quantity
 
 
 class Output(Table):
-    """What is kept besides the last state."""
+    """The data that is written in addition to the last state."""
 
     history_interval: float = quantity(
         0.0, unit="s", help="time between two samples of the histories; 0: every step", ge=0.0

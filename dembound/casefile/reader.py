@@ -19,12 +19,13 @@ TITLE: TypeAdapter[Any] = TypeAdapter(str)
 
 
 def load(path: Path, schemas: Sequence[Schema]) -> Case:
-    """Read a case file of one of the kinds that schemas are of; see `Schema.marks`.
+    """Read a case file of one of the kinds given by the schemas; see `Schema.marks`.
 
     Raises
     ------
     CaseError
-        With one line per mistake. A file that is absent, not TOML, or of none of these kinds shows only that.
+        With one line per mistake. For a file that is absent, not TOML, or of none of these kinds there is only this
+        line.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -38,12 +39,12 @@ def load(path: Path, schemas: Sequence[Schema]) -> Case:
 
 
 def loads(text: str, schemas: Sequence[Schema], folder: Path = Path(), name: str = "case") -> Case:
-    """Read a case from TOML text, as if it stood in the file `name` of the folder; errors as `load`."""
+    """Read a case from TOML text, as if it were the file `name` in the folder; errors as `load`."""
     return _read(text, folder, name, name, schemas)
 
 
 def _read(text: str, folder: Path, name: str, source: str, schemas: Sequence[Schema]) -> Case:
-    """The case; `source` is how errors call the text."""
+    """The case; source : name of the text in errors."""
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -62,7 +63,7 @@ def _read(text: str, folder: Path, name: str, source: str, schemas: Sequence[Sch
 
 
 def _of_no_kind(schemas: Sequence[Schema]) -> str:
-    """What is wrong with a file that does not say what its case is of."""
+    """Message for a file whose tables do not identify the kind of its case."""
     kinds = " nor ".join(f"[{schema.marks[0]}] ({schema.noun})" for schema in schemas)
     return f"has neither {kinds}; {' and '.join(f'`{schema.new}`' for schema in schemas)} write a case to start from"
 
@@ -79,23 +80,23 @@ def _syntax_problem(message: str, text: str) -> str:
 
 
 def _stray(key: str, data: Mapping[str, Any], schema: Schema, known: Collection[str]) -> str:
-    """Say that a table has no place in a case of this kind; known : the tables of all kinds."""
+    """Message for a table that is not allowed in a case of this kind; known : the tables of all kinds."""
     if key not in known:
         return f"{key}: {unknown('table', key, schema.keys)}"
     mark = next(mark for mark in schema.marks if mark in data)
     return (
-        f"{key}: has no place here, as [{mark}] makes this a case of {schema.noun}; allowed: {', '.join(schema.keys)}"
+        f"{key}: is not allowed here, as [{mark}] makes this a case of {schema.noun}; allowed: {', '.join(schema.keys)}"
     )
 
 
 @cache
 def _json_schema(kind: TypeAdapter[Any]) -> dict[str, Any]:
-    """What a table may hold, as JSON schema; made once, for that takes ten times as long as reading a case."""
+    """JSON schema of a table; made once, as this takes ten times as long as reading a case."""
     return kind.json_schema()
 
 
 class _Reader:
-    """Validates table by table, so that a mistake in one hides none in the others."""
+    """Validates table by table, so that the mistakes in all tables are found."""
 
     def __init__(self, folder: Path, schema: Schema) -> None:
         self.folder = folder
@@ -103,7 +104,7 @@ class _Reader:
         self.problems: list[str] = []
 
     def read(self, data: Mapping[str, Any]) -> dict[str, Any]:
-        """The fields of a case, None for what is invalid; notes all problems."""
+        """The fields of a case, None for invalid ones; collects all problems."""
         schema = self.schema
         tables = {"title": self._valid("title", data.get("title", ""), TITLE)}
         for key, kind in schema.tables.items():
@@ -118,9 +119,9 @@ class _Reader:
         return tables
 
     def _valid(self, path: str, raw: object, kind: TypeAdapter[Any]) -> Any | None:
-        """The validated table; None, and its mistakes noted, if it is invalid.
+        """The validated table; None if it is invalid, in which case its mistakes are collected.
 
-        Strict JSON takes a list for a tuple and a whole number for a float, but no text or bool for a number.
+        Strict JSON accepts a list as a tuple and a whole number as a float, but no text or bool as a number.
         """
         try:
             json = to_json(raw, inf_nan_mode="constants")

@@ -8,7 +8,7 @@ from dembound.table import Table, quantity
 
 
 class Run(Table):
-    """How long the scene lives and how finely time is cut."""
+    """The simulated time and the time step."""
 
     duration: float = quantity(..., unit="s", help="simulated time", gt=0.0)
     time_step: Annotated[float, Field(gt=0.0)] | Literal["auto"] = quantity(

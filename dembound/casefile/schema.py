@@ -1,4 +1,4 @@
-"""What the case file of one kind of body consists of."""
+"""The tables in the case file of one kind of body."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -26,11 +26,11 @@ class Schema:
     noun : "disks" or the like, for messages.
     new : the command that writes such a case.
     marks : tables of which a file of this kind has at least one, and a file of a kind named later has none.
-    tables : those there is one of.
-    side : what stands in [boundary.SIDE]; sides : the sides there are.
-    lists : those there are any number of.
-    problems : mistakes that show only when tables are looked at together, from them and the file's data.
-    staged : those that may be absent and have sides of their own: the table, and what stands in its boundary.SIDE.
+    tables : those that occur once.
+    side : type of [boundary.SIDE]; sides : the names of the sides.
+    lists : those that may occur any number of times.
+    problems : finds mistakes between tables, from the tables and the file's data. staged : those that may be absent and
+    have their own sides: the table, and the type of its boundary.SIDE.
     """
 
     case: type[Case]
@@ -46,7 +46,7 @@ class Schema:
 
     @property
     def keys(self) -> list[str]:
-        """All that may stand at the top level of a file, in the order messages name it."""
+        """All keys allowed at the top level of a file, in the order of messages."""
         last = ("run", "output")
         first = [key for key in self.tables if key not in last]
         return ["title", *first, "boundary", *self.staged, "wave", *self.lists, *last]

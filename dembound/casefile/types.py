@@ -1,7 +1,7 @@
-"""All types that tables of a case file may be of: the package's own and those that other packages register.
+"""All types of tables in a case file: those of this package and those that other packages register.
 
-Another package names its types under the entry point groups below; each module of it may import from the packages of
-the same names and from `dembound.table`.
+Another package registers its types under the entry point groups below; its modules may import from the packages of the
+same names and from `dembound.table`.
 """
 
 from typing import TYPE_CHECKING, Literal

@@ -21,16 +21,16 @@ def with_changes(case: Case, changes: Mapping[str, Any], schemas: Sequence[Schem
     Parameters
     ----------
     case
-        The case to start from; it stays as it is.
+        The case to start from; it is not changed.
     changes
         Dotted key -> value in TOML terms, such as ``{"boundary.right.beta_p": 0.81}``. A value may be a whole
-        table; tables that are not there yet are made. A load, monitor or hole goes by its name or its number, from 1:
+        table; missing tables are created. A load, monitor or hole is identified by its name or its number, from 1:
         ``load.blow.pressure`` or ``load.1.pressure``. Keys set by neither case nor changes stay unset.
 
     Raises
     ------
     CaseError
-        If a key leads nowhere or the changed case is not valid.
+        If a key does not exist or the changed case is not valid.
     """
     return loads(_changed(case.text, changes), schemas, case.folder, case.name)
 
@@ -38,8 +38,8 @@ def with_changes(case: Case, changes: Mapping[str, Any], schemas: Sequence[Schem
 def to_toml(case: Case, folder: Path | None = None) -> str:
     """The case's TOML text, for a file in `folder` (its own folder when None).
 
-    The text is the one the case was read from, comments and all, unless relative paths in it have to be
-    rewritten to lead to the same files from another folder.
+    The text is the one the case was read from, with its comments, unless relative paths in it have to be rewritten to
+    refer to the same files from another folder.
     """
     here, there = case.folder.resolve(), (folder or case.folder).resolve()
     moved = {
@@ -58,12 +58,12 @@ def _changed(text: str, changes: Mapping[str, Any]) -> str:
         table: Any = data
         for name in path:
             table = _inner(table, name, dotted)
-        table[_key(table, last, dotted)] = deepcopy(value)  # a later change may reach into it
+        table[_key(table, last, dotted)] = deepcopy(value)  # as a later change may modify it
     return tomli_w.dumps(data)
 
 
 def _inner(table: Any, name: str, dotted: str) -> Any:
-    """The table, or list of tables, that a name leads to; a table that is not there is made."""
+    """The table, or list of tables, with this name; a missing table is created."""
     key = _key(table, name, dotted)
     inner = table.setdefault(key, {}) if isinstance(table, dict) else table[key]
     tables = inner if isinstance(inner, list) else [inner]
@@ -73,7 +73,7 @@ def _inner(table: Any, name: str, dotted: str) -> Any:
 
 
 def _key(table: Any, name: str, dotted: str) -> Any:
-    """Where a table keeps what has a name; in a list of tables each has its own, and its number from 1."""
+    """Key or index of a name in a table; in a list of tables it may be a table's name, or its number from 1."""
     if isinstance(table, dict):
         return name
     names = [str(each.get("name", "")) for each in table]

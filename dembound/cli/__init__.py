@@ -1,4 +1,4 @@
-"""The command line. Only this package prints and exits; what it does lives elsewhere."""
+"""The command line. Only this package prints and exits; the commands call functions of other packages."""
 
 import sys
 import warnings
@@ -10,9 +10,9 @@ def _in_one_line(message: Warning | str, category: type[Warning], *where: Any, *
     print(f"warning: {' '.join(str(message).split())}", file=sys.stderr)
 
 
-with warnings.catch_warnings():  # of types that other packages register, which are looked for as modules are imported
+with warnings.catch_warnings():  # about types of other packages, which are loaded during these imports
     warnings.showwarning = _in_one_line
-    from dembound.cli import (  # each names its commands to the application
+    from dembound.cli import (  # each registers its commands with the application
         calibration,
         cases,
         dispersion,

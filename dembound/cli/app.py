@@ -30,7 +30,7 @@ CANNOT_WRITE = 5
 
 app = typer.Typer(
     name="dembound",
-    help="Waves in bonded particles, with artificial boundaries that really absorb, and in bars of rock that break.",
+    help="Waves in bonded particles, with artificial boundaries that absorb, and in bars of rock that break.",
     epilog=EXIT_CODES,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -41,14 +41,14 @@ err = Console(stderr=True, highlight=False, soft_wrap=True)
 
 
 def compact_table(*columns: Column | str, **looks: Any) -> Table:
-    """A table without frame, whose columns stand close: 80 columns of a terminal hold it."""
+    """A table without frame and with narrow gaps between its columns, so that it fits into 80 characters."""
     return Table(*columns, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False, title_justify="left", **looks)
 
 
 def writable(path: Path | None) -> Path | None:
-    """A file to write, if its folder is there; found out before anything is computed.
+    """A file to write, if its folder exists; checked before anything is computed.
 
-    Raises FileNotFoundError where it is not.
+    Raises FileNotFoundError if it does not exist.
     """
     if path is not None:
         require_folder(path)
@@ -56,14 +56,14 @@ def writable(path: Path | None) -> Path | None:
 
 
 def png(param: typer.CallbackParam, path: Path | None) -> Path | None:
-    """The same of a picture. Raises CaseError where its name is not that of a PNG file."""
+    """The same for a picture. Raises CaseError if its name does not end in ``.png``."""
     if path is not None and path.suffix.lower() != ".png":
         raise CaseError([f"{param.opts[0]}: is {path}, must end in .png"])
     return writable(path)
 
 
 PICTURE = typer.Option("--output", "-o", help="Picture to write (PNG).", callback=png)
-PictureTitle = Annotated[str | None, typer.Option("--title", help="Title of the picture; by default what it shows.")]
+PictureTitle = Annotated[str | None, typer.Option("--title", help="Title of the picture; by default its content.")]
 
 Cases = Annotated[list[Path], typer.Argument(metavar="CASE...", help="Case files (TOML).")]
 Output = Annotated[Path, typer.Option("--output", "-o", help="Folder for the results.")]
@@ -86,7 +86,7 @@ def _version(
 
 
 def load_case(path: Path, changes: list[str] | None, name: str | None = None) -> Case:
-    """Read a case file, change keys and rename it as the options say."""
+    """Read a case file, and change its keys and its name as given by the options."""
     case = load(path)
     if changes:
         case = with_changes(case, dict(_setting(text) for text in changes))
@@ -98,7 +98,7 @@ def load_case(path: Path, changes: list[str] | None, name: str | None = None) ->
 
 
 def load_disks(path: Path, changes: list[str] | None, name: str | None = None) -> DiskCase:
-    """The same for commands that know disks only."""
+    """The same for commands that accept only disks."""
     return as_kind(load_case(path, changes, name), DiskCase, "is the case of a bar, this command is for disks")
 
 
@@ -125,12 +125,12 @@ def use_threads(threads: int | None) -> None:
 def main() -> None:
     """Run the command line; every failure a user can cause is one message and its exit code."""
     try:
-        app(prog_name="dembound")  # however it was started: help and completion go by this name
+        app(prog_name="dembound")  # the name in help and completion, however it was started
     except DemboundError as error:
         source = f"{error.source}: " if error.source else ""
         for line in str(error).splitlines():
             err.print(f"{source}{line}", style="red", markup=False)
         sys.exit(error.exit_code)
-    except OSError as error:  # a folder that is not there, no permission, a full disk
+    except OSError as error:  # a missing folder, no permission, a full disk
         err.print(f"{error.filename or 'output'}: {error.strerror or error}", style="red", markup=False)
         sys.exit(CANNOT_WRITE)

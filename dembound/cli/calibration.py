@@ -20,7 +20,7 @@ from dembound.studies.all_sides import calibrate_all, changes_of, summary_of
 from dembound.studies.calibration import Calibration, calibrate
 
 CALIBRATED = "_calibrated"
-"""What the name of a calibrated case ends with."""
+"""Ending of the name of a calibrated case."""
 
 OneCase = Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")]
 
@@ -50,7 +50,7 @@ def calibrate_sides(
         bool, typer.Option("--all", "-a", help="Calibrate every side with dashpots, for both waves that can move it.")
     ] = False,
     wave: Annotated[
-        WaveType | None, typer.Option(help="P or S; by default what runs towards this side, else P.")
+        WaveType | None, typer.Option(help="P or S; by default the wave that runs towards this side, else P.")
     ] = None,
     method: Annotated[
         CalibrationMethod,
@@ -67,9 +67,9 @@ def calibrate_sides(
     name: Name = None,
     threads: Threads = None,
 ) -> None:
-    """Find the β with which viscous sides absorb, or let in, a plane wave whole.
+    """Find the β with which viscous sides absorb, or transmit, a plane wave completely.
 
-    Prints β and M_out/M_in of every pass; leaves the calibrated case, the passes in HDF5 and a picture of them.
+    Prints β and M_out/M_in of every pass; writes the calibrated case, the passes in HDF5 and a picture of them.
     """
     _one_or_all(boundary, every, wave)
     use_threads(threads)
@@ -95,7 +95,7 @@ def calibrate_sides(
 
 
 def _one_or_all(boundary: Side | None, every: bool, wave: WaveType | None) -> None:
-    """Raise CaseError where neither or both are asked for."""
+    """Raise CaseError if neither or both are given."""
     if not every and boundary is None:
         raise CaseError(["--boundary: is missing; name a side, or give --all"])
     given = {"--boundary": boundary, "--wave": wave}
@@ -104,7 +104,7 @@ def _one_or_all(boundary: Side | None, every: bool, wave: WaveType | None) -> No
 
 
 def _leave(found: Calibration, folder: Path) -> Iterator[Path]:
-    """Write what a calibration found, yielding each file."""
+    """Write the results of a calibration, yielding each file."""
     folder.mkdir(parents=True, exist_ok=True)
     found.write(folder / "calibration.h5")
     yield folder / "calibration.h5"
@@ -112,7 +112,7 @@ def _leave(found: Calibration, folder: Path) -> Iterator[Path]:
 
 
 def _leave_all(found: Sequence[Calibration], folder: Path) -> Iterator[Path]:
-    """Write what all calibrations of a case found, the passes of each in a folder of its own; yields each file."""
+    """Write the results of all calibrations of a case, the passes of each in its own folder; yields each file."""
     records = [folder / f"{each.side}_{each.motion}" / "calibration.h5" for each in found]
     for each, record in zip(found, records, strict=True):
         record.parent.mkdir(parents=True, exist_ok=True)
@@ -124,7 +124,7 @@ def _leave_all(found: Sequence[Calibration], folder: Path) -> Iterator[Path]:
 def _leave_case(
     found: Sequence[Calibration], summary: Mapping[str, Any], folder: Path, records: Sequence[Path]
 ) -> Iterator[Path]:
-    """Write the summary, the calibrated case and a picture of the passes; records : of those found, in their order."""
+    """Write the summary, the calibrated case and a picture of the passes; records : one of each."""
     (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
     yield folder / "summary.json"
     case = found[0].case
@@ -132,7 +132,7 @@ def _leave_case(
     calibrated.write_text(to_toml(with_changes(case, changes_of(found)), folder), encoding="utf-8")
     yield calibrated
     picture = folder / "convergence.png"
-    picture.unlink(missing_ok=True)  # that of an earlier calibration, by another method
+    picture.unlink(missing_ok=True)  # one of an earlier calibration with another method
     if found[0].beta:
         save(plot_convergence(records), picture)
         yield picture
@@ -151,7 +151,7 @@ def _print_pass_of_side(found: Calibration) -> None:
 
 
 def _print_table(found: Sequence[Calibration]) -> None:
-    """One line per factor: what it is of, what it was and is, and how well the side answers then."""
+    """One line per factor: side and wave, old and new value, and M_out/M_in with the new value."""
     table = Table("key", "side", "β", "before", "M_out/M_in", "passes", title=found[0].case.name)
     for (key, result), each in zip(changes_of(found).items(), found, strict=True):
         before = each.case.boundary[each.side].factors[each.motion]

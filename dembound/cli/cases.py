@@ -39,12 +39,12 @@ from dembound.version import IMPORT_BEGAN
 RIGHT = Side("right")
 
 IMPORT_SECONDS = time.perf_counter() - IMPORT_BEGAN
-"""What the command line took to be imported, but for the rest of its own modules."""
+"""Time that importing the command line took, except for its own remaining modules."""
 
 
 @app.command("check", rich_help_panel="Cases")
 def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None) -> None:
-    """Say what would be run: particles, bonds, time step, memory, time, resolution. Writes nothing."""
+    """Print the facts of a run: particles, bonds, time step, memory, time, resolution. Writes nothing."""
     use_threads(threads)
     for case in [load_case(path, changes) for path in cases]:
         facts, warnings = check(case)
@@ -64,9 +64,9 @@ def run(
     name: Name = None,
     threads: Threads = None,
 ) -> None:
-    """Run cases one after another; each leaves its folder of results.
+    """Run cases one after another; each writes its folder of results.
 
-    All case files are read before the first is run, so a mistake in the last one costs nothing.
+    All case files are read before the first is run, so a mistake in the last one is found at once.
     """
     use_threads(threads)
     loaded = [load_case(path, changes, name) for path in cases]
@@ -75,7 +75,7 @@ def run(
     names = [case.name for case in loaded]
     if len(set(names)) < len(names):
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
-    for case in loaded[1:]:  # the first is planned at once, before anything is written
+    for case in loaded[1:]:  # the first is planned below, before anything is written
         preflight(case)
     spent = {"import": IMPORT_SECONDS}
     for case in loaded:
@@ -87,7 +87,7 @@ def run(
             kept = f"histories so far are in {partial}" if (partial / "run.h5").is_file() else "the run had not begun"
             err.print(f"{case.name}: stopped; {kept}")
             raise
-        spent = {}  # the first case has borne it
+        spent = {}  # counted for the first case only
         facts = kind_of(case).outcome(json.loads((folder / "summary.json").read_text()))
         if facts:
             out.print(f"{case.name}: {'; '.join(facts)}")
@@ -121,7 +121,7 @@ def packing(
 
 
 def _edge_of(scene: DiskScene, side: str) -> Edge:
-    """A side that exists; a periodic one has no particles of its own."""
+    """A side of the scene; periodic sides have no particles."""
     if side not in scene.edges:
         raise CaseError([f"--side: is {side}, which is periodic in {scene.case.name}; here: {', '.join(scene.edges)}"])
     return scene.edges[side]
@@ -134,7 +134,7 @@ def exact(
     changes: Settings = None,
     name: Name = None,
 ) -> None:
-    """Write the exact motion of the half-space that a case of Lamb's problem stands for, at its own monitors.
+    """Write the exact motion of the half-space of a case of Lamb's problem, at the case's monitors.
 
     It is plotted and compared like a run. Its folder is named after the case with "_exact", or by --name.
     """

@@ -28,7 +28,7 @@ CHECKED = np.arange(1, 13) / 12.0
 
 
 def _several(default: Sequence[float]) -> str:
-    """What the help says of an option that may be repeated."""
+    """Help text of an option that may be repeated."""
     return f"May be repeated; by default {', '.join(f'{value:g}' for value in default)}."
 
 
@@ -51,21 +51,21 @@ def dispersion(
     wave_speed: Annotated[
         float | None, typer.Option(help=f"Speed c of long waves (m/s); by default {WAVE_SPEED:g}.")
     ] = None,
-    check: Annotated[bool, typer.Option("--check", help="Simulate some waves, and say how far they are off.")] = False,
+    check: Annotated[bool, typer.Option("--check", help="Simulate some waves, and print their differences.")] = False,
     output: Annotated[Path, PICTURE] = Path("dispersion.png"),
     title: PictureTitle = None,
     table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
     changes: Settings = None,
 ) -> None:
-    """Say how fast waves run on a bar of nodes, peridynamic or central differences, and how many nodes they need.
+    """Print wave speeds on a bar of nodes, peridynamic or central differences, and the nodes a wavelength needs.
 
-    Shown are the bars of cases, or else all combinations of the options.
+    Computed for the bars of cases, or for all combinations of the options.
     """
     own = {"--horizon": horizons, "--spacing": spacings, "--time-step": time_steps, "--wave-speed": wave_speed}
     if cases:
-        _refuse(own, "is the case's own, change it with --set")
+        _refuse(own, "is given by the case, change it with --set")
         found = [lattice for path in cases for lattice in lattices_of(load_case(path, changes))]
-        shown = list(dict.fromkeys(found))  # those that cases share only once
+        shown = list(dict.fromkeys(found))  # equal ones only once
     else:
         _refuse({"--set": changes}, "changes a case, and none is given")
         speed = WAVE_SPEED if wave_speed is None else wave_speed
@@ -79,7 +79,7 @@ def dispersion(
 
 
 def _refuse(options: Mapping[str, object], why: str) -> None:
-    """Raise CaseError for every option that was given."""
+    """Raise CaseError if one of the options was given, with a line for each."""
     problems = [f"{option}: {why}" for option, value in options.items() if value not in (None, [])]
     if problems:
         raise CaseError(problems)
@@ -104,7 +104,7 @@ def _needed(lattice: Lattice, of: Speed) -> str:
 
 
 def _simulated(shown: Sequence[Lattice]) -> list[Points]:
-    """Points found by simulation, where there is something to simulate; says how far they are from the formula."""
+    """Points computed by simulation, for stable lattices; prints how far they are from the formula."""
     points = []
     for lattice in shown:
         wavenumber = CHECKED * lattice.shortest if lattice.stable and lattice.time_step > 0.0 else np.zeros(0)

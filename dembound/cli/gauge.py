@@ -37,7 +37,7 @@ def gauge(
         bool,
         typer.Option("--estimate", help="Take speed and attenuation from tension peaks, though the results have them."),
     ] = False,
-    peaks: Annotated[int | None, typer.Option(help="The same, from the first peaks only.", min=2)] = None,
+    peaks: Annotated[int | None, typer.Option(help="As --estimate, from this number of first peaks.", min=2)] = None,
     pulse_end: Annotated[
         float | None, typer.Option(help="Time at which the incident pulse has passed (s); by default when it returns.")
     ] = None,
@@ -52,7 +52,7 @@ def gauge(
 ) -> None:
     """Estimate from a gauge on a bar: wave speed, attenuation, and the stress at which the bar spalled.
 
-    Results have place, length, density, speed and attenuation. Strengths take --spall or --free-end.
+    Results contain position, length, density, speed and attenuation. Strengths need --spall or --free-end.
     """
     path = results_file(record) if record.is_dir() else record
     gauge = read_gauge(path, monitor, position, length, density, scale)
@@ -73,7 +73,7 @@ def gauge(
 
 
 def _overview(found: Findings, speed_from: str, attenuation_from: str) -> Table:
-    """All that was found, a line each; speed and attenuation come from there if not from peaks."""
+    """All estimates, one line each; speed_from, attenuation_from : the source if it is not the peaks."""
     overview = compact_table("", "value", "std. error", "from")
     overview.add_row("wave speed (m/s)", *_fitted(found.speed, "times", speed_from))
     if found.attenuation is not None:
@@ -90,7 +90,7 @@ def _overview(found: Findings, speed_from: str, attenuation_from: str) -> Table:
 
 
 def _fitted(estimate: Estimate, what: str, source: str) -> tuple[str, str, str]:
-    """Value, standard error and source of an estimate; that source if it was not fitted."""
+    """Value, standard error and source of an estimate; source : the one given if it was not fitted."""
     if not estimate.points:
         return f"{estimate.value:.5g}", "", source
     error = f"{estimate.error:.2g}" if estimate.points > 2 else ""

@@ -1,4 +1,4 @@
-"""How a run goes, on stderr: a bar on a terminal, a line every ten seconds elsewhere; and its warnings."""
+"""Progress of a run on stderr: a bar on a terminal, else a line every ten seconds; and its warnings."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -12,7 +12,7 @@ from dembound.motion.trackers import Run
 from dembound.running import Progress
 
 INTERVAL = 10.0
-"""Seconds from one line to the next."""
+"""Seconds between two lines."""
 
 
 @contextmanager
@@ -49,21 +49,21 @@ class Lines(Progress):
         self.name, self.now = name, now
         self.began = self.said = now()
         self.steps = 0
-        """Steps of the run at the last line."""
+        """Steps of the run when the last line was printed."""
 
     def warned(self, message: str) -> None:
-        """A line of its own, at once."""
+        """Print the warning at once, on a separate line."""
         print_warning(self.name, message)
 
     def settling(self, steps: int, ratio: float) -> None:
-        """The static stage: its time, steps and force ratio."""
+        """Print time, steps and force ratio of the static stage."""
         if self.now() - self.said >= INTERVAL:
             self.said = self.now()
             took = self.said - self.began
             err.print(f"{self.name}: settling for {took:.0f} s, {steps:,} steps, force ratio {ratio:.1e}", markup=False)
 
     def running(self, run: Run, steps: int) -> None:
-        """The run itself: steps done and in all, simulated time, and particle-steps a second since the last line."""
+        """Print steps done and in all, simulated time, and particle-steps per second since the last line."""
         if (since := self.now() - self.said) >= INTERVAL:
             rate = (run.state.step - self.steps) * run.scene.count / since / 1e6
             self.said, self.steps = self.said + since, run.state.step
@@ -82,11 +82,11 @@ class Bar(Progress):
         self.task = bar.add_task(name, total=None, rate="")
 
     def warned(self, message: str) -> None:
-        """A line of its own, above the bar."""
+        """Print the warning on a separate line above the bar."""
         print_warning(self.name, message)
 
     def settling(self, steps: int, ratio: float) -> None:
-        """The static stage: no one knows how long it takes."""
+        """The static stage, whose number of steps is not known in advance."""
         self.bar.update(self.task, description=f"{self.name}: settling, {steps:,} steps, force ratio {ratio:.1e}")
 
     def running(self, run: Run, steps: int) -> None:

@@ -1,4 +1,4 @@
-"""Commands that look at results: plot, view, cache."""
+"""Commands for results: plot, view, compare, cache."""
 
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
@@ -22,18 +22,18 @@ from dembound.results.compare import compare
 from dembound.results.view import view
 
 CALIBRATIONS = "calibrations"
-"""What results are called that are of no run."""
+"""Name of results that do not belong to a run."""
 
 
 class Field(StrEnum):
-    """What of the motion is shown."""
+    """Fields of the motion that colour the disks."""
 
     velocity = "velocity"
     displacement = "displacement"
 
 
 class Quantity(StrEnum):
-    """What of the monitors is shown."""
+    """Quantities of the monitors."""
 
     velocity = "velocity"
     displacement = "displacement"
@@ -42,7 +42,7 @@ class Quantity(StrEnum):
 
 
 class Component(StrEnum):
-    """Along what a motion of the monitors is shown."""
+    """Components of the monitors' motion."""
 
     x = "x"
     y = "y"
@@ -51,7 +51,7 @@ class Component(StrEnum):
 
 
 class SceneField(StrEnum):
-    """What is shown of a whole scene; each kind of scene says which of these it has."""
+    """Fields of a whole scene; each kind of scene accepts some of them."""
 
     velocity = "velocity"
     displacement = "displacement"
@@ -72,13 +72,13 @@ def plot(
     quantity: Annotated[
         Quantity | None,
         typer.Option(
-            help="What of the monitors to show, by default velocity; acceleration is that of central differences of "
-            "the velocity, stress of bars alone."
+            help="Quantity of the monitors, by default velocity; acceleration is that of central differences of "
+            "the velocity, stress is for bars only."
         ),
     ] = None,
     component: Annotated[
         Component | None,
-        typer.Option(help="Along what the monitors move, by default x or y, whichever is larger; both: side by side."),
+        typer.Option(help="Component of the motion, by default x or y, whichever is larger; both: side by side."),
     ] = None,
     monitor: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Show this monitor only. May be repeated.")
@@ -96,7 +96,7 @@ def plot(
     ] = None,
     snapshot: Annotated[
         int | None,
-        typer.Option(help="With --field: number of the snapshot, −1 the last; by default the liveliest, of a bar all."),
+        typer.Option(help="With --field: number of the snapshot, −1 the last; by default the largest, of a bar all."),
     ] = None,
     table: Annotated[
         Path | None,
@@ -105,7 +105,7 @@ def plot(
 ) -> None:
     """Overlay the histories of several runs, or the passes of several calibrations, in one picture.
 
-    Beside free-field sides a monitor's twin in the free-field column is dashed.
+    With free-field sides, a monitor's twin in the free-field column is drawn as a dashed line.
     """
     files = [results_file(path) for path in results]
     kind = _common_kind(files)
@@ -117,7 +117,7 @@ def plot(
     if snapshot is not None and field is None:
         raise CaseError(["--snapshot: goes with --field"])
     if table is not None and field is not None:
-        raise CaseError(["--table: is of lines, a field has none; run.h5 and the files for ParaView hold its values"])
+        raise CaseError(["--table: is of lines, a field has none; run.h5 and the files for ParaView have its values"])
     if kind == CALIBRATIONS:
         figure = plot_convergence(files)
     elif field is not None:
@@ -141,22 +141,22 @@ def plot(
 
 
 def _common_kind(files: Sequence[Path]) -> str:
-    """Whether results are of bars, of disks, or calibrations. Raises CaseError where they are not all alike."""
+    """The kind of results: of bars, of disks, or calibrations. Raises CaseError if they are of several kinds."""
     kinds = sorted({_kind(file) for file in files})
     if len(kinds) > 1:
-        raise CaseError([f"RESULTS: holds {' and '.join(kinds)}, which make no common picture; name one kind"])
+        raise CaseError([f"RESULTS: holds {' and '.join(kinds)}, which cannot be drawn in one picture; name one kind"])
     return kinds[0]
 
 
 def _kind(file: Path) -> str:
-    """Of what a result is."""
+    """The kind of a result."""
     return CALIBRATIONS if file.name == "calibration.h5" else f"runs of {kind_of_record(file).plural}"
 
 
 def _one_picture(pictures: Mapping[str, object], choices: Mapping[str, object], kind: str) -> None:
-    """Raise CaseError where options ask for several pictures, or for a choice that the one asked for does not have.
+    """Raise CaseError if options select several pictures, or a choice that the selected picture does not have.
 
-    pictures are those options that ask for another one than histories, which alone have choices.
+    pictures : options that select another picture than histories; choices : options that only histories have.
     """
     asked = [option for option, value in pictures.items() if value]
     chosen = [option for option, value in choices.items() if value]
@@ -172,7 +172,7 @@ def _one_picture(pictures: Mapping[str, object], choices: Mapping[str, object], 
 def view_disks(
     results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
     snapshot: Annotated[
-        int | None, typer.Option(help="Number of the snapshot to begin with, −1 the last; by default the liveliest.")
+        int | None, typer.Option(help="Number of the first snapshot, −1 the last; by default the largest motion.")
     ] = None,
     field: Annotated[Field, typer.Option(help="What colours the disks.")] = Field.velocity,
     picture: Annotated[
@@ -212,10 +212,10 @@ def compare_histories(
         Quantity, typer.Option(help="What of the monitors to compare; the stress of bars alone.")
     ] = Quantity.velocity,
 ) -> None:
-    """Say how far the histories of runs are from those of a reference, monitor by monitor.
+    """Print the differences between the histories of runs and those of a reference, monitor by monitor.
 
-    RMS is that of the difference in % of that of the reference, largest the largest difference in % of the reference's
-    peak; end and reference are the values of both at the end.
+    RMS: RMS of the difference in % of the RMS of the reference. largest: largest difference in % of the reference's
+    peak. end and reference: the values of both at the end.
     """
     found = compare(results_file(reference), [results_file(path) for path in results], quantity.value)
     unit = found[0].unit
@@ -232,12 +232,12 @@ def compare_histories(
     for line in found:
         if line.place != line.reference_place:
             places = f"at {line.place} in {line.run}, at {line.reference_place} in the reference"
-            out.print(f"{line.monitor} stands {places}", markup=False)
+            out.print(f"{line.monitor} is {places}", markup=False)
 
 
 def results_file(path: Path) -> Path:
-    """The HDF5 file a results argument stands for."""
+    """The HDF5 file of a results argument."""
     for candidate in (path, path / "run.h5", path / "calibration.h5"):
         if candidate.is_file():
             return candidate
-    raise CaseError([f"{path}: holds no results, must be a folder with run.h5 or calibration.h5"])
+    raise CaseError([f"{path}: contains no results, must be a folder with run.h5 or calibration.h5"])

@@ -1,4 +1,4 @@
-"""Commands that give something to start from: new, cases, schema."""
+"""Commands that write starting points: new, cases, schema."""
 
 import json
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ from dembound.kinds import SCHEMAS
 from dembound.starting import DEFAULT, names, starting_point, titles
 
 SCHEMA_FILE = "dembound.schema.json"
-"""What the schema is called that stands beside new cases."""
+"""File name of the schema that is written next to new cases."""
 
 cases = typer.Typer(invoke_without_command=True)
 app.add_typer(cases, name="cases", rich_help_panel="Cases")
@@ -28,7 +28,7 @@ def new(
         str, typer.Option("--from", metavar="NAME", help="Starting point.", autocompletion=lambda: names())
     ] = DEFAULT,
     listed: Annotated[bool, typer.Option("--list", help="List the starting points and stop.")] = False,
-    schema: Annotated[bool, typer.Option(help=f"Write {SCHEMA_FILE} beside it, for editors.")] = True,
+    schema: Annotated[bool, typer.Option(help=f"Write {SCHEMA_FILE} next to it, for editors.")] = True,
 ) -> None:
     """Write a commented case to start from."""
     if listed:
@@ -45,19 +45,19 @@ def new(
 
 
 def _write_schema_beside(path: Path) -> None:
-    """Write the schema into the folder of a case, over one that an earlier version may have left.
+    """Write the schema into the folder of a case, replacing one of an earlier version.
 
-    Raises CaseError where a file of that name is something else.
+    Raises CaseError if a file of that name is not a schema of dembound.
     """
     file, text = path.parent / SCHEMA_FILE, _schema()
     if file.exists():
         if IDENTIFIER not in file.read_text(encoding="utf-8", errors="replace"):
-            raise CaseError([f"{file}: exists and is no schema of dembound; move it, or give --no-schema"])
+            raise CaseError([f"{file}: exists and is not a schema of dembound; move it, or give --no-schema"])
         if file.read_text(encoding="utf-8") == text:
             return
     writable(file)
     file.write_text(text, encoding="utf-8")
-    out.print(f"wrote {file}, by which editors complete and check cases", markup=False)
+    out.print(f"wrote {file}, with which editors complete and check cases", markup=False)
 
 
 def _schema() -> str:
@@ -71,7 +71,7 @@ def schema(
         Path | None, typer.Option("--output", "-o", help="File to write (JSON).", callback=writable)
     ] = None,
 ) -> None:
-    """Print a JSON schema of case files, by which editors complete and check them."""
+    """Print a JSON schema of case files, with which editors complete and check them."""
     if output is None:
         typer.echo(_schema(), nl=False)
         return

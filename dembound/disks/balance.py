@@ -1,6 +1,6 @@
-"""The constant forces that balance the internal stress of a settled body: Z's unbalanced forces F_eq, sign turned.
+"""The constant forces that balance the stress of a settled body: Z's unbalanced forces F_eq with opposite sign.
 
-Under the law that follows the motion they turn with the side they act on, and they end on debris.
+Under ``geometry = "updated"`` they rotate with the side they act on. On debris they end.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from dembound.motion.state import Arrays
 
 
 class Balance:
-    """Forces that balance the stress of a body at a datum.
+    """Forces that balance the stress of a body in a reference state, the datum.
 
     Parameters
     ----------
     scene : the body and its sides.
     force : (3, n) N and N·m at the datum.
-    steady : (3, n) other steady forces, which never turn.
+    steady : (3, n) other steady forces, which do not rotate.
     datum : (3, n) displacements at which the body is in equilibrium.
-    across : (3, n) N and N·m, what comes through free-field seams at the datum: no load, but it turns with the body and
-        ends on debris all the same.
+    across : (3, n) N and N·m, forces through free-field seams at the datum. They are not a load, but they also rotate
+    with the body and end on debris.
 
     Attributes
     ----------
     force : (3, n) N and N·m, in the directions of the datum.
-    followers : what turns them, for the kernels.
+    followers : arrays with which the kernels rotate them.
     """
 
     def __init__(
@@ -48,18 +48,18 @@ class Balance:
         self._torn = np.zeros(scene.count, dtype=np.bool_)
 
     def work(self, displacement: np.ndarray) -> float:
-        """Work (J) done up to displacements (3, n), without what turning has added, which the kernels count."""
+        """Work (J) done up to displacements (3, n), without that of their rotation, which the kernels count."""
         return self._of_ended + float(np.sum(self.force * (displacement - self._datum)))
 
     def memory(self) -> Arrays:
-        """All that evolves in it, by name."""
+        """All arrays that change during a run, by name."""
         kept = {name: getattr(self, f"_{name}") for name in (*_FIXED, *_EVOLVING)}
         kept |= {"force": self.force, "of_ended": np.array(self._of_ended)}
         return kept | {f"follower_{name}": getattr(self.followers, name) for name in _FOLLOWING}
 
     @classmethod
     def recalled(cls, scene: DiskBody, memory: Arrays) -> Balance:
-        """The balance whose memory() in another run of the same case was this."""
+        """The balance restored from what memory() returned in another run of the same case."""
         balance = cls(scene, memory["force"].copy(), *(memory[name].copy() for name in _FIXED))
         for name in _EVOLVING:
             setattr(balance, f"_{name}", memory[name].copy())
@@ -69,7 +69,7 @@ class Balance:
         return balance
 
     def count_breaks_from(self, parts: Sequence[DiskPart]) -> None:
-        """Take the bonds that are broken by now as no sign of debris; parts make up the body."""
+        """Ignore the bonds broken so far when debris is looked for; parts : those of the body."""
         for part in parts:
             assert part.contacts is not None
             part.contacts.note_cracks()
@@ -77,14 +77,14 @@ class Balance:
     def end_on_debris(
         self, parts: Sequence[DiskPart], displacement: np.ndarray, velocity: np.ndarray, step: float, load: np.ndarray
     ) -> None:
-        """End the forces on pieces that have broken off, and let the rest of the body bear what they came to.
+        """End the forces on pieces that have broken off, and apply their resultant to the rest of the body.
 
-        A piece has broken off where neither bonds nor closed contacts join it to the largest one and a bond of it has
-        broken since the start: ground that was loose then stays confined. displacement (3, n) and velocity (3, n) are
-        those after a step (s). load (3, n), all steady forces, loses what ends; what keeps coming through a seam is
-        taken off by its constant part.
+        A piece has broken off if neither bonds nor closed contacts connect it to the largest piece and one of its bonds
+        has broken since the start. Ground that was loose at the start therefore keeps its confining forces.
+        displacement (3, n) and velocity (3, n) are those after a step (s). The ended forces are removed from load (3,
+        n), all steady forces; forces that still act through a seam are cancelled by their constant part.
         """
-        self._torn |= _freshly_torn(parts)  # every break is looked at in its step, so none is missed
+        self._torn |= _freshly_torn(parts)  # called in the step of every break, so that none is missed
         loose = np.zeros(len(self._ended), dtype=np.bool_)
         for part in parts:
             body = part.nodes
@@ -105,7 +105,7 @@ class Balance:
         self._leave_sides()
         for part in parts:
             change[:, part.nodes] += self._borne_by_the_rest(change, part.nodes)
-        # the force of the last step acted until half a step before the displacements of now
+        # the force of the last step acted until half a step before the present displacements
         self._of_ended -= float(np.sum(change * (displacement - 0.5 * step * velocity - self._datum)))
         self.force += change
         load += change
@@ -114,7 +114,7 @@ class Balance:
         followers.steady[...] += change[:2, followers.node]
 
     def _leave_sides(self) -> None:
-        """Let the rotation of each side be that of what is left of it."""
+        """Compute the rotation of each side from its remaining particles."""
         followers = self.followers
         followers.twin[self._ended[followers.member]] = GONE
         for first, last in pairwise(followers.start):
@@ -123,10 +123,10 @@ class Balance:
                 followers.arm[:, left] -= followers.arm[:, left].mean(axis=1, keepdims=True)
 
     def _borne_by_the_rest(self, change: np.ndarray, body: slice) -> np.ndarray:
-        """Forces (3, m) on the sides of what is left of a body that make up for what has ended in it, torque included.
+        """Forces (3, m) on the sides of the remaining body that replace the ended forces, torque included.
 
-        change (3, n) N and N·m is what has come to the forces by ending. The ground beyond would take it over; without
-        that the body would be pushed away by what is left.
+        change (3, n) N and N·m is the change of the forces by ending. In the ground the medium beyond would carry it;
+        without a replacement the remaining forces would push the body away.
         """
         borne = np.zeros((3, body.stop - body.start))
         node = self.followers.node
@@ -145,29 +145,29 @@ class Balance:
 
 
 _FIXED = ("steady", "datum", "across")
-"""What a balance is made of beside its forces."""
+"""The arguments of a balance other than its forces."""
 
 _EVOLVING = ("ended", "torn")
-"""What it keeps of particles that have come off."""
+"""Arrays about particles that have broken off."""
 
 _FOLLOWING = ("twin", "arm", "force", "steady", "extra")
-"""The columns of its followers that change."""
+"""The arrays of its followers that change."""
 
 
 def _freshly_torn(parts: Sequence[DiskPart]) -> np.ndarray:
-    """Particles (n,) bool with a bond that has broken since cracks were last written down."""
+    """Particles (n,) bool with a bond that has broken since cracks were last recorded."""
     return np.concatenate([part.contacts.freshly_torn() for part in parts if part.contacts is not None])
 
 
 def mean_rotations(scene: DiskBody, moved: np.ndarray) -> dict[str, float]:
-    """Rotation (rad) by which forces on each side turn, of a body that has moved by (3, n), see `side_rotations`."""
+    """Rotation (rad) by which the forces on each side rotate, for displacements (3, n); see `side_rotations`."""
     still = np.zeros_like(moved)
     followers = _followers(scene, still, still, still, still)
     return dict(zip(_body_sides(scene), side_rotations(moved.copy(), followers).tolist(), strict=True))
 
 
 def _body_sides(scene: DiskBody) -> dict[str, np.ndarray]:
-    """The particles of each side of a body that can turn: not of a free-field column, nor of what is periodic."""
+    """The particles of each side of a body that can rotate: not of a free-field column or a periodic body."""
     if any(table.is_periodic for table in scene.case.boundary.values()):
         return {}
     first = 0 if scene.seam is None else scene.seam.count
@@ -178,7 +178,7 @@ def _body_sides(scene: DiskBody) -> dict[str, np.ndarray]:
 def _followers(
     scene: DiskBody, force: np.ndarray, steady: np.ndarray, datum: np.ndarray, across: np.ndarray
 ) -> Followers:
-    """The forces on the sides of a body, half of a corner's with each of its two sides; words as in `Balance`."""
+    """The forces on the sides of a body; a force at a corner is shared equally by its two sides. See `Balance`."""
     sides = _body_sides(scene)
     places = scene.assembly.positions.T + datum[:2]
     arms = [places[:, nodes] - places[:, nodes].mean(axis=1, keepdims=True) for nodes in sides.values()]
@@ -206,14 +206,14 @@ def _followers(
 
 
 def _shares(side: np.ndarray) -> np.ndarray:
-    """Share (2, q) of a particle's force that turns with each of its sides, by their numbers (2, q)."""
+    """Share (2, q) of a particle's force that rotates with each of its sides, by their numbers (2, q)."""
     return (side >= 0) / (side >= 0).sum(axis=0)
 
 
 def _side_numbers(scene: DiskBody, sides: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Particles (q,) on which forces turn, and the numbers (2, q) of the one or two sides of each, −1 for none.
+    """Particles (q,) whose forces rotate, and the numbers (2, q) of the one or two sides of each, −1 for none.
 
-    Those of the sides, and beside a free field those with contacts beyond it.
+    They are the particles of the sides, and at a free field those with contacts beyond it.
     """
     pushed = dict(sides)
     if scene.seam is not None:
@@ -226,5 +226,5 @@ def _side_numbers(scene: DiskBody, sides: dict[str, np.ndarray]) -> tuple[np.nda
     for k, nodes in enumerate(pushed.values()):
         at = np.searchsorted(node, nodes)
         row = (number[:, at] >= 0).sum(axis=0)
-        number[row[row < 2], at[row < 2]] = k  # of a very narrow body a particle may have a third side, left out
+        number[row[row < 2], at[row < 2]] = k  # a third side, in a very narrow body, is ignored
     return node, number

@@ -1,4 +1,4 @@
-"""A body of disks as arrays. This is the one place that names them, their shapes and their units."""
+"""The arrays of a body of disks. Only this file defines their names, shapes and units."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,15 +27,16 @@ class DiskBody(Scene):
 
     Attributes
     ----------
-    case : where it came from.
+    case : the case it was built from.
     ground : brick and material.
     assembly : the tiled brick: positions (n, 2) m, radii (n,) m, brick_particle (n,), contacts.
     rows : contacts of the elastic law for the kernels, of each part.
     edges : side -> its exposed particles, for every side that is not periodic.
-    supports : the table of what pushes from outside, loads that follow a wave included.
+    supports : the table of forces from outside, loads that follow a wave included.
     monitors : name -> particle.
-    seam : what joins the free-field column, which stands first in the arrays, to the body; None without one.
-    slots : where kernels hold its particles; None: in their order.
+    seam : the connection between the free-field column, whose particles come first in the arrays, and the body; None
+    without a column.
+    slots : the slots in which kernels hold its particles; None: in their order.
     """
 
     case: DiskCase
@@ -55,12 +56,12 @@ class DiskBody(Scene):
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """What a record's header has beside that of every run."""
+        """The attributes of a record's header in addition to those of every run."""
         return {"seed": getattr(self.case.packing, "seed", 0), "column": 0 if self.seam is None else self.seam.count}
 
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
-        """What a record keeps of every particle, by name: values (n, …) and unit."""
+        """Data of every particle for the record, by name: values (n, …) and unit."""
         assembly, bonded = self.assembly, self.ground.moduli.pb_emod > 0.0
         return {
             "position": (assembly.positions, "m"),
@@ -71,7 +72,7 @@ class DiskBody(Scene):
 
     @property
     def places(self) -> dict[str, tuple[float, float]]:
-        """Where monitors were wanted, m."""
+        """The positions given for the monitors, m."""
         return {monitor.name: monitor.position for monitor in self.case.monitor}
 
     @property
@@ -106,7 +107,7 @@ class DiskBody(Scene):
 
     @property
     def twin(self) -> np.ndarray | None:
-        """(n,) each one's twin in the free-field column, the column's own being theirs; None without a column."""
+        """(n,) twin of each particle in the free-field column, for those of the column themselves; None without it."""
         return None if self.seam is None else self.seam.twin
 
     @property
@@ -116,7 +117,7 @@ class DiskBody(Scene):
 
     @cached_property
     def mass(self) -> np.ndarray:
-        """(n,) kg, of which particles on sides with half mass keep their half."""
+        """(n,) kg; half of it for particles on sides with half mass."""
         return self.ground.mass[self.assembly.brick_particle] * self.cell_fraction
 
     @cached_property
@@ -126,12 +127,12 @@ class DiskBody(Scene):
 
     @cached_property
     def cell_fraction(self) -> np.ndarray:
-        """(n,) part of its cell that is a particle's own: 1, on a side of half cells ½, where two such meet ¼."""
+        """(n,) part of a particle's cell inside the scene: 1, on a side of half cells ½, where two such meet ¼."""
         return mass_factor(self.count, self.edges, self.case.boundary)
 
     @cached_property
     def steady_load(self) -> np.ndarray:
-        """(3, n) forces and moments (N, N·m) of the loads that are always there."""
+        """(3, n) forces and moments (N, N·m) of the loads without a wave."""
         return steady(self.case, self.assembly, self.mass)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""What the history-dependent law reads of a contact: its constants, and where it gives way."""
+"""Contact data for the history-dependent law: constants, and the limits of contacts and bonds."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from dembound.kernels.tables import Limits
 
 
 def limits_of(material: Material) -> Limits:
-    """Where contacts and bonds of a material give way; those of a law without history never do."""
+    """Strengths and friction of a material; without limits for a law without history."""
     unbreakable = not LAWS[material.law].has_history
     return Limits(
         friction=float(material.fric),
@@ -24,7 +24,7 @@ def limits_of(material: Material) -> Limits:
 def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:
     """Constants (2b, 12) of the brick's contacts, then the same with half their stiffness, for half cells.
 
-    The words are those of `pair_constants`.
+    Arguments as for `pair_constants`.
     """
     brick = ground.brick
     first, second = brick.radii[brick.pairs].T
@@ -39,14 +39,14 @@ def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: floa
     )
     half = constants.copy()
     half[:, 5:10] *= 0.5  # stiffnesses
-    half[:, 10:] *= 2.0  # and areas and sections with them, so that stresses stay
+    half[:, 10:] *= 2.0  # and areas and section moduli too, so that stresses do not change
     return np.vstack([constants, half])
 
 
 def shared_constants(constants: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
-    """Constants (p, 12) of pairs without the rows that are equal but for rounding, and each pair's row (b,).
+    """Constants (p, 12) of pairs, equal rows (to rounding) only once, and the row of each pair (b,).
 
-    Pairs at the same place of different bricks then share a row; length (m) is what rounding is small against.
+    Pairs at the same place of different bricks then share a row; length (m) is the scale for rounding errors.
     """
     places = np.round(constants[:, :5] / (1e-6 * length))
     _, first, row_of = np.unique(places, axis=0, return_index=True, return_inverse=True)

@@ -1,4 +1,4 @@
-"""The pairs of a scene: who touches or may soon touch whom, kept up to date as particles move."""
+"""The pairs of a scene: particles in contact or nearly in contact, listed anew as particles move."""
 
 from dataclasses import dataclass, fields
 
@@ -18,13 +18,15 @@ from dembound.motion.state import Arrays
 from dembound.packings.tiling import Assembly
 
 SKIN = 0.05
-"""Pairs are listed while their gap is below this share of the mean diameter: they are looked for anew once a particle
-has moved by half of it."""
+"""Pairs are listed while their gap is below this share of the mean diameter.
+
+The list is renewed once a particle has moved by half of it.
+"""
 
 
 @dataclass(frozen=True)
 class Pairs:
-    """A list of pairs: first, second (b,) particles, image (b, 2) whole periods between, contact_type (b,)."""
+    """Pairs: first, second (b,) particles, image (b, 2) whole periods between them, contact_type (b,)."""
 
     first: np.ndarray
     second: np.ndarray
@@ -33,24 +35,24 @@ class Pairs:
 
 
 class ContactList:
-    """All pairs of a part that push or may soon push, with their history.
+    """All pairs of a part that are in contact or may soon be, with their history.
 
     Displacements (3, n) are those of all nodes of the scene.
 
     Parameters
     ----------
     ground : brick and material.
-    material : the law's limits.
-    assembly : where the part's particles are at the start.
+    material : gives the limits of the law.
+    assembly : the part's particles at the start.
     periods : length (m) of the part along x and y where it is periodic, else None.
     begin : number of its first particle in the scene.
-    held : first, second (k,) particles of the part and vectors (k, 2) m of pairs that stay listed however far apart.
-    layout : where kernels hold the scene's particles; None: in their order.
+    held : first, second (k,) particles of the part and vectors (k, 2) m of pairs that stay listed at any distance.
+    layout : the slots in which kernels hold the scene's particles; None: in their order.
 
     Attributes
     ----------
-    arrays : the pairs as the kernels read them, by slots.
-    limits : where they give way.
+    arrays : the pairs for the kernels, by slots.
+    limits : strengths and friction.
     origin : (2, m) m, displacements of the part's m slots at which the list was made.
     skin : m, gap up to which it is complete.
     arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
@@ -95,11 +97,11 @@ class ContactList:
             self.search(np.zeros((3, len(self.layout.slot))))
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
-        """Take over from the elastic law at displacements (3, n): nothing has slid so far."""
+        """Set the pairs to the state of the elastic law at displacements (3, n), without any slip."""
         kernel.start_from_displacements(self.layout.spread(displacement), self.arrays)
 
     def push(self, displacement: np.ndarray, *, reference: bool = False) -> None:
-        """Compute the pairs' own forces at displacements (3, n) reached at rest, and leave them in `arrays`.
+        """Compute the forces of the pairs at displacements (3, n) at rest, and store them in `arrays`.
 
         reference : with the geometry of the start, as under the elastic law.
         """
@@ -111,23 +113,23 @@ class ContactList:
             kernel.note_places(u, 0, self.arrays)
 
     def add_forces(self, total: np.ndarray) -> None:
-        """Add the forces and moments of the pairs' last forces to those of all nodes, total (3, n)."""
+        """Add the pairs' last forces and moments to those of all nodes, total (3, n)."""
         force = np.empty((3, self.layout.count))
         kernel.sum_forces(self.arrays, force)
         total[:, self.nodes] += force[:, self._slot]
 
     def is_old(self, displacement: np.ndarray) -> bool:
-        """Whether a particle has moved so far by displacements (3, n) that pairs may be missing."""
+        """Whether at displacements (3, n) a particle has moved so far that pairs may be missing."""
         u = self.layout.spread(displacement)
         return self.skin - 2.0 * kernel.moved(u, self._slots.start, self.origin) < 0.0
 
     def search(self, displacement: np.ndarray) -> None:
-        """List the pairs anew for displacements (3, n): near ones come in, those far apart and unbonded go."""
+        """List the pairs anew for displacements (3, n): add near pairs, remove distant ones without bond."""
         self.note_cracks()
         moved, radii = displacement[:2, self.nodes].T, self.assembly.radii
         here = self.assembly.positions + moved
         if not np.isfinite(here).all():
-            return  # the watch of the loop raises for it
+            return  # the `Watch` of the run raises the error
         old, count = self.arrays, len(radii)
         old_first, old_second = self.pairs
         near, image = near_pairs(here, radii, self.skin, self.periods)
@@ -145,7 +147,7 @@ class ContactList:
             self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
         )
         constants, row_of_new = shared_constants(constants, self.skin)
-        # rows of earlier searches that are still in use move up behind the brick's own
+        # rows of earlier searches that are still in use are moved up to follow those of the brick
         own = len(self.bonds)
         used, row = np.unique(old.contact_type[kept], return_inverse=True)
         extra = used >= own
@@ -168,7 +170,7 @@ class ContactList:
         self._set_origin(displacement[:2, self.nodes])
 
     def take_over_subset(self, other: "ContactList", kept: np.ndarray) -> None:
-        """Take the pairs, with their history, of a list of more particles, of which this one's are `kept` (m,)."""
+        """Copy the pairs, with their history, from a list of more particles, of which this list has `kept` (m,)."""
         number = np.full(len(other.assembly.radii), -1)
         number[kept] = np.arange(len(kept))
         old, (old_first, old_second) = other.arrays, other.pairs
@@ -180,10 +182,10 @@ class ContactList:
         self._list(pairs, old.state[left], old.shear[left], old.slip[left], old.cracked[left], old.place[left])
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
-        """Take the history of each pair's twin in a free-field column that has settled alone, at displacements (3, n).
+        """Copy the history of each pair's twin from a free-field column settled alone, at displacements (3, n).
 
-        twin : (m,) the column's particle for each of this list. Bonds that broke there have broken here before the
-        first step.
+        twin : (m,) the column's particle for each of this list. Bonds that broke in the column count here as broken
+        before the first step.
         """
         self.search(displacement)
         pairs = self.arrays
@@ -199,9 +201,9 @@ class ContactList:
         self.note_cracks()
 
     def find(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Where pairs (b,) of particles with vectors (b, 2) m between them stand in this list.
+        """Find pairs (b,) of particles with vectors (b, 2) m between them in this list.
 
-        Returns whether they are listed (b,), and their places (b,), whichever way round.
+        Returns whether they are listed (b,), and their indices (b,), for either order of the two particles.
         """
         count = len(self.assembly.radii)
         listed = pair_keys(*self.pairs, self.image, count)
@@ -211,7 +213,7 @@ class ContactList:
         return listed[at] == keys, at
 
     def note_cracks(self) -> None:
-        """Write down the bonds that broke since the last time, where they did."""
+        """Record the bonds that broke since the last call, with their positions."""
         pairs = self.arrays
         broken = np.flatnonzero(pairs.cracked >= 0)
         if len(broken) == 0:
@@ -245,11 +247,11 @@ class ContactList:
         return np.rint(wraps).astype(np.int64)
 
     def freshly_torn(self) -> np.ndarray:
-        """Particles (m,) bool with a bond that has broken since cracks were last written down."""
+        """Particles (m,) bool with a bond that has broken since cracks were last recorded."""
         return self._counted(self.arrays.cracked >= 0) > 0
 
     def coordination(self) -> np.ndarray:
-        """Number (m,) of intact bonds and pushing contacts of every particle, from the pairs' last forces."""
+        """Number (m,) of intact bonds and closed contacts of every particle, from the pairs' last forces."""
         return self._counted((self.arrays.state == INTACT) | self.arrays.force[:, :2].any(axis=1))
 
     def _counted(self, chosen: np.ndarray) -> np.ndarray:
@@ -258,7 +260,7 @@ class ContactList:
         return np.bincount(ends, minlength=len(self.assembly.radii))
 
     def memory(self) -> Arrays:
-        """The pairs with their history, and cracks not yet taken."""
+        """The pairs with their history, and cracks not yet recorded."""
         self.note_cracks()
         memory = {name: getattr(self.arrays, name) for name in _KEPT}
         memory |= {"image": self.image, "constants": self._constants, "origin": self.origin}
@@ -266,7 +268,7 @@ class ContactList:
         return memory | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
 
     def recall(self, memory: Arrays) -> None:
-        """Take over what `memory` has returned in another run of the same case."""
+        """Restore what `memory` has returned in another run of the same case."""
         self._constants, self.origin = memory["constants"], memory["origin"]
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[memory[name]] - begin for name in ("first", "second"))
@@ -290,7 +292,7 @@ class ContactList:
         cracked: np.ndarray,
         place: np.ndarray | None = None,
     ) -> None:
-        """Sort the pairs, and list the ends of each particle."""
+        """Sort the pairs, and list the contact ends of each particle."""
         first, second = self._slot[pairs.first], self._slot[pairs.second]
         order = np.lexsort((pairs.image[:, 1], pairs.image[:, 0], second, first))
         self.image = pairs.image[order]
@@ -322,9 +324,9 @@ _KEPT = ("first", "second", "contact_type", "state", "shear", "slip", "cracked",
 
 
 def plain_contacts(ground: PackedMaterial, assembly: Assembly, slot: np.ndarray) -> Contacts:
-    """The contacts of the elastic law, without history, forces and rows: what its strain energy takes.
+    """The contacts of the elastic law, without history, forces and rows, for its strain energy.
 
-    slot : (n,) where kernels hold the assembly's particles.
+    slot : (n,) in which kernels hold the assembly's particles.
     """
     first, second = slot[assembly.pairs.T].astype(np.uint32, order="C")
     bonded = INTACT if ground.moduli.pb_emod > 0.0 else NONE

@@ -1,4 +1,4 @@
-"""The sides of a scene: which particles make them up, beside a free-field column and beside holes."""
+"""The particles of the sides of a scene, also next to a free-field column and to holes."""
 
 from collections.abc import Mapping
 
@@ -13,7 +13,7 @@ from dembound.packings.tiling import Assembly
 
 
 def find_edges(assembly: Assembly, periodic: tuple[bool, bool], regular_sides: tuple[str, ...] = ()) -> dict[str, Edge]:
-    """The exposed particles of every side that is not periodic; of a regular one, those of its one row."""
+    """The exposed particles of every side that is not periodic; for regular sides, the particles of the outer row."""
     edges = {}
     for side in SIDES:
         axis = normal_axis(side)
@@ -29,20 +29,20 @@ def find_edges(assembly: Assembly, periodic: tuple[bool, bool], regular_sides: t
 
 
 def edge_without(edge: Edge, kept: np.ndarray) -> Edge:
-    """A side without the particles that are not kept (m,); the others stand for their share of its length."""
+    """A side without the particles that are not kept (m,); the others keep their share of its length."""
     still = np.isin(edge.nodes, kept)
     if not still.any():
-        raise CaseError([f"hole: leaves nothing of the {edge.side} side"])
+        raise CaseError([f"hole: removes all of the {edge.side} side"])
     diameters = edge.diameters[still]
     length = edge.length * float(diameters.sum() / edge.diameters.sum())
     return Edge(edge.side, np.searchsorted(kept, edge.nodes[still]), edge.positions[still], diameters, length)
 
 
 def edges_beside_column(assembly: Assembly, seam: Seam, edges: Mapping[str, Edge]) -> dict[str, Edge]:
-    """The sides of a body joined to its column: bottom and top run on into it, left and right are the body's.
+    """The sides of a body with its column: bottom and top include the column, left and right are the body's.
 
-    Which disks are seen from below is decided in the column, as if there were no sides, so that every disk of the body
-    is supported as its twin is.
+    The disks visible from below or above are determined in the column, as if there were no sides, so that every disk of
+    the body is supported like its twin.
     """
     column = np.arange(len(assembly.radii)) < seam.count
     joint = {}

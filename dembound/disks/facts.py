@@ -1,4 +1,4 @@
-"""What a case of disks would come to, in words."""
+"""Facts about a case of disks, in words."""
 
 from dembound.boundaries.words import side_in_words
 from dembound.casefile.disks import DiskCase
@@ -37,18 +37,18 @@ def _monitor_facts(scene: DiskScene) -> dict[str, str]:
 
 
 def _tension_facts(scene: DiskScene) -> dict[str, str]:
-    """Waves that would open contacts, where the elastic law then hands over."""
+    """Waves that would open contacts, for a run in which the law then changes."""
     if not (scene.has_history and scene.case.material.elastic_start):
         return {}
     law = scene.case.material.law
     return {
-        f"stress of {name}": f"ρcv = {stress}; where it pulls contacts open, and {law} takes over"
+        f"stress of {name}": f"ρcv = {stress}; in tension contacts open, and the law changes to {law}"
         for name, stress in strong_waves(scene).items()
     }
 
 
 def _particles(scene: DiskScene) -> str:
-    """How many there are, and were."""
+    """Number of particles, also before an excavation."""
     loose = scene.assembly.loose
     before = f", {scene.before.count:,} before the excavation" if scene.before is not None else ""
     severed = f"; {loose:,} severed {'disk' if loose == 1 else 'disks'} left out" if loose else ""
@@ -56,8 +56,8 @@ def _particles(scene: DiskScene) -> str:
 
 
 def _hole_facts(case: DiskCase) -> dict[str, str]:
-    """Shape of every hole, and when it is made."""
-    stages = {"before": "there from the start", "after": "excavated once the body has settled"}
+    """Shape of every hole, and the stage in which it is made."""
+    stages = {"before": "present from the start", "after": "excavated once the body has settled"}
     return {f"hole {hole.name}": f"{hole.type}, {stages[hole.stage]}" for hole in case.hole}
 
 
@@ -80,7 +80,7 @@ def _packing_facts(scene: DiskScene) -> dict[str, str]:
 
 
 def _law_facts(scene: DiskScene) -> dict[str, str]:
-    """The law, and where contacts and bonds give way."""
+    """The law, and the limits of contacts and bonds."""
     material = scene.case.material
     if not scene.has_history:
         return {"law": f"{material.law}: contacts neither open nor slip, bonds do not break"}
@@ -99,8 +99,8 @@ def _law_facts(scene: DiskScene) -> dict[str, str]:
     }
     if scene.ground.moduli.emod > 0.0:
         facts["tension"] = (
-            f"meets {100.0 * scene.ground.bond_share:.0f} % of the stiffness where nothing presses contacts together: "
-            "they open and leave it to the bonds; confine them (static.stress) or lower material.contact_share"
+            f"has {100.0 * scene.ground.bond_share:.0f} % of the stiffness where nothing presses contacts together: "
+            "they open and only the bonds resist; confine them (static.stress) or lower material.contact_share"
         )
     if material.locked_in is not None:
         shares = [
@@ -113,7 +113,7 @@ def _law_facts(scene: DiskScene) -> dict[str, str]:
 
 
 def _static_facts(case: DiskCase) -> dict[str, str]:
-    """What acts during the static stage, and what holds."""
+    """Loads and supports of the static stage."""
     static = case.static
     if static is None:
         return {}

@@ -39,7 +39,7 @@ class Disks(Kind[DiskCase, DiskScene]):
     view_script = VIEW_SCRIPT
 
     def build(self, case: DiskCase) -> DiskScene:
-        """Its scene; loads that hit no particle and a singular material are found here."""
+        """Its scene; raises the errors for loads without particles and for a singular material."""
         scene = build(case)
         _ = scene.steady_load, scene.ground.material_tensor
         return scene
@@ -49,7 +49,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         return choose_step(scene)
 
     def begin(self, scene: DiskScene, time_step: float, on_look: OnLook) -> Beginning:
-        """Settle the body if the case has a static stage, else begin as built."""
+        """Settle the body if the case has a static stage, else begin with the body as built."""
         if scene.case.static is None:
             return Beginning(DiskSystem(scene, time_step))
         settled = settle(scene, on_look)
@@ -61,22 +61,22 @@ class Disks(Kind[DiskCase, DiskScene]):
         )
 
     def facts(self, scene: DiskScene, time_step: float) -> dict[str, str]:
-        """Packing, law and what acts on it."""
+        """Packing, law, loads and boundaries."""
         return disk_facts(scene)
 
     def not_estimated(self, case: DiskCase) -> str:
-        """The static stage, and a law that takes over later."""
+        """The static stage, and a law that replaces the elastic one later."""
         later = ["the static stage"] * (case.static is not None)
         if LAWS[case.material.law].has_history and case.material.elastic_start:
-            later.append(f"what {case.material.law} takes longer once it begins")
+            later.append(f"the additional time of {case.material.law} once it begins")
         return f", without {' and '.join(later)}" if later else ""
 
     def warnings_before(self, scene: DiskScene, time_step: float) -> list[str]:
-        """What is known before the run."""
+        """Warnings that are known before the run."""
         return disk_warnings(scene, time_step)
 
     def warnings_after(self, scene: DiskScene, summary: Mapping[str, Any], record: Path) -> list[str]:
-        """What the run has shown."""
+        """Warnings from the results of the run."""
         return warnings_after_disks(scene, summary, record)
 
     def summarise(self, scene: DiskScene, run: Run, beginning: Beginning, record: Path) -> dict[str, Any]:
@@ -96,7 +96,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         yield "scene", plot_scene(record)
 
     def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
-        """The scene, its disks coloured by a field."""
+        """The scene with disks coloured by a field."""
         return plot_scene(record, snapshot, cast(FieldName, field))
 
 
@@ -110,7 +110,7 @@ def _stages(scene: DiskScene, settled: Settled) -> Iterator[Stage]:
 
 
 def _facts(settled: Settled) -> dict[str, Any]:
-    """What a record keeps of a static stage."""
+    """Numbers of a static stage for the record."""
     return {
         "steps": settled.steps,
         "ratio": settled.ratio,

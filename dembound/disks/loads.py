@@ -1,4 +1,4 @@
-"""Loads: which particles a ``[[load]]`` acts on, and how hard."""
+"""Loads: the particles a ``[[load]]`` acts on, and its forces."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ def forces_of(load: Load, assembly: Assembly, mass: np.ndarray) -> tuple[np.ndar
     """Particles (k,) a load acts on, and its forces on them (k, 2) N before the time factor.
 
     mass (n,) kg. A force is shared in proportion to the disks' areas; an acceleration acts on each particle's mass.
-    Raises CaseError where no particle is there.
+    Raises CaseError if there is no particle.
     """
     nodes = _loaded(load, assembly)
     if load.acceleration is not None:
@@ -25,7 +25,7 @@ def forces_of(load: Load, assembly: Assembly, mass: np.ndarray) -> tuple[np.ndar
 
 
 def _loaded(load: Load, assembly: Assembly) -> np.ndarray:
-    """Particles (k,) in the load's place."""
+    """Particles (k,) at the load's position or in its region."""
     positions = assembly.positions
     if load.position is not None:
         return np.array([int(np.argmin(np.hypot(*(positions - load.position).T)))])
@@ -48,7 +48,7 @@ def drive(case: DiskCase, assembly: Assembly, mass: np.ndarray, supports: Suppor
 
 
 def steady(case: DiskCase, assembly: Assembly, mass: np.ndarray) -> np.ndarray:
-    """Forces and moments (3, n) N, N·m of the loads that are always there."""
+    """Forces and moments (3, n) N, N·m of the loads without a wave."""
     force = np.zeros((3, len(mass)))
     for load in case.load:
         if load.wave is None:

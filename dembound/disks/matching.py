@@ -5,7 +5,7 @@ from dembound.disks.scene import DiskScene, boundary_medium
 
 
 def homogenised_beta(scene: DiskScene, side: str, motion: Motion) -> float:
-    """β0 = (c_eff/c)·H/ΣD: the assembly's own wave speed over the nominal one, and the side's true length.
+    """β0 = (c_eff/c)·H/ΣD: homogenised over nominal wave speed, times the side's length over the sum of diameters.
 
     nan where the motion is held.
     """

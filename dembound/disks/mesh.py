@@ -13,10 +13,10 @@ Every disk is a vertex at its reference position moved by its displacement (z = 
 | ``displacement`` | m | (n, 3) | since the start of the run, z = 0 |
 | ``rotation`` | rad | (n,) | since the start of the run |
 | ``brick_particle`` | 1 | (n,) | the disk of the brick that this one is a copy of |
-| ``coordNumber`` | 1 | (n,) | its intact bonds and pushing contacts, under a history-dependent law (YADE's name) |
+| ``coordNumber`` | 1 | (n,) | its intact bonds and closed contacts, under a history-dependent law (YADE's name) |
 | ``nbCracks`` | 1 | (n,) | its bonds that have broken so far (YADE's name) |
 | ``damage`` | 1 | (n,) | that number over the bonds it had at the start, 0 where it had none |
-| ``stress`` | Pa | (n, 6) | XX, YY, ZZ, XY, YZ, XZ, tension positive, those with Z being 0; if the case asks for it |
+| ``stress`` | Pa | (n, 6) | XX, YY, ZZ, XY, YZ, XZ, tension positive, with Z 0; if the case asks for it |
 | ``peakVelocity`` | m/s | (n,) | largest speed in the whole run, in every file; if the case asks for it |
 
 To see disks in ParaView, run ``paraview --script=view.py`` in the folder, or open ``particles.pvd``, press
@@ -90,7 +90,7 @@ def disk_mesh(particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.
 
 
 def _tensors(stress: np.ndarray) -> np.ndarray:
-    """Stresses (n, 3) xx, yy, xy as (n, 6), in the order VTK knows symmetric tensors by: xx, yy, zz, xy, yz, xz."""
+    """Stresses (n, 3) xx, yy, xy as (n, 6), in VTK's order of symmetric tensors: xx, yy, zz, xy, yz, xz."""
     tensors = np.zeros((len(stress), 6))
     tensors[:, [0, 1, 3]] = stress
     return tensors

@@ -1,4 +1,4 @@
-"""Who is near whom: pairs of disks within a skin, through periodic sides too."""
+"""Pairs of disks with small gaps, also through periodic sides."""
 
 from itertools import product
 
@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 
 def pair_keys(first: np.ndarray, second: np.ndarray, image: np.ndarray, count: int) -> np.ndarray:
-    """One number per pair, whichever way round it is listed."""
+    """One number per pair, the same for either order of the two particles."""
     turned = (first > second) | ((first == second) & ((image[:, 0] < 0) | ((image[:, 0] == 0) & (image[:, 1] < 0))))
     low = np.where(turned, second, first).astype(np.int64)
     high = np.where(turned, first, second).astype(np.int64)
@@ -20,7 +20,8 @@ def near_pairs(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Pairs (b, 2) of disks with gaps up to skin (m), and the periods (b, 2) between them, each pair once.
 
-    positions (n, 2), radii (n,) in m. Particles may have drifted out of the period; what counts are differences.
+    positions (n, 2), radii (n,) in m. Particles may have moved out of the period, as only differences of positions are
+    used.
     """
     reach = 2.0 * radii.max() + skin
     period = np.array([length or 0.0 for length in periods])
@@ -39,6 +40,6 @@ def near_pairs(
 
 
 def _half_of_the_images(periods: tuple[float | None, float | None]) -> list[np.ndarray]:
-    """Neighbouring images of a periodic scene, one of each opposite two: the other lists the same pairs."""
+    """Neighbouring images of a periodic scene; of two opposite images only one, as both give the same pairs."""
     steps = [(-1, 0, 1) if period else (0,) for period in periods]
     return [np.array(image) for image in product(*steps) if image > (0, 0)]

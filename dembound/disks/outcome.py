@@ -1,4 +1,4 @@
-"""What happened in a run of disks, in words, from its summary."""
+"""The results of a run of disks in words, from its summary."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -7,7 +7,7 @@ from dembound.results.reader import laws_in_words
 
 
 def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
-    """What became of disks: their static stage, and what a history-dependent law came to."""
+    """The static stage, changes of law, broken bonds and the energy error."""
     facts = []
     if (static := summary["static"]) is not None:
         if (before := static["before"]) is not None:
@@ -18,27 +18,27 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
         tension, shear = summary["cracks"]["tension"], summary["cracks"]["shear"]
         if tension + shear > 0:
             facts.append(f"{tension + shear:,} bonds broke ({tension:,} tension, {shear:,} shear)")
-        if error := summary["energy"]["relative_error"]:  # zero where nothing came in
+        if error := summary["energy"]["relative_error"]:  # zero if no energy was supplied
             facts.append(f"energy closes to {100.0 * error:.2g} %")
     return facts
 
 
 def _settled(static: Mapping[str, Any], words: str) -> list[str]:
-    """How a static stage went, after that of its free-field column if there is one."""
+    """Results of a static stage, after those of its free-field column if there is one."""
     column = [] if static["column"] is None else [f"column settled in {_stage(static['column'])}"]
     return [*column, f"{words} in {_stage(static)}"]
 
 
 def _stage(static: Mapping[str, Any]) -> str:
-    """How a static stage went, in words, from its summary."""
+    """Results of a static stage in words, from its summary."""
     reached = ""
-    if (asked := static["asked"]) is not None:  # supports may have kept the body from it
+    if (asked := static["asked"]) is not None:  # supports may have prevented it
         reached = f" and a stress of {_in_mpa(static['stress'])} where {_in_mpa(asked)} MPa was asked for"
     broken = f", breaking {static['cracks']:,} bonds" if static["cracks"] else ""
     return f"{static['steps']:,} steps to a force ratio of {static['ratio']:.1e}{reached}{broken}"
 
 
 def _in_mpa(stress: Sequence[float]) -> str:
-    """A stress xx, yy, xy in Pa as a bracket of MPa; what is nothing beside the largest is given as nothing."""
+    """A stress xx, yy, xy in Pa as text in MPa; components negligible compared with the largest are printed as 0."""
     least = 1e-3 * max(map(abs, stress))
     return f"({', '.join(f'{value / 1e6 if abs(value) > least else 0.0:.3g}' for value in stress)})"

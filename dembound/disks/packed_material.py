@@ -1,7 +1,7 @@
-"""The ground a brick makes: masses, contact constants, and the continuum it is equivalent to.
+"""A brick with its material: masses, contact constants, and the equivalent continuum.
 
-Everything here is known from one brick, before any scene is built: the homogenised stiffness comes from one
-periodic linear solve and gives wave speeds without a dynamic run.
+Everything here is computed from one brick, before any scene is built. The homogenised stiffness comes from one periodic
+linear solve and gives wave speeds without a dynamic run.
 """
 
 from collections.abc import Iterable
@@ -22,7 +22,7 @@ GRADIENTS = ("xx", "yy", "xy", "yx")
 """The four unit displacement gradients ∂u_a/∂b, in this order in every homogenised matrix."""
 
 LARGEST_OVERLAP = 0.1
-"""Most locked-in pressure in parts of the contact modulus, as overlaps are of the diameter: the most that is packed."""
+"""Largest locked-in pressure over the contact modulus: the largest pressure at which bricks are packed."""
 
 AXES = {"x": 0, "y": 1, "rotation": 2}
 
@@ -37,7 +37,7 @@ class PackedMaterial:
     density : bulk density, kg/m³.
     moduli : micro-parameters in use, after any scaling to a wave speed.
     law : the bond law.
-    held : components (0 x, 1 y, 2 rotation) no particle moves in.
+    held : components (0 x, 1 y, 2 rotation) that are held for all particles.
     """
 
     brick: Brick
@@ -54,7 +54,7 @@ class PackedMaterial:
 
     @cached_property
     def mass(self) -> np.ndarray:
-        """Disk masses (n,) kg; all disks have one density, and the brick has the bulk density asked for."""
+        """Disk masses (n,) kg; all disks have the same density, which gives the brick the bulk density of the case."""
         area = self.brick.radii**2
         return self.density * float(np.prod(self.brick.size)) * area / area.sum()
 
@@ -65,12 +65,12 @@ class PackedMaterial:
 
     @property
     def packed_pressure(self) -> float:
-        """Pressure (Pa) that the brick's contacts, at the stiffness they have now, were packed under."""
+        """Pressure (Pa) at which the brick was packed, for the present stiffness of its contacts."""
         return 0.0 - 0.5 * self.moduli.emod * float(self.brick.stress[0] + self.brick.stress[1])
 
     @cached_property
     def bond_share(self) -> float:
-        """Least share of the stiffness along x or y that bonds alone have: what tension meets where contacts open."""
+        """Share of the stiffness, the smaller of x and y, that remains in tension, where contacts are open."""
         if self.moduli.pb_emod == 0.0:
             return 0.0
         first, second = self.brick.radii[self.brick.pairs].T
@@ -85,7 +85,7 @@ class PackedMaterial:
 
     @cached_property
     def material_tensor(self) -> np.ndarray:
-        """Homogenised stiffness (4, 4) Pa with both translations free: the material's own."""
+        """Homogenised stiffness (4, 4) Pa with both translations free, a property of the material."""
         rotation_only = tuple(component for component in self.held if component == 2)
         if rotation_only == self.held:
             return self.tensor
@@ -108,7 +108,7 @@ class PackedMaterial:
 
 
 def make_packed_material(brick: Brick, material: Material, held: Iterable[str]) -> PackedMaterial:
-    """Give a brick its material, moduli scaled to the wave speed asked for where match is "assembly".
+    """Combine a brick with its material; if match is "assembly", the moduli are scaled to the given wave speed.
 
     Raises CaseError for a locked-in stress that the packing's contacts cannot carry.
     """
@@ -116,7 +116,7 @@ def make_packed_material(brick: Brick, material: Material, held: Iterable[str]) 
     if material.locked_in is not None:
         most = LARGEST_OVERLAP * ground.moduli.emod
         if ground.packed_pressure <= 0.0:
-            raise CaseError(["material.locked_in: needs disks that were packed under stress; ask for static.stress"])
+            raise CaseError(["material.locked_in: needs disks that were packed under stress; use static.stress"])
         if material.locked_in > most:
             allowed = f"at most {most:.3g} Pa, {LARGEST_OVERLAP:g} of the contact modulus"
             raise CaseError([f"material.locked_in: is {material.locked_in:g} Pa, must be {allowed}"])
@@ -124,7 +124,7 @@ def make_packed_material(brick: Brick, material: Material, held: Iterable[str]) 
 
 
 def _scaled(brick: Brick, material: Material, held: Iterable[str]) -> PackedMaterial:
-    """A brick with its material; a case's wave speed scales the moduli where it is that of the packing."""
+    """A brick with its material; if match is "assembly", the moduli are scaled to the case's wave speed."""
     ground = PackedMaterial(
         brick=brick,
         density=material.density,
@@ -156,10 +156,10 @@ def nominal_moduli(material: Material) -> Moduli:
 def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> np.ndarray:
     """Stiffness (4, 4) Pa of the infinite tiling against the displacement gradients xx, yy, xy, yx.
 
-    The brick is strained by each unit mean gradient in turn while its particles settle periodically (rotations
-    free unless held): minimise ½ Σ k e² over the periodic displacements, a sparse linear solve. Entry [a, b] is
-    the mean stress conjugate to gradient a under unit gradient b. With free rotations xy and yx are the same
-    shear, so C66 = C[yx, yx]; c² = C/ρ for plane waves.
+    The brick is strained by each unit mean gradient in turn while its particles relax periodically (rotations free
+    unless held): minimise ½ Σ k e² over the periodic displacements, a sparse linear solve. Entry [a, b] is the mean
+    stress conjugate to gradient a under unit gradient b. With free rotations xy and yx are the same shear, so C66 =
+    C[yx, yx]; c² = C/ρ for plane waves.
 
     Raises CaseError when disks can move without resistance, as without bonds and friction.
     """
@@ -175,13 +175,13 @@ def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> np.
     load = motions.T @ (k @ gradients)
     try:
         solver = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    except RuntimeError:  # SuperLU's word for a singular matrix
-        raise CaseError(["material: leaves some motion without any stiffness; give bonds or friction"]) from None
+    except RuntimeError:  # raised by SuperLU for a singular matrix
+        raise CaseError(["material: gives no stiffness to some motion; give bonds or friction"]) from None
     return (unrelaxed - load.T @ solver.solve(load)) / area
 
 
 def _free_columns(count: int, held: tuple[int, ...]) -> np.ndarray:
-    """Unknowns of the periodic problem: no held components, and one disk pinned against drifting."""
+    """Unknowns of the periodic problem: no held components, and one disk fixed against rigid motion."""
     free = np.ones((3, count), dtype=bool)
     free[list(held)] = False
     free[:2, 0] = False

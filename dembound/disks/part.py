@@ -1,4 +1,4 @@
-"""A part of bonded disks, the body or its free-field column, and the seam that ties them."""
+"""A part of bonded disks, the body or its free-field column, and the seam that couples them."""
 
 from functools import cached_property
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from dembound.disks.contacts import ContactList, plain_contacts
 from dembound.disks.layout import Rows
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.rows import elastic_constants
-from dembound.kernels import bonded, elastic, elastic_lanes  # noqa: F401  # laws to know before the loop is compiled
+from dembound.kernels import bonded, elastic, elastic_lanes  # noqa: F401  # they register their laws
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contacts import REFERENCE, strain_energy
 from dembound.kernels.tables import Bonded, Contacts, Links, Seam, SeamEnds, WatchedLinks
@@ -26,18 +26,18 @@ class DiskPart(Part):
 
     Parameters
     ----------
-    name : what the state calls it.
+    name : its name in the state.
     ground : brick and material.
     assembly : its disks and their contacts.
-    nodes : which of the scene's particles they are.
-    rows : the same contacts as a linear law takes them.
-    layout : where kernels hold the scene's particles.
+    nodes : their range among the scene's particles.
+    rows : the same contacts in the form for a linear law.
+    layout : the slots in which kernels hold the scene's particles.
     contacts : its pairs with their history; None where the material's law has none.
 
     Attributes
     ----------
-    uses_history : whether the history-dependent law is in use; before, a linear one stands for it.
-    stops_at_breaks : whether the loop returns after a step in which a bond of it broke.
+    uses_history : whether the history-dependent law is in use; before, a linear law replaces it. stops_at_breaks :
+    whether the loop returns after a step in which a bond of this part broke.
     """
 
     def __init__(
@@ -63,11 +63,11 @@ class DiskPart(Part):
 
     @property
     def law_name(self) -> str:  # type: ignore[override]  # an attribute of other parts
-        """What reports call the law in use."""
+        """Name of the law in use, for reports."""
         return self.ground.law.name if self.uses_history else self.ground.law.linear
 
     def law(self) -> NamedTuple:
-        """The bundle of the law in use; a history-dependent law watches a linear one in its place."""
+        """The arrays of the law in use; before a history-dependent one begins, a linear law that checks contacts."""
         links, contacts = Links(self.rows, self._fastest, self._damped), self.contacts
         if contacts is None:
             return links
@@ -77,7 +77,7 @@ class DiskPart(Part):
         return Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
 
     def react(self, why: int, steps: int, state: State) -> None:
-        """List the pairs anew where some may be missing."""
+        """List the pairs anew if some may be missing."""
         if self.contacts is not None and why == LIST_ENDS and self.contacts.is_old(state.displacement):
             self.contacts.search(state.displacement)
 
@@ -101,7 +101,7 @@ class DiskPart(Part):
         return NO_CRACKS if self.contacts is None else self.contacts.take_cracks()
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
-        """Under the history-dependent law the intact bonds and pushing contacts of every disk."""
+        """Under the history-dependent law: number of intact bonds and closed contacts of every disk."""
         if self.contacts is None or not self.uses_history:
             return {}
         return {"coordination": (self.contacts.coordination(), "1")}
@@ -112,14 +112,14 @@ class DiskPart(Part):
         return {"uses_history": np.array(self.uses_history), **pairs}
 
     def recall(self, memory: Arrays) -> None:
-        """Take over what `memory` has returned in another run of the same case."""
+        """Restore what `memory` has returned in another run of the same case."""
         self.uses_history = bool(memory["uses_history"])
         if self.contacts is not None:
             self.contacts.recall(memory)
 
     @property
     def pairs(self) -> Contacts:
-        """Its pairs as kernels read them, by slots, without history where the material's law has none."""
+        """Its pairs for the kernels, by slots, without history if the material's law has none."""
         return self._plain_contacts if self.contacts is None else self.contacts.arrays
 
     @cached_property
@@ -128,12 +128,12 @@ class DiskPart(Part):
 
 
 class FreeFieldSeam(Tie):
-    """What the free-field column does to the body across its sides; the body does nothing to the column.
+    """The forces of the free-field column on the body across its sides; the body does not act on the column.
 
     Parameters
     ----------
     seam : contacts across it.
-    column : the part that stands for the ground beyond.
+    column : the part that represents the ground beyond.
     """
 
     def __init__(self, seam: ColumnSeam, column: DiskPart) -> None:
@@ -151,7 +151,7 @@ class FreeFieldSeam(Tie):
         return self.seam.node
 
     def bundle(self, supported: np.ndarray) -> NamedTuple:
-        """The rows of contacts across the seam, under the law that the column is under."""
+        """The rows of contacts across the seam, under the law in use in the column."""
         seam = self.seam
         counts = np.zeros(len(supported), dtype=np.uint32)
         counts[np.searchsorted(supported, seam.node)] = seam.contact_counts
@@ -181,7 +181,7 @@ class FreeFieldSeam(Tie):
         return force.T
 
     def ends(self, contacts: ContactList) -> np.ndarray:
-        """Contact ends (e,) of the column's pairs at which its particles meet what is across, in the seam's order."""
+        """Contact ends (e,) of the column's pairs of its particles' contacts across the seam, in the seam's order."""
         if self._ends is None or self._ends[0] is not contacts.arrays:
             owner, near, vectors = self.seam.pairs(contacts.ground.brick)
             _, pair = contacts.find(owner, near, vectors)

@@ -1,4 +1,4 @@
-"""The rotation of a body as a whole, which the law of small displacements follows along its tangent only."""
+"""The rigid rotation of a body, for which the law of small displacements is only a linear approximation."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dembound.disks.body import DiskBody
 
 
 def turns_freely(scene: DiskBody) -> bool:
-    """Whether nothing but dashpots keeps a body from turning as a whole."""
+    """Whether only dashpots resist the rigid rotation of a body."""
     held = scene.supports.prescribed.any() or scene.supports.stiffness.any()
     periodic = any(table.type == "periodic" for table in scene.case.boundary.values())
     return bool(scene.free.all()) and scene.seam is None and not held and not periodic
@@ -17,11 +17,10 @@ def turns_freely(scene: DiskBody) -> bool:
 def turned_as_a_whole(
     scene: DiskBody, displacement: np.ndarray, velocity: np.ndarray, datum: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Displacements and velocities (3, n) of a body that has really turned, from those of small rotations.
+    """Displacements and velocities (3, n) of a body rotated exactly, from those of linearised rotation.
 
-    The law of small displacements moves a body that turns by θ from r to r + θ ẑ × r + w, which is longer by ½θ². Its
-    motion is that of a body which has turned, r to R(θ)(r + w), seen along with it. datum : (3, n) displacements at the
-    start.
+    Under the law of small displacements a body that rotates by θ moves from r to r + θ ẑ × r + w, which stretches it by
+    ½θ². The corresponding exact motion is that from r to R(θ)(r + w). datum : (3, n) displacements at the start.
     """
     mass = scene.mass
     displacement, velocity = displacement.copy(), velocity.copy()

@@ -1,4 +1,4 @@
-"""The contacts of the elastic law as its kernel reads them: a row per particle, and constants of the brick."""
+"""The contacts of the elastic law for its kernel: a row per particle, with a table of constants of the brick."""
 
 import numpy as np
 
@@ -8,12 +8,12 @@ from dembound.packings.tiling import Assembly
 
 
 def contact_rows(assembly: Assembly, ground: PackedMaterial, begin: int = 0) -> NeighbourTable:
-    """Sort the contacts into one row per particle, which point at the constants of the brick's contacts.
+    """Sort the contacts into one row per particle, with a table of the constants of the brick's contacts.
 
     begin : number of the assembly's first particle in the scene.
 
-    The constants are put in the order the particles use them, so that walking along the particles also walks
-    along the constants, which one core's cache then serves.
+    The rows of that table are in the order in which the particles use them. A loop over particles then reads the table
+    in order as well, so that it stays in the cache of the core.
     """
     constants, row_of = elastic_constants(ground)
     i, j = assembly.pairs.T
@@ -29,9 +29,9 @@ def contact_rows(assembly: Assembly, ground: PackedMaterial, begin: int = 0) -> 
 
 
 def elastic_constants(ground: PackedMaterial) -> tuple[np.ndarray, np.ndarray]:
-    """Constants (4b, 6), and the row in them of contact k seen from its first (2k) and second disk (2k + 1).
+    """Constants (4b, 6), and the row in them of contact k for its first (2k) and second disk (2k + 1).
 
-    Contacts from b on are the brick's with half their stiffness, for sides of half cells.
+    Contacts from number b on are those of the brick with half their stiffness, for sides of half cells.
     """
     brick, law = ground.brick, ground.stiffness
     vectors = brick.vectors

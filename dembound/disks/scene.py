@@ -1,4 +1,4 @@
-"""From a case to its scene: pack, tile, hollow, support, and join the free-field column."""
+"""Builds the scene of a case: packs, tiles, makes holes, adds supports and the free-field column."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -26,12 +26,12 @@ from dembound.packings.tiling import Assembly, tile
 
 @dataclass(frozen=True)
 class DiskScene(DiskBody):
-    """A case turned into arrays, and what it was before it was excavated.
+    """The arrays of a case, also those before an excavation.
 
     Attributes
     ----------
-    before : the scene before it was excavated, in which the static stage begins; None where nothing is excavated.
-    kept : (n,) indices into that one's particles of those that are left.
+    before : the scene before the excavation, in which the static stage begins; None without an excavation. kept : (n,)
+    indices of the remaining particles in that scene.
     """
 
     before: "DiskScene | None" = None
@@ -52,9 +52,10 @@ class DiskScene(DiskBody):
 
 
 def build(case: DiskCase) -> DiskScene:
-    """Pack, tile, hollow and support a case.
+    """Build the scene of a case: pack, tile, make holes and add supports.
 
-    Raises PackingError when the brick cannot be made or nothing of it is left, CaseError when nothing of a side is.
+    Raises PackingError when the brick cannot be made or no particle remains, CaseError when no particle of a side
+    remains.
     """
     ground = ground_of(case)
     periodic = (case.side("left").is_periodic, case.side("bottom").is_periodic)
@@ -73,7 +74,7 @@ def build(case: DiskCase) -> DiskScene:
 
 
 def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Mapping[str, Edge]) -> DiskScene:
-    """The scene of a body and its sides, joined to a free-field column where the case has such sides."""
+    """The scene of a body and its sides, with a free-field column if the case has such sides."""
     seam = None
     if sides := _free_field_sides(case):
         assembly, seam = with_column(ground.brick, assembly, sides)
@@ -95,9 +96,9 @@ def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Ma
 
 
 def column_alone(scene: DiskScene) -> DiskScene:
-    """The free-field column beside a body as a scene of its own, under its bottom and top alone.
+    """The free-field column of a body as a separate scene, with boundaries only at its bottom and top.
 
-    Its particles are numbered as in the body's scene; of the loads it has those that act everywhere.
+    Its particles are numbered as in the body's scene; only loads that act on all particles act on it.
     """
     case, brick = scene.case, scene.ground.brick
     sides = {"left": Periodic(type="periodic"), "right": Periodic(type="periodic")}
@@ -125,9 +126,9 @@ def _free_field_sides(case: DiskCase) -> tuple[str, ...]:
 def _hollowed(
     case: DiskCase, brick: Brick, body: Assembly, edges: Mapping[str, Edge], holes: tuple[Hole, ...]
 ) -> tuple[Assembly, dict[str, Edge], np.ndarray]:
-    """A body and its sides without what lies in some holes, and the indices (m,) of the particles left.
+    """A body and its sides without the particles in holes, and the indices (m,) of the remaining particles.
 
-    What a hole bares is free: no side gets other particles than it had.
+    The surface of a hole is free: no particles are added to a side.
     """
     removed = np.logical_or.reduce([hole.contains(body.positions) for hole in holes])
     left, kept = body.without(removed)
@@ -139,7 +140,7 @@ def _hollowed(
 
 
 def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
-    """The same body under the boundaries of another case; only what stands in [boundary.*] and [wave.*] counts."""
+    """The same body under the boundaries of another case; only [boundary.*] and [wave.*] of that case are used."""
     built_in = [
         ([edge.side for edge in half_edges(scene.edges, each.boundary)], _free_field_sides(each))
         for each in (scene.case, case)
@@ -152,7 +153,7 @@ def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
 def _with_half_contacts(
     case: DiskCase, brick: Brick, assembly: Assembly, seam: Seam | None, edges: Mapping[str, Edge]
 ) -> tuple[Assembly, Seam | None]:
-    """The contacts along sides of half cells, those across a seam included, made of the halved types."""
+    """Replace contacts along sides of half cells, also across a seam, by types with half the stiffness."""
     vectors, whole = brick.vectors, len(brick.pairs)
 
     def halved(contact_type: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -168,7 +169,7 @@ def _with_half_contacts(
 
 
 def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> BoundaryMedium:
-    """What a side stands for: the wave speeds the case names, else the packing's own along the side's normal.
+    """The medium beyond a side: the wave speeds given in the case, else those of the packing along the side's normal.
 
     axis is that of the normal, 0 (x) or 1 (y): a packing may be stiffer along one than along the other.
     """
@@ -187,7 +188,7 @@ def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> Bounda
 
 
 def _supports(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Mapping[str, Edge]) -> Supports:
-    """All sides' recipes and all driven loads in one table."""
+    """The support table: rows of all sides and of all loads that follow a wave."""
     builder = SupportBuilder(held=ground.held)
     for side, table in case.boundary.items():
         if side in edges:

@@ -1,4 +1,4 @@
-"""The largest stable time step, from the scene's own largest eigenfrequency."""
+"""The largest stable time step, from the largest eigenfrequency of the scene."""
 
 import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
@@ -10,31 +10,35 @@ from dembound.kernels.elastic import contact_forces
 from dembound.motion.threads import threads_for
 
 TOLERANCE = 1e-3
-"""Relative residual at which the eigenvalue counts as found. It is added on top, so the step comes out too small by
-at most 0.05 %, never too large. Lattices need it, their largest eigenvalues lie close."""
+"""Relative residual at which the iteration for the eigenvalue ends.
+
+It is added to the eigenvalue, so the step is too small by at most 0.05 %, never too large. Lattices need it, as their
+largest eigenvalues are close to each other.
+"""
 
 OPENING = 0.75 / CLOSING
-"""Share of 4/Δt² that ω² may come to where contacts open and close: sin²(π/3), for pushes that are CLOSING as strong.
+"""Largest ω² over 4/Δt² where contacts open and close: sin²(π/3), for first pushes multiplied by CLOSING.
 
-A contact that opens and closes makes overtones of every motion. At ωΔt = 2 sin(π/3) a motion has three steps a period,
-and its overtone, seen at whole steps, is the motion itself turned round: they drive each other, and energy grows by
-orders of magnitude within a thousand steps. Below, the loss at closing (`kernels.contacts.CLOSING`) outweighs the gain.
+A contact that opens and closes creates overtones of every motion. At ωΔt = 2 sin(π/3) a motion has three steps per
+period, and its overtone, sampled at whole steps, equals the motion running backwards. They amplify each other, and
+energy grows by orders of magnitude within a thousand steps. Below this limit the loss at closing
+(`kernels.contacts.CLOSING`) exceeds the gain.
 """
 
 LANCZOS_VECTORS = 8
-"""Krylov vectors kept: few, as they are the largest arrays of all."""
+"""Krylov vectors stored: few, as they are the largest arrays."""
 
 
 def step_limit(scene: DiskScene, tolerance: float = TOLERANCE, damp: float | None = None) -> float:
     """Largest stable step 2/(ω_max √(1 + damp)) of central differences (s), for a relative residual `tolerance`.
 
-    damp is the local damping coefficient, None: the material's. At the limit forces oppose velocities at every step, so
-    that local damping makes them 1 + damp times as strong.
+    damp is the local damping coefficient, None: the material's. At the limit, forces are opposite to velocities at
+    every step, so local damping multiplies them by 1 + damp.
 
     ω_max² is the largest eigenvalue of M⁻¹K of the assembled scene, found by Lanczos iteration on M^(-1/2) K
     M^(-1/2) with held and prescribed components taken out; centred dashpots do not change it. The start vector is
     fixed, so the step is the same in every run. Under a history-dependent law the limit also holds for loose disks, and
-    ω_max² counts 1.4 times where contacts may open (`OPENING`).
+    ω_max² is multiplied by 1.4 where contacts may open (`OPENING`).
 
     Raises RunError when the iteration does not converge.
     """
@@ -65,7 +69,7 @@ def step_limit(scene: DiskScene, tolerance: float = TOLERANCE, damp: float | Non
             )[0]
         except ArpackNoConvergence as error:
             raise RunError(f"the stability limit was not found ({error})") from None
-        largest *= 1.0 + tolerance  # it was found too small, by less than its residual
+        largest *= 1.0 + tolerance  # the computed value is too small, by less than its residual
     if scene.has_history:
         opens = scene.ground.moduli.emod > 0.0
         largest = max(largest, _loose_eigenvalue(scene)) / (OPENING if opens else 1.0)
@@ -74,10 +78,10 @@ def step_limit(scene: DiskScene, tolerance: float = TOLERANCE, damp: float | Non
 
 
 def _loose_eigenvalue(scene: DiskScene) -> float:
-    """Bound ω² (1/s²) of the smallest disks rolling on six neighbours each: what broken or loose ground may come to.
+    """Bound of ω² (1/s²) for the smallest disks, each rolling on six neighbours, as in broken or loose ground.
 
-    Contacts alone. On the hexagonal lattice the normal springs give at most 6k_n/m, and the tangential ones 24k_s/m,
-    when all disks turn alike; the sum bounds both together.
+    Only contacts, no bonds. On the hexagonal lattice the normal springs give at most 6k_n/m, and the tangential ones
+    24k_s/m, when all disks rotate in the same way; the sum is a bound for both together.
     """
     moduli = scene.ground.moduli
     shear = moduli.emod / moduli.kratio if moduli.fric > 0.0 else 0.0

@@ -1,7 +1,8 @@
 """The static stage: a damped run that brings a body to rest under steady loads and a given stress.
 
-What its supports and the outside pushed with then acts on as a constant force F_0 on every particle (Z eqs 5, 6: the
-unbalanced force F_eq with its sign turned), motion starts from rest, and the boundaries of the run take over.
+The forces of its supports and from outside then act as a constant force F_0 on every particle (Z eqs 5, 6: the
+unbalanced force F_eq with opposite sign). The motion starts from rest, and the boundaries of the run replace the
+supports.
 """
 
 from collections.abc import Callable, Mapping
@@ -26,31 +27,31 @@ LOOK = 100
 """Steps between two evaluations of the force ratio."""
 
 PATIENCE = 20_000
-"""Steps without a tenth of progress after which a stage counts as stalled."""
+"""Steps after which a stage has stalled if the force ratio has not decreased by a tenth."""
 
 SAFETY = 0.9
-"""Share of the stability limit taken as step."""
+"""Time step over the stability limit."""
 
 WORST = 3
-"""Particles that a stalled stage names."""
+"""Number of particles in the message about a stalled stage."""
 
 
 @dataclass(frozen=True)
 class Settled:
-    """A body at rest, and how it got there.
+    """A body at rest, and the results of its static stage.
 
     Attributes
     ----------
-    start : where the run begins.
+    start : the state in which the run begins.
     steps : steps it took.
     ratio : mean unbalanced over mean contact force at the end.
-    mean_reaction : N, mean force with which supports and tractions held the particles they act on.
+    mean_reaction : N, mean force of supports and tractions on the particles they act on.
     mean_residual : N, mean unbalanced force on all other particles, which F_0 balances too.
     stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive.
     cracks : the bonds that broke on the way.
-    tractions : (3,) Pa, the stress that the tractions were made of in the end; None without a stress asked for.
-    before : what the body had come to before it was excavated, if it was; particles are numbered as they were then.
-    column : what the free-field column had come to alone, if there is one.
+    tractions : (3,) Pa, the stress of the tractions at the end; None without a target stress. before : the same before
+    an excavation, if there was one, with the numbering of particles before it. column : the same for the free-field
+    column alone, if there is one.
     """
 
     start: Start
@@ -68,12 +69,12 @@ class Settled:
 def settle(scene: DiskScene, on_look: Callable[[int, float], None] | None = None) -> Settled:
     """Run a scene's static stage; on_look gets the steps done and the force ratio from time to time.
 
-    A scene that is excavated settles before, and then anew from there, under the same loads on the same supports.
-    Beside a free field the column settles first, alone; the body starts from its state, and both settle together: as
-    laws with friction leave more than one state of rest, the body would else come to another one.
+    A scene with an excavation settles before it, and then again from this state, under the same loads and supports.
+    With a free field the column settles first, alone; the body starts from its state, and both settle together.
+    Otherwise the body could reach another state, as with friction there is more than one state of rest.
 
-    Raises StalledError when it makes no more progress or takes more steps than allowed, saying how far it got, and
-    RunError when the motion grows without bound.
+    Raises StalledError, with the force ratio reached, when the ratio no longer decreases or the steps exceed the
+    maximum, and RunError when the motion grows without bound.
     """
     if scene.before is not None:
         before = _settle_built(scene.before, on_look, "before the excavation the static stage")
@@ -83,7 +84,7 @@ def settle(scene: DiskScene, on_look: Callable[[int, float], None] | None = None
 
 
 def _settle_built(scene: DiskScene, on_look: Callable[[int, float], None] | None, name: str) -> Settled:
-    """The stage of a body as built, after that of its free-field column; name : what messages call it."""
+    """The stage of a body as built, after that of its free-field column; name : used in messages."""
     if scene.seam is None:
         return _settle(scene, None, on_look, name)
     column = _settle(column_alone(scene), None, on_look, f"{name} of the free-field column alone")
@@ -91,7 +92,7 @@ def _settle_built(scene: DiskScene, on_look: Callable[[int, float], None] | None
 
 
 def _excavate(scene: DiskScene, before: Start) -> Start:
-    """Where an excavated scene begins to settle: as it stood before, contacts with all their history."""
+    """The state in which an excavated scene begins to settle: that before, with the history of its contacts."""
     assert scene.kept is not None
     contacts = scene.contact_lists() if before.contacts else {}
     for name, pairs in contacts.items():
@@ -102,7 +103,7 @@ def _excavate(scene: DiskScene, before: Start) -> Start:
 
 
 def _beside(scene: DiskScene, column: Start) -> Start:
-    """Where a body beside its settled column begins to settle: every particle and pair in the state of its twin."""
+    """The state in which a body with a settled column begins to settle: every particle and pair as its twin."""
     assert scene.seam is not None
     displacement = column.displacement[:, scene.seam.twin]
     contacts = scene.contact_lists() if column.contacts else {}
@@ -146,19 +147,19 @@ def _settle(
 
 
 class _UntilAtRest(Tracker):
-    """Ends a static stage that has come to rest, or one that does not; in between it lets loads follow the body.
+    """Ends a static stage that is at rest or has stalled; until then it rotates the loads with the body.
 
     Parameters
     ----------
-    body : what settles.
+    body : the scene that settles.
     system : its parts.
     on_look : gets the steps done and the force ratio from time to time.
-    stage : what messages call it.
+    stage : its name in messages.
 
     Attributes
     ----------
-    ratio : mean unbalanced over mean contact force when it last looked.
-    forces : (3, n) N and N·m of contacts then.
+    ratio : mean unbalanced over mean contact force at the last evaluation. forces : (3, n) N and N·m of contacts at
+    that time.
     """
 
     name = "until at rest"
@@ -169,7 +170,7 @@ class _UntilAtRest(Tracker):
         self.ratio, self.forces = np.inf, np.zeros((3, 0))
         self._body, self._system, self._on_look, self._stage = body, system, on_look, stage
         self._best, self._best_at = np.inf, 0
-        # a law without history keeps no list of pairs, but their forces are looked at all the same
+        # a law without history has no list of pairs, but their forces are needed too
         self._contacts = system.contacts or body.scene.contact_lists()
         self._look_after(0)
 
@@ -177,7 +178,7 @@ class _UntilAtRest(Tracker):
         self.due = min(step + LOOK, max(self._body.static.max_steps, step + 1))
 
     def handle(self, run: Run) -> None:
-        """Evaluate the force ratio; raise StalledError where it makes no more progress or takes too many steps."""
+        """Evaluate the force ratio; raise StalledError if it no longer decreases or the steps exceed the maximum."""
         body, static, system, state = self._body, self._body.static, self._system, run.state
         body.keep_from_turning(state)
         self.forces = self._contact_forces(state.displacement)
@@ -199,7 +200,7 @@ class _UntilAtRest(Tracker):
         self._look_after(state.step)
 
     def memory(self) -> Arrays:
-        """When it is evaluated next, the least force ratio that counted as progress and when, and the tractions."""
+        """The next step of evaluation, the force ratio and step of the last progress, and the tractions."""
         applied = np.zeros(0) if self._body.applied is None else self._body.applied
         best = {"best": np.array(self._best), "best_at": np.array(self._best_at)}
         return {**super().memory(), **best, "tractions": applied, "corrections": np.array(self._body.corrections_left)}
@@ -216,7 +217,7 @@ class _UntilAtRest(Tracker):
         return joined([pairs.take_cracks() for pairs in self._contacts.values()])
 
     def _contact_forces(self, displacement: np.ndarray) -> np.ndarray:
-        """Contact forces and moments (3, n) now, under the elastic law with what was locked in."""
+        """Contact forces and moments (3, n) now, under the elastic law with the locked-in forces."""
         if not self._system.uses_history:
             for pairs in self._contacts.values():
                 pairs.push(displacement, reference=True)
@@ -224,7 +225,7 @@ class _UntilAtRest(Tracker):
 
 
 def _where_it_ended(static: Static, run: Run, ratio: float, unbalanced: np.ndarray, cracks: Cracks) -> str:
-    """How far a stage came that takes too long, in words, and what to look at; unbalanced (2, n) N as `_lacking`."""
+    """Text about a stage that takes too long, with its state and advice; unbalanced (2, n) N as for `_lacking`."""
     steps = run.state.step
     facts = f"static.ratio asks for {static.ratio:g}; broken bonds: {len(cracks):,}; {_lacking(run, unbalanced)}"
     if steps >= static.max_steps:
@@ -236,9 +237,9 @@ def _where_it_ended(static: Static, run: Run, ratio: float, unbalanced: np.ndarr
 
 
 def _lacking(run: Run, unbalanced: np.ndarray) -> str:
-    """Which particles lack most force, where and along which direction, and how many lack half of it all.
+    """Text with the particles of largest unbalanced force, their positions, and how many have half of the sum.
 
-    unbalanced (2, n) N is what the forces on each come to.
+    unbalanced (2, n) N is the sum of the forces on each particle.
     """
     scene, size = run.scene, np.hypot(*unbalanced)
     order = np.argsort(-size, kind="stable")
@@ -275,7 +276,7 @@ class _StaticScene:
         for edge in scene.edges.values():
             self.held[edge.nodes] = static.stress is not None
         supports: Supports = self.scene.supports
-        self.held[supports.node[supports.prescribed]] = True  # dashpots carry nothing at rest
+        self.held[supports.node[supports.prescribed]] = True  # dashpots have no force at rest
         self._floats = len(supports) == 0
         held = bool((scene.free[:2] == 0.0).any())
         self._by_tractions_alone = self._floats and not held and not scene.steady_load.any()
@@ -289,7 +290,7 @@ class _StaticScene:
 
     @property
     def applied(self) -> np.ndarray | None:
-        """The stress (3,) Pa that the tractions are made of, if one was asked for."""
+        """The stress (3,) Pa of the tractions, if the stage has a target stress."""
         return None if self._tractions is None else self._tractions.applied
 
     @property
@@ -303,22 +304,22 @@ class _StaticScene:
         self._tractions.applied, self._tractions.corrections_left = applied.copy(), corrections_left
 
     def correct(self, system: DiskSystem, state: State) -> bool:
-        """Correct the tractions of a body at rest by what the stress inside lacks; whether it lacked something.
+        """Correct the tractions of a body at rest by the error of the stress inside; returns whether there was one.
 
-        Beside steady loads, whose stress comes on top of the one asked for, and beside supports, which bear a part of
-        it, nothing is corrected.
+        Nothing is corrected if there are steady loads, whose stress adds to the target stress, or supports, which carry
+        a part of it.
         """
         if self._tractions is None or not self._by_tractions_alone:
             return False
         return self._tractions.correct(mean_stress(self.scene, system.stress(state.displacement)))
 
     def turn_tractions(self, system: DiskSystem, state: State) -> None:
-        """Let tractions follow the sides, or what was corrected take effect."""
+        """Rotate the tractions with the sides, and apply corrections."""
         if self._tractions is not None:
             system.apply(self.load(state.displacement))
 
     def keep_from_turning(self, state: State) -> None:
-        """Stop the motion as a whole of a body that nothing holds, which has no force to bring it to rest."""
+        """Stop the rigid motion of a body that is not held, as no force would bring it to rest."""
         if not self._floats:
             return
         mass, velocity = self.scene.mass, state.velocity.copy()
@@ -333,7 +334,7 @@ class _StaticScene:
         state.velocity = velocity - rate * np.stack([-arm[1], arm[0], np.ones(self.scene.count)])
 
     def unbalanced(self, system: DiskSystem, forces: np.ndarray) -> np.ndarray:
-        """Unbalanced forces (2, n) N along the directions particles can move in, for contact forces (3, n)."""
+        """Unbalanced forces (2, n) N along the directions in which particles can move, for contact forces (3, n)."""
         return np.where(self._moves, (forces + system.load)[:2], 0.0)
 
     def force_ratio(self, system: DiskSystem, forces: np.ndarray, contacts: Mapping[str, ContactList]) -> float:

@@ -11,14 +11,14 @@ from dembound.kernels.contacts import REFERENCE, push
 from dembound.kernels.tables import Contacts, Limits
 
 UNYIELDING = Limits(friction=0.0, tension=np.inf, cohesion=np.inf, tan_fa=0.0, geometry=REFERENCE)
-"""Under the elastic law nothing gives way."""
+"""Under the elastic law there are no strength and friction limits."""
 
 PIECE = 2**18
-"""Pairs evaluated at once: large scenes then take little memory beside their own."""
+"""Number of pairs evaluated at once: this limits the additional memory in large scenes."""
 
 
 def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np.ndarray:
-    """Stress (m, 3) of one part's particles, see `particle_stress`: all of it, that of a static stage included.
+    """Stress (m, 3) of one part's particles, see `particle_stress`: the total stress, that of a static stage included.
 
     displacement (3, n) m and rad. Under the history-dependent law its forces are those at the beginning of the last
     step.
@@ -30,16 +30,16 @@ def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np
 def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarray, *, elastic: bool) -> np.ndarray:
     """Stress (n, 3) xx, yy, xy in Pa of all particles, tension positive; xy is the mean of both shear stresses.
 
-    A particle's stress is Σ f_a l n_b over its area πR² with its share of the pores, half of that for half cells, f the
-    force that pulls at it across a contact and l n the way from its centre to there (Love's and Weber's mean). What
-    pushes at a side from outside is no contact and does not count.
+    A particle's stress is Σ f_a l n_b over its area, πR² plus its share of the pores, half of that for half cells, with
+    f the force on it at a contact and l n the vector from its centre to the contact (Love's and Weber's mean). Forces
+    from outside on a side are not contact forces and are not included.
 
     Parameters
     ----------
-    scene : whose particles they are.
+    scene : the scene of the particles.
     contacts : its pairs.
     displacement : (3, n) m and rad.
-    elastic : take the forces of the elastic law, and the ways as at the start; else the pairs' last forces.
+    elastic : use the forces of the elastic law, and the vectors of the start; else the pairs' last forces.
     """
     moments, node = np.zeros((3, scene.count)), scene.layout.node
     u = scene.layout.spread(displacement)
@@ -47,7 +47,7 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
         first, second = node[contacts.first[piece]], node[contacts.second[piece]]
         rows = contacts.constants[contacts.contact_type[piece]]
         x, y = rows[:, :2].T if elastic else rows[:, :2].T + displacement[:2, second] - displacement[:2, first]
-        part = 0.5 + rows[:, 4] / np.hypot(x, y)  # of the way, on the first one's side
+        part = 0.5 + rows[:, 4] / np.hypot(x, y)  # part of the vector on the side of the first disk
         pull_x, pull_y = force[:, :2].T
         for total, dyad in zip(moments, (pull_x * x, pull_y * y, 0.5 * (pull_x * y + pull_y * x)), strict=True):
             np.add.at(total, first, part * dyad)
@@ -74,5 +74,5 @@ def _pieces(contacts: Contacts, u: np.ndarray, *, elastic: bool) -> Iterator[tup
             cracked=np.full(count, -1),
             force=np.empty((count, 4)),
         )
-        push(u, u, 0.0, 0, pairs, UNYIELDING, np.empty((CHUNKS, 2)))  # a step of no time: at rest
+        push(u, u, 0.0, 0, pairs, UNYIELDING, np.empty((CHUNKS, 2)))  # zero step: at rest
         yield piece, pairs.force

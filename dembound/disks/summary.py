@@ -1,4 +1,4 @@
-"""Disks and their run in numbers, for scripts."""
+"""Disks and the results of their run as numbers, for scripts."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from dembound.motion.trackers import Run
 
 
 def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
-    """What a summary of disks has beside that of every run: plain JSON values, SI units."""
+    """Entries of a summary of disks in addition to those of every run: plain JSON values, SI units."""
     return {
         "particles": scene.count,
         "has_history": scene.has_history,
@@ -22,7 +22,7 @@ def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
 
 
 def asked_stress(scene: DiskScene) -> list[float] | None:
-    """The stress (Pa) that the static stage was asked for, if any."""
+    """The target stress (Pa) of the static stage, if any."""
     static = scene.case.static
     return None if static is None or static.stress is None else list(static.stress)
 
@@ -30,7 +30,7 @@ def asked_stress(scene: DiskScene) -> list[float] | None:
 def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, Any]:
     """The static stage: steps, force ratio, mean reaction of supports and tractions and mean residual (N), stress (Pa).
 
-    And the same of the free-field column alone, if there is one, and before an excavation, if there was one.
+    Also the same for the free-field column alone, if there is one, and before an excavation, if there was one.
     """
     return {
         "steps": settled.steps,

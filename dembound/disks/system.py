@@ -1,4 +1,4 @@
-"""Bonded disks in motion: the body, its free-field column, and the change from the elastic law to one with history."""
+"""Moving bonded disks: the body, its free-field column, and the change from the elastic to the full law."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from dembound.motion.state import Arrays, State, within
 class Start:
     """A body at rest to start from: displacement (3, n) since it was built, and its contacts.
 
-    contacts : those of each part by name, none where the scene's law has no history. The system that starts from them
-    goes on with them, so a start is good for one. has_history : whether anything has happened to them.
+    contacts : those of each part by name, empty if the scene's law has no history. The system that starts from them
+    changes them, so a start can be used only once. has_history : whether they have any history.
     """
 
     displacement: np.ndarray
@@ -39,16 +39,15 @@ class DiskSystem(System):
 
     Parameters
     ----------
-    scene : what moves.
+    scene : the scene to be moved.
     time_step : Δt in s.
-    start : a body that has settled; whatever pushes its particles is balanced from then on, unless it is `settling`
-        anew. None: as built, with nothing balanced.
-    settling : whether the body is on its way to rest, so that its forces are not balanced.
-    load : (3, n) steady forces and moments (N, N·m); None: the scene's own.
+    start : a body that has settled; the forces on its particles are balanced from then on, unless it is `settling`
+    again. None: as built, with nothing balanced. settling : whether this is a static stage, in which forces are not
+    balanced. load : (3, n) steady forces and moments (N, N·m); None: the scene's own.
 
     Attributes
     ----------
-    balance : what balances the forces in a body that has settled; None for one as built or settling.
+    balance : the forces that balance those in a settled body; None for a body as built or settling.
     """
 
     parts: tuple[DiskPart, ...]
@@ -82,14 +81,14 @@ class DiskSystem(System):
         self._start, self._settling = start, settling
 
     def apply(self, load: np.ndarray) -> None:
-        """Take other steady forces and moments (3, n) from here on, of a body that is settling."""
+        """Replace the steady forces and moments (3, n) of a settling body."""
         if self.steady.shape[1] == 0:
             self.steady = np.zeros_like(load)
         self.steady += load - self.load
         self.load = load
 
     def begin(self, state: State) -> None:
-        """Choose the law to begin with, and the steady forces that go with it."""
+        """Choose the first law, and the steady forces that belong to it."""
         scene, start = self.scene, self._start
         has_history = start is not None and start.has_history
         if start is not None and not self._settling:
@@ -98,14 +97,14 @@ class DiskSystem(System):
             self._balance(springs - resting - self.load, state.datum)
             steady = springs - self.elastic_forces(state.datum)
         elif scene.has_history and not has_history:
-            # the elastic law has no forces of the body as built, such as those of a locked-in stress
+            # the elastic law does not include the forces of the body as built, such as a locked-in stress
             rest = np.zeros_like(self.load)
             steady = self.load + self._forces_of_history(rest, fresh=True)
         else:
             steady = self.load
         if steady.any():
             self.steady = steady.copy()
-        # a locked-in stress also comes through the seam of a free field, which the elastic law lacks
+        # a locked-in stress also acts through the seam of a free field, but not under the elastic law
         through = bool(self.ties) and scene.case.material.locked_in is not None and not self._settling
         if has_history or (scene.has_history and (through or not scene.case.material.elastic_start)):
             self._switch(state, fresh=not has_history)
@@ -113,7 +112,7 @@ class DiskSystem(System):
             super().begin(state)
 
     def react(self, why: int, steps: int, state: State) -> None:
-        """Change the law where contacts are about to leave the elastic one; end what balances pieces that came off."""
+        """Change the law if contacts are about to leave the elastic range; end the forces on broken-off pieces."""
         if why == LAW_ENDS:
             self._switch(state)
         elif self.balance is not None and self.uses_history and why in (BROKE, LIST_ENDS):
@@ -136,7 +135,7 @@ class DiskSystem(System):
 
     @property
     def contacts(self) -> dict[str, ContactList]:
-        """The pairs of each part by name, none where the material's law has no history."""
+        """The pairs of each part by name, empty if the material's law has no history."""
         return {part.name: part.contacts for part in self.parts if part.contacts is not None}
 
     def last_forces(self, contacts: Mapping[str, ContactList]) -> np.ndarray:
@@ -151,23 +150,23 @@ class DiskSystem(System):
         return np.concatenate([part_stress(self.scene, part, displacement) for part in self.parts])
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
-        """Fields of every disk at displacements (3, n) beside its motion; stress only with output.stress."""
+        """Fields of every disk at displacements (3, n) other than its motion; stress only with output.stress."""
         known = super().snapshot(displacement)
         if self.scene.case.output.stress:
             known["stress"] = self.stress(displacement), "Pa"
         return known
 
     def balancing_work(self, displacement: np.ndarray) -> float:
-        """Work (J) up to displacements (3, n) of what balances the stress of a settled body, without its turning."""
+        """Work (J) up to displacements (3, n) of the forces that balance a settled stress, without their rotation."""
         return 0.0 if self.balance is None else self.balance.work(displacement)
 
     def memory(self) -> Arrays:
-        """All that evolves in it beside the motion, by name."""
+        """All arrays that change during a run except the motion, by name."""
         balance = {} if self.balance is None else self.balance.memory()
         return {**super().memory(), **{f"balance/{name}": values for name, values in balance.items()}}
 
     def recall(self, memory: Arrays) -> None:
-        """Take over what `memory` has returned in another run of the same case."""
+        """Restore what `memory` has returned in another run of the same case."""
         super().recall(memory)
         kept = within(memory, "balance")
         self.balance = Balance.recalled(self.scene, kept) if kept else None
@@ -181,14 +180,14 @@ class DiskSystem(System):
         return self._forces_of_history(datum, fresh=not has_history)
 
     def _forces_of_history(self, displacement: np.ndarray, *, fresh: bool) -> np.ndarray:
-        """Contact forces (3, n) of the history-dependent law at rest at displacements (3, n); fresh: with none yet."""
+        """Contact forces (3, n) of the history-dependent law at rest at displacements (3, n); fresh: no history."""
         self._adopt(displacement, fresh)
         for pairs in self.contacts.values():
             pairs.push(displacement)
         return self.last_forces(self.contacts)
 
     def _across(self, contacts: Mapping[str, ContactList]) -> np.ndarray:
-        """Forces and moments (3, n) that come through the seam of a free field, from the pairs' last forces."""
+        """Forces and moments (3, n) that act through the seam of a free field, from the pairs' last forces."""
         force = np.zeros((3, self.scene.count))
         for tie in self.ties:
             if contacts:
@@ -196,11 +195,11 @@ class DiskSystem(System):
         return force
 
     def _balance(self, force: np.ndarray, datum: np.ndarray) -> None:
-        """Balance forces (3, n) from here on."""
+        """Balance forces (3, n) from now on."""
         self.balance = Balance(self.scene, force, self.load, datum, self._across(self.contacts))
 
     def _switch(self, state: State, fresh: bool = True) -> None:
-        """From here on the history-dependent law; fresh: without any history yet."""
+        """Use the history-dependent law from now on; fresh: without any history yet."""
         before = self._potential(state) if state.laws else None
         if fresh and self._is_updated and turns_freely(self.scene):
             state.displacement, state.velocity = turned_as_a_whole(
@@ -218,7 +217,7 @@ class DiskSystem(System):
         self.steady = self.load + (0.0 if self.balance is None else self.balance.force)
         self._follow()
         if before is not None and self.turning is not None:
-            # the step to come counts the work of turning from half a step ago, when forces did not turn yet
+            # the next step counts the work of rotation from half a step earlier, when forces did not rotate yet
             layout, steady = state.layout, state.layout.spread(self.steady)
             turning = self.turning.in_slots(layout.slot)
             state.work[:, 4] -= turn_forces(turning, state.u, state.v, steady, self._time_step)
@@ -226,18 +225,18 @@ class DiskSystem(System):
         state.laws.append((self.law_name, state.step))
 
     def _adopt(self, displacement: np.ndarray, fresh: bool) -> None:
-        """Let contacts without history take over from the elastic law at displacements (3, n)."""
+        """Set contacts without history to the state of the elastic law at displacements (3, n)."""
         for pairs in self.contacts.values():
             if fresh:
                 pairs.start_from_displacements(displacement)
 
     def _watch_breaks(self) -> None:
-        """Let the loop return after a break where balancing forces may have to end."""
+        """Make the loop return after a break if balancing forces may have to end."""
         for part in self.parts:
             part.stops_at_breaks = self.balance is not None
 
     def _follow(self) -> None:
-        """Let balancing forces turn with their sides where the law in use follows the motion."""
+        """Rotate balancing forces with their sides if the law in use has the updated geometry."""
         follows = self.uses_history and self._is_updated
         self.turning = self.balance.followers if self.balance is not None and follows else None
 

@@ -1,4 +1,4 @@
-"""The stress that a static stage is asked for, as tractions on the sides of the body."""
+"""The target stress of a static stage, applied as tractions on the sides of the body."""
 
 import numpy as np
 
@@ -8,30 +8,30 @@ from dembound.disks.scene import DiskScene
 from dembound.kernels.contacts import UPDATED
 
 RIM = 4.0
-"""Width in mean diameters of the rim that is left out where a mean stress is taken."""
+"""Width, in mean diameters, of the rim that is left out of the mean stress."""
 
 CLOSE = 5e-3
-"""Error of the mean stress, in parts of its largest component, at which it counts as that asked for."""
+"""Error of the mean stress, over its largest component, below which the target is reached."""
 
 CORRECTIONS = 5
-"""Most times that tractions are corrected; each leaves a few per cent of the error before."""
+"""Largest number of corrections of the tractions; each reduces the error to a few per cent of it."""
 
 
 class Tractions:
-    """Forces on the sides of a body under a mean stress, corrected until its inside has that stress.
+    """Forces on the sides of a body under a mean stress, corrected until the stress inside has this value.
 
-    The skin of a cut packing lacks bonds and carries less than its share, so that tractions σ·n alone make the inside
-    carry some per cent more.
+    The outer disks of a cut packing have fewer bonds and carry less than their share of the stress. With tractions σ·n
+    the stress inside is therefore some per cent larger.
 
     Parameters
     ----------
     scene : the body.
-    stress : (3,) xx, yy, xy in Pa asked for, tension positive.
-    applied : (3,) Pa, tractions found before an excavation, which the stress around it has not changed; None: as asked.
+    stress : (3,) target xx, yy, xy in Pa, tension positive.
+    applied : (3,) Pa, tractions found before an excavation, which keep their value; None: the target stress.
 
     Attributes
     ----------
-    applied : (3,) Pa, the stress that the tractions are made of.
+    applied : (3,) Pa, the stress of the tractions.
     corrections_left : how often they may still be corrected.
     """
 
@@ -45,8 +45,8 @@ class Tractions:
     def forces(self, displacement: np.ndarray) -> np.ndarray:
         """Forces (3, n) N at displacements (3, n), by the particles' share of their side's diameters.
 
-        Where the law follows the motion they turn with their side. Small forces about the middle free them of the
-        torque that uneven and strained sides leave.
+        With the updated geometry they rotate with their side. Small additional forces cancel the torque that results
+        from uneven and strained sides.
         """
         moved = displacement if self._follow else np.zeros_like(displacement)
         force = np.zeros_like(displacement)
@@ -62,7 +62,7 @@ class Tractions:
         return _without_torque(force, self.scene.assembly.positions + moved[:2].T, loaded)
 
     def correct(self, stress: np.ndarray) -> bool:
-        """Add what the mean stress (3,) Pa inside lacks to the tractions; whether there was something to add."""
+        """Add the error of the mean stress (3,) Pa inside to the tractions; returns whether there was an error."""
         lacking = self.asked - stress
         largest = np.abs(self.asked).max()
         if self.corrections_left == 0 or largest == 0.0 or np.abs(lacking).max() <= CLOSE * largest:
@@ -73,9 +73,9 @@ class Tractions:
 
 
 def mean_stress(scene: DiskScene, stress: np.ndarray) -> np.ndarray:
-    """Mean stress (3,) inside a body, away from its sides and with its holes, which bear none; stress (n, 3) of each.
+    """Mean stress (3,) inside a body, away from its sides; holes count as zero. stress (n, 3) of each particle.
 
-    Over the particles' areas, where there is a hole over the whole rectangle within the rim.
+    The mean is taken over the area of the particles, or with a hole over the whole rectangle inside the rim.
     """
     inside = _inside(scene)
     area = (scene.assembly.radii**2 * scene.cell_fraction)[inside]
@@ -87,13 +87,13 @@ def mean_stress(scene: DiskScene, stress: np.ndarray) -> np.ndarray:
 
 
 def _is_wide(scene: DiskScene) -> bool:
-    """Whether half a body's width and height are left inside the rim: the mean over less is that of a few particles."""
+    """Whether half the width and height of a body are inside the rim; otherwise the mean has too few particles."""
     width = [scene.assembly.size[axis] for axis, low in enumerate(("left", "bottom")) if low in scene.edges]
     return all(length >= 4.0 * RIM * scene.ground.brick.mean_diameter for length in width)
 
 
 def _inside(scene: DiskScene) -> np.ndarray:
-    """Particles (n,) bool that stand within the rim along the sides; all of a small scene."""
+    """Particles (n,) bool inside the rim along the sides; all of a small scene."""
     depth = RIM * scene.ground.brick.mean_diameter
     inside = np.ones(scene.count, dtype=bool)
     for axis, low in enumerate(("left", "bottom")):
@@ -104,7 +104,7 @@ def _inside(scene: DiskScene) -> np.ndarray:
 
 
 def _without_torque(force: np.ndarray, positions: np.ndarray, loaded: np.ndarray) -> np.ndarray:
-    """Forces (3, n) made free of torque by small ones on the loaded particles (k,); positions (n, 2) m."""
+    """Forces (3, n) without torque, by small additional forces on the loaded particles (k,); positions (n, 2) m."""
     arm = positions - positions[loaded].mean(axis=0)
     torque = np.sum(arm[:, 0] * force[1] - arm[:, 1] * force[0])
     turn = np.stack([-arm[loaded, 1], arm[loaded, 0]])

@@ -1,4 +1,4 @@
-"""What a run of disks will do that was probably not meant, as far as it is known before."""
+"""Warnings about probable mistakes in a case of disks, before and after the run."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -21,7 +21,7 @@ FEWEST_PER_WAVELENGTH = 20.0
 """Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
 
 REFLECTED = 0.02
-"""Share of a wave that a side with factors nobody has chosen may reflect.
+"""Share of a wave that a side with default factors may reflect without a warning.
 
 Homogenised and calibrated β differ by 0.5 % at most, 2 % in bars of 20 disks, which is half of that in the reflection.
 """
@@ -34,7 +34,7 @@ times that (three bricks, radius ratio 1.5).
 """
 
 SPEED_ERROR = 0.1
-"""Share by which a packing's own P-wave speed may differ from the one asked for."""
+"""Share by which the P-wave speed of the packing may differ from the given one without a warning."""
 
 
 def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
@@ -52,19 +52,19 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
 
 
 def _steady_without_static(scene: DiskScene) -> Iterator[str]:
-    """Loads that fall on the body all at once."""
+    """Steady loads that act suddenly, as there is no static stage."""
     if scene.case.static is not None:
         return
     for load in scene.case.load:
         if load.wave is None:
             yield (
-                f"load.{load.name}: is steady, and without [static] falls on the body at t = 0; "
+                f"load.{load.name}: is steady, and without [static] acts suddenly at t = 0; "
                 "viscous sides creep under it"
             )
 
 
 def _locked_in(scene: DiskScene) -> Iterator[str]:
-    """Locked-in stress that the bonds cannot bear where it relaxes."""
+    """Locked-in stress that breaks bonds where it relaxes."""
     material = scene.case.material
     cut = not all(scene.case.side(side).is_periodic for side in SIDES)
     if material.locked_in is None or material.pb_ten is None or not cut:
@@ -72,25 +72,25 @@ def _locked_in(scene: DiskScene) -> Iterator[str]:
     pulled = LARGEST_PULL * scene.ground.bond_share * material.locked_in
     if pulled > material.pb_ten:
         yield (
-            f"material.locked_in: is {material.locked_in / 1e6:.3g} MPa; where it relaxes the most strained bonds come "
-            f"to some {pulled / 1e6:.3g} MPa of tension, above material.pb_ten = {material.pb_ten / 1e6:.3g} MPa, and "
+            f"material.locked_in: is {material.locked_in / 1e6:.3g} MPa; where it relaxes, the largest bond stress is "
+            f"about {pulled / 1e6:.3g} MPa of tension, above material.pb_ten = {material.pb_ten / 1e6:.3g} MPa, and "
             "break in the static stage"
         )
 
 
 def _tension(scene: DiskScene) -> Iterator[str]:
     """Waves that would open real contacts, where the elastic law keeps them closed."""
-    if scene.has_history or not _confinement(scene):  # a lattice is packed without stress; the docs treat it
+    if scene.has_history or not _confinement(scene):  # a lattice is packed without stress; see the docs
         return
     for name, stress in strong_waves(scene).items():
         yield (
-            f"wave.{name}: has a stress ρcv of {stress}; real contacts would open where it pulls, "
+            f"wave.{name}: has a stress ρcv of {stress}; real contacts would open in tension, "
             "the elastic law keeps them closed"
         )
 
 
 def _too_few_per_wavelength(scene: DiskScene) -> Iterator[str]:
-    """Waves too short for the particles."""
+    """Waves that are too short for the size of the particles."""
     for name, count in particles_per_wavelength(scene).items():
         if count < FEWEST_PER_WAVELENGTH:
             yield (
@@ -100,7 +100,7 @@ def _too_few_per_wavelength(scene: DiskScene) -> Iterator[str]:
 
 
 def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
-    """Waves and loads whose stress is a tiny part of the bonds' tensile strength, or far beyond it."""
+    """Waves and loads whose stress is a very small part, or a large multiple, of the bonds' tensile strength."""
     strength, static = scene.case.material.pb_ten, scene.case.static
     if strength is None:
         return
@@ -116,7 +116,7 @@ def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
 
 
 def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str, float]]:
-    """Of every wave on every side it drives its table, what its largest stress is in words, and in Pa."""
+    """For every wave on every side it drives: its table, description and value (Pa) of its largest stress."""
     for edge in scene.edges.values():
         table = scene.case.side(edge.side)
         grips = set(table.prescribed(edge.axis))
@@ -133,7 +133,7 @@ def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str
 
 
 def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
-    """What the stress of a load is in words, and how large (Pa): ρaL, or the force over the width it acts on."""
+    """Description and value (Pa) of the stress of a load: ρaL, or the force over the width it acts on."""
     factor = 1.0 if load.wave is None else scene.case.wave[load.wave].peak()
     low, high = np.zeros(2), scene.size
     if load.region is not None:
@@ -146,7 +146,7 @@ def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
 
 
 def _default_factors(scene: DiskScene) -> Iterator[str]:
-    """Sides whose dashpots nobody has adjusted, on packings that need other factors."""
+    """Sides with default factors on packings that need other factors."""
     for side in scene.edges:
         table = scene.case.side(side)
         matched = {motion: homogenised_beta(scene, side, motion) for motion in table.factors}
@@ -168,7 +168,7 @@ def _default_factors(scene: DiskScene) -> Iterator[str]:
 
 
 def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
-    """A wave speed that the square lattice has, and the packing has not."""
+    """A given wave speed that holds for the square lattice but not for the packing."""
     material = scene.case.material
     if material.p_wave_speed is None or material.match == "assembly":
         return
@@ -183,13 +183,13 @@ def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
 
 
 def _axes_in_use(scene: DiskScene) -> list[int]:
-    """x, and y if waves go there: through bottom or top, or from loads."""
+    """Axes along which waves run: x, and y if waves enter through bottom or top, or come from loads."""
     vertical = any(scene.case.side(edge.side).waves for edge in scene.edges.values() if edge.axis == 1)
     return [0, 1] if vertical or scene.case.load else [0]
 
 
 def _travel_time(scene: DiskScene) -> float:
-    """Time (s) the fastest wave takes along the scene's longer side; nan where nothing moves that way."""
+    """Time (s) the fastest wave takes along the scene's longer side; nan if no motion along it is possible."""
     axis = int(np.argmax(scene.size))
     speeds = [speed for speed in scene.ground.wave_speeds(axis) if not math.isnan(speed)]
     return float(scene.size[axis]) / max(speeds, default=math.nan)
@@ -222,7 +222,7 @@ def strong_waves(scene: DiskScene) -> dict[str, str]:
 
 
 def _confinement(scene: DiskScene) -> float | None:
-    """Pressure (Pa) that keeps contacts closed at the start of the run; None where only the static stage makes it."""
+    """Pressure (Pa) on contacts at the start of the run; None if it results from the static stage."""
     static = scene.case.static
     if static is not None:
         return None if static.stress is None else 0.0 - 0.5 * (static.stress[0] + static.stress[1])
@@ -230,13 +230,13 @@ def _confinement(scene: DiskScene) -> float | None:
 
 
 def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: Path) -> list[str]:
-    """What a run of disks has shown that was probably not meant, one line each, from its summary and record."""
+    """Warnings from the summary and record of a run of disks, one line each."""
     with open_record(record) as file:
         return list(still_moving(scene, summary["duration"], file, _pieces(scene, file["cracks/particles"][:])))
 
 
 def _pieces(scene: DiskScene, broken: np.ndarray) -> np.ndarray:
-    """Number (n,) of the piece that each particle belongs to, joined by the pairs of the start that have not broken.
+    """Number (n,) of the piece of each particle; pieces are connected by pairs of the start that have not broken.
 
     broken (k, 2) particles.
     """

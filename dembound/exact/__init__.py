@@ -1,6 +1,6 @@
-"""Exact solutions that results are shown beside, one problem a file.
+"""Exact solutions with which results are compared, one problem per file.
 
-They import nothing of disks, cases or runs: plain numbers and arrays in, arrays out.
+They import nothing about disks, cases or runs. Arguments are numbers and arrays, results are arrays.
 """
 
 from dembound.exact.bar import bar_stress, bar_velocity, triangle_spall

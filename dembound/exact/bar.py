@@ -1,18 +1,19 @@
-"""A pressure pulse in a bar, and where it breaks the far end off: d'Alembert's solution (L section 3.2).
+"""A pressure pulse in a bar, and where the bar spalls at its far end: d'Alembert's solution (L section 3.2).
 
-Both ends return a wave, so what a pulse p(t) on the end x = 0 does at x is a sum over its passages there, the k-th
-after a way w_k = kL + x or kL + L − x for even and odd k. A wave to the right has the stress −p and the velocity
-p/(ρc), one to the left −p and −p/(ρc). A free end returns pressure as tension, a fixed one as pressure; beside its own
-load the end x = 0 is a free one.
+Both ends reflect a wave, so the effect at x of a pulse p(t) on the end x = 0 is a sum over its passages there, the k-th
+after a path of length w_k = kL + x or kL + L − x for even and odd k. A wave to the right has the stress −p and the
+velocity p/(ρc), one to the left −p and −p/(ρc). A free end reflects pressure as tension, a fixed one as pressure. Apart
+from its load the end x = 0 is free.
 
-Where a triangle first reaches the strength σ_t = s p_m: behind the reflected crest, at a distance d from the free end,
-the incident pulse has fallen by p_m·2d/(c t_f), which is the tension there. So a pulse that falls as slowly as it
-rises, t_f ≥ t_r, breaks the bar when its crest is at
+The place where a triangular pulse first reaches the strength σ_t = s p_m: behind the reflected crest, at a distance d
+from the free end, the incident pulse has fallen by p_m·2d/(c t_f), which is the tension there. So a pulse whose fall is
+not shorter than its rise, t_f ≥ t_r, breaks the bar when its crest is at
 
     d = ½ c t_f s,    t = t_r + (L + d)/c .
 
-One that falls faster leaves more tension ahead of the reflected crest than behind: its foot, as the tail of the
-incident pulse runs off, has p_m τ/t_r after τ, and the strength is first met τ = s t_r behind the front, where
+A pulse that falls faster gives more tension ahead of the reflected crest than behind it. At a time τ after its front,
+once the tail of the incident pulse has passed, the tension is p_m τ/t_r. It first reaches the strength at τ = s t_r
+behind the front, where
 
     d = ½ c (t_r + t_f − s t_r),    t = s t_r + (L + d)/c .
 """
@@ -75,6 +76,6 @@ def triangle_spall(
 
 
 def _passages(place: float, length: float, longest: float) -> Iterator[tuple[int, float]]:
-    """Number of ends met and way (m) from x = 0 of each passage at a place, up to the longest way that counts."""
+    """Number of reflections and path length (m) from x = 0 of each passage at a place, up to the longest path."""
     for turn in range(int(longest / length) + 1):
         yield turn, turn * length + (place if turn % 2 == 0 else length - place)

@@ -1,7 +1,8 @@
-"""Dispersion of a peridynamic bar: how fast waves run on its nodes (L section 2).
+"""Dispersion of a peridynamic bar: wave speeds on its nodes (L section 2).
 
 A harmonic wave u = exp j(ωnΔt − kiΔx) on nodes Δx apart, each bonded to m neighbours on either side, obeys L eq. 12,
-here with the half weight of the outermost neighbours once and the squared half angles that round well,
+here with the half weight of the outermost neighbours counted once, and written with squared half angles to reduce
+rounding errors,
 
     sin²(ωΔt/2) = ν² q(θ),    q = (2/m²) Σ_{p=1..m} (w_p/p) sin²(pθ/2),    θ = kΔx,  ν = cΔt/Δx,
 
@@ -9,8 +10,8 @@ w_m = ½ and the other weights 1. With m = 1 this is the central difference sche
 
     dq/dθ = (1/m²) Σ w_p sin pθ = sin²(mθ/2) cot(θ/2) / m² ≥ 0    for 0 < θ ≤ π,
 
-so ω never falls with k, and the shortest wave, θ = π, is the first to grow without bound, for odd and for even m. Waves
-whose length is a whole part of the horizon mΔx carry no energy.
+so ω does not decrease with k, and the shortest wave, θ = π, is the first to become unstable, for odd and for even m.
+Waves whose length is the horizon mΔx divided by a whole number transport no energy.
 """
 
 import math
@@ -21,27 +22,27 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 ROUNDING = 1e-12
-"""What sin(ωΔt/2) may differ from 1 by rounding: a step at the limit itself is stable."""
+"""Rounding error allowed in sin(ωΔt/2) ≤ 1, so that a step exactly at the limit is stable."""
 
 SAMPLES = 100
-"""Wave numbers tried between two turns of a speed, of which there are up to m between 0 and π/Δx."""
+"""Number of wave numbers per extremum of a speed; there are up to m extrema between 0 and π/Δx."""
 
 Speed = Literal["phase", "group"]
 
 
 @dataclass(frozen=True)
 class Lattice:
-    """An endless row of nodes, bonded and stepped in time.
+    """An infinite row of nodes, bonded and stepped in time.
 
     horizon : neighbours m on either side; 1 is central differences.
     spacing : Δx, m.
-    time_step : Δt, s; 0 stands for exact integration in time.
+    time_step : Δt, s; 0 means exact integration in time.
     wave_speed : c of long waves, m/s.
-    shares : (m,) of the stress under uniform strain that bonds of one, two … spacings carry; they add up to 1. By
-        default those of L's bonds, 2w_p p/m².
+    shares : (m,) shares of the stress under uniform strain that bonds of one, two … spacings carry; their sum is 1. By
+    default those of L's bonds, 2w_p p/m².
 
     Raises ValueError for a horizon below 1, a spacing or speed that is not positive, a negative step, and shares that
-    are not m or do not add up to 1.
+    are not m numbers with the sum 1.
     """
 
     horizon: int
@@ -95,7 +96,7 @@ class Lattice:
     def group_velocity(self, wavenumber: np.ndarray | float) -> np.ndarray:
         """Speed dω/dk (m/s) of energy at wave numbers 0 ≤ k ≤ π/Δx (rad/m), same shape; nan where the wave grows.
 
-        Also nan at a wave that is just stable, where ωΔt = π and ω(k) ends.
+        Also nan for a wave at the stability limit, where ωΔt = π and ω(k) ends.
         """
         half = self._half_angle(wavenumber)
         root = self._root(half)
@@ -103,7 +104,7 @@ class Lattice:
         cosine = np.sqrt(np.where(square < 1.0 - ROUNDING, 1.0 - square, np.nan))
         if self.shares is None:
             slope = np.sinc(self.horizon * half / np.pi) ** 2 * np.cos(half) / np.sinc(half / np.pi)
-        else:  # the sum that has no closed form
+        else:  # this sum has no closed form
             slope = sum(share * np.sinc(2 * p * half / np.pi) for p, share in enumerate(self.shares, start=1))
         return self.wave_speed * slope / (root * cosine)
 
@@ -127,10 +128,10 @@ def _square(half: np.ndarray, horizon: int, shares: tuple[float, ...] | None) ->
 def courant_limit(horizon: int, shares: tuple[float, ...] | None = None) -> float:
     """Largest ν = cΔt/Δx with which no wave grows: m/√(2 Σ w_p/p over odd p ≤ m).
 
-    That is where ν²q reaches 1. The largest q is that of the shortest wave, kΔx = π, whether m is odd or even (see
-    above; for even m the curvature of q vanishes there as well). 1 for m = 1, √2 for 2, 1.964 for 3, 5.289 for 10.
+    At this ν, ν²q reaches 1. The largest q is that of the shortest wave, kΔx = π, for odd and for even m (see above;
+    for even m the curvature of q is also zero there). 1 for m = 1, √2 for 2, 1.964 for 3, 5.289 for 10.
 
-    With shares other than L's, see `Lattice`, the largest q is looked for among all waves.
+    With shares other than L's, see `Lattice`, the largest q is searched among all waves.
     """
     if shares is not None:
         return _searched_limit(horizon, shares)
@@ -139,7 +140,7 @@ def courant_limit(horizon: int, shares: tuple[float, ...] | None = None) -> floa
 
 
 def _searched_limit(horizon: int, shares: tuple[float, ...]) -> float:
-    """1/√q of the wave, of any length, that has the largest q."""
+    """1/√q for the largest q of all waves."""
 
     def less(half: float) -> float:
         return -float(half**2 * _square(np.array(half), horizon, shares))
@@ -158,11 +159,11 @@ def cells_per_wavelength(
     of: Speed = "phase",
     shares: tuple[float, ...] | None = None,
 ) -> float:
-    """Spacings per wavelength from which on a wave runs at the speed c but for a relative `error`, or less.
+    """Spacings per wavelength from which on the relative error of a wave's speed c is at most `error`.
 
-    All longer waves keep to it, too. `of` says whose speed: the crests' (phase) or the energy's (group). To the
-    leading order the phase speed is c(1 − (kΔx)²((m²+1)/2 − ν²)/24), the group's deviates three times as much. A bar
-    without error, as with m = 1 and ν = 1, needs the 2 cells that any wave has. shares : see `Lattice`.
+    This holds for all longer waves, too. `of` chooses the speed: of the crests (phase) or of the energy (group). To
+    leading order the phase speed is c(1 − (kΔx)²((m²+1)/2 − ν²)/24), and the error of the group speed is three times as
+    large. For a bar without error, as with m = 1 and ν = 1, the result is 2, the shortest wave. shares : see `Lattice`.
 
     Raises ValueError for a ν above its limit and an error that is not between 0 and 1.
     """
@@ -190,7 +191,7 @@ def usual_shares(horizon: int) -> tuple[float, ...]:
 
 
 def _weights(horizon: int) -> np.ndarray:
-    """w_p (m,): the outermost neighbours lie on the horizon, half their volume within it (L eq. 9)."""
+    """w_p (m,): the outermost neighbours are at the horizon, with half their volume inside it (L eq. 9)."""
     weights = np.ones(horizon)
     weights[-1] = 0.5
     return weights

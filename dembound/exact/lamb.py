@@ -1,20 +1,20 @@
 """Lamb's problem: a line load on the surface of an elastic half-space, in plane strain (the problem of Z section 3.2).
 
 x runs along the surface away from the load, z into the half-space. Solved by a Laplace transform in time and a
-Fourier transform along the surface, inverted by folding the path of the wave-number integral around the branch cut
-(Cagniard's way). With a = 1/c_p, b = 1/c_s, η_a = √(a²−p²), η_b = √(b²−p²), Im η ≤ 0, and Rayleigh's function
-R = (b²−2p²)² + 4p²η_aη_b, a unit impulse moves the surface at distance x > 0, at the time t = px > ax, by
+Fourier transform along the surface, inverted by deforming the path of the wave-number integral around the branch cut
+(Cagniard's method). With a = 1/c_p, b = 1/c_s, η_a = √(a²−p²), η_b = √(b²−p²), Im η ≤ 0, and Rayleigh's function R =
+(b²−2p²)² + 4p²η_aη_b, a unit impulse moves the surface at distance x > 0, at the time t = px > ax, by
 
     u_x = Im[p (b² − 2p² − 2η_aη_b) / R] / (πμx),    u_z = Im[b²η_a / R] / (πμx).
 
-R has one root p_R = 1/c_R beyond b. In u_z it is a simple pole, whose principal value is taken; in u_x it leaves a
-Dirac impulse, for beyond b the fraction is real.
+R has one root p_R = 1/c_R beyond b. In u_z it is a simple pole, whose principal value is taken; in u_x it gives a Dirac
+impulse, as beyond b the fraction is real.
 
 Below, slownesses p are in units of b, and κ = (a/b)² = (c_s/c_p)². R times its conjugate is a cubic in p²,
 
     Q = 1 − 8p² + 8(3−2κ)p⁴ − 16(1−κ)p⁶ = (p_R² − p²) D(p²),
 
-so the root can be divided out exactly and nothing cancels beside it.
+so the root can be divided out exactly, without cancellation near it.
 """
 
 import math
@@ -30,10 +30,10 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 FEWEST_PANELS = 4
 MOST_PANELS = 2048
 BLOCK = 16384
-"""Values that are worked on at once: as many as stay in a processor's cache, not so few that calls cost more."""
+"""Number of values computed at once: few enough for the processor's cache, enough to make calls cheap."""
 
 LoadFrom = Callable[..., np.ndarray]
-"""The load that acts with a slowness, at all times or at some."""
+"""Gives the load that acts with a slowness, at all times or at some."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class _Kernel:
         return alpha * ((1.0 - 2.0 * w) ** 2 + 4.0 * w * alpha * beta) / ((p + self.pole) * self._divisor(w))
 
     def horizontal(self, p: np.ndarray) -> np.ndarray:
-        """Im[p(1 − 2p² − 2η_aη_b)/R], same shape as p, but for the impulse at p_R; zero from p = 1 on."""
+        """Im[p(1 − 2p² − 2η_aη_b)/R], same shape as p, without the impulse at p_R; zero from p = 1 on."""
         w = np.minimum(np.square(p), 1.0)
         roots = _root(w - self.ratio) * np.sqrt(1.0 - w)
         return 2.0 * p * roots * (1.0 - 2.0 * w) / ((self.pole**2 - w) * self._divisor(w))
@@ -65,15 +65,15 @@ class _Kernel:
         return float(-math.pi * (2.0 * w - 1.0) ** 3 / (2.0 * w * self._divisor(w)))
 
     def _divisor(self, w: np.ndarray | float) -> np.ndarray:
-        """D(w), positive for w > κ; kept so by a floor, for with κ = ½ its root is κ itself."""
+        """D(w), positive for w > κ; a lower bound keeps it positive, as for κ = ½ its root is κ."""
         return np.maximum(self.rest(w), 1e-15)
 
 
 def rayleigh_speed(p_wave_speed: float, s_wave_speed: float) -> float:
     """Speed c_R of Rayleigh's surface wave, in the unit of the two wave speeds given.
 
-    ξ = (c_R/c_s)² is the root of ξ³ − 8ξ² + 8(3−2κ)ξ − 16(1−κ), κ = (c_s/c_p)², in 0 < ξ < 1. It is the only one
-    there: the cubic bends downwards, is negative at 0 and 1 at 1.
+    ξ = (c_R/c_s)² is the root of ξ³ − 8ξ² + 8(3−2κ)ξ − 16(1−κ), κ = (c_s/c_p)², in 0 < ξ < 1. It is the only root
+    there: the cubic is concave, negative at 0 and equal to 1 at 1.
 
     Raises ValueError unless 0 < s_wave_speed < p_wave_speed.
     """
@@ -97,18 +97,18 @@ def surface_displacement(
 
     Row 0 is horizontal, positive away from the load; row 1 vertical, positive into the half-space. `load` gives the
     force per metre of line (N/m), positive into the half-space, at an array of times t ≥ 0 of any shape; before t = 0
-    there is none. It may start with a jump, u_z then being infinite at the Rayleigh wave's arrival, and is continuous
-    afterwards; the smoother, the faster.
+    there is none. It may start with a jump; u_z is then infinite at the arrival of the Rayleigh wave. Afterwards it
+    must be continuous. Smoother loads take less time.
 
     The convolution with the impulse response above is done by quadrature whose panels are halved until the last
-    halving changed the displacements by less than `tolerance` times the largest of them. The error left is smaller:
-    every halving divides it by 4 if the load has kinks, by more if it has none.
+    halving changed the displacements by less than `tolerance` times the largest of them. The remaining error is
+    smaller: every halving divides it by 4 if the load has kinks, by more if it has none.
 
     A model of disks differs in two ways, both of the order of a disk's diameter: its receiver is the centre of a disk,
-    half a diameter below the surface, and its load sits on one or two disks rather than on a line.
+    half a diameter below the surface, and its load acts on one or two disks instead of a line.
 
     Raises ValueError for a distance or density that is not positive and unless 0 < s_wave_speed < p_wave_speed;
-    RuntimeError if the tolerance is not met, as by a load that jumps on its way.
+    RuntimeError if the tolerance is not reached, for example with a load that jumps after its start.
     """
     if distance <= 0.0 or density <= 0.0:
         raise ValueError(f"distance ({distance} m) and density ({density} kg/m³) must be positive")
@@ -149,8 +149,8 @@ def _converged(
 ) -> np.ndarray:
     """∫ load · kernel dp (2, k) up to the slownesses `latest` (k,), quadrature refined to the tolerance.
 
-    The vertical integrand is load·vertical/(p − p_R). Its value at p_R is subtracted from the numerator, which leaves
-    no singularity; the principal value of what was subtracted is a logarithm.
+    The vertical integrand is load·vertical/(p − p_R). Its numerator's value at p_R is subtracted, which removes the
+    singularity; the principal value of the subtracted part is a logarithm.
     """
     residue = at_pole * kernel.vertical(kernel.pole)
     beyond = np.where(latest > kernel.pole, latest - kernel.pole, 1.0)
@@ -162,7 +162,7 @@ def _converged(
     change = math.inf
     while change > tolerance * np.abs(finer).max(initial=0.0):
         if panels == MOST_PANELS:
-            raise RuntimeError(f"Lamb's integral did not settle to {tolerance:g}: is the load continuous?")
+            raise RuntimeError(f"Lamb's integral did not converge to {tolerance:g}: is the load continuous?")
         panels *= 2
         coarser, finer = finer, rayleigh + _integral(kernel, load_from, latest, residue, panels)
         change = np.abs(finer - coarser).max(initial=0.0)
@@ -176,16 +176,16 @@ def _integral(
     residue: np.ndarray,
     panels: int,
 ) -> np.ndarray:
-    """The regular part of that integral (2, k), with so many Gauss panels on each of its pieces.
+    """The regular part of that integral (2, k), with the given number of Gauss panels on each of its pieces.
 
-    The pieces end at P, S and Rayleigh arrival. p = low + width·sin²(πv/2), 0 < v < 1, takes away the square roots at
-    their ends, and draws nodes so close to p_R that the quotient beside it keeps its digits.
+    The pieces end at P, S and Rayleigh arrival. p = low + width·sin²(πv/2), 0 < v < 1, removes the square roots at
+    their ends. It also concentrates nodes near p_R, so that the quotient there keeps its digits.
     """
     total = np.zeros((2, len(latest)))
     marks = (math.sqrt(kernel.ratio), 1.0, kernel.pole, math.inf)
     for low, high in pairwise(marks):
         whole, part = np.flatnonzero(latest >= high), np.flatnonzero((low < latest) & (latest < high))
-        if len(whole) > 0:  # one width for all, and so one kernel
+        if len(whole) > 0:  # one width for all, so the kernel is computed once
             total[:, whole] += _piece(kernel, load_from, whole, residue, low, np.array([high - low]), panels)
         if len(part) > 0:
             total[:, part] += _piece(kernel, load_from, part, residue, low, latest[part] - low, panels)

@@ -1,1 +1,1 @@
-"""What a strain gauge on a bar measures: wave speed, attenuation, strength."""
+"""Estimates from a strain gauge on a bar: wave speed, attenuation, strength."""

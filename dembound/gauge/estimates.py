@@ -1,8 +1,8 @@
-"""What the signal of a gauge on a bar yields: wave speed, attenuation and spall strength (L section 3.3).
+"""Estimates from the signal of a gauge on a bar: wave speed, attenuation and spall strength (L section 3.3).
 
 A compressive pulse enters a bar at x = 0 and runs to and fro between its free ends. A gauge in between measures it as
 compression on the way out and as tension on the way back. Stresses are positive in tension, and may be strains or
-voltages where only their course matters; places count from the loaded end.
+voltages where the unit has no effect; positions are measured from the loaded end.
 """
 
 from typing import Any, NamedTuple
@@ -16,14 +16,14 @@ ONSET = 0.01
 """Share of its largest compression at which a pulse begins."""
 
 ENDED = 0.2
-"""Share of its largest compression below which a pulse counts as ended when its reflection returns."""
+"""Share of its largest compression below which a pulse has ended when its reflection returns."""
 
 FEWEST = 3
 """Samples of a history from which its noise is estimated."""
 
 
 class Estimate(NamedTuple):
-    """A value from a line through so many points, and its standard error, which takes three; none: it was given."""
+    """A value from a line through `points` points, and its standard error, for three or more; without points: given."""
 
     value: float
     error: float = np.nan
@@ -33,13 +33,13 @@ class Estimate(NamedTuple):
 def tension_peaks(time: np.ndarray, stress: np.ndarray, count: int | None = None) -> Peaks:
     """Successive tension peaks at a gauge between free ends, 2L/c apart, found by `positive_peaks`.
 
-    Where all tension is less than `SMALLEST` of the compression, it is what rings behind a pulse that has not returned,
-    and no peak.
+    Tension that is nowhere above `SMALLEST` of the compression is an oscillation behind a pulse that has not returned,
+    and not a peak.
 
     Parameters
     ----------
     time, stress : (k,) s, evenly spaced, and any unit.
-    count : keep the first ones only; all by default.
+    count : number of first peaks to use; all by default.
     """
     rings = stress.max() < SMALLEST * np.abs(stress).max()
     return positive_peaks(time, stress, 0 if rings else count)
@@ -52,13 +52,13 @@ def wave_speed(peak_times: np.ndarray, length: float, weights: np.ndarray | None
     ----------
     peak_times : (k,) s.
     length : L, m.
-    weights : (k,) of the times, alike by default. Under noise they are the peaks' heights: the flatter a crest, the
-        less sure is its time.
+    weights : (k,) of the times, equal by default. With noise they are the peaks' heights, as the time of a flat crest
+    is less accurate.
 
     Raises CaseError for fewer than two times.
     """
     if len(peak_times) < 2:
-        raise CaseError([f"--wave-speed: takes two tension peaks to be estimated, {len(peak_times)} found; give it"])
+        raise CaseError([f"--wave-speed: needs two tension peaks to be estimated, {len(peak_times)} found; give it"])
     weights = np.ones(len(peak_times)) if weights is None else weights
     spacing = _slope(np.arange(len(peak_times)), peak_times, weights)
     speed = 2.0 * length / spacing.value
@@ -68,7 +68,7 @@ def wave_speed(peak_times: np.ndarray, length: float, weights: np.ndarray | None
 def attenuation(peak_times: np.ndarray, peak_heights: np.ndarray, speed: float) -> Estimate:
     """Coefficient α in 1/m of σ = σ_0 e^(−αx), x = ct (L eq. 19, β there): the slope of the heights' logarithms.
 
-    Each counts by its height, for the same noise changes a small height's logarithm more.
+    Each is weighted by its height, as the same noise changes the logarithm of a small height more.
 
     Parameters
     ----------
@@ -93,17 +93,17 @@ def incident_pulse(
     speed : c, m/s.
     end : that time in s; by default when the pulse's front comes back from the free end.
 
-    Raises CaseError when there is no compression, the end comes before it, or, without an end, the pulse goes on when
-    its front comes back; and for fewer than three samples.
+    Raises CaseError when there is no compression, the end comes before it, or, without an end, the pulse has not ended
+    when its front comes back; and for fewer than three samples.
     """
     largest = -stress.min()
     if not largest > 0.0:
-        raise CaseError(["--scale: leaves no compression, which must be negative; a negative scale turns the sign"])
+        raise CaseError(["--scale: gives no compression, which must be negative; a negative scale changes the sign"])
     begun, risen = _rise(-stress)
     if end is None:
         end = float(time[begun]) + 2.0 * (length - gauge) / speed
         if end < time[risen] or abs(np.interp(end, time, stress)) > ENDED * largest:
-            raise CaseError(["--pulse-end: give it, the pulse goes on when its reflection is back at the gauge"])
+            raise CaseError(["--pulse-end: give it, the pulse has not ended when its reflection is back at the gauge"])
     elif not end > time[risen]:
         raise CaseError([f"--pulse-end: is {end:g} s, must be after {time[risen]:g} s, when the pulse is half risen"])
     count = int(np.searchsorted(time, end, side="right"))
@@ -121,7 +121,7 @@ def near_free_end(
     positions: np.ndarray,
     at_times: np.ndarray,
 ) -> np.ndarray:
-    """Stress (q, k) at q positions (m) and k times (s) beside a free end, without attenuation: a pulse and its image.
+    """Stress (q, k) at q positions (m) and k times (s) near a free end, without attenuation: a pulse and its image.
 
     σ(x, t) = s(t − (x − x_g)/c) − s(t − (2L − x − x_g)/c) (L section 3.3, fig. 11).
 
@@ -141,8 +141,8 @@ def nominal_strength(
 ) -> tuple[float, float]:
     """Largest tension that ever occurs where the bar spalls, `position` in m, without attenuation; and its time in s.
 
-    Exact for a pulse of straight lines between its samples: the largest sum stands at one of them, or at an image's.
-    Other arguments as for `near_free_end`.
+    Exact for a pulse of straight lines between its samples: the largest sum occurs at one of them, or at one of the
+    image. Other arguments as for `near_free_end`.
     """
     moments = np.concatenate([time + delay for delay in _delays(gauge, length, speed, position)])
     (there,) = near_free_end(time, stress, gauge, length, speed, np.array([position]), moments)
@@ -150,20 +150,20 @@ def nominal_strength(
 
 
 def path_via_free_end(gauge: float, length: float, position: Any) -> Any:
-    """Way in m, of the shape of the position, from a gauge to the free end and back: (L − x_g) + (L − x)."""
+    """Path length in m, of the shape of the position, from a gauge to the free end and back: (L − x_g) + (L − x)."""
     return 2.0 * length - gauge - position
 
 
 def attenuated_strength(nominal: float, coefficient: float, distance: float) -> float:
-    """What is left of a nominal strength in Pa after a way in m: σ_1 = σ_0 e^(−αx) (L section 3.3)."""
+    """Nominal strength in Pa, attenuated over a distance in m: σ_1 = σ_0 e^(−αx) (L section 3.3)."""
     return float(nominal * np.exp(-coefficient * distance))
 
 
 def pull_back_strength(time: np.ndarray, velocity: np.ndarray, density: float, speed: float, length: float) -> float:
-    """Spall strength ½ρcΔV in Pa, ΔV the free end's fall from its first fastest to its next slowest (Novikov).
+    """Spall strength ½ρcΔV in Pa, ΔV the fall of the free end's velocity from first maximum to minimum (Novikov).
 
-    Only the pulse's first arrival counts: a whole bar's end comes to rest and moves on when the pulse is back, 2L/c
-    after it came.
+    Only the first arrival of the pulse is used: the end of an unbroken bar comes to rest and moves again when the pulse
+    returns, 2L/c later.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def _slope(x: np.ndarray, y: np.ndarray, weights: np.ndarray) -> Estimate:
 
 
 def _rise(values: np.ndarray) -> tuple[int, int]:
-    """Where a history (k,), positive somewhere, begins to rise to half its largest value, and where it is there."""
+    """Indices at which a history (k,), positive somewhere, begins to rise, and reaches half its largest value."""
     largest = values.max()
     risen = int(np.argmax(values > 0.5 * largest))
     quiet = np.flatnonzero(values[:risen] < ONSET * largest)
@@ -196,7 +196,7 @@ def _rise(values: np.ndarray) -> tuple[int, int]:
 
 
 def _delays(gauge: float, length: float, speed: float, position: Any) -> tuple[Any, Any]:
-    """Times in s, of the shape of the position, from the gauge to there: straight, and by the free end."""
+    """Times in s, of the shape of the position, from the gauge to there: directly, and via the free end."""
     return (position - gauge) / speed, path_via_free_end(gauge, length, position) / speed
 
 

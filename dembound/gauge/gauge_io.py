@@ -14,18 +14,18 @@ from dembound.results.reader import open_record
 from dembound.waves.file_wave import read_samples
 
 FREE = "free"
-"""The type of an end that nothing holds."""
+"""The type of a free end."""
 
 ROUNDING = 1e-9
-"""Share of a bar's length within which two places are the same."""
+"""Share of a bar's length within which two positions are equal."""
 
 
 @dataclass(frozen=True)
 class BarMetadata:
-    """What the record of a run has of its bar.
+    """Data of the bar in the record of a run.
 
-    speed : of waves, m/s; attenuation : 1/m; ends : types of the loaded end and of the other; broken : time at which
-    the first bond broke, s, infinite for a whole bar.
+    speed : of waves, m/s; attenuation : 1/m; ends : types of the loaded end and of the other end; broken : time at
+    which the first bond broke, s, infinite for an unbroken bar.
     """
 
     speed: float
@@ -39,7 +39,7 @@ class Gauge:
     """A gauge on a bar, and its signal.
 
     time, stress : (k,) s and Pa, tension positive; position : from the loaded end, m; length : the bar's, m;
-    density : kg/m³, None where it is not known; metadata : of the bar in a record, None for a text file.
+    density : kg/m³, or None; metadata : data of the bar from a record, None for a text file.
     """
 
     time: np.ndarray
@@ -51,7 +51,7 @@ class Gauge:
 
 
 class GaugeMetadata(NamedTuple):
-    """What a record has of a gauge: as of `Gauge`, None is unknown."""
+    """Data of a gauge from a record; see `Gauge`, None where it is missing."""
 
     position: float | None = None
     length: float | None = None
@@ -67,14 +67,13 @@ def read_gauge(
     density: float | None = None,
     scale: float = 1.0,
 ) -> Gauge:
-    """Read a gauge from a text file of two columns, or a monitor's from the record of a run.
+    """Read a gauge from a text file of two columns, or from a monitor in the record of a run.
 
     Parameters
     ----------
     path : the file.
-    monitor : its name in the record; may be left out where only one stands between the ends.
-    position, length, density : as of `Gauge`; by default those of the record.
-    scale : factor of the values, not 0.
+    monitor : its name in the record; may be left out if there is only one between the ends. position, length, density :
+    as for `Gauge`; by default those of the record. scale : factor of the values, not 0.
 
     Raises CaseError for a file that cannot be read, an unknown monitor, a bar that is not loaded at one end, and a
     gauge that is not on the bar.
@@ -105,8 +104,8 @@ def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
     Parameters
     ----------
     path : the gauge's file, as for `read_gauge`.
-    free_end : a monitor in it if it is a record, which must stand at the end opposite the loaded one, and that be free;
-        else the path of a text file of two columns.
+    free_end : a monitor in it if it is a record, which must be at the end opposite the loaded one, and this end must be
+    free; else the path of a text file of two columns.
 
     Raises CaseError for anything else.
     """
@@ -128,22 +127,22 @@ def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def not_above_zero(option: str, value: float | None, unit: str) -> Iterator[str]:
-    """What is wrong with an option's value, in its unit, if it is not a positive number."""
+    """Message about an option's value, in its unit, if it is not a positive number."""
     if value is not None and not 0.0 < value < np.inf:
         yield f"{option}: is {value:g} {unit}, must be finite and above 0"
 
 
 def not_on_bar(option: str, place: float, length: float) -> Iterator[str]:
-    """What is wrong with an option's place, m from the loaded end, if it is not between the ends of a bar."""
+    """Message about an option's position, m from the loaded end, if it is not between the ends of a bar."""
     if not 0.0 < place < length:
         yield f"{option}: is {place:g} m, must be above 0 and below the length, {length:g} m"
 
 
 def _problems_with_bar(position: float | None, length: float | None, density: float | None) -> Iterator[str]:
-    """What keeps a gauge from being one on a bar."""
+    """Missing or impossible data of a gauge on a bar."""
     for option, value in (("--position", position), ("--length", length)):
         if value is None:
-            yield f"{option}: is not known, give it"
+            yield f"{option}: is missing, give it"
     unfit = list(not_above_zero("--length", length, "m"))
     yield from unfit
     if position is not None and length is not None and not unfit:
@@ -152,7 +151,7 @@ def _problems_with_bar(position: float | None, length: float | None, density: fl
 
 
 def _recorded(path: Path, name: str | None) -> tuple[np.ndarray, np.ndarray, GaugeMetadata]:
-    """Time, stress and what else is known of a monitor in a record."""
+    """Time, stress and metadata of a monitor in a record."""
     with open_record(path) as file:
         group = _gauge(file, name)
         time, stress = group["time"][:], group["stress"][:]
@@ -175,7 +174,7 @@ def _gauge(file: h5py.File, name: str | None) -> h5py.Group:
         if "stress" in group and not _is_at(file, group, 0.0) and not _is_at(file, group, _length(file))
     }
     if not signals:
-        raise CaseError([f"{file.filename}: holds no history of stress between the ends of a bar"])
+        raise CaseError([f"{file.filename}: contains no history of stress between the ends of a bar"])
     if name is None and len(signals) > 1:
         raise CaseError([f"--monitor: is not named, must be one of {', '.join(signals)}"])
     if name is not None and name not in signals:
@@ -184,7 +183,7 @@ def _gauge(file: h5py.File, name: str | None) -> h5py.Group:
 
 
 def _bar_metadata(file: h5py.File) -> BarMetadata | None:
-    """What a record has of its bar; None where it has no wave speed."""
+    """Data of the bar in a record; None if it has no wave speed."""
     if "wave_speed" not in file.attrs:
         return None
     left, right = (str(end) for end in file.attrs["ends"])
@@ -202,22 +201,22 @@ def _length(file: h5py.File) -> float:
 
 
 def _loaded_end(file: h5py.File) -> str:
-    """The end of a recorded bar from which all places count."""
+    """The end of a recorded bar from which all positions are measured."""
     loaded = file.attrs.get("loaded")
     if loaded not in ("left", "right"):
         where = {"both": "both ends", "none": "neither end"}.get(loaded, "an end that the record does not name")
-        raise CaseError([f"{file.filename}: is of a bar loaded at {where}, must be loaded at the left or the right"])
+        raise CaseError([f"{file.filename}: has a bar loaded at {where}, must be loaded at the left or the right"])
     return str(loaded)
 
 
 def _from_loaded_end(file: h5py.File, group: h5py.Group) -> float:
-    """Where a recorded monitor is, m."""
+    """Distance of a recorded monitor from the loaded end, m."""
     x = float(np.ravel(group.attrs["position"])[0])
     return x if _loaded_end(file) == "left" else _length(file) - x
 
 
 def _is_at(file: h5py.File, group: h5py.Group, place: float) -> bool:
-    """Whether a recorded monitor stands at a place, m from the loaded end."""
+    """Whether a recorded monitor is at a position, m from the loaded end."""
     return abs(_from_loaded_end(file, group) - place) < ROUNDING * _length(file)
 
 
@@ -234,4 +233,4 @@ def _samples(path: Path, quantity: str) -> tuple[np.ndarray, np.ndarray]:
 def _enough(time: np.ndarray, path: Path) -> None:
     """Raise CaseError for a history (k,) of too few samples."""
     if len(time) < FEWEST:
-        raise CaseError([f"{path}: holds {len(time)} samples, must hold three or more"])
+        raise CaseError([f"{path}: contains {len(time)} samples, must contain three or more"])

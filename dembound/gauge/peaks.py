@@ -1,24 +1,24 @@
-"""Peaks of sampled histories that carry noise."""
+"""Peaks of sampled histories with noise."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 SMALLEST = 0.01
-"""Share of the largest value below which nothing counts as a peak."""
+"""Least height of a peak over the largest value."""
 
 NOISE_FACTOR = 5.0
-"""Standard deviations of the noise that a peak must reach: one in some 10⁶ samples does so by chance."""
+"""Least height of a peak in standard deviations of the noise: noise alone reaches it in one of some 10⁶ samples."""
 
 CREST = 0.125
-"""Reach of the smoothing to either side, in widths of the largest peak at half its height.
+"""Range of the smoothing on either side, in widths of the largest peak at half its height.
 
-A crest of two straight slopes loses 3/16 of what they fall on average over that reach, so where they are alike
-(3/16)(1/8) = 2.3 % of itself: all peaks of a pulse the same share.
+The smoothing lowers a crest of two straight slopes by 3/16 of their mean fall over that range. With equal slopes this
+is (3/16)(1/8) = 2.3 % of the crest, the same share for all peaks of a pulse.
 """
 
 DIP = 0.05
-"""Share of a history's whole range below which nothing counts as a maximum or minimum of it."""
+"""Least height of a maximum, or depth of a minimum, over the whole range of a history."""
 
 
 class Peaks(NamedTuple):
@@ -31,16 +31,16 @@ class Peaks(NamedTuple):
 def positive_peaks(time: np.ndarray, values: np.ndarray, count: int | None = None) -> Peaks:
     """Peaks of a history above zero.
 
-    The history is smoothed by parabolas over a quarter of its largest peak's width, and a peak is where the smoothed
-    one is highest, by a parabola through the three samples there. It must stand out by `SMALLEST` of the largest and
-    `NOISE_FACTOR` times the noise, be at least half as wide as the largest, and further from a higher one than that
-    is wide. Where a crest is long and flat, noise decides on its place.
+    The history is smoothed by parabolas over a quarter of its largest peak's width, and a peak is a maximum of the
+    smoothed history, from a parabola through the three samples there. Its prominence must be at least `SMALLEST` of the
+    largest peak and `NOISE_FACTOR` times the noise. It must be at least half as wide as the largest peak, and its
+    distance from a higher one must exceed that width. The position of a long flat crest depends on the noise.
 
     Parameters
     ----------
     time : (k,) s, evenly spaced.
     values : (k,) in any unit.
-    count : keep the first ones only; all by default.
+    count : number of first peaks to use; all by default.
     """
     if not values.max() > 0.0:
         return Peaks(np.empty(0), np.empty(0))
@@ -57,16 +57,16 @@ def positive_peaks(time: np.ndarray, values: np.ndarray, count: int | None = Non
 
 
 def denoised(values: np.ndarray) -> np.ndarray:
-    """A history (k,) smoothed by parabolas as far as its noise is worth it; a clean one stays as it is."""
+    """A history (k,) smoothed by parabolas over a range chosen by its noise; without noise it is not changed."""
     sizes = np.abs(values)
     return _smooth(values, _worthwhile_reach(_noise(values) / sizes.max(), _width(sizes)))
 
 
 def first_fall(values: np.ndarray) -> float:
-    """How far a history (k,), evenly sampled, falls from its first maximum to the minimum after it; nan without such.
+    """Fall of an evenly sampled history (k,) from its first maximum to the minimum after it; nan without these.
 
-    Both must stand out by `DIP` of its range and twice `NOISE_FACTOR` times the noise, which is then smoothed by
-    parabolas as far as it is worth it.
+    The prominence of both must be at least `DIP` of the range and twice `NOISE_FACTOR` times the noise. The history is
+    then smoothed by parabolas over a range chosen by its noise.
     """
     noise = _noise(values)
     least = max(DIP * float(np.ptp(values)), 2.0 * NOISE_FACTOR * noise)
@@ -82,35 +82,35 @@ def first_fall(values: np.ndarray) -> float:
 
 
 def _summits(values: np.ndarray, **limits: float) -> np.ndarray:
-    """Samples that are higher than those beside them, within the limits of `scipy.signal.find_peaks`."""
-    from scipy.signal import find_peaks  # here, for it takes a second and other commands can do without
+    """Samples that are higher than their neighbours, within the limits of `scipy.signal.find_peaks`."""
+    from scipy.signal import find_peaks  # imported here, as it takes a second and other commands do not need it
 
     return find_peaks(values, **limits)[0]
 
 
 def _width(values: np.ndarray) -> int:
-    """Samples around the largest that are above its half."""
+    """Number of samples around the largest that are above half of it."""
     crest = int(values.argmax())
     low = np.flatnonzero(values < 0.5 * values[crest])
     return int(low[low > crest].min(initial=len(values)) - low[low < crest].max(initial=-1)) - 1
 
 
 def _noise(values: np.ndarray) -> float:
-    """Standard deviation of white noise: from the median second difference, which a smooth course hardly has."""
+    """Standard deviation of white noise: from the median second difference, which is small for a smooth history."""
     return float(1.4826 * np.median(np.abs(np.diff(values, 2))) / np.sqrt(6.0))
 
 
 def _worthwhile_reach(noise: float, width: int) -> int:
-    """Reach r of the smoothing, in samples, at which a crest loses as much as is left of the noise, a share of it.
+    """Range r of the smoothing, in samples, at which the loss of a crest equals the remaining noise.
 
-    A crest of two straight slopes, w samples wide at half its height, loses (3/16)(r/w) of itself, and 3/√(8r) of the
-    noise is left.
+    A crest of two straight slopes, w samples wide at half its height, loses (3/16)(r/w) of its height, and 3/√(8r) of
+    the noise remains.
     """
     return max(1, round((np.sqrt(32.0) * noise * width) ** (2.0 / 3.0)))
 
 
 def _smooth(values: np.ndarray, reach: int) -> np.ndarray:
-    """Each value that of a parabola through all up to `reach` samples away, which for one sample changes nothing."""
+    """Each value from a parabola fitted to all samples up to `reach` away; with a reach of one nothing changes."""
     if reach == 1:
         return values
     from scipy.signal import savgol_filter
@@ -119,5 +119,5 @@ def _smooth(values: np.ndarray, reach: int) -> np.ndarray:
 
 
 def _noise_left(reach: int) -> float:
-    """Share of white noise that `_smooth` leaves: the root of its middle coefficient, as of any least squares."""
+    """Share of white noise that remains after `_smooth`: the root of its middle coefficient (least squares)."""
     return float(np.sqrt(3.0 * (3 * reach**2 + 3 * reach - 1) / ((2 * reach - 1) * (2 * reach + 1) * (2 * reach + 3))))

@@ -21,7 +21,7 @@ from dembound.gauge.gauge_io import FREE, Gauge, not_above_zero, not_on_bar
 from dembound.gauge.peaks import Peaks
 
 AGREEMENT = 0.05
-"""Share by which an estimated wave speed may be off the record's; coarse nodes slow pulses by less."""
+"""Largest relative difference between estimated and recorded wave speed; coarse nodes change it less."""
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Strength:
     """The strength of a bar where it has spalled.
 
     position : from the loaded end, m; nominal : largest tension there without attenuation, Pa, reached at `time`, s;
-    way : from the gauge by the free end to there, m; attenuated : what the way leaves of it, Pa, None without a
-    coefficient; pulse : times (p,) s and stresses (p,) Pa of the incident pulse alone.
+    way : path length from the gauge via the free end to there, m; attenuated : nominal strength attenuated over this
+    path, Pa, None without a coefficient; pulse : times (p,) s and stresses (p,) Pa of the incident pulse alone.
     """
 
     position: float
@@ -43,9 +43,9 @@ class Strength:
 
 @dataclass(frozen=True)
 class Findings:
-    """Estimates from a gauge: wave speed in m/s, attenuation in 1/m, strengths in Pa; None is unknown.
+    """Estimates from a gauge: wave speed in m/s, attenuation in 1/m, strengths in Pa; None where not estimated.
 
-    `peaks` are the tension peaks that speed or attenuation are estimated from, None if both were known.
+    `peaks` are the tension peaks from which speed or attenuation are estimated, None if both were given.
     """
 
     peaks: Peaks | None
@@ -66,20 +66,20 @@ def evaluate(
     speed: float | None = None,
     coefficient: float | None = None,
 ) -> Findings:
-    """All estimates from a gauge and what is given beside it.
+    """All estimates from a gauge and from further data.
 
     Parameters
     ----------
-    gauge : its signal.
-    spall : where the bar has spalled, from the loaded end, m.
+    gauge : the gauge with its signal.
+    spall : position at which the bar has spalled, from the loaded end, m.
     free_end : times (q,) in s and velocities (q,) in m/s of the free end, positive outwards.
     estimate : take wave speed and attenuation from the tension peaks even if a record has them.
-    count : the same, from the first peaks only.
+    count : the same, from this number of first peaks.
     pulse_end : time at which the incident pulse is over at the gauge, s; by default when its front comes back.
     speed, coefficient : wave speed in m/s and attenuation in 1/m of another test; by default those of a record,
         else estimates.
 
-    Raises CaseError when what is given is not enough, and when a record contradicts what is to be found.
+    Raises CaseError when data are missing, and when a record contradicts the assumptions of an estimate.
     """
     metadata = gauge.metadata
     if metadata is not None and not estimate and count is None:
@@ -87,7 +87,7 @@ def evaluate(
         coefficient = metadata.attenuation if coefficient is None else coefficient
     problems = list(_problems_with_options(gauge, spall, speed, coefficient))
     if free_end is not None and gauge.density is None:
-        problems.append("--density: is not known, give it")
+        problems.append("--density: is missing, give it")
     if problems:
         raise CaseError(problems)
     peaks, found, decay = _waves(gauge, speed, coefficient, count)
@@ -99,25 +99,25 @@ def evaluate(
 def _problems_with_options(
     gauge: Gauge, spall: float | None, speed: float | None, coefficient: float | None
 ) -> Iterator[str]:
-    """What is wrong with what is given beside a gauge."""
+    """Mistakes in the data given with a gauge."""
     if spall is not None:
         yield from not_on_bar("--spall", spall, gauge.length)
         if gauge.metadata is not None and gauge.metadata.ends[1] != FREE:
             end = gauge.metadata.ends[1]
-            yield f"--spall: takes a pulse that a free end returns, the end opposite the load is {end}"
+            yield f"--spall: assumes a pulse reflected by a free end, the end opposite the load is {end}"
     yield from not_above_zero("--wave-speed", speed, "m/s")
     if coefficient is not None and not 0.0 <= coefficient < np.inf:
         yield f"--attenuation: is {coefficient:g} 1/m, must be finite and not below 0"
     if gauge.metadata is not None and (speed is None or coefficient is None):
         for which, kind in zip(("the loaded end", "the end opposite the load"), gauge.metadata.ends, strict=True):
             if kind != FREE:
-                yield f"--estimate: takes peaks of a pulse between free ends, {which} is {kind}"
+                yield f"--estimate: assumes a pulse between free ends, {which} is {kind}"
 
 
 def _waves(
     gauge: Gauge, speed: float | None, coefficient: float | None, count: int | None
 ) -> tuple[Peaks | None, Estimate, Estimate | None]:
-    """Wave speed and attenuation, where they are not given estimated from tension peaks, and these."""
+    """Wave speed and attenuation, given or estimated from tension peaks, and these peaks."""
     if speed is not None and coefficient is not None:
         return None, Estimate(speed), Estimate(coefficient)
     peaks = tension_peaks(gauge.time, gauge.stress, count)
@@ -138,15 +138,15 @@ def _hold_against_break(gauge: Gauge, peaks: Peaks) -> None:
     if whole < count:
         said = f"this one broke at {broken:.4g} s, before {count - whole} of its {count}"
         advice = f"use --peaks {whole}" if whole > 1 else "it gives neither speed nor attenuation"
-        raise CaseError([f"--estimate: takes tension peaks of a whole bar, {said}; {advice}"])
+        raise CaseError([f"--estimate: needs tension peaks of an unbroken bar, {said}; {advice}"])
 
 
 def _hold_against_speed(gauge: Gauge, passing: float, given: float | None) -> None:
-    """Raise CaseError if the tension peaks' wave speed, m/s, is not the record's, or without one not the given one."""
+    """Raise CaseError if the tension peaks' wave speed, m/s, differs from the recorded or given one."""
     known = given if gauge.metadata is None else gauge.metadata.speed
     if known is not None and abs(passing / known - 1.0) > AGREEMENT:
         option = "--attenuation: give it," if gauge.metadata is None else "--estimate:"
-        said = f"come to a wave speed of {passing:.4g} m/s, must be within {100.0 * AGREEMENT:g} % of {known:.4g} m/s"
+        said = f"give a wave speed of {passing:.4g} m/s, must be within {100.0 * AGREEMENT:g} % of {known:.4g} m/s"
         raise CaseError([f"{option} the tension peaks {said}"])
 
 

@@ -1,4 +1,4 @@
-"""Holes: each file holds one shape's TOML table and computes which positions lie in it.
+"""Holes: each file contains the TOML table of one shape and computes which positions lie in it.
 
 A new shape is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """

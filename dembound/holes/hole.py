@@ -1,4 +1,4 @@
-"""What all holes have in common: a name, a stage, and particles to take out."""
+"""The base of all holes: a name, a stage, and the particles to remove."""
 
 from abc import ABC, abstractmethod
 from typing import Literal
@@ -11,7 +11,7 @@ Box = tuple[float, float, float, float]
 
 
 class Hole(Table, ABC):
-    """A place without particles: those centred in it are taken out, and so are those this severs from the body."""
+    """An area without particles: those centred in it are removed, and also those that this separates from the body."""
 
     type: str
     name: FileName = quantity(..., unit="1", help="name of the hole in messages")

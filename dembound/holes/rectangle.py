@@ -30,5 +30,5 @@ class Rectangle(Hole):
 
     @property
     def box(self) -> Box:
-        """Itself: x0, y0, x1, y1 in m."""
+        """The rectangle itself: x0, y0, x1, y1 in m."""
         return self.corners

@@ -9,21 +9,21 @@ from pathlib import Path
 
 import numba
 
-# Threads wait for each other at every step. Where other programs use the cores too, waiting by spinning makes a run
-# many times slower; the variable is read when the first parallel loop starts.
+# Threads wait for each other at every step. Where other programs use the cores too, busy waiting makes a run many times
+# slower; the variable is read when the first parallel loop starts.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 
 def sources_digest(folder: Path) -> str:
-    """A short name for what the Python files of a folder hold."""
+    """A short hash of the contents of the Python files in a folder."""
     return hashlib.sha256(b"".join(path.read_bytes() for path in sorted(folder.glob("*.py")))).hexdigest()[:16]
 
 
 def prune(folder: Path, keep: str, age: float = 7 * 86400.0) -> None:
-    """Remove what was compiled from other states of the sources and has not been used for `age` (s).
+    """Remove compiled code of other states of the sources that has not been used for `age` (s).
 
-    folder : has a folder for each state, named by its digest; keep : the one in use, which is marked as used now.
-    Nothing is raised: another process may be removing the same, or the folder be read-only.
+    folder : contains a folder for each state, named by its digest; keep : the one in use, which is marked as used now.
+    Errors are ignored: another process may be removing the same files, or the folder may be read-only.
     """
     with suppress(OSError):
         os.utime(folder / keep)
@@ -34,8 +34,8 @@ def prune(folder: Path, keep: str, age: float = 7 * 86400.0) -> None:
                 shutil.rmtree(old, ignore_errors=True)
 
 
-# Numba keeps compiled code until the file of the function itself changes. Kernels are built of functions from other
-# files, too, so the code that was compiled from one state of all of them has a folder of its own.
+# Numba keeps compiled code until the file of the function itself changes. Kernels also contain functions from other
+# files, so the code compiled from each state of all files has a separate folder.
 _HERE = Path(__file__).parent
 _KEPT = Path(numba.config.CACHE_DIR or _HERE / "__pycache__")  # type: ignore[attr-defined]  # from the environment
 _DIGEST = sources_digest(_HERE)

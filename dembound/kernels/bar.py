@@ -4,9 +4,9 @@ The force on node i of a bar is (L eq. 8 and its finite difference counterpart, 
 
     Σ_p k_{i,p} (u_{i+p} − u_i) − k_{i−p,p} (u_i − u_{i−p}),  p = 0 … m
 
-where p = 0 stands for the local springs between neighbours. Springs and bonds stand in rows by index offset, so every
-loop runs along contiguous numbers, without lists of families. Stretches of the bar with nothing but whole local
-springs are `plain`: one stencil with constants moves them. A bar is alone in its loop: its kernels take all nodes.
+where p = 0 means the local springs between neighbours. Springs and bonds are stored in rows by index offset, so every
+loop reads contiguous numbers, without lists of families. Ranges of the bar that have only unbroken local springs are
+`plain`: they are moved by one stencil with constants. A bar is the only part of its scene: its kernels take all nodes.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ from dembound.kernels.tables import BarBonds
 
 @njit(**FAST)
 def _plain_reached(u, a, b, limit):
-    """How many of the springs that hold nodes a to b − 1 are as long as their limit (m)."""
+    """Number of springs at nodes a to b − 1 whose elongation has reached the limit (m)."""
     reached = 0
     for i in range(U(a), U(b + 1)):
         reached += u[i] - u[i - U(1)] >= limit
@@ -28,7 +28,7 @@ def _plain_reached(u, a, b, limit):
 
 @njit(**FAST)
 def _move_plain(u, v, a, b, stiffness, step, u_next):
-    """One step of nodes a to b − 1 between springs that are all alike; stiffness: Δt k/m."""
+    """One step of nodes a to b − 1 between equal springs; stiffness: Δt k/m."""
     one = U(1)
     for i in range(U(a), U(b)):
         w = v[i] + stiffness * ((u[i + one] - u[i]) - (u[i] - u[i - one]))
@@ -51,7 +51,7 @@ def _move_plain_dragged(u, v, a, b, stiffness, keep, step, u_next, mean):
 
 @njit(**FAST)
 def _spring_forces(u, a, b, spring, limit, space, force):
-    """Fill the forces (N) of local springs on nodes a to b − 1; returns how many springs are at their limit."""
+    """Fill the forces (N) of local springs on nodes a to b − 1; returns the number of springs at their limit."""
     one, last = U(1), u.size - 1
     reached = 0
     for k in range(U(max(a - 1, 0)), U(min(b, last))):
@@ -69,7 +69,7 @@ def _spring_forces(u, a, b, spring, limit, space, force):
 
 @njit(**FAST)
 def _add_bond_forces(u, a, b, p, bond, limit, space, force):
-    """Add the forces (N) of the bonds of one length among nodes a to b − 1; returns how many are at their limit."""
+    """Add the forces (N) of the bonds of one length among nodes a to b − 1; returns how many reach the limit."""
     m, row = U(bond.shape[0]), U(p - 1)
     p = U(p)
     reached = 0
@@ -77,7 +77,7 @@ def _add_bond_forces(u, a, b, p, bond, limit, space, force):
         e = u[i + p] - u[i]
         reached += (e >= limit) & (bond[row, i] > 0.0)
         space[i + m] = bond[row, i] * e
-    for i in range(p):  # no bonds begin before the first node or reach beyond the last
+    for i in range(p):  # no bonds begin before the first node or extend beyond the last
         space[U(a) + m - p + i] = 0.0
         space[U(b) + m - p + i] = 0.0
     for i in range(U(a), U(b)):
@@ -87,7 +87,7 @@ def _add_bond_forces(u, a, b, p, bond, limit, space, force):
 
 @njit(**FAST)
 def forces(u, mixed, spring, spring_limit, bond, bond_limit, space, force):
-    """Fill force (n,) N for the nodes that are not plain; returns how many springs and bonds are at their limit."""
+    """Fill force (n,) N for the nodes that are not plain; returns the number of springs and bonds at their limit."""
     reached = 0
     for r in range(mixed.shape[0]):
         a, b = mixed[r, 0], mixed[r, 1]
@@ -103,7 +103,7 @@ def forces(u, mixed, spring, spring_limit, bond, bond_limit, space, force):
 
 @njit(**FAST)
 def _plain_triggers(u, plain, limit):
-    """Whether a spring that holds a plain node has reached its limit (m)."""
+    """Whether a spring at a plain node has reached its limit (m)."""
     reached = 0
     for r in range(plain.shape[0]):
         reached += _plain_reached(u, plain[r, 0], plain[r, 1], limit)
@@ -112,7 +112,7 @@ def _plain_triggers(u, plain, limit):
 
 @njit(**FAST)
 def _triggers(u, bonds):
-    """Whether one of the other springs has reached a limit where the method decides."""
+    """Whether one of the other springs has reached a limit at which the method is called."""
     for k in range(bonds.spring.size):
         if bonds.triggers[k] and bonds.spring[k] > 0.0 and u[k + 1] - u[k] >= bonds.spring_limit[k]:
             return True
@@ -121,10 +121,10 @@ def _triggers(u, bonds):
 
 @njit(**FAST)
 def break_at_limit(number, u, v, step, bonds):
-    """Break for good all that has reached its limit (L eq. 6), in step `number`; returns the energy (J) that took.
+    """Break all springs and bonds at their limit for good (L eq. 6), in step `number`; returns their energy (J).
 
-    Of a spring k that was e⁻ long a step ago that is ½k e⁻e, which closes the books exactly; it can only be negative
-    where bonds swing from one side to the other within a step.
+    For a spring k with elongation e now and e⁻ one step earlier this is ½k e⁻e, which closes the energy balance
+    exactly. It is negative only if the elongation of a bond changes its sign within a step.
     """
     lost = 0.0
     for k in range(bonds.spring.size):
@@ -145,7 +145,7 @@ def break_at_limit(number, u, v, step, bonds):
 
 @njit(**FAST)
 def plane_force(k, u, spring, bond):
-    """Force (N, tension positive) through plane k, between nodes k and k + 1: of all that crosses it."""
+    """Force (N, tension positive) through plane k, between nodes k and k + 1, of all that crosses it."""
     total = spring[k] * (u[k + 1] - u[k])
     for row in range(bond.shape[0]):
         p = row + 1
@@ -156,7 +156,7 @@ def plane_force(k, u, spring, bond):
 
 @njit(**FAST)
 def node_stress(i, u, spring, bond, section):
-    """Stress (Pa, tension positive) at node i: the mean of the planes on both sides, at an end that of its one."""
+    """Stress (Pa, tension positive) at node i: the mean of both adjacent planes, at an end of the one plane."""
     total = 0.0
     planes = 0
     if i > 0:
@@ -201,7 +201,7 @@ def _move_mixed(u, v, a, b, mobility, keep, step, u_next, mean):
 
 @njit(**FAST)
 def _move_unsupported(u, v, plain, stiffness, mixed, mobility, keep, step, u_next, mean, nodes, dragged):
-    """One step of all nodes but the supported ones (k,)."""
+    """One step of all nodes except the supported ones (k,)."""
     for r in range(plain.shape[0]):
         a, b = plain[r, 0], plain[r, 1]
         if dragged:
@@ -219,7 +219,7 @@ def _move_unsupported(u, v, plain, stiffness, mixed, mobility, keep, step, u_nex
 
 @njit(cache=True, fastmath=FASTMATH | {"reassoc"}, error_model="numpy")
 def _drag_work(mean, v, drag):
-    """Work (J/s) of dashpots drag (n,) N·s/m that act on mean velocities: in a step, and from its half to its end."""
+    """Work (J/s) of dashpots drag (n,) N·s/m that act on mean velocities: in a step, and from its middle to its end."""
     whole = 0.0
     late = 0.0
     for i in range(mean.size):
@@ -230,7 +230,7 @@ def _drag_work(mean, v, drag):
 
 @njit(**FAST)
 def _note_drag(v, mean, before, nodes, drag, step, work):
-    """Enter what attenuation took in the books; for supported nodes their table entered it as the outside's work."""
+    """Add the energy taken by attenuation to the ledger; for supported nodes it is part of the outside's work."""
     for s in range(nodes.size):
         i = nodes[s]
         mean[i] = 0.5 * (before[s] + v[i])
@@ -244,7 +244,7 @@ def _note_drag(v, mean, before, nodes, drag, step, work):
 
 @njit(**FAST)
 def check(bonds, u, u_next, v):
-    """Whether a spring has come to where the method decides; leaves the forces in u_next.
+    """Whether a spring has reached a limit at which the method is called; stores the forces in u_next.
 
     bonds : see tables.BarBonds; of u, u_next and v, which have three rows, a bar uses the first.
     """
@@ -259,7 +259,7 @@ def check(bonds, u, u_next, v):
 
 @njit(**FAST)
 def push(bonds, u, u_next, v, number, step, work):
-    """Break what has reached its limit, and leave the forces of the rest in u_next."""
+    """Break springs and bonds at their limit, and store the forces of the others in u_next."""
     if bonds.reached[0] > 0:
         work[0, 3] += break_at_limit(number, u[0], v[0], step, bonds)
         work[1, 3] = work[0, 3]
@@ -271,14 +271,14 @@ def push(bonds, u, u_next, v, number, step, work):
 
 @njit(**FAST)
 def note(bonds, index, u, log):
-    """Write down the stress (Pa) at the probes, in the seventh column."""
+    """Record the stress (Pa) at the probes, in the seventh column."""
     for q in range(log.probes.size):
         log.record[index, q, 6] = node_stress(log.probes[q], u[0], bonds.spring, bonds.bond, bonds.section)
 
 
 @njit(**FAST)
 def move(bonds, u, u_next, v, body, nodes):
-    """One step of all nodes but the supported ones."""
+    """One step of all nodes except the supported ones."""
     w, before = v[0], bonds.before
     for s in range(nodes.size):
         before[s] = w[nodes[s]]
@@ -291,7 +291,7 @@ def move(bonds, u, u_next, v, body, nodes):
 
 @njit(**FAST)
 def finish(bonds, v, body, nodes, work):
-    """Enter what attenuation took."""
+    """Add the energy taken by attenuation to the ledger."""
     if bonds.drag.size > 0:
         _note_drag(v[0], bonds.mean, bonds.before, nodes, bonds.drag, body.step, work)
 

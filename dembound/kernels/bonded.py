@@ -1,4 +1,4 @@
-"""The history-dependent law in the loop: pairs push first, then particles move by what their contact ends come to."""
+"""The history-dependent law in the loop: first the forces of pairs, then the motion of particles under their sums."""
 
 import numpy as np
 from numba import njit, prange
@@ -13,14 +13,14 @@ from dembound.kernels.tables import Bonded, SeamEnds
 
 @njit(**FAST)
 def begin(bonded):
-    """Measure how far particles have moved anew before the first step."""
+    """Compute anew, before the first step, how far particles have moved."""
     bonded.way[0] = 0.0
     bonded.way[1] = 0.0
 
 
 @njit(**FAST)
 def check(bonded, u, u_next, v):
-    """Whether a pair may have come into reach that is not listed."""
+    """Whether a pair that is not listed may have come into contact."""
     way = bonded.way
     if 2.0 * way[0] < way[1]:
         return DONE
@@ -31,7 +31,7 @@ def check(bonded, u, u_next, v):
 
 @njit(**FAST)
 def push(bonded, u, u_next, v, number, step, work):
-    """Let all pairs push; returns the bonds that broke, if the loop is to stop at them."""
+    """Compute the forces of all pairs; returns the number of bonds that broke, if the loop is to stop at breaks."""
     lost = bonded.lost
     breaks = push_pairs(u, v, step, number, bonded.contacts, bonded.limits, lost)
     if breaks > 0:
@@ -75,7 +75,7 @@ def move(bonded, u, u_next, v, body, nodes):
 
 @njit(**FAST)
 def finish(bonded, v, body, nodes, work):
-    """Enter what local damping took, and how far particles have travelled."""
+    """Add the energy taken by local damping to the ledger, and the distance particles have moved."""
     note_damping(bonded.damped, work)
     most = largest(bonded.fastest)
     begin = bonded.contacts.begin
@@ -88,7 +88,7 @@ def finish(bonded, v, body, nodes, work):
 
 @njit(**FAST)
 def seam_ends_forces(seam, u, force):
-    """Add to force (k, 3) of the supported nodes what their twins have across the seam, as pairs last pushed."""
+    """Add to force (k, 3) of the supported nodes the last forces on their twins across the seam."""
     for s in range(seam.start.size - 1):
         fx, fy, moment = ends_force(U(s), seam.force, seam.start, seam.end)
         force[s, 0] += fx

@@ -1,37 +1,40 @@
-"""What the kernels share."""
+"""Constants and functions that all kernels use."""
 
 from typing import Any
 
 import numpy as np
 from numba import njit
 
-U = np.uint64  # unsigned indices spare numba's test for negative ones
+U = np.uint64  # unsigned indices avoid numba's test for negative ones
 
 FASTMATH = {"contract", "nsz"}
 """Fused multiply-add only: it rounds less and does not depend on threads."""
 
 FAST: dict[str, Any] = {"cache": True, "fastmath": FASTMATH, "error_model": "numpy", "_nrt": False}
-"""How what runs at every step is compiled: without counting references to arrays, which the caller holds.
+"""Compiler options of functions that run at every step: no reference counts for arrays, which the caller keeps.
 
-Counting costs two calls whenever an array is taken out of a bundle or handed to a function: as much, in all, as moving
-a thousand nodes of a bar. Such functions cannot make arrays.
+Counting takes two calls whenever an array is read from a bundle or passed to a function, in all as much time as moving
+a thousand nodes of a bar. Such functions cannot create arrays.
 """
 
 MAKES = FAST | {"_nrt": True}
-"""How functions are compiled that make arrays."""
+"""Compiler options of functions that create arrays."""
 
 PARALLEL = MAKES | {"parallel": True}
-"""How loops over particles and contacts are compiled."""
+"""Compiler options of loops over particles and contacts."""
 
 REST = 1e-250
-"""Speeds below this count as rest: they would decay into denormal numbers, which are a hundred times slower."""
+"""Speeds below this are set to zero: they would decay into denormal numbers, which are a hundred times slower."""
 
 DONE, LIST_ENDS, LAW_ENDS, TRIGGERED, BROKE = 0, 1, 2, 3, 4
-"""Why the loop returned: all steps are done; a list of pairs is old; a contact is about to leave the elastic law; a
-spring of a bar has triggered its method; a bond broke in the last step."""
+"""Reasons why the loop returned.
+
+All steps are done; a list of pairs is out of date; a contact is about to leave the elastic law; a spring of a bar has
+triggered its method; a bond broke in the last step.
+"""
 
 CHUNKS = 128
-"""Pieces of the particle or contact range handed to the threads; it has no effect on the result."""
+"""Number of chunks of the particle or contact range for the threads; it has no effect on the result."""
 
 
 @njit(**FAST)

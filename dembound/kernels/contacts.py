@@ -3,14 +3,14 @@
 A pair's motion is three numbers: the distance of the centres, the tangential displacement `shear` of the two surfaces
 (counted along the path, as the tangent turns with the pair) and the relative rotation. The bond resists all three from
 its unloaded state; the contact resists overlap and the part of `shear` that has not slid. No other history is needed:
-in two dimensions a shear force has one component, which turns with the pair by itself.
+in two dimensions a shear force has one component, which rotates with the pair automatically.
 
 A row of constants (12,) of a pair with first disk i and second disk j:
 
     [d_x, d_y, |d|, touch, (R_i − R_j)/2, k_n, k_s, k̄_n A, k̄_s A, k̄_n J, 1/A, R̄/J]
 
-d is the vector from i to j at the start, touch the distance at which the contact begins to push; then the contact's
-stiffnesses and the bond's. Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j.
+d is the vector from i to j at the start, touch the distance at which the contact begins to act; then the stiffnesses of
+the contact and of the bond. Force (4,) of a pair: x and y on i (the opposite on j), moment on i, moment on j.
 """
 
 import numpy as np
@@ -19,24 +19,28 @@ from numba import njit, prange
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum, largest
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
-"""States of a pair: without bond, bonded, bond broken in tension, in shear."""
+"""States of a pair: without bond, bonded, bond broken in tension, bond broken in shear."""
 
 UPDATED, BONDED, REFERENCE = 0, 1, 2
-"""Geometries: normals and arms follow the motion; those of intact bonds stay as at the start; all stay, and contacts
-that are closed at the start neither open nor slide."""
+"""Geometries of normals and arms.
+
+UPDATED: they follow the motion. BONDED, for ``geometry = "reference"``: those of intact bonds keep their initial
+values. REFERENCE: all keep them, and contacts that are closed at the start neither open nor slide.
+"""
 
 CLOSING = 1.05
 """Factor of a contact's first push after it was open.
 
-Central differences give a contact that opens with an overlap a in one step and a gap b in the next ½k·ab too much, and
-take ½k·ab too much from one that closes. The two balance only on average: long steps gain energy, of noise by a factor
-e within 0.3 s (0.9 of the limit, square lattice of 0.5 m disks, 2000 m/s). With this factor closing takes more than
-opening gives, on average by 0.05·sin³φ/φ of the contact's energy a period of φ = 2 arcsin(½ωΔt) a step: 2e-6 for waves
-of 1000 steps a period. A chain of contacts and bonds needs some 0.03 below the limit for φ = 2π/3 (stability.OPENING).
+With central differences a contact that opens, with an overlap a in one step and a gap b in the next, gains ½k·ab too
+much energy; one that closes loses ½k·ab too much. The two balance only on average. With long steps noise gains energy,
+by a factor e within 0.3 s (0.9 of the limit, square lattice of 0.5 m disks, 2000 m/s). With this factor closing loses
+more than opening gains, on average by 0.05·sin³φ/φ of the contact's energy per period, with the phase φ = 2
+arcsin(½ωΔt) per step: 2e-6 for waves of 1000 steps a period. A chain of contacts and bonds needs some 0.03 instead of
+0.05 for all φ below 2π/3 (stability.OPENING).
 """
 
 TURN = 0.01
-"""Angle by which a pair may turn before the law of small displacements, which errs by half its square, has to go."""
+"""Largest rotation of a pair under the law of small displacements, whose error is half its square."""
 
 
 @njit(**FAST, inline="always")
@@ -64,7 +68,7 @@ def _reference_strain(i, j, k, dx, dy, u, constants):
 def _updated_stretch(k, dx, dy, constants):
     """Normal and distance of a pair whose vector has changed by dx, dy, and its stretch.
 
-    That is (d² − d_0²)/(d + d_0), which keeps the digits that d − d_0 loses.
+    The stretch is (d² − d_0²)/(d + d_0), which keeps the digits that d − d_0 loses.
     """
     x = constants[k, U(0)]
     y = constants[k, U(1)]
@@ -76,7 +80,7 @@ def _updated_stretch(k, dx, dy, constants):
 
 @njit(**FAST, inline="always")
 def _updated_strain(i, j, k, dx, dy, was, v, step, constants):
-    """The same where normal and arms follow the motion; was: the shear before the step (s)."""
+    """The same with normal and arms that follow the motion; was: the shear before the step (s)."""
     nx, ny, distance, stretch = _updated_stretch(k, dx, dy, constants)
     arm_i = 0.5 * distance + constants[k, U(4)]
     slide = nx * (v[U(1), j] - v[U(1), i]) - ny * (v[U(0), j] - v[U(0), i])
@@ -101,8 +105,8 @@ def _bond_state(Fn, Fs, M, per_area, per_section, limits):
 def push(u, v, step, number, contacts, limits, lost):
     """Fill contacts.force for displacements u (3, n) reached with velocities v (3, n) after a step (s).
 
-    Slides contacts and breaks bonds that have come to their limits; number is that of the step. lost (chunks, 2) gets
-    what friction and cracks took in this step, J. Returns the number of bonds that broke.
+    Contacts and bonds at their limits slide and break; number is that of the step. lost (chunks, 2) receives the energy
+    taken by friction and by cracks in this step, J. Returns the number of bonds that broke.
     """
     _, first, second, contact_type, constants, state, all_shear, all_slip, cracked, _, force, _, _ = contacts
     friction, geometry = limits.friction, limits.geometry
@@ -129,7 +133,7 @@ def push(u, v, step, number, contacts, limits, lost):
             opening = nx * (v[U(0), j] - v[U(0), i]) + ny * (v[U(1), j] - v[U(1), i])
             if geometry != REFERENCE or constants[k, U(3)] < constants[k, U(2)]:
                 N = max(N, 0.0)
-                if overlap + step * opening <= 0.0:  # it was open a step ago
+                if overlap + step * opening <= 0.0:  # it was open one step earlier
                     N *= CLOSING
                 most = friction * N
                 if abs(S) > most:
@@ -168,7 +172,7 @@ def push(u, v, step, number, contacts, limits, lost):
 
 @njit(**FAST)
 def note_places(u, number, contacts):
-    """Write down where the bonds are at displacements u (3, n) that broke in step `number`."""
+    """Record the positions, at displacements u (3, n), of the bonds that broke in step `number`."""
     first, second, cracked, place = contacts.first, contacts.second, contacts.cracked, contacts.place
     for c in range(cracked.size):
         if cracked[c] == number:
@@ -194,7 +198,7 @@ def ends_force(row, force, start, end):
 
 @njit(**PARALLEL)
 def sum_forces(contacts, total):
-    """Fill total (3, n) of the contacts' particles with the forces and moments that their last forces come to."""
+    """Fill total (3, n) of the contacts' particles with the sums of their last forces and moments."""
     force, start, end = contacts.force, contacts.start, contacts.end
     begin = contacts.begin
     n = start.size - 1 - begin
@@ -206,7 +210,7 @@ def sum_forces(contacts, total):
 
 @njit(**PARALLEL)
 def start_from_displacements(u, contacts):
-    """Set the pairs' tangential displacements to those of small displacements u (3, n): no closed contact has slid."""
+    """Set the pairs' tangential displacements to those of small displacements u (3, n), without slip."""
     _, first, second, contact_type, constants, _, shear, slip, _, _, _, _, _ = contacts
     for p in prange(first.size):
         c = U(p)
@@ -232,11 +236,11 @@ def moved(u, begin, origin):
 
 @njit(**PARALLEL)
 def slack(u, contacts, limits):
-    """How far (m) two surfaces may move against each other before a pair leaves the elastic law; negative: it has.
+    """Least relative motion (m) of two surfaces after which a pair leaves the elastic law; negative: it has left it.
 
     A pair leaves it where a contact opens, closes or slides, a bond reaches its strength, or, if geometry follows the
-    motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation all change by no more than the
-    surfaces move, which bounds each condition from below.
+    motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation change by no more than the relative
+    motion of the surfaces, which gives a lower bound for each condition.
     """
     _, first, second, contact_type, constants, state, _, _, _, _, _, _, _ = contacts
     friction, tension, cohesion, tan_fa, geometry = limits
@@ -297,7 +301,7 @@ def strain_energy(u, contacts, geometry):
                 shear = all_shear[c]
             overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
             slid = shear
-            if constants[k, U(3)] < constants[k, U(2)] and overlap <= 0.0:  # apart, as at the start
+            if constants[k, U(3)] < constants[k, U(2)] and overlap <= 0.0:  # open, as at the start
                 overlap = 0.0
                 slid = 0.0
             elif geometry != REFERENCE:

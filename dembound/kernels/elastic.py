@@ -1,11 +1,11 @@
 """The history-free elastic law and the step of central differences, fused into one pass over the particles.
 
-Each particle gathers from its own row of contacts, so no two particles write to the same place: the sums come in
-the same order, hence with the same bits, for any number of threads. The constants of a contact stand once
-in a small table shared by all copies of the brick; a row holds only the neighbour and the contact type (8 bytes).
+Each particle gathers from its own row of contacts, so no two particles write to the same place: the sums are added in
+the same order, and so give the same bits, for any number of threads. The constants of a contact are stored once, in a
+small table for all copies of the brick; a row contains only the neighbour and the contact type (8 bytes).
 
-A row of constants (6,) of a contact seen from particle i with neighbour j, unit normal n = (c, s) from i to j or
-from j to i (the law is even in n, the arms carry the sign):
+A row of constants (6,) of a contact, for particle i with neighbour j, unit normal n = (c, s) from i to j or from j to i
+(the law is even in n, the arms have the sign):
 
     [√k_n c, √k_n s, √(k_s/k_n), √k_s l_i, √k_s l_j, k_r]
 
@@ -78,7 +78,7 @@ def _fill(rows, u, force):
 
 @njit(**FAST)
 def seam_forces(seam, u, force):
-    """Add to force (k, 3) of the supported nodes what their twins have across the seam."""
+    """Add to force (k, 3) of the supported nodes the forces on their twins across the seam."""
     twin, start, neighbour, contact_type, constants = seam
     for s in range(twin.size):
         if start[s + 1] > start[s]:
@@ -141,23 +141,23 @@ def move(links, u, u_next, v, body, nodes):
 
 @njit(**FAST)
 def finish(links, v, body, nodes, work):
-    """Enter what local damping took."""
+    """Add the energy taken by local damping to the ledger."""
     if body.damp > 0.0:
         note_damping(links.damped, work)
 
 
 @njit(**FAST)
 def begin_watch(watched):
-    """Measure the contacts anew before the first step."""
+    """Compute anew, before the first step, the distance of all contacts from their limits."""
     watched.way[0] = 0.0
     watched.way[1] = 0.0
 
 
 @njit(**FAST)
 def check_watch(watched, u, u_next, v):
-    """Whether the step would take a contact out of the elastic law, or a pair into reach that is not listed.
+    """Whether a contact would leave the elastic law in this step, or a pair that is not listed may come into contact.
 
-    How far every pair is from that is measured again when surfaces have travelled half of it.
+    The least distance of all pairs from their limits is computed again when surfaces have moved by half of it.
     """
     _, contacts, limits, origin, skin, _, way = watched
     if 2.0 * way[0] < way[1]:
@@ -172,14 +172,14 @@ def check_watch(watched, u, u_next, v):
 
 @njit(**FAST)
 def move_watched(watched, u, u_next, v, body, nodes):
-    """One step of all particles, measuring how fast surfaces are."""
+    """One step of all particles, with the largest surface speeds."""
     links = watched.links
     move_rows(links.rows, u, v, body, u_next, links.fastest, watched.arms, links.damped)
 
 
 @njit(**FAST)
 def finish_watched(watched, v, body, nodes, work):
-    """Enter what local damping took, and how far surfaces have travelled."""
+    """Add the energy taken by local damping to the ledger, and the distance surfaces have moved."""
     finish(watched.links, v, body, nodes, work)
     most = largest(watched.links.fastest)
     for s in range(nodes.size):

@@ -1,10 +1,11 @@
-"""Forces that turn with the side they act on, by the mean rotation of this side and the opposite one.
+"""Forces that rotate with the side they act on, by the mean rotation of this side and the opposite one.
 
-Forces on opposite sides so stay opposite: a body that bends, whose ends turn against each other, is not pushed away.
+So forces on opposite sides remain opposite: a body that bends, whose ends rotate in opposite directions, is not pushed
+away.
 
-What balances the stress of a settled body at its sides is part of that stress, so it turns with the body. Were its
-direction fixed, a body under pressure p that nothing holds would tip over: forces ±pH on the two ends of a body W wide
-make a moment pHW·θ once it has turned by θ, which grows at the rate √(12|σ_xx + σ_yy|/(ρ(W² + H²))).
+The forces that balance the stress of a settled body at its sides are part of that stress, so they rotate with the body.
+With fixed directions, a body under pressure p that is not held would be unstable: forces ±pH on the two ends of a body
+of width W give a moment pHW·θ for a rotation θ, which grows at the rate √(12|σ_xx + σ_yy|/(ρ(W² + H²))).
 """
 
 import numpy as np
@@ -15,7 +16,7 @@ from dembound.kernels.law import is_turning
 from dembound.kernels.tables import Followers
 
 GONE = -2
-"""Stands for the twin of a member that has broken off its side."""
+"""Value in `twin` for a member that has broken off its side."""
 
 
 @njit(**FAST, inline="always")
@@ -32,10 +33,10 @@ def _moved(m, u, member, twin, rest):
 
 @njit(**MAKES)
 def side_rotation(side, u, followers):
-    """Angle (rad) by which a side has turned since the datum, relative to its twins where it has any.
+    """Angle (rad) by which a side has rotated since the datum, relative to its twins if it has any.
 
-    The rotation that fits the members' places best by least squares: tan θ = Σ a × r / Σ a · r, with a a member's arm
-    from their mean place at the datum and r that of now.
+    The rotation from a least-squares fit of the members' positions: tan θ = Σ a × r / Σ a · r, with a the arm of a
+    member from their mean position at the datum and r the present arm.
     """
     member, twin, arm, rest = followers.member, followers.twin, followers.arm, followers.rest
     first, last = followers.start[side], followers.start[side + 1]
@@ -65,7 +66,7 @@ def side_rotation(side, u, followers):
 
 @njit(**MAKES)
 def side_rotations(u, followers):
-    """Angles (s,) rad by which forces on each side turn: the mean of its own rotation and that of the opposite side."""
+    """Angles (s,) rad by which forces on each side rotate: the mean rotation of this side and the opposite one."""
     opposite = followers.opposite
     angles = np.empty(opposite.size)
     for k in range(opposite.size):
@@ -78,9 +79,9 @@ def side_rotations(u, followers):
 
 @njit(**MAKES)
 def turn_forces(followers, u, v, load, step):
-    """Turn the forces with their sides at displacements u (3, n), in load (3, n); returns half their step's work (J).
+    """Rotate the forces with their sides at displacements u (3, n), in load (3, n); returns work (J) of half a step.
 
-    That is the work of what turning adds, by velocities v (3, n) of half a step ago.
+    This is the work of the change of force by rotation, with the velocities v (3, n) of half a step earlier.
     """
     node, side, force = followers.node, followers.side, followers.force
     steady, extra = followers.steady, followers.extra
@@ -111,7 +112,7 @@ def turn_forces(followers, u, v, load, step):
 
 @njit(**MAKES)
 def extra_work(followers, v, step):
-    """Work (J) of what turning adds in half a step at velocities v (3, n)."""
+    """Work (J), in half a step at velocities v (3, n), of the change of force by rotation."""
     node, extra = followers.node, followers.extra
     half = 0.0
     for q in range(node.size):

@@ -1,4 +1,4 @@
-"""Which particles are joined to which, through bonds and contacts that push."""
+"""Pieces of particles connected by bonds and closed contacts."""
 
 import numpy as np
 from numba import njit
@@ -9,7 +9,7 @@ from dembound.kernels.contacts import INTACT
 
 @njit(**FAST, inline="always")
 def _root(parent, i):
-    """The particle that stands for i's piece; ways to it are halved as they are walked."""
+    """The particle that represents i's piece (union-find with path halving)."""
     while parent[i] != i:
         parent[i] = parent[parent[i]]
         i = parent[i]
@@ -18,9 +18,9 @@ def _root(parent, i):
 
 @njit(**MAKES)
 def pieces(contacts, begin, end):
-    """Piece of each of the particles begin to end, (end − begin,): the number of its first one, counted from begin.
+    """Piece of each of the particles begin to end, (end − begin,): number of its first particle, from begin.
 
-    Pieces hold together by intact bonds and by contacts that pushed when pairs last pushed.
+    Pieces are connected by intact bonds and by contacts that were closed when forces were last computed.
     """
     first, second, state, force = contacts.first, contacts.second, contacts.state, contacts.force
     parent = np.arange(end)

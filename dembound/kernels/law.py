@@ -1,7 +1,7 @@
-"""What the loop calls of a law, of a tie, and of forces that turn.
+"""The functions that the loop calls for a law, for a tie, and for forces that rotate.
 
-Each is a named tuple of arrays (tables.py), and its type decides, when the loop is compiled, which kernels are called.
-A new law is a bundle with its kernels, named with `is_law`; the loop stays as it is.
+Each of these is a named tuple of arrays (tables.py), a bundle. Its type determines, when the loop is compiled, which
+kernels are called. A new law is a bundle with its kernels, registered with `is_law`; the loop is not changed.
 """
 
 from functools import wraps
@@ -18,9 +18,9 @@ Kernel = Any
 
 
 def generic(stub: Kernel) -> Kernel:
-    """A function whose kernel is chosen by the type of its first argument; `answer` names the kernels.
+    """A function whose kernel is chosen by the type of its first argument; `answer` registers the kernels.
 
-    Compiled code chooses when it is compiled, Python code, where nothing is compiled, when it is called.
+    In compiled code the choice is made when it is compiled, otherwise (NUMBA_DISABLE_JIT=1) at each call.
     """
     kernels: dict[type, Kernel] = {}
 
@@ -34,14 +34,14 @@ def generic(stub: Kernel) -> Kernel:
 
 @generic
 def begin(law):
-    """Reset what the law counts within one call of the loop."""
+    """Reset the counters of the law at the beginning of a call of the loop."""
 
 
 @generic
 def check(law, u, u_next, v):
-    """Why the loop has to return before this step, DONE if nothing keeps it; changes nothing but work space.
+    """The reason why the loop has to return before this step, or DONE; changes only work space.
 
-    u, v : (3, n) displacements now, velocities half a step ago; u_next : (3, n) work space.
+    u, v : (3, n) displacements now, velocities half a step earlier; u_next : (3, n) work space.
     """
 
 
@@ -49,33 +49,33 @@ def check(law, u, u_next, v):
 def push(law, u, u_next, v, number, step, work):
     """Compute the forces of displacements u in step `number` of length `step` (s).
 
-    Forces that `move` needs stay in the law's own arrays or in u_next. work : (2, 6), see tables.Log. Returns whether
-    bonds broke that the loop is to stop for, as a number.
+    Forces that `move` needs are stored in the law's own arrays or in u_next. work : (2, 6), see tables.Log. Returns, as
+    a number, whether bonds broke at which the loop is to stop.
     """
 
 
 @generic
 def note(law, index, u, log):
-    """Write down what the law records at the probes beside their motion, in row `index` of log.record."""
+    """Record quantities of the law at the probes, in addition to their motion, in row `index` of log.record."""
 
 
 @generic
 def move(law, u, u_next, v, body, nodes):
-    """Move the law's nodes by a step; u_next takes their displacements, of supported ones (k,) their forces."""
+    """Move the law's nodes by a step; u_next receives their displacements, for supported ones (k,) their forces."""
 
 
 @generic
 def finish(law, v, body, nodes, work):
-    """Enter in work what the law took in this step, supported nodes (k,) moved too; v : (3, n) velocities after it."""
+    """Add to work the energy the law took in this step, with supported nodes (k,); v : (3, n) velocities after it."""
 
 
 @generic
 def across(tie, u, force):
-    """Add to force (k, 3) what a tie does to the k supported nodes at displacements u (3, n)."""
+    """Add to force (k, 3) the forces of a tie on the k supported nodes at displacements u (3, n)."""
 
 
 def pull(ties, u, force):
-    """Fill force (k, 3) with what all ties do to the k supported nodes at displacements u (3, n)."""
+    """Fill force (k, 3) with the forces of all ties on the k supported nodes at displacements u (3, n)."""
     force[:] = 0.0
     for tie in ties:
         across(tie, u, force)
@@ -96,22 +96,22 @@ def _pull(ties, u, force):
 
 @generic
 def turn(turning, u, v, load, step):
-    """Turn the forces that turn with their sides, in load (3, n); returns the work (J) of that up to the whole step."""
+    """Rotate the forces that rotate with their sides, in load (3, n); returns its work (J) up to the whole step."""
 
 
 @generic
 def turning_work(turning, v, step):
-    """Work (J) of what turning adds in the half step (s) after that, at velocities v (3, n) of its end."""
+    """Work (J) of the rotation of forces in the half step (s) after that, at velocities v (3, n) of its end."""
 
 
 def _of_all(kernel: Kernel, *, returns: bool) -> Kernel:
     """The function called for all laws of a tuple in turn; returns the largest number where it returns numbers.
 
-    A single law is called directly: unrolling a loop costs a short bar a tenth of its step.
+    A single law is called directly: for a short bar, unrolling a loop takes a tenth of a step.
     """
 
     def call(laws: Any, *others: Any) -> Any:
-        """Stands for one of those below; what it does itself is done where nothing is compiled."""
+        """Replaced by one of the functions below in compiled code; this one runs without compiling."""
         done = [kernel(law, *others) for law in laws]
         return max(done) if returns else None
 
@@ -136,7 +136,7 @@ def _of_all(kernel: Kernel, *, returns: bool) -> Kernel:
 
 
 _INLINED: Any = {"forceinline": True}
-"""How kernels of laws are compiled: into the loop. Passing all arrays of a bundle costs as much as fifty nodes."""
+"""Compiler options of kernels of laws: inlined, as passing all arrays of a bundle takes as long as fifty nodes."""
 
 _UNCACHED: Any = {name: value for name, value in FAST.items() if name != "cache"} | _INLINED
 
@@ -185,9 +185,9 @@ def is_law(
     push: Kernel = _no_push,
     note: Kernel = _no_note,
 ) -> None:
-    """Make bundles of this type a law with these kernels; each as described at this module's function of its name.
+    """Register bundles of this type as a law with these kernels; see the function of the same name in this module.
 
-    The type has to be importable by its name, as what is compiled for it is kept on disk.
+    The type must be importable by its name, as the code compiled for it is kept on disk.
     """
     for name, kernel in locals().copy().items():
         if name != "bundle":
@@ -195,18 +195,18 @@ def is_law(
 
 
 def is_tie(bundle: type, *, across: Kernel) -> None:
-    """Make bundles of this type a tie."""
+    """Register bundles of this type as a tie."""
     answer(globals()["across"], bundle, across)
 
 
 def is_turning(bundle: type, *, turn: Kernel, turning_work: Kernel) -> None:
-    """Make bundles of this type forces that turn."""
+    """Register bundles of this type as forces that rotate."""
     answer(globals()["turn"], bundle, turn)
     answer(globals()["turning_work"], bundle, turning_work)
 
 
 def answer(function: Kernel, bundle: type | None, kernel: Kernel) -> None:
-    """Let a kernel stand for a generic function where its first argument is a bundle of this type, or None."""
+    """Make a generic function call a kernel if its first argument is a bundle of this type, or None."""
     function.kernels[bundle or type(None)] = kernel
     if config.DISABLE_JIT:  # type: ignore[attr-defined]  # from the environment
         return
@@ -216,7 +216,7 @@ def answer(function: Kernel, bundle: type | None, kernel: Kernel) -> None:
         return kernel.py_func if is_it else None
 
     options = {name: value for name, value in kernel.targetoptions.items() if name in FAST} | _INLINED
-    overload(function, jit_options=options, strict=False)(choose)  # type: ignore[arg-type]  # its stubs miss _nrt
+    overload(function, jit_options=options, strict=False)(choose)  # type: ignore[arg-type]  # its stubs lack _nrt
 
 
 answer(turn, None, _no_turn)

@@ -1,6 +1,7 @@
-"""The loop: the step of central differences for whatever laws move the parts of a scene.
+"""The loop: the step of central differences for any laws of the parts of a scene.
 
-Compiled for every combination of laws and ties anew; they are chosen by the types of their bundles (law.py).
+It is compiled separately for every combination of laws and ties, which are chosen by the types of their bundles
+(law.py).
 """
 
 import numpy as np
@@ -23,11 +24,13 @@ from dembound.kernels.step import copy, move_supported, note_after, note_before,
 
 @njit(**MAKES)
 def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
-    """Advance by up to supports.drive.shape[0] steps, the first being that of `number`; returns steps done and why.
+    """Advance by up to supports.drive.shape[0] steps, the first being that of `number`.
 
-    u, u_next, v : (3, n) displacement now, work space for the next one, velocity half a step ago; u holds the result.
-    laws, ties : tuples of bundles, a law for every part. turning : tables.Followers, or None. The other bundles are
-    explained in tables.py.
+    Returns the number of steps done and the reason for returning.
+
+    u, u_next, v : (3, n) displacement now, work space for the next one, velocity half a step earlier; u contains the
+    result. laws, ties : tuples of bundles, a law for every part. turning : tables.Followers, or None. The other bundles
+    are explained in tables.py.
     """
     k = supports.nodes.size
     pulled, followed = np.zeros((k, 3)), np.zeros((k, 3))

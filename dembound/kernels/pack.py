@@ -1,7 +1,7 @@
 """Minimise the overlap energy of frictionless disks (FIRE: Bitzek et al. 2006, Guénolé et al. 2020).
 
-Every contact is a spring of unit stiffness under compression only, every disk has unit mass; the contact
-modulus multiplies all forces alike and so never enters.
+Every contact is a spring of unit stiffness under compression only, every disk has unit mass; the contact modulus
+multiplies all forces by the same factor and is not needed.
 """
 
 import math
@@ -59,7 +59,7 @@ def residual(forces, held):
 
 @njit(cache=True)
 def push(velocities, forces, held, dt, mix):
-    """Kick all free disks by dt·F and turn their common velocity towards the force (in place)."""
+    """Add dt·F to the velocities of all free disks, and mix them towards the direction of the force (in place)."""
     vv = 0.0
     ff = 0.0
     for i in range(held, forces.shape[0]):
@@ -90,11 +90,11 @@ def drift(positions, velocities, held, dt, origin):
 def relax(positions, velocities, radii, held, pairs, shifts, leash, tolerance, faint, max_steps, pace):
     """Run FIRE until the forces balance, a disk has moved by `leash`, or `max_steps` are done.
 
-    positions, velocities (n, 2) change in place; the first `held` disks stay where they are; pairs (b, 2) and
-    shifts (b, 2) list every pair that can meet before the leash is used up. pace = [dt, mix, downhill steps]
-    carries FIRE's state from call to call. Returns (mean unbalanced force / mean contact force, steps done);
-    balance is reached when the ratio is at most `tolerance`. Contact forces below `faint` count as `faint`:
-    disks that have room to spare lose their last contacts only slowly, and are not worth waiting for.
+    positions, velocities (n, 2) change in place; the first `held` disks do not move; pairs (b, 2) and shifts (b, 2)
+    list every pair that can come into contact before a disk has moved by `leash`. pace = [dt, mix, downhill steps]
+    keeps FIRE's state between calls. Returns (mean unbalanced force / mean contact force, steps done); balance is
+    reached when the ratio is at most `tolerance`. Contact forces below `faint` count as `faint`: disks with free space
+    lose their last contacts only slowly, so that waiting for them would take too long.
     """
     forces = np.zeros_like(positions)
     origin = positions.copy()
@@ -110,7 +110,7 @@ def relax(positions, velocities, radii, held, pairs, shifts, leash, tolerance, f
             if pace[2] > PATIENCE:
                 pace[0] = min(pace[0] * GROW, LONGEST_STEP)
                 pace[1] *= MIX_DECAY
-        else:  # uphill: go back half a step, stop, and start again more carefully
+        else:  # uphill: go back half a step, stop, and start again with a smaller step
             drift(positions, velocities, held, -0.5 * pace[0], origin)
             velocities[:] = 0.0
             pace[0] = max(pace[0] * SHRINK, 0.1 * FIRST_STEP)

@@ -1,4 +1,4 @@
-"""The step of central differences, velocities at half steps: what every law's kernel shares."""
+"""The step of central differences, velocities at half steps: functions for the kernels of all laws."""
 
 import numpy as np
 from numba import njit, prange
@@ -12,24 +12,24 @@ def kick(v, f, b, damp):
     if damp > 0.0:
         f -= damp * abs(f) * np.sign(v)
     w = v + b * f
-    return 0.0 if abs(w) <= REST else w  # what is not a number stays so, and is seen
+    return 0.0 if abs(w) <= REST else w  # nan is kept, so that it is detected
 
 
 @njit(**FAST, inline="always")
 def damping_work(v, w, f, b, damp, step):
-    """Work (J) that local damping takes in a step from v to w under a force f: whole, and up to the whole step."""
+    """Work (J) that local damping takes in a step from v to w under a force f: in all, and up to the whole step."""
     taken = damp * abs(f) * np.sign(v) * step
-    if b == 0.0:  # held: nothing of it acts here
+    if b == 0.0:  # held: no local damping
         taken = 0.0
     return 0.5 * taken * (v + w), 0.5 * taken * v
 
 
 @njit(**FAST, inline="always")
 def move_particle(i, fx, fy, moment, u, v, body, u_next):
-    """Move particle i by a step under its contact forces, to which steady loads come; u_next takes its displacement.
+    """Move particle i by a step under its contact forces plus steady loads; u_next receives its displacement.
 
-    Forces on a supported one wait in u_next for `move_supported`. Returns the work (J) that local damping took, all of
-    it and up to the whole step.
+    For a supported particle u_next receives the forces, for `move_supported`. Returns the work (J) that local damping
+    took, in all and up to the whole step.
     """
     if body.load.shape[1] > 0:
         fx += body.load[U(0), i]
@@ -64,7 +64,7 @@ def move_particle(i, fx, fy, moment, u, v, body, u_next):
 
 @njit(**FAST)
 def copy(source, target):
-    """Copy an array (3, n) to another one; assigning it would compile numba's error messages, too, for seconds."""
+    """Copy an array (3, n) to another one; with an assignment numba would compile its messages for seconds."""
     for c in range(source.shape[0]):
         for i in range(source.shape[1]):
             target[c, i] = source[c, i]
@@ -72,14 +72,14 @@ def copy(source, target):
 
 @njit(**FAST)
 def note_damping(damped, work):
-    """Enter in work (2, 6) what local damping took of particles that are not supported, damped (chunks, 2) J."""
+    """Add to work (2, 6) the energy that local damping took from unsupported particles, damped (chunks, 2) J."""
     work[1, 1] += column_sum(damped, 1)
     work[0, 1] += column_sum(damped, 0)
 
 
 @njit(**FAST)
 def note_before(step, u, v, probes, record, twin, followed):
-    """Write down the probes' displacement and half of their velocity before a step, and half that of twins followed."""
+    """Record the probes' displacement and half of their velocity before a step, and half of that of followed twins."""
     for p in range(probes.size):
         for c in range(3):
             record[step, p, c] = u[c, probes[p]]
@@ -91,11 +91,11 @@ def note_before(step, u, v, probes, record, twin, followed):
 
 @njit(**FAST)
 def move_supported(step, u, v, u_next, across, followed, supports, body, work):
-    """Move the supported nodes by a step, once all other particles have; u_next holds the new displacements.
+    """Move the supported nodes by a step, once all other particles have; u_next contains the new displacements.
 
-    For these nodes it holds their contact forces and steady loads before. across (k, 3) are the forces through seams,
-    which are the outside's work; followed (k, 3) half the velocity of the nodes' twins before the step. work (2, 6) is
-    advanced.
+    For the supported nodes it contains their contact forces and steady loads before the call. across (k, 3) are the
+    forces through seams, whose work counts as that of the outside; followed (k, 3) half the velocity of the nodes'
+    twins before the step. work (2, 6) is advanced.
     """
     nodes, inertia, keep, mobility, stiffness, prescribed, drives, twin, follow = supports
     drive = drives[step]
@@ -110,7 +110,7 @@ def move_supported(step, u, v, u_next, across, followed, supports, body, work):
             force = u_next[U(c), i]
             total = force + across[s, c] - stiffness[s, c] * u[U(c), i] + drive[s, c]
             drag = 0.0
-            if body.damp > 0.0 and mobility[s, c] > 0.0:  # without the dashpots', so that it is as strong as the twin's
+            if body.damp > 0.0 and mobility[s, c] > 0.0:  # without dashpots, so that it equals that of the twin
                 drag = -body.damp * abs(total) * np.sign(before)
             if twin[s] >= 0:
                 total += follow[s, c] * (followed[s, c] + 0.5 * v[U(c), U(twin[s])])
@@ -131,7 +131,7 @@ def move_supported(step, u, v, u_next, across, followed, supports, body, work):
 
 @njit(**PARALLEL)
 def note_top_speeds(v, top_speed):
-    """Raise top_speed (n,) to the speeds of velocities v (3, n)."""
+    """Update the largest speeds top_speed (n,) with velocities v (3, n)."""
     n = top_speed.size
     for chunk in prange(CHUNKS):
         for p in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
@@ -143,7 +143,7 @@ def note_top_speeds(v, top_speed):
 
 @njit(**FAST)
 def note_after(step, v, probes, record, tracked, peaks):
-    """Write down what is only known after a step."""
+    """Record the quantities that are only available after a step."""
     for p in range(probes.size):
         for c in range(3):
             record[step, p, 3 + c] += 0.5 * v[c, probes[p]]

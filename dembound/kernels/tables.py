@@ -1,4 +1,4 @@
-"""The arrays kernels take, bundled by what they describe. n particles, b contacts, e = 2b contact ends, k nodes."""
+"""Bundles of arrays, the arguments of kernels. n particles, b contacts, e = 2b contact ends, k nodes."""
 
 from typing import NamedTuple
 
@@ -8,8 +8,8 @@ import numpy as np
 class NeighbourTable(NamedTuple):
     """Contacts of the elastic law, one row per particle, of the particles from number `begin` on.
 
-    Row i, that of particle i, is start[i]:start[i + 1] of neighbour (e,) and contact_type (e,), the latter the row of
-    constants (p, 6) to take; see elastic.py. start ends with the last particle's row; those before `begin` are empty.
+    Row i, that of particle i, is start[i]:start[i + 1] of neighbour (e,) and contact_type (e,), its row of
+    constants (p, 6); see elastic.py. start ends with the last particle's row; those before `begin` are empty.
     """
 
     begin: int
@@ -56,7 +56,7 @@ class LaneRows(NamedTuple):
 class Contacts(NamedTuple):
     """Contacts with a history, each listed once; see contacts.py for the columns of constants and force.
 
-    first, second, contact_type : (b,) uint32 particles, and which row of constants (p, 12) is the pair's.
+    first, second, contact_type : (b,) uint32 particles, and the row of the pair in constants (p, 12).
     state : (b,) uint8, see contacts.py; shear, slip : (b,) m, the tangential displacement since the start and the part
     of it that slid; cracked : (b,) int64, step in which the bond broke, else −1; place : (b, 2) m, mean displacement of
     the two disks in that step; force : (b, 4). start, end : rows of contact ends, one per particle, those before number
@@ -80,7 +80,7 @@ class Contacts(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Where contacts and bonds give way.
+    """Friction of contacts and strength of bonds.
 
     friction, tan_fa : pure numbers; tension, cohesion : Pa; geometry : one of those in contacts.py.
     """
@@ -93,7 +93,7 @@ class Limits(NamedTuple):
 
 
 class Body(NamedTuple):
-    """What turns forces into motion.
+    """Data to compute motion from forces.
 
     mobility, inverse_inertia : (n,) Δt/m and Δt/I; free : (3,) 1, or 0 for a component held everywhere; load : (3, n)
     steady forces N and moments N·m, or (3, 0) for none; damp : local damping; step : Δt in s.
@@ -108,14 +108,14 @@ class Body(NamedTuple):
 
 
 class Followers(NamedTuple):
-    """Forces that turn with the sides they act on, of s sides with m members in all and q particles; see follower.py.
+    """Forces that rotate with their sides, for s sides with m members in all and q particles; see follower.py.
 
     opposite : (s,) the opposite side of each, itself if there is none. start : (s + 1,) members of side k are
-    start[k]:start[k + 1] of the next three; member, twin : (m,) particles, and the ones relative to whose motion they
-    turn, −1 for none, GONE for a member that has broken off; arm : (2, m) m, from the side's mean place at the datum.
-    node : (q,) particles; side : (2, q) the one or two sides each belongs to, −1 for none; force : (2, 2, q) N by side
-    and component; steady : (2, q) N, all steady load before anything has turned; extra : (2, q) N, what turning adds at
-    the moment. rest : (2, m) m, the displacement of a member at the datum, less that of its twin.
+    start[k]:start[k + 1] of the next three; member, twin : (m,) particles, and those relative to which their motion is
+    measured, −1 for none, GONE for a member that has broken off; arm : (2, m) m, from the side's mean position at the
+    datum. node : (q,) particles; side : (2, q) the one or two sides each belongs to, −1 for none; force : (2, 2, q) N
+    by side and component; steady : (2, q) N, all steady load before any rotation; extra : (2, q) N, its present change
+    by rotation. rest : (2, m) m, displacement of a member in the reference state, less that of its twin.
     """
 
     opposite: np.ndarray
@@ -137,10 +137,10 @@ class Followers(NamedTuple):
 
 
 class Seam(NamedTuple):
-    """What a free-field column under the elastic law does to k supported nodes across its seam.
+    """The forces of a free-field column under the elastic law on k supported nodes across its seam.
 
-    twin : (k,) the particle of the column at each one's place, −1 for none; start : (k + 1,) rows of what that one has
-    across the seam: its neighbours there (e,), and contact_type (e,), rows of constants (p, 6).
+    twin : (k,) the column's particle at the same place of the brick, −1 for none; start : (k + 1,) rows of its contacts
+    across the seam: neighbour (e,) there, and contact_type (e,), rows of constants (p, 6).
     """
 
     twin: np.ndarray
@@ -151,7 +151,7 @@ class Seam(NamedTuple):
 
 
 class SeamEnds(NamedTuple):
-    """The same of a column under the history-dependent law: start (k + 1,) rows of its contact ends, end (e,).
+    """The same for a column under the history-dependent law: start (k + 1,) rows of its contact ends, end (e,).
 
     force : (b, 4) of its contacts, see Contacts.
     """
@@ -182,14 +182,14 @@ class Supports(NamedTuple):
 
 
 class Log(NamedTuple):
-    """What is written down at every step.
+    """The record of every step.
 
     probes : (p,) particles; record : (steps, p, 6) their displacement and velocity at the start of each step, the
     velocity as the mean of its two half-step values, and of a bar (steps, p, 7), stress last, Pa. tracked : (q,)
     particles; peaks : (q, 3, 2) smallest and largest velocity so far. top_speed : (n,) largest speed so far, m/s, or
     (0,) if not asked for. work : (2, 6) J done on the body by supports, taken by damping, friction and cracks, added by
-    a change of method, done by what follower forces add as they turn, column by column; row 0 up to the half step
-    reached, row 1 up to the last whole step.
+    a change of method, done by the change of follower forces as they rotate, column by column; row 0 up to the half
+    step reached, row 1 up to the last whole step.
     """
 
     probes: np.ndarray
@@ -201,7 +201,7 @@ class Log(NamedTuple):
 
 
 class Links(NamedTuple):
-    """The elastic law on the particles that rows are of; fastest (chunks,), damped (chunks, 2) : work space."""
+    """The elastic law on the particles of the rows; fastest (chunks,), damped (chunks, 2) : work space."""
 
     rows: NeighbourTable | LaneRows
     fastest: np.ndarray
@@ -209,12 +209,12 @@ class Links(NamedTuple):
 
 
 class WatchedLinks(NamedTuple):
-    """The elastic law, on watch for contacts that would leave it.
+    """The elastic law with a check for contacts that would leave it.
 
-    contacts, limits : the pairs and where they give way; origin : (2, n) displacements at which the list of pairs was
-    made, of the n particles of the rows; skin : m, the gap up to which it holds pairs; arms : (begin + n,) m, longest
-    arm of a particle's contacts; way : (2,) m, how far surfaces have travelled since the contacts were measured, and
-    how far they may.
+    contacts, limits : the pairs and their limits; origin : (2, n) displacements at which the list of pairs was made, of
+    the n particles of the rows; skin : m, largest gap of listed pairs; arms : (begin + n,) m, longest arm of a
+    particle's contacts; way : (2,) m, distance surfaces have moved since the contacts were checked, and the distance
+    they may move.
     """
 
     links: Links
@@ -227,11 +227,11 @@ class WatchedLinks(NamedTuple):
 
 
 class Bonded(NamedTuple):
-    """The history-dependent law on the n particles that contacts are of.
+    """The history-dependent law on the n particles of the contacts.
 
-    limits : where contacts give way; origin : (2, n) displacements at which all pairs with gaps up to skin (m) were
-    listed; stops : return after a step in which a bond broke; way : (2,) m, how far particles have travelled since
-    that was measured, and how far they may; fastest (chunks,), damped, lost (chunks, 2) : work space.
+    limits : friction and strengths; origin : (2, n) displacements at which all pairs with gaps up to skin (m) were
+    listed; stops : return after a step in which a bond broke; way : (2,) m, distance particles have moved since this
+    was checked, and the distance they may move; fastest (chunks,), damped, lost (chunks, 2) : work space.
     """
 
     contacts: Contacts
@@ -246,17 +246,17 @@ class Bonded(NamedTuple):
 
 
 class BarBonds(NamedTuple):
-    """What holds a bar of n nodes together; horizon m, 0 where there is no peridynamic bond.
+    """Springs and bonds of a bar of n nodes; horizon m, 0 if there is no peridynamic bond.
 
     spring : (n − 1,) N/m of the local springs between neighbours, 0 where there is none; spring_limit : (n − 1,) m, the
     elongation at which each breaks, or where it triggers (n − 1,) the method; bond : (m, n) N/m, row p − 1
     those between nodes i and i + p; bond_limit : (m,) m, the elongation at which they break. spring_broken (n − 1,),
-    bond_broken (m, n) : step in which each broke, −1 for not. plain : (r, 2) ranges of nodes between springs that are
-    all alike and all trigger, at plain_limit m; plain_push 1/s : Δt k/m of them, less what attenuation takes; mixed :
-    (q, 4) the ranges of all others, with the number of bond lengths there, 0 or m, and whether springs hold them.
-    section : m². mobility : (n,) Δt/m, less what attenuation takes, 0 for supported nodes; keep : part of its velocity
-    that attenuation leaves a node in a step; drag : (n,) N·s/m of its dashpots, or (0,) for none. space (n + m + 1,),
-    mean (n,), before (k,), reached (1,) : work space.
+    bond_broken (m, n) : step in which each broke, −1 for not. plain : (r, 2) ranges of nodes between equal springs that
+    all trigger at plain_limit m; plain_push 1/s : Δt k/m of them, less what attenuation takes; mixed : (q, 4) the
+    ranges of all others, with the number of bond lengths there, 0 or m, and whether they have springs. section : m².
+    mobility : (n,) Δt/m, less what attenuation takes, 0 for supported nodes; keep : part of the velocity of a node that
+    remains after attenuation in a step; drag : (n,) N·s/m of its dashpots, or (0,) for none. space (n + m + 1,), mean
+    (n,), before (k,), reached (1,) : work space.
     """
 
     spring: np.ndarray

@@ -1,4 +1,4 @@
-"""Bond laws of disks: how contacts push.
+"""Bond laws of disks: the forces of contacts.
 
 A new law is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """

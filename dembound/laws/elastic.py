@@ -19,9 +19,8 @@ class Elastic(Law):
     def springs(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray) -> Springs:
         """Springs of closed, bonded contacts between disks of radii (b,) m.
 
-        Contact: k_n = emod whatever the radii (two springs 2E_c in series at unit thickness), k_s = k_n/kratio but
-        only with friction. Bond: R̄ = pb_rmul·min(R), area 2R̄, inertia 2R̄³/3, k̄_n = pb_emod/(R_i + R_j) per area
-        (Z eqs 7-9).
+        Contact: k_n = emod for all radii (two springs 2E_c in series at unit thickness), k_s = k_n/kratio but only with
+        friction. Bond: R̄ = pb_rmul·min(R), area 2R̄, inertia 2R̄³/3, k̄_n = pb_emod/(R_i + R_j) per area (Z eqs 7-9).
         """
         contact_normal = np.full(np.shape(radius_i), moduli.emod)
         bond_radius = moduli.pb_rmul * np.minimum(radius_i, radius_j)

@@ -21,7 +21,7 @@ class Moduli:
 
 @dataclass(frozen=True)
 class Springs:
-    """Contact and bond of pairs apart, (b,) each: stiffnesses in N/m and N·m/rad, bond area (m) and radius (m)."""
+    """Contact and bond of pairs separately, (b,) each: stiffnesses in N/m and N·m/rad, bond area (m) and radius (m)."""
 
     contact_normal: np.ndarray
     contact_shear: np.ndarray
@@ -44,11 +44,11 @@ class Stiffness:
 
 
 class Law(ABC):
-    """How contacts and bonds push: the springs that a law's forces, energies, wave speeds and step limit come from.
+    """Forces of contacts and bonds: the springs from which forces, energies, wave speeds and step limit are computed.
 
     Attributes
     ----------
-    name : what `material.law` calls it.
+    name : value of `material.law`.
     has_history : whether contacts open, slide and break (kernels/contacts.py); else forces are linear (elastic.py).
     """
 
@@ -57,7 +57,7 @@ class Law(ABC):
 
     @property
     def linear(self) -> str:
-        """Name of the law without history that is as stiff at rest; a history-dependent law names one."""
+        """Name of the law without history that has the same stiffness at rest; required for a history-dependent law."""
         return self.name
 
     @abstractmethod
@@ -67,8 +67,8 @@ class Law(ABC):
     def stiffness(self, moduli: Moduli, radius_i: np.ndarray, radius_j: np.ndarray, distance: np.ndarray) -> Stiffness:
         """Stiffnesses of contacts between disks of radii (b,) m whose centres are `distance` (b,) m apart.
 
-        Contact and bond together; across a gap the bond alone. The arms run to the middle of the overlap or gap and
-        add up to the distance, so moments balance.
+        Contact and bond together; across a gap only the bond. The arms end in the middle of the overlap or gap and
+        their sum is the distance, so moments balance.
         """
         pair = self.springs(moduli, radius_i, radius_j)
         closed = touching(radius_i, radius_j, distance)
@@ -91,7 +91,7 @@ class Law(ABC):
         gaps_close: bool = True,
         locked_in: float = 0.0,
     ) -> np.ndarray:
-        """Constants (b, 12) of pairs, in the columns that kernels/contacts.py explains.
+        """Constants (b, 12) of pairs, in the columns explained in kernels/contacts.py.
 
         Parameters
         ----------
@@ -99,8 +99,8 @@ class Law(ABC):
         radius_i, radius_j : (b,) m.
         vectors : (b, 2) m, from i to j at the start.
         bonded : whether the pairs have bonds.
-        gaps_close : whether pairs with a gap have a contact that pushes once it closes; laws without history have none.
-        locked_in : part of the overlaps that pushes from the start; with 0 overlapping disks just touch.
+        gaps_close : whether pairs with a gap have a contact that acts once it closes; not in laws without history.
+        locked_in : part of the overlaps that gives a force from the start; with 0, overlapping disks just touch.
         """
         distance = np.hypot(*vectors.T)
         pair = self.springs(moduli, radius_i, radius_j)
@@ -126,5 +126,5 @@ class Law(ABC):
 
 
 def touching(radius_i: np.ndarray, radius_j: np.ndarray, distance: np.ndarray) -> np.ndarray:
-    """Which disks (b,) bool touch or overlap, rounding forgiven; all in m."""
+    """Which disks (b,) bool touch or overlap, to rounding; all in m."""
     return distance <= (radius_i + radius_j) * (1.0 + 1e-9)

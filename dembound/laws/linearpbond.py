@@ -1,6 +1,6 @@
 """PFC's linear parallel-bond law: contacts without tension and with friction, bonds with a strength.
 
-At rest it is as stiff as the elastic law; how contacts and bonds give way is in kernels/contacts.py.
+At rest its stiffness is that of the elastic law; slip, opening and breaking are computed in kernels/contacts.py.
 """
 
 from typing import ClassVar
@@ -16,5 +16,5 @@ class LinearPBond(Elastic):
 
     @property
     def linear(self) -> str:
-        """The elastic law."""
+        """Name of the elastic law."""
         return Elastic.name

@@ -1,7 +1,8 @@
 """The bond-based peridynamic law on a grid of nodes, in one, two or three dimensions (L section 1).
 
-A node is bonded to every other one within the horizon δ = mΔx. Families are found once, by index offset: a distance
-compared as a float loses the nodes at |ξ| = δ, and so do current positions once the body is stretched.
+A node is bonded to every other one within the horizon δ = mΔx. Families are determined once, by index offset. A
+comparison of distances as floats would lose the nodes at |ξ| = δ, and a comparison of current positions would lose them
+once the body is stretched.
 """
 
 from dataclasses import dataclass
@@ -9,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 CRACKED = 0.3
-"""Local damage from which a node counts as cracked (L section 1.2)."""
+"""Local damage from which on a node is cracked (L section 1.2)."""
 
 ROUNDING = 1e-12
-"""Damage is compared less this: beside a crack it is often 0.3 in exact arithmetic."""
+"""Tolerance in the comparison of damage: next to a crack it is often exactly 0.3."""
 
 
 def micromodulus(youngs_modulus: float, horizon: float, dimension: int, section: float = 1.0) -> float:
@@ -63,7 +64,7 @@ def families(shape: tuple[int, ...], horizon: int) -> Family:
 
 
 def half_offsets(horizon: int, dimension: int) -> np.ndarray:
-    """Index steps (o, d) to half of a node's family, nearest first: of ξ and −ξ the one that comes later in order."""
+    """Index steps (o, d) to half of a node's family, nearest first: of ξ and −ξ the later one in order."""
     steps = np.stack(np.meshgrid(*[np.arange(-horizon, horizon + 1)] * dimension, indexing="ij"), axis=-1)
     steps = steps.reshape(-1, dimension)
     length = np.sum(steps**2, axis=1)
@@ -75,8 +76,8 @@ def half_offsets(horizon: int, dimension: int) -> np.ndarray:
 def stretch(apart: np.ndarray, moved: np.ndarray) -> np.ndarray:
     """Stretch s (b,) of bonds (L eq. 5).
 
-    apart (b, d) m from one node to the other in the reference configuration, ξ; moved (b, d) m, how much further one
-    was displaced than the other, η.
+    apart (b, d) m from one node to the other in the reference configuration, ξ; moved (b, d) m, the difference of their
+    displacements, η.
     """
     length = np.linalg.norm(apart, axis=1)
     return (np.linalg.norm(apart + moved, axis=1) - length) / length
@@ -98,8 +99,8 @@ def bond_forces(
 def damage(pairs: np.ndarray, weight: np.ndarray, intact: np.ndarray, count: int) -> np.ndarray:
     """Local damage φ (count,) of nodes: the part of their family, by volume, that they have lost (L eq. 7).
 
-    pairs (b, 2) nodes of each bond; weight (b, 2), the volume that the other node has for each of them; intact (b,), or
-    (b, 2) where the two may differ.
+    pairs (b, 2) nodes of each bond; weight (b, 2), the volume of the other node for each of them; intact (b,), or (b,
+    2) where the two may differ.
     """
     whole = np.bincount(pairs.ravel(), weights=weight.ravel(), minlength=count)
     held = weight * intact.reshape(len(pairs), -1)

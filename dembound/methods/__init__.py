@@ -1,4 +1,4 @@
-"""Methods for bars: each file holds one method's TOML table, and the bonds it lays and changes.
+"""Methods for bars: each file contains the TOML table of one method, and creates and changes its bonds.
 
 A new method is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """

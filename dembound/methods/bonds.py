@@ -1,8 +1,8 @@
-"""The bonds of a bar, as methods lay and change them.
+"""The bonds of a bar, which methods create and change.
 
-Local springs join neighbours, peridynamic bonds join nodes in zones. A plane between two nodes is covered to the share
-of the stress that bonds carry across it; a local spring there carries the rest, 1 − coverage. So any zone fits into
-local springs: forces come in pairs, and rest and uniform strain are not disturbed at the seam.
+Local springs join neighbours, peridynamic bonds join nodes in zones. The coverage of a plane between two nodes is the
+share of the stress that bonds carry across it; a local spring there carries the rest, 1 − coverage. So any zone can be
+combined with local springs: forces act in pairs, and rest and uniform strain are not disturbed at the seam.
 """
 
 from collections.abc import Mapping
@@ -19,12 +19,12 @@ _EVOLVING = ("spring", "bond", "spring_broken", "bond_broken", "spring_limit", "
 """The arrays of bonds that change."""
 
 TINY = 1e-12
-"""Coverage is compared within this, its rounding."""
+"""Tolerance in comparisons of coverage, for rounding."""
 
 
 @dataclass(frozen=True)
 class Rod:
-    """A bar as methods need it: n nodes, spacing m, section m², Young's modulus Pa, critical stretch.
+    """The data of a bar for methods: n nodes, spacing m, section m², Young's modulus Pa, critical stretch.
 
     Nodes at the ends have half the volume of the others.
     """
@@ -48,10 +48,10 @@ class Rod:
         return volumes
 
     def bond_rows(self, horizon: int, influence: np.ndarray | None = None) -> np.ndarray:
-        """Stiffness (m, n) N/m of all peridynamic bonds there can be: c_m V_i V_{i+p} w_p/(pΔx) (L eqs 4, 8 and 9).
+        """Stiffness (m, n) N/m of all possible peridynamic bonds: c_m V_i V_{i+p} w_p/(pΔx) (L eqs 4, 8 and 9).
 
         Row p − 1 has the bonds between i and i + p. influence : (m,) factors of the micromodulus c_m by length of the
-        bonds, scaled so that Young's modulus stays; by default it is the same for all.
+        bonds, scaled to keep Young's modulus; by default equal for all.
 
         Raises CaseError for a negative influence, and where all are zero.
         """
@@ -64,7 +64,7 @@ class Rod:
             rows[apart - 1, first] = c_m * both * family.factor / (apart * self.spacing)
         if influence is not None:
             if np.min(influence) < 0.0 or not np.max(influence) > 0.0:
-                raise CaseError(["method: makes bonds without a stiffness above 0, take a larger horizon"])
+                raise CaseError(["method: gives no bond a stiffness above 0, take a larger horizon"])
             rows *= np.reshape(influence, (horizon, 1)) * (1.0 / _influenced(horizon, influence))
         return rows
 
@@ -77,21 +77,20 @@ def _influenced(horizon: int, influence: np.ndarray) -> float:
 
 
 class Bonds:
-    """Local springs and peridynamic bonds of a bar, to begin with all local.
+    """Local springs and peridynamic bonds of a bar, at first only local springs.
 
     Parameters
     ----------
     rod : the bar.
-    horizon : m of the zones; 0: there are none, and springs trigger at the critical stretch.
-    complement : whether local springs carry what bonds leave; else a plane has either.
-    trigger_ratio : share of the critical stretch at which local springs trigger the method.
-    influence : (m,) factors of the micromodulus by length of the bonds, see `Rod.bond_rows`.
+    horizon : m of the zones; 0: without zones, springs trigger at the critical stretch. complement : whether local
+    springs carry the rest of the stress; else a plane has either springs or bonds. trigger_ratio : share of the
+    critical stretch at which local springs trigger the method. influence : (m,) factors of the micromodulus by length
+    of the bonds, see `Rod.bond_rows`.
 
     Attributes
     ----------
-    spring, spring_limit, triggers, spring_broken : (n − 1,) of local springs, bond, bond_broken : (m, n) of bonds; see
-        kernels.tables.BarBonds, whose arrays these are.
-    zones : (first, one beyond last) node of every zone, from left to right.
+    spring, spring_limit, triggers, spring_broken : (n − 1,) of local springs, bond, bond_broken : (m, n) of bonds; they
+    are the arrays of kernels.tables.BarBonds. zones : (first, one beyond last) node of every zone, from left to right.
     """
 
     def __init__(
@@ -120,9 +119,9 @@ class Bonds:
         self._set_limits(np.zeros(planes))
 
     def add_zone(self, first: int, last: int) -> None:
-        """Make nodes first to last − 1 a zone of peridynamics, with what it touches of other zones and near ends."""
+        """Make nodes first to last − 1 a zone of peridynamics, joined with adjacent zones and with near ends."""
         first, last = max(0, first), min(self.rod.count, last)
-        first = 0 if first <= self.horizon else first  # no zone leaves a rest at an end shorter than a family
+        first = 0 if first <= self.horizon else first  # no remainder shorter than a family is left at an end
         last = self.rod.count if self.rod.count - last <= self.horizon else last
         apart = [zone for zone in self.zones if zone[1] < first or zone[0] > last]
         joined = [zone for zone in self.zones if zone not in apart]
@@ -142,7 +141,8 @@ class Bonds:
     def shares(self) -> tuple[float, ...]:
         """Shares of the stress under uniform strain that bonds of one, two … spacings carry in the middle of the bar.
 
-        Local springs are of one spacing. As many as the longest bonds there; see `exact.dispersion.Lattice`.
+        Local springs have one spacing. Their number is the length of the longest bonds there; see
+        `exact.dispersion.Lattice`.
         """
         middle = self.rod.count // 2
         stiffness = np.zeros(max(self.horizon, 1))
@@ -160,18 +160,18 @@ class Bonds:
         return np.flatnonzero(self.triggers & (self.spring > 0.0) & (np.diff(u) >= self.spring_limit))
 
     def stop_triggering(self) -> None:
-        """Let springs break at the critical stretch without the method from now on."""
+        """From now on break springs at the critical stretch without calling the method."""
         self.triggers[:] = False
         self.spring_limit[:] = self._elongation
 
     @property
     def laid(self) -> np.ndarray:
-        """(m, n) which bonds there are or have been."""
+        """(m, n) which bonds exist or have existed."""
         return (self.bond > 0.0) | (self.bond_broken >= 0)
 
     @property
     def alive(self) -> int:
-        """Number of springs and bonds that pull."""
+        """Number of intact springs and bonds."""
         return int(np.count_nonzero(self.spring)) + int(np.count_nonzero(self.bond))
 
     def stiffness(self) -> np.ndarray:
@@ -187,7 +187,7 @@ class Bonds:
     def damage(self, step: int | None = None) -> np.ndarray:
         """Local damage φ (n,) at the end of a step, by default the last (L eq. 7).
 
-        A local spring counts for the bonds that are left out on its side of a node.
+        A local spring replaces the bonds that are left out on its side of a node.
         """
         last = np.iinfo(np.int64).max if step is None else step
         first, second = self._family.pairs.T
@@ -201,7 +201,7 @@ class Bonds:
         volumes = self.rod.volumes[self._family.pairs[:, ::-1]]
         factor = self._family.factor
         if self.horizon > 0:
-            factor = factor * (self._rows[row, first] > 0.0)  # those without stiffness are no bonds: they never break
+            factor = factor * (self._rows[row, first] > 0.0)  # those without stiffness are no bonds and do not break
         return damage(self._family.pairs, factor[:, None] * volumes, intact, self.rod.count)
 
     def breaks(self, since: int) -> tuple[np.ndarray, np.ndarray]:
@@ -214,18 +214,18 @@ class Bonds:
         return steps[order], pairs[order]
 
     def memory(self) -> dict[str, np.ndarray]:
-        """All that evolves in it, by name."""
+        """All arrays that change during a run, by name."""
         kept = {name: getattr(self, name) for name in _EVOLVING}
         return kept | {"zones": np.array(self.zones, dtype=np.int64).reshape(-1, 2)}
 
     def recall(self, memory: Mapping[str, np.ndarray]) -> None:
-        """Take over what `memory` has returned of the same bar."""
+        """Restore what `memory` has returned for the same bar."""
         for name in _EVOLVING:
             getattr(self, name)[...] = memory[name]
         self.zones = [(int(first), int(last)) for first, last in memory["zones"]]
 
     def arrays(self, supported: np.ndarray, density: float, step: float, drag_rate: float = 0.0) -> BarBonds:
-        """All of it for the kernels.
+        """All arrays for the kernels.
 
         supported (k,) are nodes that the support table moves; density kg/m³; step Δt in s; drag_rate 1/s of dashpots
         that attenuate, see case.bar.bar.Bar.
@@ -260,7 +260,7 @@ class Bonds:
         )
 
     def _ranges(self, supported: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Ranges of plain nodes (r, 2); and of others, number of bond lengths and whether springs hold them (q, 4)."""
+        """Ranges of plain nodes (r, 2); others (q, 4), with number of bond lengths and whether there are springs."""
         mixed, plain_spring = 1, (self.spring == self.rod.spring) & self.triggers
         label = np.full(self.rod.count, mixed)
         label[1:-1][plain_spring[:-1] & plain_spring[1:]] = 0
@@ -276,7 +276,7 @@ class Bonds:
 
     @cached_property
     def _family(self) -> Family:
-        """The nodes' families, of one spacing where there is no horizon."""
+        """The nodes' families, of one spacing without a horizon."""
         return families((self.rod.count,), max(self.horizon, 1))
 
     @property
@@ -292,6 +292,6 @@ class Bonds:
         return through[:-1] / (self.rod.modulus * self.rod.section)
 
     def _set_limits(self, carried: np.ndarray) -> None:
-        """Which springs leave it to the method what becomes of them, and how far each may be stretched."""
+        """Set which springs trigger the method, and the largest elongation of each."""
         self.triggers[:] = (carried < self._most_carried - TINY) | (self.horizon == 0)
         self.spring_limit[:] = np.where(self.triggers, self.trigger_ratio, 1.0) * self._elongation

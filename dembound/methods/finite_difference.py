@@ -15,7 +15,7 @@ class FiniteDifference(Method):
 
     @property
     def name(self) -> str:
-        """What the method does at first, for reports."""
+        """Name of the method at the start, for reports."""
         return "finite differences"
 
     @property
@@ -24,10 +24,10 @@ class FiniteDifference(Method):
         return 1
 
     def begin(self, rod: Rod) -> Bonds:
-        """Whole local springs, which trigger at the critical stretch."""
+        """Intact local springs, which trigger at the critical stretch."""
         return Bonds(rod, horizon=0)
 
     def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
-        """From the first break on springs break one by one at the critical stretch, without the method."""
+        """After the first break springs break one by one at the critical stretch, without calling the method."""
         bonds.stop_triggering()
         return self.name

@@ -9,23 +9,23 @@ from dembound.table import Table
 
 
 class Method(Table, ABC):
-    """How the nodes of a bar are bonded, and what becomes of the bonds when they are stretched."""
+    """Creates the bonds between the nodes of a bar, and changes them when they are stretched."""
 
     type: str
 
     @property
     @abstractmethod
     def name(self) -> str:
-        """What the method does at first, for reports."""
+        """Name of the method at the start, for reports."""
 
     @property
     @abstractmethod
     def largest_horizon(self) -> int:
-        """The largest horizon (in spacings) it ever uses; 1 for local springs."""
+        """The largest horizon (in spacings) of all its stages; 1 for local springs."""
 
     @property
     def soft_ends(self) -> bool:
-        """Whether the bar is ever softer near its ends than elsewhere."""
+        """Whether in some stage the bar is softer near its ends than elsewhere."""
         return False
 
     @abstractmethod
@@ -33,12 +33,12 @@ class Method(Table, ABC):
         """The bonds it begins with."""
 
     def stages(self, rod: Rod) -> list[Bonds]:
-        """Bonds of the whole bar at each stage it may come to: what the time step must be stable for."""
+        """Bonds of the whole bar at each possible stage; the time step must be stable for all of them."""
         return [self.begin(rod)]
 
     @abstractmethod
     def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
-        """Change the bonds where springs are triggered at displacements u (n,) m, so that these are triggered no more.
+        """Change the bonds where springs are triggered at displacements u (n,) m, so that they no longer trigger.
 
-        Returns what the method does from now on, for reports.
+        Returns the name of the method from now on, for reports.
         """

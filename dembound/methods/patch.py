@@ -1,4 +1,4 @@
-"""Finite differences everywhere, peridynamics only where and when something is about to break."""
+"""Finite differences, with peridynamics only in zones around places that are about to break."""
 
 from typing import Literal
 
@@ -12,8 +12,9 @@ from dembound.table import quantity
 class Patch(Triggered):
     """Zones of peridynamics that appear where a stretch reaches `trigger` of the critical one, and grow as needed.
 
-    Around a zone local springs carry the share of the stress that its bonds leave (complement springs): forces stay in
-    pairs, so that momentum is kept, and neither rest nor uniform strain is disturbed at the seam.
+    At the border of a zone local springs carry the share of the stress that its bonds do not carry (complement
+    springs). Forces act in pairs, so momentum is conserved, and neither rest nor uniform strain is disturbed at the
+    seam.
     """
 
     type: Literal["patch"]
@@ -21,15 +22,15 @@ class Patch(Triggered):
 
     @property
     def name(self) -> str:
-        """What the method does at first, for reports."""
+        """Name of the method at the start, for reports."""
         return "finite differences"
 
     def begin(self, rod: Rod) -> Bonds:
-        """Local springs that trigger the method at its share of the critical stretch."""
+        """Local springs, which trigger the method at the share `trigger` of the critical stretch."""
         return Bonds(rod, self.horizon, complement=True, trigger_ratio=self.trigger)
 
     def stages(self, rod: Rod) -> list[Bonds]:
-        """No zone, one in the middle, one at each end, and one all over."""
+        """No zone, one in the middle, one at each end, and one over the whole bar."""
         width = min(rod.count, 2 * self.reach * self.horizon + 2)
         middle = (rod.count - width) // 2
         stages = [self.begin(rod)]
@@ -39,8 +40,8 @@ class Patch(Triggered):
         return stages
 
     def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
-        """Lay a zone around every triggered spring; a zone that grows does so by half, so that it seldom has to."""
-        zones = bonds.zones  # those before any of them grows: what one spring makes does not depend on the others
+        """Create a zone around every triggered spring; a zone grows by half its length, so that it seldom grows."""
+        zones = bonds.zones  # those before any grows: the zone of one spring does not depend on the others
         for k in bonds.triggered(u):
             grown = max((last - first for first, last in zones if first <= k + 1 and k < last), default=0)
             beyond = max(self.reach * self.horizon, grown // 2)

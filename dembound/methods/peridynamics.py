@@ -1,4 +1,4 @@
-"""Bond-based peridynamics all through (L eq. 8)."""
+"""Bond-based peridynamics in the whole bar (L eq. 8)."""
 
 from typing import Literal
 
@@ -12,8 +12,8 @@ from dembound.table import quantity
 class Peridynamics(Method):
     """Every node is bonded to all others within the horizon δ = mΔx; a bond breaks at the critical stretch.
 
-    Near an end the family is cut, and the bar is softer there. Corrected ends give back what is missing: local springs
-    carry the share of the stress that bonds leave.
+    Near an end the family is cut, and the bar is softer there. Corrected ends restore the stiffness: local springs
+    carry the share of the stress that bonds do not carry.
     """
 
     type: Literal["peridynamics"]
@@ -22,7 +22,7 @@ class Peridynamics(Method):
 
     @property
     def name(self) -> str:
-        """What the method does at first, for reports."""
+        """Name of the method at the start, for reports."""
         return f"peridynamics, m = {self.horizon}"
 
     @property
@@ -32,7 +32,7 @@ class Peridynamics(Method):
 
     @property
     def soft_ends(self) -> bool:
-        """Where they are not corrected."""
+        """True unless they are corrected."""
         return not self.corrected_ends
 
     def begin(self, rod: Rod) -> Bonds:
@@ -42,5 +42,5 @@ class Peridynamics(Method):
         return bonds
 
     def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
-        """No spring triggers: those of corrected ends break at the critical stretch."""
+        """Not called: no spring triggers, and those of corrected ends break at the critical stretch."""
         return self.name

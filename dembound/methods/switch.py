@@ -23,12 +23,12 @@ class Switch(Triggered):
 
     @property
     def name(self) -> str:
-        """What the method does at first, for reports."""
+        """Name of the method at the start, for reports."""
         return "finite differences" if self.before == "finite_difference" else "peridynamics, m = 1"
 
     @property
     def soft_ends(self) -> bool:
-        """Where they are not corrected."""
+        """True unless they are corrected."""
         return not self.corrected_ends
 
     def begin(self, rod: Rod) -> Bonds:
@@ -45,6 +45,6 @@ class Switch(Triggered):
         return [self.begin(rod), after]
 
     def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
-        """Peridynamics everywhere."""
+        """Change to peridynamics everywhere."""
         bonds.add_zone(0, bonds.rod.count)
         return f"peridynamics, m = {self.horizon}"

@@ -1,1 +1,1 @@
-"""How anything moves: the state, parts and ties, the loop, trackers and the energy ledger; no kind of body."""
+"""Motion of all kinds of bodies: the state, parts and ties, the loop, trackers and the energy ledger."""

@@ -1,4 +1,4 @@
-"""What a run spends its time on."""
+"""Measures the time of the parts of a run."""
 
 import time
 from collections import defaultdict
@@ -9,7 +9,7 @@ from numba.core import event
 
 
 class Clock:
-    """Adds up the seconds spent in sections; a section within another one does not count for that one.
+    """Adds up the seconds spent in sections; time in a nested section is not counted for the outer one.
 
     Attributes
     ----------
@@ -23,7 +23,7 @@ class Clock:
 
     @contextmanager
     def of(self, section: str) -> Iterator[None]:
-        """Count the time within for a section."""
+        """Add the time spent inside to a section."""
         self._begin(section)
         try:
             yield
@@ -32,7 +32,7 @@ class Clock:
 
     @contextmanager
     def with_compiling(self) -> Iterator[None]:
-        """Count compiling kernels within, and loading those compiled before, as a section of its own, "compile"."""
+        """Count the time inside for compiling kernels, or loading compiled ones, as a separate section "compile"."""
         with event.install_listener("numba:compiler_lock", _Compiling(self)):
             yield
 
@@ -45,7 +45,7 @@ class Clock:
         self._open.pop()
 
     def _count(self) -> None:
-        """Give the time since the last change to the section that is open."""
+        """Add the time since the last change to the current section."""
         now = time.perf_counter()
         if self._open:
             self.seconds[self._open[-1]] += now - self._since
@@ -53,15 +53,15 @@ class Clock:
 
 
 class _Compiling(event.Listener):
-    """Starts and ends a section of a clock where numba compiles or loads; what that compiles in turn is within it."""
+    """Starts and ends a section of a clock when numba compiles or loads, nested compilations included."""
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
 
     def on_start(self, event: event.Event) -> None:
-        """Numba is about to compile."""
+        """Numba begins to compile."""
         self._clock._begin("compile")
 
     def on_end(self, event: event.Event) -> None:
-        """It is done."""
+        """Numba has finished."""
         self._clock._end()

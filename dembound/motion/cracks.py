@@ -8,10 +8,10 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Cracks:
-    """Bonds that broke, k of them in the order they did.
+    """Bonds that broke, k of them, in the order in which they broke.
 
-    step (k,) int64; pair (k, 2) int64 nodes; position (k, 2) m, between the two in that step; shear (k,) bool, broken
-    in shear, not in tension.
+    step (k,) int64; pair (k, 2) int64 nodes; position (k, 2) m, between the two in that step; shear (k,) bool, True for
+    shear, False for tension.
     """
 
     step: np.ndarray
@@ -23,14 +23,14 @@ class Cracks:
         return len(self.step)
 
     def among(self, kept: np.ndarray) -> "Cracks":
-        """Those between two of the nodes kept (m,), ascending, and numbered as these are."""
+        """The cracks between two of the nodes kept (m,), ascending, with the numbering of these nodes."""
         inside = np.isin(self.pair, kept).all(axis=1)
         pair = np.searchsorted(kept, self.pair[inside])
         return Cracks(self.step[inside], pair, self.position[inside], self.shear[inside])
 
 
 NO_CRACKS = Cracks(np.zeros(0, np.int64), np.zeros((0, 2), np.int64), np.zeros((0, 2)), np.zeros(0, np.bool_))
-"""Nothing broke."""
+"""An empty list."""
 
 
 def joined(lists: Sequence[Cracks]) -> Cracks:

@@ -1,8 +1,8 @@
-"""The energy ledger: where the energy of a run is, and where it went.
+"""The energy ledger: stored, supplied and dissipated energy of a run.
 
-Central differences close their books exactly when kinetic energy is ½m v⁻·v⁺ (the velocities half a step before and
-after), strain energy that of the step itself, and the work of every force F the sum of F·(v⁻ + v⁺)/2·Δt. What is left
-open comes from contacts that open or close within a step, from normals that turn, and from rounding.
+For central differences the balance is exact if kinetic energy is ½m v⁻·v⁺ (with the velocities half a step before and
+after), strain energy that of the step itself, and the work of every force F the sum of F·(v⁻ + v⁺)/2·Δt. The remaining
+error comes from contacts that open or close within a step, from rotating normals, and from rounding.
 """
 
 from dataclasses import astuple, dataclass, fields
@@ -15,10 +15,10 @@ from dembound.motion.state import Arrays
 from dembound.motion.trackers import NEVER, Run, Tracker
 
 GAIN = 0.5
-"""Share of what was brought in that a run may gain before it stops; contacts that clap misjudge below 0.01 of it."""
+"""Energy error over supplied energy at which a run stops; contacts that open and close cause less than 0.01."""
 
 ROUNDING = 1e-9
-"""Share of the energies in a body that is nothing: differences of sums over a million contacts round to less."""
+"""Energies below this share of the largest count as zero: rounding errors of sums over contacts are smaller."""
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class Entry:
 
     kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
     of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
-    and driven loads; damping, friction, crack, taken by them; law_switch, what a change of method or law has added;
-    error, what is stored and taken beyond what came in. Of a bar in J.
+    and driven loads; damping, friction, crack, dissipated by them; law_switch, added by a change of method or law;
+    error, stored and dissipated energy minus supplied energy. For a bar in J.
     """
 
     time: float
@@ -46,9 +46,9 @@ class Entry:
 
 
 class _Begun(NamedTuple):
-    """The beginning of an entry's step.
+    """The state at the beginning of an entry's step.
 
-    place, before : (3, n) displacements, and velocities half a step ago; balancing : J, work of balancing forces;
+    place, before : (3, n) displacements, and velocities half a step earlier; balancing : J, work of balancing forces;
     laws : number of laws used so far.
     """
 
@@ -59,13 +59,13 @@ class _Begun(NamedTuple):
 
 
 class Ledger(Tracker):
-    """Keeps the books of a run that has not begun yet, in entries that each take the step after it, too.
+    """Writes the energy ledger of a run from its beginning; each entry also needs the step after it.
 
     Parameters
     ----------
-    run : it starts from the strain energy of this one.
-    interval : steps from one entry to the next, of which the first is at once.
-    last : step of one more entry; by default there is none.
+    run : the run, whose strain energy at the start is subtracted.
+    interval : steps from one entry to the next; the first entry is at the start. last : step of one more entry; by
+    default none.
     """
 
     name = "ledger"
@@ -77,11 +77,11 @@ class Ledger(Tracker):
         self._unit = run.scene.energy_unit
         self._inertia = np.stack([run.scene.mass, run.scene.mass, run.scene.inertia])
         self._first = run.system.stored(run.state.displacement.copy())
-        self._most = 0.0, 0.0  # that boundaries and loads have brought in at any time
+        self._most = 0.0, 0.0  # supplied by boundaries and loads, largest values so far
         self._begun: _Begun | None = None
 
     def handle(self, run: Run) -> None:
-        """Begin an entry, or enter the one that was begun a step ago."""
+        """Begin an entry, or complete the one begun one step earlier."""
         if self._begun is not None:
             self._enter(run, self._begun)
             self._begun = None
@@ -95,11 +95,11 @@ class Ledger(Tracker):
             self.due = state.step + 1
 
     def _enter(self, run: Run, begun: _Begun) -> None:
-        """Enter the energies at the beginning of the last step."""
+        """Write the energies at the beginning of the last step."""
         state, system = run.state, run.system
         place, before, balancing, laws = begun
         if len(state.laws) > laws and state.switch_velocity.size > 0:
-            # the law changed before the step: it began where the new law took over, maybe turned as a whole
+            # the law changed before the step, which began in the state of the change, maybe with a rigid rotation
             place = state.displacement - run.time_step * state.velocity
             before = state.switch_velocity
             balancing = system.balancing_work(place)
@@ -115,15 +115,15 @@ class Ledger(Tracker):
         self._watch()
 
     def _watch(self) -> None:
-        """Raise RunError where the run has gained energy from nothing, as it does with a step too large for its law."""
+        """Raise RunError if the run has gained energy that was not supplied, as with a step too large for its law."""
         first, last = self.entries[0], self.entries[-1]
         self._most = max(self._most[0], last.outside), max(self._most[1], last.load)
         came = first.kinetic + sum(self._most)
         gained = last.error - first.error
         if gained > GAIN * came + ROUNDING * (sum(self._first) + last.kinetic + abs(last.outside)):
             raise RunError(
-                f"the run has gained {gained:.3g} {self._unit} from nothing until t = {last.time:g} s, when loads and "
-                f"boundaries had brought in {came:.3g} {self._unit} at most; take a smaller run.safety or run.time_step"
+                f"the run has gained {gained:.3g} {self._unit} without input until t = {last.time:g} s, when loads and "
+                f"boundaries had supplied {came:.3g} {self._unit} at most; take a smaller run.safety or run.time_step"
             )
 
     @property
@@ -132,7 +132,7 @@ class Ledger(Tracker):
         return np.array([astuple(entry) for entry in self.entries]).reshape(-1, len(fields(Entry)))
 
     def memory(self) -> Arrays:
-        """Entries, what came in at most, and an entry that has begun."""
+        """Entries, the largest supplied energies, and an entry that has begun."""
         begun = self._begun or _Begun(np.zeros((3, 0)), np.zeros((3, 0)), 0.0, 0)
         return {
             "due": np.array(self.due),
@@ -147,7 +147,7 @@ class Ledger(Tracker):
         }
 
     def recall(self, memory: Arrays) -> None:
-        """Take over what `memory` has returned in another run of the same case."""
+        """Restore what `memory` has returned in another run of the same case."""
         self.due = int(memory["due"])
         self.entries = [Entry(*row) for row in memory["entries"].tolist()]
         self._first = tuple(memory["first"].tolist())

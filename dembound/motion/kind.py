@@ -27,12 +27,12 @@ C = TypeVar("C", bound=Case)
 S = TypeVar("S", bound=Scene)
 
 OnLook = Callable[[int, float], None]
-"""Gets the steps of a static stage done so far, and its force ratio."""
+"""Called with the number of steps of a static stage done so far, and its force ratio."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What a case comes to before its first step: the scene, the step and its limit (s), the number of steps."""
+    """A case before its first step: the scene, the time step and its limit (s), the number of steps."""
 
     kind: Kind[Any, Any]
     scene: Scene
@@ -43,10 +43,10 @@ class Plan:
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage that came before the run, as a record keeps it.
+    """A stage before the run, for the record.
 
-    name : where in the record; facts : numbers by name; displacement (3, n) m and rad at its end, and the cracks it
-    left, both of the nodes that are there in the run.
+    name : of its group in the record; facts : numbers by name; displacement (3, n) m and rad at its end, and its
+    cracks, both for the nodes of the run.
     """
 
     name: str
@@ -57,9 +57,9 @@ class Stage:
 
 @dataclass(frozen=True)
 class Beginning:
-    """Where a run begins: its parts and ties, the displacements (3, n) they are at rest at, and the stages before.
+    """The state in which a run begins: parts and ties, their displacements (3, n) at rest, and the stages before.
 
-    summary : these stages in reports, as plain JSON values; None where there were none.
+    summary : these stages in reports, as plain JSON values; None if there were none.
     """
 
     system: System
@@ -69,10 +69,10 @@ class Beginning:
 
 
 class StalledError(RunError):
-    """A stage before the run that does not come to rest.
+    """Raised for a stage before the run that does not come to rest.
 
-    Attributes: run, the state it reached; unbalanced (n, 2), N, what each node's forces come to then; cracks,
-    the bonds that broke on the way.
+    Attributes: run, the state it reached; unbalanced (n, 2), N, sum of the forces on each node in this state; cracks,
+    the bonds that broke in the stage.
     """
 
     def __init__(self, message: str, run: Run, unbalanced: np.ndarray, cracks: Cracks) -> None:
@@ -83,13 +83,13 @@ class StalledError(RunError):
 
 
 class Kind(ABC, Generic[C, S]):
-    """A kind of body: how its cases become scenes, how these begin to move, and what is said of them.
+    """A kind of body: builds the scenes of its cases, their initial states, and reports.
 
     Attributes
     ----------
-    name : what records call it; plural : what messages call several.
-    schema : its case files.
-    mesh_name : what its files for ParaView are called; view_script : a script that shows them.
+    name : in records; plural : in messages.
+    schema : the tables of its case files.
+    mesh_name : name of its files for ParaView; view_script : a script that shows them.
     """
 
     name: str
@@ -102,11 +102,11 @@ class Kind(ABC, Generic[C, S]):
     def build(self, case: C) -> S:
         """The scene of a case.
 
-        Raises CaseError and PackingError for what would stop a run later, before anything is written.
+        Raises CaseError and PackingError for errors that would stop a run later, before anything is written.
         """
 
     def is_planned_quickly(self, case: C) -> bool:
-        """Whether planning a run of a case takes no long search for the stability limit; here where a step is given."""
+        """Whether a run is planned without a long search for the stability limit; by default if a step is given."""
         return case.run.time_step != "auto"
 
     @abstractmethod
@@ -115,34 +115,34 @@ class Kind(ABC, Generic[C, S]):
 
     @abstractmethod
     def begin(self, scene: S, time_step: float, on_look: OnLook) -> Beginning:
-        """Bring a scene to where its run begins.
+        """Bring a scene to the state in which its run begins.
 
         Raises StalledError when a stage before does not come to rest.
         """
 
     @abstractmethod
     def facts(self, scene: S, time_step: float) -> dict[str, str]:
-        """What a case would come to with a time step (s), in words by name; `dembound check` prints it."""
+        """Facts about a case with a time step (s), as text by name; printed by `dembound check`."""
 
     def not_estimated(self, case: C) -> str:
-        """What a short trial of the first steps does not show of a run's time, in words."""
+        """Text naming what the time estimate from a trial of the first steps does not include."""
         return ""
 
     @abstractmethod
     def warnings_before(self, scene: S, time_step: float) -> list[str]:
-        """What a run will do that was probably not meant, one line each."""
+        """Warnings that are known before the run, one line each."""
 
     @abstractmethod
     def warnings_after(self, scene: S, summary: Mapping[str, Any], record: Path) -> list[str]:
-        """What a run has shown that was probably not meant, one line each."""
+        """Warnings from the results of a run, one line each."""
 
     @abstractmethod
     def summarise(self, scene: S, run: Run, beginning: Beginning, record: Path) -> dict[str, Any]:
-        """What a summary has beside that of every run: plain JSON values, SI units."""
+        """Entries of a summary in addition to those of every run: plain JSON values, SI units."""
 
     @abstractmethod
     def outcome(self, summary: Mapping[str, Any]) -> list[str]:
-        """What became of a run, in words, from its summary."""
+        """The results of a run in words, from its summary."""
 
     @abstractmethod
     def mesh(self, particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
@@ -150,8 +150,8 @@ class Kind(ABC, Generic[C, S]):
 
     @abstractmethod
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:
-        """The pictures of a run by name, beside those of its monitors' velocities."""
+        """The pictures of a run by name, other than that of its monitors' velocities."""
 
     @abstractmethod
     def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
-        """A field of a record as a picture, of one snapshot or of what is best; raises CaseError where it has none."""
+        """A field of a record as a picture, of one snapshot or of suitable ones; raises CaseError if it is missing."""

@@ -1,4 +1,4 @@
-"""Parts and ties: what moves, each part a range of the nodes under a law of its own, and what couples them."""
+"""Parts and ties: a part is a range of the nodes with its own law, a tie couples nodes of two parts."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -16,9 +16,9 @@ class Part(ABC):
 
     Attributes
     ----------
-    name : what the state and messages call it.
-    nodes : its nodes, a range of the scene's.
-    law_name : what reports call the law in use.
+    name : in the state and in messages.
+    nodes : its range of the scene's nodes.
+    law_name : name of the law in use, for reports.
     """
 
     name: str
@@ -27,39 +27,39 @@ class Part(ABC):
 
     @abstractmethod
     def law(self) -> NamedTuple:
-        """The bundle of arrays that its law is; the type chooses the compiled code, see kernels/law.py."""
+        """The bundle of arrays of its law; the type chooses the compiled code, see kernels/law.py."""
 
     @abstractmethod
     def react(self, why: int, steps: int, state: State) -> None:
-        """Go on after the loop has done so many steps and returned for a reason, see kernels/common.py."""
+        """React to a return of the loop; why : the reason, see kernels/common.py; steps : done so far."""
 
     @abstractmethod
     def stored(self, displacement: np.ndarray) -> tuple[float, float]:
-        """Strain energy (J) at displacements (3, n): in contacts and in bonds, of a bar in springs and in bonds."""
+        """Strain energy (J) at displacements (3, n): in contacts and in bonds, for a bar in springs and in bonds."""
 
     @abstractmethod
     def take_cracks(self, steps: int) -> Cracks:
-        """The bonds that broke since this was last called; steps : those done by now."""
+        """The bonds that broke since this was last called; steps : number of steps done."""
 
     @abstractmethod
     def memory(self) -> Arrays:
-        """All that evolves in it, by name."""
+        """All arrays that change during a run, by name."""
 
     @abstractmethod
     def recall(self, memory: Arrays) -> None:
-        """Take over what `memory` has returned in another run of the same case."""
+        """Restore what `memory` has returned in another run of the same case."""
 
     def blown_up(self, velocity: np.ndarray) -> int | None:
-        """The node at which the run gains energy from nothing, where the part can see that; velocity (3, n) m/s."""
+        """The node of an instability that adds energy, if the part can detect it; velocity (3, n) m/s."""
         return None
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
-        """What is known of its nodes at displacements (3, n) beside their motion, by name: values (m, …) and unit."""
+        """Fields of its nodes at displacements (3, n) other than their motion, by name: values (m, …) and unit."""
         return {}
 
 
 class Tie(ABC):
-    """What couples nodes of two parts."""
+    """A coupling between nodes of two parts."""
 
     @property
     @abstractmethod
@@ -72,7 +72,7 @@ class Tie(ABC):
 
 
 class System:
-    """All that moves in a run: parts that make up the nodes in their order, ties, and steady forces.
+    """All moving parts of a run, in the order of their nodes, with ties and steady forces.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class System:
     Attributes
     ----------
     steady : (3, n) N and N·m, all steady forces that kernels add, or (3, 0) for none.
-    turning : forces among them that turn with their sides; None: there are none.
+    turning : those of them that rotate with their sides; None if there are none.
     """
 
     def __init__(self, parts: Sequence[Part], ties: Sequence[Tie], load: np.ndarray) -> None:
@@ -93,7 +93,7 @@ class System:
 
     @property
     def law_name(self) -> str:
-        """What reports call the law in use; all parts change it together."""
+        """Name of the law in use, for reports; all parts change it together."""
         return self.parts[-1].law_name
 
     def laws(self) -> tuple[NamedTuple, ...]:
@@ -101,15 +101,15 @@ class System:
         return tuple(part.law() for part in self.parts)
 
     def bundles(self, supported: np.ndarray) -> tuple[NamedTuple, ...]:
-        """Those of all ties, see `Tie.bundle`."""
+        """The bundles of all ties, see `Tie.bundle`."""
         return tuple(tie.bundle(supported) for tie in self.ties)
 
     def begin(self, state: State) -> None:
-        """Enter the law that the run begins with."""
+        """Record the first law of the run."""
         state.laws.append((self.law_name, state.step))
 
     def react(self, why: int, steps: int, state: State) -> None:
-        """Go on after the loop has done so many steps and returned for a reason; enters a law that has changed."""
+        """React to a return of the loop, see `Part.react`; records a change of law."""
         for part in self.parts:
             part.react(why, steps, state)
         if self.law_name != state.laws[-1][0]:
@@ -121,32 +121,32 @@ class System:
         return sum(first for first, _ in stored), sum(second for _, second in stored)
 
     def balancing_work(self, displacement: np.ndarray) -> float:
-        """Work (J) up to displacements (3, n) of what balances the stress of a settled body, without its turning."""
+        """Work (J) up to displacements (3, n) of the forces that balance a settled stress, without their rotation."""
         return 0.0
 
     def take_cracks(self, steps: int) -> Cracks:
-        """The bonds that broke since this was last called; steps : those done by now."""
+        """The bonds that broke since this was last called; steps : number of steps done."""
         return joined([part.take_cracks(steps) for part in self.parts])
 
     def blown_up(self, velocity: np.ndarray) -> int | None:
-        """A node at which the run gains energy from nothing, if a part can see one; velocity (3, n) m/s."""
+        """A node of an instability that adds energy, if a part detects one; velocity (3, n) m/s."""
         found = (part.blown_up(velocity) for part in self.parts)
         return next((node for node in found if node is not None), None)
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
-        """What is known of every node at displacements (3, n) beside its motion, by name: values (n, …) and unit."""
+        """Fields of every node at displacements (3, n) other than its motion, by name: values (n, …) and unit."""
         each = [part.snapshot(displacement) for part in self.parts]
         return {name: (np.concatenate([known[name][0] for known in each]), unit) for name, (_, unit) in each[0].items()}
 
     def memory(self) -> Arrays:
-        """All that evolves in it beside the motion, by name."""
+        """All arrays that change during a run except the motion, by name."""
         memory: dict[str, np.ndarray] = {"load": self.load, "steady": self.steady}
         for part in self.parts:
             memory |= {f"{part.name}/{name}": values for name, values in part.memory().items()}
         return memory
 
     def recall(self, memory: Mapping[str, Any]) -> None:
-        """Take over what `memory` has returned in another run of the same case."""
+        """Restore what `memory` has returned in another run of the same case."""
         self.load, self.steady = memory["load"].copy(), memory["steady"].copy()
         for part in self.parts:
             part.recall(within(memory, part.name))

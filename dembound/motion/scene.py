@@ -1,4 +1,4 @@
-"""The scene: the arrays a case becomes, as far as the loop, trackers and records need them."""
+"""The scene: the arrays of a case that the loop, trackers and records need."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -13,22 +13,22 @@ from dembound.motion.layout import Layout
 from dembound.motion.part import System
 
 RUNAWAY = 1e4
-"""A node this many times as fast as all waves together is unphysical: resonance gives factors of ten."""
+"""A node faster than all waves together by this factor is unphysical: resonance gives factors of ten."""
 
 FASTEST = 1e100
-"""Speed (m/s) beyond which energies come near the largest double, 1e308 J."""
+"""Speed (m/s) above which energies approach the largest double, 1e308 J."""
 
 
 class Scene(ABC):
-    """A case turned into arrays: n nodes of three components each (x, y, rotation), all SI.
+    """The arrays of a case: n nodes of three components each (x, y, rotation), all SI.
 
     Attributes
     ----------
-    case : where it came from.
+    case : the case it was built from.
     edges : side -> its exposed nodes, for every side that is not periodic.
-    supports : the table of what pushes from outside, loads that follow a wave included.
+    supports : the table of forces from outside, loads that follow a wave included.
     monitors : name -> node.
-    kind : what records call the kind of body.
+    kind : name of the kind of body in records.
     energy_unit : the unit of its energies.
     record_width : columns of a probe's record, see kernels.tables.Log.
     block : steps between two returns of the compiled loop.
@@ -83,7 +83,7 @@ class Scene(ABC):
     @property
     @abstractmethod
     def steady_load(self) -> np.ndarray:
-        """(3, n) forces and moments (N, N·m) of the loads that are always there."""
+        """(3, n) forces and moments (N, N·m) of the loads without a wave."""
 
     @property
     @abstractmethod
@@ -98,17 +98,17 @@ class Scene(ABC):
     @property
     @abstractmethod
     def attributes(self) -> dict[str, Any]:
-        """What a record's header has beside that of every run."""
+        """The attributes of a record's header in addition to those of every run."""
 
     @property
     @abstractmethod
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
-        """What a record keeps of every node, by name: values (n, …) and unit."""
+        """Data of every node for the record, by name: values (n, …) and unit."""
 
     @property
     @abstractmethod
     def places(self) -> dict[str, tuple[float, float]]:
-        """Where monitors were asked for, m."""
+        """The positions given for the monitors, m."""
 
     @abstractmethod
     def system(self, time_step: float) -> System:
@@ -116,7 +116,7 @@ class Scene(ABC):
 
     @property
     def twin(self) -> np.ndarray | None:
-        """(n,) the node whose velocity the dashpots of each one follow, itself or another; None: no dashpots follow."""
+        """(n,) node to whose velocity the dashpots of each node are relative, itself for none; None: all for none."""
         return None
 
     @property
@@ -130,14 +130,14 @@ class Scene(ABC):
         return np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in self.edges.values())])
 
     def tracked_of(self, side: str) -> slice:
-        """Where a side's nodes stand among the tracked ones."""
+        """The range of a side's nodes in `tracked`."""
         sides = list(self.edges)
         first = sum(len(self.edges[name].nodes) for name in sides[: sides.index(side)])
         return slice(first, first + len(self.edges[side].nodes))
 
     @property
     def fastest(self) -> float:
-        """Speed (m/s) that no node can have; where more than waves moves them, that of the largest numbers."""
+        """Speed (m/s) that no node can reach; if loads or other forces act too, the limit of the number range."""
         waves = sum(wave.peak() for wave in self.case.wave.values())
         more = self.case.load or self.has_history
         return min(RUNAWAY * waves, FASTEST) if waves and not more else FASTEST

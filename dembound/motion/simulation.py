@@ -1,4 +1,4 @@
-"""The loop: advance a scene in time to the steps that trackers want to see."""
+"""The loop: advances a scene in time, up to the steps at which trackers are due."""
 
 from collections.abc import Sequence
 
@@ -15,27 +15,27 @@ from dembound.motion.threads import threads_for
 from dembound.motion.trackers import Run, Tracker, Watch
 
 DRIVEN_BYTES = 64e6
-"""Most memory for the drives of a block; many driven nodes make blocks shorter."""
+"""Largest memory for the drives of a block; with many driven nodes blocks are shorter."""
 
 
 class Simulation:
-    """A scene in motion, from rest at time zero.
+    """The motion of a scene, from rest at time zero.
 
     Parameters
     ----------
-    scene : what moves.
+    scene : the scene to be moved.
     time_step : Δt in s; the caller has compared it with the stability limit.
     probes : (p,) nodes whose motion `advance` returns at every step; by default none.
-    system : its parts and ties; by default those of the scene, at rest as built.
+    system : its parts and ties; by default those of the scene as built, at rest.
     datum : (3, n) displacements at which they are at rest; by default zero.
     damp : local damping coefficient; by default the scene's.
-    clock : counts the seconds of stepping and of trackers, which are "step" and "record".
+    clock : counts the seconds of stepping and of trackers, under "step" and "record".
 
     Attributes
     ----------
-    state : all that evolves.
-    trackers : who sees the run; a `Watch` at first, which all runs should have.
-    stopped : whether a tracker has ended the run.
+    state : all arrays that change during the run.
+    trackers : those that are called during the run; at first a `Watch`, which all runs should have. stopped : whether a
+    tracker has ended the run.
     """
 
     def __init__(
@@ -73,12 +73,12 @@ class Simulation:
         self._supports = NodeSupports(scene, self.system.ties, time_step)
         self._mobility, self._inverse_inertia = (layout.spread(time_step / of) for of in (scene.mass, scene.inertia))
         for mobility in (self._mobility, self._inverse_inertia):
-            mobility[self._supports.slots] = 0.0  # the support table moves these
+            mobility[self._supports.slots] = 0.0  # these are moved by the support table
         self._probe_slots, self._tracked_slots = layout.slot[self.probes], layout.slot[scene.tracked]
         self.system.begin(self.state)
 
     def track(self, *trackers: Tracker) -> None:
-        """Let more trackers see the run; they are part of its state."""
+        """Add trackers to the run; they are part of its state."""
         self.trackers += trackers
         self.state.owners |= {tracker.name: tracker for tracker in trackers}
 
@@ -88,9 +88,9 @@ class Simulation:
         return self.state.step * self.time_step
 
     def run(self, steps: int) -> None:
-        """Go on to `steps` steps in all, or until a tracker ends the run, handing it to trackers when they are due.
+        """Advance to `steps` steps in all, or until a tracker ends the run; trackers are called when they are due.
 
-        Raises what trackers raise: RunError when the motion grows without bound, saying when and where.
+        Raises the errors of trackers: RunError, with time and place, when the motion grows without bound.
         """
         self._hand_round(None)
         while self.state.step < steps and not self.stopped:
@@ -99,9 +99,10 @@ class Simulation:
             self._hand_round(record)
 
     def advance(self, steps: int) -> np.ndarray:
-        """Go on by `steps` steps; returns (steps, p, 6): displacement and velocity of the probes before each.
+        """Advance by `steps` steps; returns (steps, p, 6): displacement and velocity of the probes before each.
 
-        Displacements count from the start. Of a bar, stress (Pa) is a seventh column. Trackers see it as in `run`.
+        Displacements are measured from the start. For a bar, stress (Pa) is a seventh column. Trackers are called as in
+        `run`.
         """
         kept = _Records()
         self.trackers.append(kept)
@@ -117,7 +118,7 @@ class Simulation:
         return self.state.peaks[self.scene.tracked_of(side)]
 
     def _hand_round(self, record: np.ndarray | None) -> None:
-        """Let trackers receive what the probes have just done, if anything, and those that are due see the run."""
+        """Pass the last record of the probes, if any, to all trackers, and call those that are due."""
         with self.clock.of("record"):
             for tracker in self.trackers:
                 if record is not None:
@@ -127,7 +128,7 @@ class Simulation:
                     tracker.handle(self)
 
     def _advance_to(self, step: int) -> np.ndarray:
-        """Advance to a step; returns what the probes did, see `advance`."""
+        """Advance to a step; returns the record of the probes, see `advance`."""
         record = np.empty((step - self.state.step, len(self.probes), self.scene.record_width))
         at_once = max(1, int(DRIVEN_BYTES / (24 * max(1, len(self._supports.nodes)))))
         with threads_for(self.scene.count):
@@ -137,7 +138,7 @@ class Simulation:
         return record
 
     def _advance(self, record: np.ndarray) -> None:
-        """As many steps as the record (k, p, 6 or 7) has room for, under one law after the other if need be."""
+        """Do as many steps as the record (k, p, 6 or 7) has rows, with changes of law if necessary."""
         supports = self._supports.table((self.state.step + np.arange(len(record))) * self.time_step)
         done = 0
         while done < len(record):
@@ -145,7 +146,7 @@ class Simulation:
             done += self._advance_under_one_law(record[done:], remaining)
 
     def _advance_under_one_law(self, record: np.ndarray, supports: tables.Supports) -> int:
-        """As many of these steps as the laws in use, with their lists of pairs or bonds, are good for; those done."""
+        """Do as many of these steps as the laws in use, with their pairs or bonds, are valid; returns their number."""
         state, system = self.state, self.system
         load, turning = system.steady, system.turning
         if not state.layout.is_plain:
@@ -173,7 +174,7 @@ class Simulation:
 
 
 class _Records(Tracker):
-    """Keeps what the probes did."""
+    """Keeps the records of the probes."""
 
     name = "records"
 
@@ -181,8 +182,8 @@ class _Records(Tracker):
         self.records: list[np.ndarray] = []
 
     def handle(self, run: Run) -> None:
-        """It is never due."""
+        """Does nothing, as it is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
-        """Keep it."""
+        """Keep the record."""
         self.records.append(record)

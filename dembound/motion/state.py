@@ -1,4 +1,4 @@
-"""The state of a run: everything that evolves, in one object."""
+"""The state of a run: all arrays that change during it, in one object."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,22 +12,22 @@ Arrays = Mapping[str, np.ndarray]
 """Arrays by name."""
 
 WORK = ("outside", "damping", "friction", "crack", "law_switch", "turning")
-"""What the columns of the work are, see kernels.tables.Log."""
+"""Names of the columns of the work, see kernels.tables.Log."""
 
 
 class Owner(Protocol):
-    """Who keeps a part of the state: a system of parts, a tracker."""
+    """An object that contains a part of the state: a system of parts, a tracker."""
 
     def memory(self) -> Arrays:
-        """All that evolves in it, by name."""
+        """All arrays that change during a run, by name."""
 
     def recall(self, memory: Arrays) -> None:
-        """Take over what `memory` has returned in another run of the same case."""
+        """Restore what `memory` has returned in another run of the same case."""
 
 
 @dataclass
 class State:
-    """What a run of n nodes has come to.
+    """The state of a run of n nodes.
 
     Attributes
     ----------
@@ -38,10 +38,9 @@ class State:
     top : (slots,) m/s, largest speed so far; (0,) unless the case asks for it.
     work : (2, 6) J, in the columns `WORK`; see kernels.tables.Log.
     step : steps done.
-    laws : name of each law used and the step it began with.
-    switch_velocity : (3, n) velocity with which the history-dependent law began, half a step before it did; (3, 0)
-        under another one.
-    owners : who keeps the rest of the state, by name.
+    laws : name of each law used and its first step.
+    switch_velocity : (3, n) velocity half a step before the history-dependent law began; (3, 0) under another law.
+    owners : objects that contain the rest of the state, by name.
     """
 
     layout: Layout
@@ -85,7 +84,7 @@ class State:
             self.top[self.layout.slot] = values
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """Copies of all of it, by name: enough to go on in another process, to the same bits."""
+        """Copies of all arrays, by name; a run continued from them in another process gives the same bits."""
         arrays = {name: getattr(self, name) for name in _ARRAYS}
         arrays |= {f"work/{name}": self.work[:, column] for column, name in enumerate(WORK)}
         arrays["step"] = np.array(self.step)
@@ -96,7 +95,7 @@ class State:
         return {name: np.array(values) for name, values in arrays.items()}
 
     def take(self, arrays: Arrays) -> None:
-        """Take over all that `arrays` has returned in another run of the same case."""
+        """Restore what `arrays` has returned in another run of the same case."""
         for name in _ARRAYS:
             setattr(self, name, arrays[name].copy())
         self.work = np.stack([arrays[f"work/{name}"] for name in WORK], axis=1)
@@ -111,5 +110,5 @@ _ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_ve
 
 
 def within(arrays: Arrays, owner: str) -> dict[str, np.ndarray]:
-    """The arrays whose names begin with an owner's, without it."""
+    """The arrays whose names begin with that of an owner, under names without it."""
     return {name.removeprefix(f"{owner}/"): values for name, values in arrays.items() if name.startswith(f"{owner}/")}

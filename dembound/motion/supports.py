@@ -1,4 +1,4 @@
-"""The support table as kernels apply it."""
+"""The support table in the form for the kernels."""
 
 import numpy as np
 
@@ -13,8 +13,8 @@ class NodeSupports:
 
     Parameters
     ----------
-    scene : what is supported.
-    ties : they act on nodes of the table.
+    scene : the supported scene.
+    ties : those that act on nodes of the table.
     time_step : Δt in s.
 
     Attributes
@@ -43,7 +43,7 @@ class NodeSupports:
         self.keep = moves * (self.inertia - 0.5 * damping) / (self.inertia + 0.5 * damping)
 
     def table(self, times: np.ndarray) -> tables.Supports:
-        """All of it for steps that begin at `times` (steps,) s."""
+        """The table for steps that begin at `times` (steps,) s."""
         drive = np.zeros((len(times), len(self.nodes), 3))
         drive[:, self._at[0], self._at[1]] = self._rows.sample(times, self._half_step)
         return tables.Supports(

@@ -1,4 +1,4 @@
-"""How many threads a scene is worth."""
+"""Number of threads for a scene."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -6,17 +6,17 @@ from contextlib import contextmanager
 import numba
 
 PARTICLES_PER_THREAD = 10_000
-"""Below this a step takes less than 0.2 ms, and threads would spend much of it waiting for each other."""
+"""Below this a step takes less than 0.2 ms, and much of it would be the synchronisation of threads."""
 
 
 def thread_count_for(particles: int) -> int:
-    """Threads a scene of so many particles uses: at most as many as are allowed."""
+    """Number of threads for a scene with this number of particles, at most as many as are allowed."""
     return min(numba.get_num_threads(), max(1, particles // PARTICLES_PER_THREAD))
 
 
 @contextmanager
 def threads_for(particles: int) -> Iterator[None]:
-    """Let compiled loops inside use no more threads than a scene of so many particles is worth.
+    """Limit the threads of compiled loops inside to the number for a scene with this number of particles.
 
     Results do not depend on it.
     """

@@ -1,4 +1,4 @@
-"""Trackers: who wants to see a run, and when next."""
+"""Trackers: objects that are called during a run, at steps they choose."""
 
 from abc import ABC, abstractmethod
 from typing import Protocol
@@ -11,11 +11,11 @@ from dembound.motion.scene import Scene
 from dembound.motion.state import Arrays, State
 
 NEVER = 2**62
-"""A step that no run comes to."""
+"""A step that no run reaches."""
 
 
 class Run(Protocol):
-    """A run as trackers see it: scene, parts, state, time step (s); setting `stopped` ends it."""
+    """The data of a run that trackers use: scene, parts, state, time step (s); setting `stopped` ends the run."""
 
     scene: Scene
     system: System
@@ -29,12 +29,12 @@ class Run(Protocol):
 
 
 class Tracker(ABC):
-    """Sees a run from time to time; the loop runs to the least of the steps that trackers have named.
+    """Called during a run at chosen steps; the loop runs to the next step at which a tracker is due.
 
     Attributes
     ----------
-    name : what the state calls it.
-    due : the next step it wants to see; `handle` has to name a later one.
+    name : in the state.
+    due : the next step at which it is called; `handle` must set a later one.
     """
 
     name: str
@@ -42,17 +42,17 @@ class Tracker(ABC):
 
     @abstractmethod
     def handle(self, run: Run) -> None:
-        """See the run at the step that was due, and name the next one."""
+        """Read the run at the step that was due, and set the next one."""
 
-    def observe(self, run: Run, record: np.ndarray) -> None:  # noqa: B027  # few want it
-        """Receive what the probes did in each of the steps since this was last called, see `Simulation.advance`."""
+    def observe(self, run: Run, record: np.ndarray) -> None:  # noqa: B027  # few trackers use it
+        """Receive the record of the probes for the steps since the last call, see `Simulation.advance`."""
 
     def memory(self) -> Arrays:
-        """All that evolves in it, by name."""
+        """All arrays that change during a run, by name."""
         return {"due": np.array(self.due)}
 
     def recall(self, memory: Arrays) -> None:
-        """Take over what `memory` has returned in another run of the same case."""
+        """Restore what `memory` has returned in another run of the same case."""
         self.due = int(memory["due"])
 
 
@@ -69,31 +69,31 @@ class Every(Tracker):
         self.steps, self.due = steps, first
 
     def handle(self, run: Run) -> None:
-        """See the run, and name the next step."""
+        """Call `see`, and set the next step."""
         self.see(run)
         self.due = run.state.step + self.steps
 
     @abstractmethod
     def see(self, run: Run) -> None:
-        """See the run."""
+        """Read the run at a step that was due."""
 
 
 class Watch(Every):
-    """Stops a run whose motion grows without bound, or that is seen to gain energy from nothing.
+    """Stops a run whose motion grows without bound, or in which a part detects an instability.
 
-    It checks whenever the loop returns, and makes the loop return often.
+    It checks after every return of the loop, and makes the loop return often.
     """
 
     name = "watch"
 
     def see(self, run: Run) -> None:
-        """Nothing more than at every return of the loop."""
+        """Nothing, as the check is made after every return of the loop."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
-        """Raise RunError when a node is faster than any wave could make it, saying when and where."""
+        """Raise RunError, with time and place, when a node is faster than waves can make it."""
         velocity = run.state.velocity
         speed = np.abs(velocity[:2]).max(axis=0)
-        sound = speed <= run.scene.fastest  # false for what is not a number, too
+        sound = speed <= run.scene.fastest  # False for nan, too
         where = run.system.blown_up(velocity) if sound.all() else int(np.argmin(sound))
         if where is not None:
             place = run.scene.positions[where]

@@ -1,4 +1,4 @@
-"""Where the disks are: one table and one file per pattern, and the tiling that makes a scene of a brick.
+"""Positions of the disks: one table and one file per pattern, and the tiling of bricks to a scene.
 
 A new pattern is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """

@@ -1,4 +1,4 @@
-"""What every packing table has in common."""
+"""The base of all packing tables."""
 
 from abc import ABC, abstractmethod
 from typing import Annotated, ClassVar, Self
@@ -14,13 +14,13 @@ Extent = tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]]
 Count = tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 
 TYPED = 5e-6
-"""What a size may differ from whole bricks, relative: it is typed with six digits, as 5.19615 m for 3√3 m."""
+"""Relative difference allowed between a size and whole bricks: sizes may have six digits, as 5.19615 m for 3√3 m."""
 
-# Confining stress over contact modulus where the case names none: 4.5 contacts per disk, and eight times the
-# stress ρcv of a wave of 0.5 m/s at 1000 m/s.
+# Confining stress over contact modulus if the case gives none: 4.5 contacts per disk, and eight times the stress ρcv of
+# a wave of 0.5 m/s at 1000 m/s.
 PRESSURE = 8e-3
-# Below, a frictionless packing is so near to falling apart that it hardly comes to rest; above, overlaps of
-# a tenth of the diameter are no contacts any more.
+# Below, a frictionless packing is nearly unstable and does not come to rest; above, overlaps reach a tenth of the
+# diameter and are no longer contacts.
 PRESSURES = (5e-4, 0.1)
 
 
@@ -29,8 +29,8 @@ class Packing(Table, ABC):
 
     Attributes
     ----------
-    packed_under_stress : whether a brick's contacts were packed under stress, which takes contacts with a stiffness.
-    regular_sides : sides (left, right, bottom, top) whose disks stand in one row, so that they can be half cells.
+    packed_under_stress : whether a brick is packed under stress, which needs contacts with a stiffness.
+    regular_sides : sides (left, right, bottom, top) whose disks form one row, so that they can be half cells.
     """
 
     packed_under_stress: ClassVar[bool] = False
@@ -74,7 +74,7 @@ class Packing(Table, ABC):
     @model_validator(mode="after")
     def _whole_bricks(self) -> Self:
         if (self.size is None) == (self.bricks is None):
-            raise ValueError("must have exactly one of size (m) and bricks (numbers), which say how large the scene is")
+            raise ValueError("must have exactly one of size (m) and bricks (numbers), the extent of the scene")
         for whole, part in zip(self.extent, self.brick_size, strict=True):
             number = whole / part
             if number < 1.0 - TYPED or abs(number - round(number)) > TYPED * number:
@@ -110,7 +110,7 @@ class DensePacking(Packing):
         return radius_range(self.radius, self.radius_ratio)[1]
 
     def recipe(self, contact_modulus: float) -> Recipe:
-        """All that decides the brick, for disks of contact modulus E_c (Pa).
+        """All parameters of the brick, for disks of contact modulus E_c (Pa).
 
         Raises CaseError when the confining stress is outside 5e-4 … 0.1 of the contact modulus.
         """
@@ -135,7 +135,7 @@ class DensePacking(Packing):
 
     @model_validator(mode="after")
     def _wide_brick(self) -> Self:
-        # below four diameters a disk could meet another one through two faces at once
+        # below four diameters a disk could touch another one through two faces at once
         least = 8.0 * self.largest_radius
         if min(self.brick) < least:
             raise ValueError(f"brick: {min(self.brick):g} m is too small, {least:.4g} m is the least for these disks")

@@ -1,4 +1,4 @@
-"""A bed of disks on its way to force equilibrium at a chosen pressure."""
+"""A bed of disks, brought to force equilibrium at a given pressure."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from dembound.kernels import pack
 from dembound.packings.brick import contact_stress, contact_vectors
 from dembound.packings.contacts import near_pairs, wrap
 
-SKIN = 0.5  # neighbour lists reach this share of the mean radius further than contact
+SKIN = 0.5  # largest gap in neighbour lists over the mean radius
 MAX_STEPS = 400_000  # of one relaxation; 10,000 disks at rest within 1e-9 take 1,500 to 15,000
 MAX_ADJUSTMENTS = 60  # of the radii; about 5 are usual
 GROWTH = 1.02  # of a loose disk per round: the gaps around it close by about one usual overlap
@@ -47,10 +47,10 @@ class Bed:
         return -0.5 * float(contact_stress(vectors, overlaps, self.box)[:2].sum())
 
     def loose(self) -> np.ndarray:
-        """Core disks (n,) bool with fewer than three contacts that carry force.
+        """Core disks (n,) bool with fewer than three contacts under force.
 
-        Three is what holds a frictionless disk in place. Contacts below 1e-3 of the mean overlap do not
-        count: they are chance touches that come and go with the last digits of the balance.
+        A frictionless disk needs three contacts to be held in place. Contacts below 1e-3 of the mean overlap are not
+        counted: they appear and disappear with the last digits of the balance.
         """
         pairs, _, overlaps = self.overlaps()
         bearing = pairs[overlaps > 1e-3 * overlaps.mean()] if len(overlaps) else pairs
@@ -61,8 +61,8 @@ class Bed:
     def relax(self, tolerance: float, faint: float) -> None:
         """Move the core disks until mean |unbalanced force| ≤ tolerance · mean contact force.
 
-        `faint` (m) is the overlap below which contacts count as this overlap (see `kernels.pack.relax`).
-        Raises PackingError when the forces do not balance.
+        `faint` (m) : smaller overlaps are replaced by this one (see `kernels.pack.relax`). Raises PackingError when the
+        forces do not balance.
         """
         skin = SKIN * float(self.radii.mean())
         velocities = np.zeros_like(self.positions)
@@ -80,14 +80,14 @@ class Bed:
                 return
         raise PackingError(
             f"the packing did not come to rest: mean unbalanced force over mean contact force is {ratio:.1e} "
-            f"after {MAX_STEPS} steps, {tolerance:.0e} was wanted"
+            f"after {MAX_STEPS} steps, {tolerance:.0e} is required"
         )
 
     def crowd(self, loose: np.ndarray) -> None:
-        """Let the loose disks (n,) bool grow a little; those that are as large as the largest are taken out.
+        """Increase the radii of the loose disks (n,) bool a little; those already at the largest radius are removed.
 
-        Growing floaters is PFC's own remedy (Potyondy & Cundall 2004). It leaves no holes and hardly changes
-        the distribution of the radii; a disk that no allowed radius can wedge bears no force and may go.
+        PFC treats floaters in the same way (Potyondy & Cundall 2004). This leaves no holes and hardly changes the
+        distribution of the radii. A disk that is loose at every allowed radius carries no force and can be removed.
         """
         largest = self.radii[self.held :].max()
         hopeless = loose & (self.radii >= largest)
@@ -97,7 +97,7 @@ class Bed:
     def compress(self, pressure: float, tolerance: float) -> None:
         """Scale all core radii by one factor until the relaxed bed is under `pressure` (over E_c).
 
-        A secant search on the logarithm of the factor. Raises PackingError when it does not settle.
+        A secant search on the logarithm of the factor. Raises PackingError when it does not converge.
         """
         faint = 0.1 * pressure * 2.0 * float(self.radii.mean())
         slope, reached, step = STIFFNESS, math.nan, 0.0
@@ -106,11 +106,11 @@ class Bed:
             before, reached = reached, self.pressure()
             if abs(reached / pressure - 1.0) <= PRESSURE_TOLERANCE:
                 return
-            if abs(step) > 0.0 and before > 0.0:  # rearrangements make the measured slope jump: keep it sane
+            if abs(step) > 0.0 and before > 0.0:  # limit the slope, which jumps when disks rearrange
                 slope = min(max((reached - before) / step, 0.5 * STIFFNESS), 4.0 * STIFFNESS)
             step = (pressure - reached) / slope
             self.radii[self.held :] *= math.exp(step)
         raise PackingError(
-            f"the packing did not settle under its confining stress: {reached / pressure:.5f} of it reached "
+            f"the packing did not converge to its confining stress: {reached / pressure:.5f} of it reached "
             f"after {MAX_ADJUSTMENTS} adjustments of the radii"
         )

@@ -1,4 +1,4 @@
-"""The brick: a small periodic body of disks in force equilibrium that scenes are tiled from."""
+"""The brick: a small periodic body of disks in force equilibrium, from which scenes are tiled."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def contact_vectors(positions: np.ndarray, pairs: np.ndarray, images: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Vectors (b, 2) m from disk i to the image of disk j that it touches: x_j + images·box − x_i."""
+    """Vectors (b, 2) m from disk i to the touching image of disk j: x_j + images·box − x_i."""
     first, second = pairs.T
     return positions[second] + images * box - positions[first]
 

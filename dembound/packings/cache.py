@@ -1,7 +1,7 @@
 """Packed bricks kept on disk, one file per set of parameters.
 
-A brick depends on nothing but its parameters, so a file is never out of date; one that cannot be read is
-packed again and replaced.
+A brick depends only on its parameters, so a file is never out of date; a brick that cannot be read is packed again and
+replaced.
 """
 
 import contextlib
@@ -25,16 +25,16 @@ UNREADABLE = (OSError, ValueError, KeyError, EOFError, TypeError, zipfile.BadZip
 
 
 def cache_folder() -> Path:
-    """Where bricks are kept: the environment variable DEMBOUND_CACHE, else the user's cache folder."""
+    """Folder of the bricks: the environment variable DEMBOUND_CACHE, else the user's cache folder."""
     chosen = os.environ.get("DEMBOUND_CACHE")
     return Path(chosen) if chosen else Path(platformdirs.user_cache_dir("dembound")) / "bricks"
 
 
 def load_or_pack(key_params: Mapping[str, Any], pack: Callable[[], Brick]) -> Brick:
-    """The brick with these parameters, from the cache, else freshly packed and kept.
+    """The brick with these parameters, from the cache, else packed and written to it.
 
-    key_params holds all that decides the brick, as JSON values; pack() makes it. A brick that cannot be
-    written (no space, no permission) is returned all the same.
+    key_params contains all parameters of the brick, as JSON values; pack() makes it. If a brick cannot be written (no
+    space, no permission), it is still returned.
     """
     path = cache_folder() / f"brick-{_digest(key_params)}.npz"
     brick = _load(path)
@@ -45,7 +45,7 @@ def load_or_pack(key_params: Mapping[str, Any], pack: Callable[[], Brick]) -> Br
 
 
 def clear() -> int:
-    """Delete all kept bricks and return how many there were."""
+    """Delete all cached bricks and return their number."""
     files = list(cache_folder().glob("brick-*.npz"))
     for path in files:
         path.unlink(missing_ok=True)
@@ -68,11 +68,11 @@ def _load(path: Path) -> Brick | None:
 
 def _save(brick: Brick, path: Path) -> None:
     part = path.with_suffix(f".{os.getpid()}.part")
-    with contextlib.suppress(OSError):  # a cache that cannot be written costs time, not results
+    with contextlib.suppress(OSError):  # without a cache only time is lost
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             with part.open("wb") as file:
                 np.savez_compressed(file, **asdict(brick))
-            part.replace(path)  # whole or not at all, whoever else is packing the same brick
+            part.replace(path)  # atomic, as another process may write the same brick
         finally:
             part.unlink(missing_ok=True)

@@ -1,8 +1,8 @@
-"""The free-field column beside a body: one brick wide, periodic sideways, so that it is the ground without the body.
+"""The free-field column of a body: one brick wide and periodic sideways, so that it represents the ground.
 
-Under waves that arrive vertically, the infinite tiling of a brick moves alike in every brick. A column of one brick,
-closed on itself sideways, moves so too. What the ground beyond a side of the body would push with in that motion is
-what acts on the column's own particles across the same seam (Z eq. 21).
+Under waves that arrive vertically, all bricks of the infinite tiling at the same height have the same motion. A column
+one brick wide and periodic sideways has this motion too. The force of the ground beyond a side of the body in that
+motion is the force on the column's own particles across the same seam (Z eq. 21).
 """
 
 from dataclasses import dataclass, replace
@@ -14,21 +14,22 @@ from dembound.packings.brick import Brick
 from dembound.packings.tiling import Assembly, tile
 
 APART = 2.0
-"""Room between column and body in mean diameters; it matters to pictures only."""
+"""Gap between column and body in mean diameters; it is only used in pictures."""
 
 
 @dataclass(frozen=True, eq=False)
 class Seam:
-    """What the column pushes with across the sides of the body; particles are those of the joint assembly.
+    """The contacts of the column across the sides of the body; particles are those of the joint assembly.
 
     Attributes
     ----------
     count : number of the column's particles, which come first in the assembly.
     width : m, of the column, its period.
-    twin : (n,) int64, the column's particle at the same place of the brick; for the column's own, itself.
+    twin : (n,) int64, the column's particle at the same place of the brick; particles of the column are their own
+        twins.
     node : (k,) int64, particles of the body that have contacts beyond a side, sorted.
     start : (k + 1,) uint32: the contacts of node[s] are start[s]:start[s + 1] of the next three.
-    neighbour : (e,) int64, the column's particle that stands for the neighbour.
+    neighbour : (e,) int64, the column's particle in the place of the neighbour.
     contact_type : (e,) int64, the contact of the brick.
     twin_is_second : (e,) bool, whether the node's twin is the contact's second disk.
     image : (e,) int64, periods of the column from the twin to that neighbour.
@@ -50,7 +51,7 @@ class Seam:
         return self.start[1:].astype(np.int64) - self.start[:-1].astype(np.int64)
 
     def pairs(self, brick: Brick) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """First and second particle (e,) of the column and vectors (e, 2) m of the contacts that nodes have there."""
+        """First and second particle (e,) of the column and vectors (e, 2) m of the nodes' contacts."""
         owner = np.repeat(self.twin[self.node], self.contact_counts)
         vectors = brick.vectors[self.contact_type % len(brick.pairs)]
         return owner, self.neighbour, vectors * np.where(self.twin_is_second, -1.0, 1.0)[:, None]
@@ -59,7 +60,7 @@ class Seam:
 def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[Assembly, Seam]:
     """A body and its free-field column in one assembly, the column first and to the left, and the seam between them.
 
-    sides : left, right or both, those beyond which the column stands for the ground.
+    sides : left, right or both, the sides at which the column represents the ground.
 
     Raises PackingError when a disk of the body has no twin in the column.
     """

@@ -1,4 +1,4 @@
-"""Who touches whom in a periodic box."""
+"""Contacts between disks in a periodic box."""
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -18,8 +18,8 @@ def near_pairs(
     """All pairs of disks whose gap is at most `reach` (m), through the periodic faces too.
 
     positions (n, 2) in [0, box), radii (n,), box (2,) in metres. The box must be wider than
-    2·(largest diameter + reach), so that a pair meets at one image only. Returns pairs (b, 2) int64 with
-    i < j, sorted, and images (b, 2) int64: the contact vector is x_j + images·box − x_i.
+    2·(largest diameter + reach), so that a pair can touch at one image only. Returns pairs (b, 2) int64 with i < j,
+    sorted, and images (b, 2) int64: the contact vector is x_j + images·box − x_i.
     """
     tree = cKDTree(positions, boxsize=box)
     pairs = tree.query_pairs(2.0 * radii.max() + reach, output_type="ndarray").astype(np.int64)
@@ -32,7 +32,7 @@ def near_pairs(
 
 
 def strip_order(positions: np.ndarray, width: float) -> np.ndarray:
-    """The order (n,) that lists disks strip after strip along x, upwards within a strip.
+    """The order (n,) of disks strip after strip along x, upwards within a strip.
 
     positions (n, 2) and the strip width in metres. Neighbours in space are then neighbours in memory.
     """

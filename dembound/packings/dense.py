@@ -14,7 +14,7 @@ from dembound.packings.contacts import near_pairs, strip_order
 # force balance: of the first compression, while loose disks grow, and of the finished brick
 ROUGH, MEDIUM, FINE = 1e-3, 1e-4, 1e-9
 SIZE_TOLERANCE = 2e-3  # of the mean radius
-MAX_STARTS = 30  # about one start in four succeeds with 100 disks: 0.75³⁰ = 2e-4 are left to fail
+MAX_STARTS = 30  # about one start in four succeeds with 100 disks: 0.75³⁰ = 2e-4 of the bricks fail
 MAX_CROWDINGS = 200  # rounds of growing loose disks; about 20 are usual
 TOUCH = 1e-9  # of the mean radius: row disks that touch exactly have gaps of round-off size
 
@@ -33,7 +33,7 @@ NO_ROWS = RegularRows(np.empty((0, 2)), np.empty(0), np.empty((0, 2), bool))
 
 @dataclass(frozen=True)
 class Recipe:
-    """All that decides a dense brick.
+    """All parameters of a dense brick.
 
     size (2,) m; radius the mean core radius m; radius_ratio largest over smallest; pressure the confining
     stress over E_c; bond_gap m; seed of the random start.
@@ -54,15 +54,15 @@ def radius_range(radius: float, radius_ratio: float) -> tuple[float, float]:
 
 
 def pack_dense(recipe: Recipe, rows: RegularRows = NO_ROWS) -> Brick:
-    """Pack a brick: random start, overlap energy minimised, radii scaled to the stress asked for.
+    """Pack a brick: random start, overlap energy minimised, radii scaled to the given stress.
 
-    Until the mean core radius comes out within 0.2 %, another start with a better number of disks is tried:
-    a large brick needs one or two, small ones scatter. Raises PackingError when the stress, the force balance
-    or the mean radius cannot be reached.
+    While the error of the mean core radius is above 0.2 %, another start with a better number of disks is tried: a
+    large brick needs one or two starts, small ones more. Raises PackingError when the stress, the force balance or the
+    mean radius cannot be reached.
     """
     count = first_count(recipe, rows)
     best = math.inf
-    estimates = []  # of the number that would give the mean radius, one from each start
+    estimates = []  # of the number of disks that would give the mean radius, one from each start
     for attempt in range(MAX_STARTS):
         bed = pack_count(count, recipe, rows, attempt)
         factor = float(bed.radii[bed.held :].mean()) / recipe.radius
@@ -72,13 +72,13 @@ def pack_dense(recipe: Recipe, rows: RegularRows = NO_ROWS) -> Brick:
         estimates.append(count * factor**2)
         count = max(round(sum(estimates) / len(estimates)), 1)
     raise PackingError(
-        f"the mean radius came no nearer than {100.0 * best:.2f} % in {MAX_STARTS} starts with about {count} "
+        f"the error of the mean radius was at least {100.0 * best:.2f} % in {MAX_STARTS} starts with about {count} "
         "disks; a larger brick scatters less"
     )
 
 
 def first_count(recipe: Recipe, rows: RegularRows) -> int:
-    """Number of core disks expected to fill the box at the pressure asked for."""
+    """Number of core disks expected to fill the box at the given pressure."""
     # solid fractions measured at radius ratios 1 to 4 and pressures 5e-4 to 0.1
     solid = (0.832 + 0.005 * recipe.radius_ratio) * (1.0 + 3.0 * recipe.pressure)
     room = solid * math.prod(recipe.size) - math.pi * float(np.sum(rows.radii**2))
@@ -93,7 +93,7 @@ def pack_count(count: int, recipe: Recipe, rows: RegularRows, attempt: int) -> B
     box = np.array(recipe.size)
     core = rng.random((count, 2)) * box
     core = core[strip_order(core, 4.0 * recipe.radius)]
-    # evenly spread, not drawn: the mean and the range are exact
+    # evenly spaced, not random: the mean and the range are exact
     radii = rng.permutation(np.linspace(*radius_range(recipe.radius, recipe.radius_ratio), count))
     bed = Bed(box, np.vstack([rows.positions, core]), np.concatenate([rows.radii, radii]), len(rows.radii))
     for tolerance in (ROUGH, MEDIUM):
@@ -115,7 +115,7 @@ def pack_count(count: int, recipe: Recipe, rows: RegularRows, attempt: int) -> B
 
 
 def finish(bed: Bed, recipe: Recipe, rows: RegularRows) -> Brick:
-    """The brick of a settled bed: disks in memory order, contacts listed, stress and balance measured."""
+    """The brick of a bed in equilibrium: sorted disks, contacts, stress and residual force ratio."""
     member = np.zeros((len(bed.radii), 2), bool)
     member[: bed.held] = rows.member
     order = strip_order(bed.positions, 4.0 * recipe.radius)

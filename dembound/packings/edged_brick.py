@@ -29,8 +29,8 @@ class EdgedBrick(DensePacking):
     def edge_radii(self) -> tuple[float, float]:
         """The adjusted radii (m) of the row on x = 0 and of the row on y = 0.
 
-        The disk at the origin belongs to the row on y = 0; the other disks of the row on x = 0 share what it
-        leaves of the height. In a square brick both radii are equal.
+        The disk at the origin belongs to the row on y = 0; the other disks of the row on x = 0 fill the rest of the
+        height. In a square brick both radii are equal.
         """
         width, height = self.brick
         along_x = 0.5 * width / round(width / (2.0 * self.edge_radius))
@@ -43,7 +43,7 @@ class EdgedBrick(DensePacking):
         return max(super().largest_radius, self.edge_radius)
 
     def pack(self, contact_modulus: float) -> Brick:
-        """The packed brick for contact modulus E_c (Pa), from the cache where it is known already.
+        """The packed brick for contact modulus E_c (Pa), from the cache if it is there.
 
         Raises CaseError for a confining stress out of range and PackingError when packing fails.
         """

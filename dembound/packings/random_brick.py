@@ -15,7 +15,7 @@ class RandomBrick(DensePacking):
     pattern: Literal["B"] = "B"
 
     def pack(self, contact_modulus: float) -> Brick:
-        """The packed brick for contact modulus E_c (Pa), from the cache where it is known already.
+        """The packed brick for contact modulus E_c (Pa), from the cache if it is there.
 
         Raises CaseError for a confining stress out of range and PackingError when packing fails.
         """

@@ -23,7 +23,7 @@ class Square(Packing):
     def pack(self, contact_modulus: float) -> Brick:
         """One disk in the middle of its cell, touching its own images to the right and above.
 
-        The lattice is unstressed, so the contact modulus (Pa) plays no part.
+        The lattice is unstressed, so the contact modulus (Pa) has no effect.
         """
         return Brick(
             size=np.array(self.brick_size),

@@ -12,7 +12,7 @@ from dembound.packings.brick import Brick
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
-    """The disks and contacts of a whole scene; the constants of contacts stand once, in the brick.
+    """The disks and contacts of a whole scene; the constants of contacts are stored once, in the brick.
 
     Attributes
     ----------
@@ -24,8 +24,8 @@ class Assembly:
     contact_type : (b,) int32, the contact of the brick that this one is a copy of: its vector points from i to j.
     copies : number of bricks along x and y.
     size : (2,) m, the scene: copies · brick size.
-    extent : (2,) m, the body: as `size`, plus the row that closes the frame where there is one.
-    loose : number of disks left out because the cut at an open edge, or a hole, took all their ties to the body.
+    extent : (2,) m, the body: as `size`, plus the row that closes the frame if there is one. loose : number of disks
+    left out because the cut at an open edge, or a hole, removed all their connections to the body.
     """
 
     positions: np.ndarray
@@ -40,7 +40,7 @@ class Assembly:
     loose: int = 0
 
     def part(self, disks: slice) -> "Assembly":
-        """A range of the disks as an assembly of its own; no contact leads out of it."""
+        """A range of the disks as a separate assembly; it has no contacts with other disks."""
         chosen = (self.pairs[:, 0] >= disks.start) & (self.pairs[:, 0] < disks.stop)
         return replace(
             self,
@@ -54,9 +54,9 @@ class Assembly:
         )
 
     def without(self, removed: np.ndarray) -> tuple["Assembly", np.ndarray]:
-        """What is left without some disks, removed (n,) bool, and without those that this severs from the body.
+        """The assembly without some disks, removed (n,) bool, and without those that this separates from the body.
 
-        Returns it and the indices (m,) of its disks, in order. Raises PackingError when none is left.
+        Returns it and the indices (m,) of its disks, in order. Raises PackingError when no disk remains.
         """
         kept = _body(self, ~removed)
         if not kept.any():
@@ -79,20 +79,20 @@ class Assembly:
 
 
 def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> Assembly:
-    """Lay `copies` (along x, along y) of the brick side by side.
+    """Put `copies` (along x, along y) of the brick side by side.
 
     Along a periodic axis contacts wrap around: over one copy only, a disk may then touch its own image, and
-    this self-contact (i, i) is listed too (displacement does not deform it, but rotation does). Elsewhere
-    contacts that would leave the scene are dropped, and the regular rows of the brick, if it has any, are
-    repeated on the far edge, so that they frame the scene on all sides. Disks that such a cut severs from the
-    body are left out.
+    this self-contact (i, i) is listed too (displacement does not deform it, but rotation does). Along other axes
+    contacts that would leave the scene are left out, and the regular rows of the brick, if it has any, are repeated on
+    the far edge, so that they form a frame on all sides of the scene. Disks that such a cut separates from the body are
+    left out.
 
     Disks are numbered tile after tile, tiles along the shorter side of the scene first, so that a long bar is
     numbered along its length; within a tile they keep the order of the brick.
     """
     size = brick.size * copies
     present = _present(brick.edge_rows, copies, periodic)
-    # tiles in running order: an axis swap makes the shorter side the faster one
+    # tiles in order of numbers: an axis swap makes the index along the shorter side the faster one
     swap = (0, 1, 2) if size[1] <= size[0] else (1, 0, 2)
     numbers = np.full(present.shape, -1, np.int32)
     ordered = numbers.transpose(swap)  # a view
@@ -115,7 +115,7 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
 
 
 def _body(assembly: Assembly, present: np.ndarray) -> np.ndarray:
-    """The largest connected body (n,) bool that the disks present (n,) bool make; islands beside it carry no wave."""
+    """The largest connected body (n,) bool of the disks present (n,) bool; isolated groups transmit no waves."""
     count = len(present)
     pairs = assembly.pairs[present[assembly.pairs].all(axis=1)]
     graph = coo_matrix((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(count, count))

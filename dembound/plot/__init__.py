@@ -1,1 +1,1 @@
-"""Pictures, made from result files alone and without a display; one kind of figure per module."""
+"""Pictures, made only from result files and without a display; one kind of figure per module."""

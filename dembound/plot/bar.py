@@ -30,14 +30,14 @@ from dembound.results.reader import cracks_until, laws_of, open_record, snapshot
 MILLI, MEGA = 1e-3, 1e6
 
 FEWEST = 10
-"""Fewer snapshots than this are drawn as profiles, each a line; more make a picture over place and time."""
+"""Fewer snapshots than this are drawn as profiles, each a line; more are drawn over position and time."""
 
 
 @dataclass(frozen=True)
 class FieldStyle:
-    """How a field is shown: in words, its unit and what that is in SI, the sense of its sign, a map pale at zero.
+    """How a field is drawn: its name, its unit and the SI value of it, the meaning of its sign, a colour map.
 
-    jumps: whether it changes at once, so that nothing may be drawn between one snapshot and the next.
+    jumps: whether it changes suddenly, so that values between two snapshots must not be interpolated.
     """
 
     words: str
@@ -67,8 +67,8 @@ class SpaceTimeField:
     """Fields of a bar of n nodes at k moments.
 
     place (n,) m; time (k,) in `unit`, as all times; values: name of a field -> (k, n) in its unit; crack_place (c,) m
-    and crack_time (c,) of the bonds broken by the last of them; changes: methods that took over by then, and when;
-    case: its name.
+    and crack_time (c,) of the bonds broken up to the last of them; changes: changes of method up to then, with their
+    times; case: its name.
     """
 
     place: np.ndarray
@@ -81,13 +81,13 @@ class SpaceTimeField:
     unit: TimeUnit
 
     def moment(self, time: float) -> str:
-        """A time in words."""
+        """A time as text."""
         return f"{time:.4g} {self.unit.name}"
 
 
 @styled
 def plot_bar(run: Path) -> Figure:
-    """Stress and damage of a bar over place and time; below, both along the bar at the end. Broken bonds are marked.
+    """Stress and damage of a bar over position and time; below, both along the bar at the end. Broken bonds are marked.
 
     A run with few snapshots shows both along the bar at each.
 
@@ -145,7 +145,7 @@ def read_course(run: Path, fields: Sequence[str], snapshot: int | None = None) -
 
 
 def _along(dataset: h5py.Dataset) -> np.ndarray:
-    """A field along the bar, (n,): a stress or damage as it is, of a motion (n, 3) the part along x."""
+    """A field along the bar, (n,): stress or damage unchanged, of a motion (n, 3) the component along x."""
     return dataset[:] if dataset.ndim == 1 else dataset[:, 0]
 
 
@@ -159,7 +159,7 @@ def _draw(course: SpaceTimeField) -> Figure:
 
 
 def _draw_maps(course: SpaceTimeField) -> Figure:
-    """A column of panels for each field: over place and time, and below that its last profile."""
+    """A column of panels for each field: over position and time, and below that its last profile."""
     count = len(course.values)
     figure = new_figure(2.0 + 4.5 * count, 6.8)
     panels = figure.subplots(2, count, sharex=True, squeeze=False, height_ratios=[5, 2])
@@ -167,14 +167,14 @@ def _draw_maps(course: SpaceTimeField) -> Figure:
         colours = _draw_map(upper, course, name)
         figure.colorbar(colours, ax=upper, label=FIELDS[name].label, location="top", aspect=40)
         _draw_profile(lower, course, name, -1, color=COLOURS[0])
-        lower.set_ylabel(f"{FIELDS[name].words} ({FIELDS[name].unit})")  # there is no room for more
+        lower.set_ylabel(f"{FIELDS[name].words} ({FIELDS[name].unit})")  # there is no space for more
         lower.set_title(f"at the end, t = {course.moment(course.time[-1])}", loc="left", fontsize=9, pad=3)
         lower.set_xlabel("x (m)")
     return figure
 
 
 def _draw_map(panel: Axes, course: SpaceTimeField, name: str) -> ScalarMappable:
-    """A field over place and time, the bonds that broke and methods that took over; returns what a colour bar needs."""
+    """A field over position and time, with broken bonds and changes of method; returns the colour mapping."""
     values, look = course.values[name], FIELDS[name]
     largest = float(np.abs(values).max()) or 1.0
     limits = (0.0, 1.0) if name == "damage" else (-largest, largest)

@@ -14,7 +14,7 @@ from dembound.plot.style import new_figure, outside_legend, point_style, styled
 from dembound.results.histories import UNITS
 from dembound.results.reader import COMPONENTS, is_line, open_record, record_names
 
-# A uniform side must look uniform: axes are not magnified beyond ± this part of the middle value.
+# The axes show at least ± this part of the middle value, so that small differences are not magnified.
 LEAST_SPAN = 0.1
 
 
@@ -41,9 +41,9 @@ class Side:
 def plot_boundary(runs: Sequence[Path], side: str) -> Figure:
     """Diameter (upper panel) and peak velocity (lower panel) of the particles along a side, for several runs.
 
-    The peak is that of the component, x or y, that moved most on the side in any run. The legend gives the
+    The peak is that of the component, x or y, with the largest motion on the side in any run. The legend gives the
     number of particles, the mean peak, and its standard deviation in per cent. Particles of a free-field column are
-    drawn apart, as hollow marks that no line joins.
+    drawn separately, as hollow marks without lines.
 
     Parameters
     ----------
@@ -104,14 +104,14 @@ def read_side(path: Path, side: str) -> Side:
 
 
 def _summary(peaks: np.ndarray) -> str:
-    """Number, mean and spread in words."""
+    """Number, mean and standard deviation as text."""
     mean = float(peaks.mean())
     spread = 100.0 * float(peaks.std()) / mean if mean > 0.0 else 0.0
     return f"{len(peaks)} particles, mean {mean:.4g} m/s, standard deviation {spread:.2f} %"
 
 
 def _widen(panel: Axes) -> None:
-    """Keep the vertical axis from magnifying small differences."""
+    """Widen the vertical axis, so that small differences are not magnified."""
     low, high = panel.get_ylim()
     middle = 0.5 * (low + high)
     half = max(0.5 * (high - low), LEAST_SPAN * abs(middle))

@@ -1,4 +1,4 @@
-"""Drawing many disks, as disks where they are large enough to be seen, else as a picture of their mean."""
+"""Draws many disks, as disks if they are large enough to be visible, else as an image of their mean."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,7 +10,7 @@ from matplotlib.collections import EllipseCollection
 
 from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP
 
-# A disk narrower than this is a speckle between gaps as wide as itself, and a picture of many of them megabytes large.
+# Disks narrower than this cannot be distinguished from the gaps, and a picture of many of them has megabytes.
 SMALLEST_PIXELS = 4.0
 
 # Cells of the averaged picture, in mean diameters: wide enough that none inside the packing is empty, so that
@@ -19,7 +19,7 @@ CELL_DIAMETERS = 2.0
 
 
 EMPTY = "#B5B5B5"
-"""Colour of the gaps: no disk at rest, which is white, is lost on it."""
+"""Colour of the gaps, on which disks at rest, which are white, are visible."""
 
 
 @dataclass(frozen=True)
@@ -44,11 +44,11 @@ class Window:
     def touches(self, positions: np.ndarray, radii: np.ndarray) -> np.ndarray:
         """Which disks (n,) bool reach into it; positions (n, 2), radii (n,) in m."""
         nearest = np.clip(positions, self.corner, self.corner + self.size)
-        return np.hypot(*(positions - nearest).T) < radii * (1.0 - 1e-9)  # mere contact, rounded, is outside
+        return np.hypot(*(positions - nearest).T) < radii * (1.0 - 1e-9)  # touching disks, to rounding, are outside
 
 
 def draw_disks(axes: Axes, positions: np.ndarray, radii: np.ndarray, **looks: Any) -> EllipseCollection:
-    """Add disks to the axes in true size; positions (n, 2) and radii (n,) in m; looks go to matplotlib."""
+    """Add disks to the axes in true size; positions (n, 2) and radii (n,) in m; looks : arguments for matplotlib."""
     disks = EllipseCollection(
         2.0 * radii,
         2.0 * radii,
@@ -71,7 +71,7 @@ def draw_field(
     limits: tuple[float, float],
     scale: float,
 ) -> ScalarMappable:
-    """Fill the axes with a window of a field; returns what a colour bar needs.
+    """Fill the axes with a window of a field; returns the object for the colour bar.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def draw_field(
     limits
         the ends of the colour scale; one from a negative end is white at its middle.
     scale
-        pixels per metre. Disks below `SMALLEST_PIXELS` give way to the mean of the field on a grid.
+        pixels per metre. Disks below `SMALLEST_PIXELS` are replaced by the mean of the field on a grid.
     """
     axes.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], facecolor=EMPTY)
     axes.grid(False)

@@ -1,4 +1,4 @@
-"""How fast waves run on the nodes of a bar, for several lattices at once (L fig. 5)."""
+"""Wave speeds on the nodes of a bar, for several lattices in one figure (L fig. 5)."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,10 +12,10 @@ from dembound.exact.dispersion import Lattice
 from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legend, point_style, styled
 
 CELLS = np.geomspace(2.0, 100.0, 800)
-"""Spacings per wavelength shown, from the shortest wave to where even wide horizons are exact to a few per cent."""
+"""Spacings per wavelength shown, up to where wide horizons are exact to a few per cent."""
 
 WIDTH, WIDENED = 1.4, 2.0
-"""Width of a line in points, and what each further one of the same horizon adds to those below it."""
+"""Width of a line in points, and the additional width for each further line of the same horizon above it."""
 
 TICKS = (2, 3, 5, 10, 20, 50, 100)
 
@@ -30,9 +30,9 @@ def plot_dispersion(lattices: Sequence[Lattice], measured: Sequence[Points] = ()
     Parameters
     ----------
     lattices
-        Rows of nodes, each a line that ends at its shortest wave and stops where waves grow.
+        Rows of nodes; the line of each ends at its shortest wave, or where waves become unstable.
     measured
-        What simulations of these lattices gave, one pair each in the same order; none: lines only.
+        Results of simulations of these lattices, one pair each in the same order; none: lines only.
     """
     figure = new_figure(11.0, 4.4)
     left, middle, right = figure.subplots(1, 3)
@@ -62,7 +62,7 @@ def plot_dispersion(lattices: Sequence[Lattice], measured: Sequence[Points] = ()
 def line_widths(lattices: Sequence[Lattice]) -> list[float]:
     """Widths in points over spacings per wavelength, the larger the more lattices of the same horizon follow.
 
-    There these nearly coincide, and each must be seen below the next.
+    There these nearly coincide, and each must be visible below the next.
     """
     horizons = [lattice.horizon for lattice in lattices]
     return [WIDTH + WIDENED * horizons[index + 1 :].count(horizon) for index, horizon in enumerate(horizons)]
@@ -76,13 +76,13 @@ def name(lattice: Lattice) -> str:
 
 
 def horizon_in_words(lattice: Lattice) -> str:
-    """Its horizon, with shares of the stress other than L's in brackets."""
+    """The horizon of a lattice; shares of the stress that differ from L's follow in brackets."""
     shares = "" if lattice.shares is None else f" ({'/'.join(f'{share:.3g}' for share in lattice.shares)})"
     return f"{lattice.horizon}{shares}"
 
 
 def _exact_lines(panel: Axes, lattices: Sequence[Lattice]) -> None:
-    """Frequencies kc/2π of a bar without nodes, as far as the lattices' own go."""
+    """Frequencies kc/2π of a bar without nodes, up to the largest of the lattices."""
     ends = np.array([0.0, max(lattice.shortest for lattice in lattices)])
     highest = max(np.nanmax(lattice.frequency(np.linspace(0.0, lattice.shortest, 100))) for lattice in lattices)
     for speed in sorted({lattice.wave_speed for lattice in lattices}):

@@ -1,4 +1,4 @@
-"""Where the energy of a run is, where it went, and how well its books close."""
+"""Stored, supplied and dissipated energy of a run, and the error of its balance."""
 
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ COLUMNS = {
     "crack": "taken by cracks",
     "law_switch": "in: added by a change of law",
 }
-"""Columns of the ledger and what the legend calls them."""
+"""Columns of the ledger and their names in the legend."""
 
 BAR_COLUMNS = COLUMNS | {
     "outside": "in: ends and loads",
@@ -31,7 +31,7 @@ BAR_COLUMNS = COLUMNS | {
     "damping": "taken by attenuation",
     "law_switch": "in: added by a change of method",
 }
-"""The same of a bar."""
+"""The same for a bar."""
 
 HUES = (*COLOURS, "#8C510A", "#999999", "#5E3C99")
 """A colour for each of them."""
@@ -40,7 +40,7 @@ OWN_LOOKS: dict[str, dict[str, Any]] = {
     "contact": {"linewidth": 4.0, "alpha": 0.7, "zorder": 1.9},
     "kinetic": {"zorder": 2.1},
 }
-"""What shares of the stiffness often make equal, contacts and bonds, lies as a thin line upon a wide one."""
+"""Energies of contacts and bonds are often equal, so the one is a thin line above the wide line of the other."""
 
 NEGLIGIBLE = 1e-6
 """A column that stays below this share of the largest is left out."""
@@ -48,9 +48,9 @@ NEGLIGIBLE = 1e-6
 
 @styled
 def plot_energy(run: Path) -> Figure:
-    """The energy ledger of a run against time; below, its error in parts of the most that came in.
+    """The energy ledger of a run against time; below, its error over the supplied energy.
 
-    What stays negligible all through the run is left out.
+    Columns that are negligible during the whole run are left out.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def plot_energy(run: Path) -> Figure:
             upper.plot(time, columns[column], label=label, gid=label, **looks)
     lower.plot(time, columns["relative_error"], color=REFERENCE, gid="error of the balance")
     lower.yaxis.set_major_locator(MaxNLocator(nbins=3))
-    lower.yaxis.set_major_formatter(StrMethodFormatter("{x:.3g}"))  # each with its own power, none beside the title
+    lower.yaxis.set_major_formatter(StrMethodFormatter("{x:.3g}"))  # each with its own power, none next to the title
     upper.set_ylabel("energy (J)" if bar else "energy per metre of thickness (J/m)")
     upper.yaxis.set_major_formatter(EngFormatter())
     lower.set_ylabel("error (–)")

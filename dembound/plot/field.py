@@ -1,4 +1,4 @@
-"""What a picture of a scene shows: one field of its disks, at some moments or of the whole run."""
+"""The data of a picture of a scene: one field of its disks, at some times or of the whole run."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,7 +21,7 @@ STRESSES = ("stress_xx", "stress_yy", "stress_xy")
 """In the order of the columns of a stress in a record."""
 
 SENSES = dict.fromkeys(STRESSES[:2], ", tension positive") | {"stress_xy": ", positive up on a face to the right"}
-"""What a positive stress means."""
+"""The meaning of a positive stress."""
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Disks:
     """The disks of a run before the motion.
 
     positions (n, 2) and radii (n,) in m; monitors: name -> place (2,) m; twins (k, 2) m, the places of theirs in the
-    free-field column; case: its name; laws in words, empty if one law served all through; column, how many disks belong
-    to the free-field column, which come first.
+    free-field column; case: its name; laws as text, empty if there was only one law; column, how many disks belong to
+    the free-field column, which come first.
     """
 
     positions: np.ndarray
@@ -59,9 +59,9 @@ class Disks:
 class Field:
     """One field of the disks of a run, k times.
 
-    captions, k words that say when; values (k, n) in the unit; cracks so far, each time, as by `cracks_until`; limits
-    of the colour scale, equally far from zero for a field of either sign; the field's name in words and its unit; the
-    sense of its sign, where the name does not have it.
+    captions, k texts with the times; values (k, n) in the unit; cracks so far, each time, as by `cracks_until`; limits
+    of the colour scale, equally far from zero for a field of either sign; the name and unit of the field; the meaning
+    of its sign, if the name does not give it.
     """
 
     captions: list[str]
@@ -97,10 +97,10 @@ def read_disks(file: h5py.File) -> Disks:
 def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot: int | None, most: int) -> Field:
     """A field of an open record; name and component as in `plot_scene`.
 
-    Without the number of a snapshot there are up to `most`, evenly picked, the last among them, or if that is 1 the one
+    Without the number of a snapshot there are up to `most`, evenly chosen, including the last, or if that is 1 the one
     in which the field is largest. The limits are those of the whole run, 1 where all is zero.
 
-    Raises CaseError when the record has no such snapshot or does not hold the field, or disks have no such field.
+    Raises CaseError when the record has no such snapshot or does not have the field, or disks have no such field.
     """
     if name not in get_args(FieldName):
         raise CaseError([f"field: is {name}, must be one of {', '.join(get_args(FieldName))} for disks"])

@@ -1,4 +1,4 @@
-"""The signal of a gauge on a bar, and the stress beside the bar's free end (L figs 10 and 11)."""
+"""The signal of a gauge on a bar, and the stress near the bar's free end (L figs 10 and 11)."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ MPA = 1e6
 """Pascals in a megapascal."""
 
 STEPS = (-1.5, -1.0, -0.5, 0.0, 0.5)
-"""Times of the stresses beside the free end, about that of the spall, in ways from there to the end."""
+"""Times of the stresses near the free end, relative to that of the spall, in travel times from there to the end."""
 
 PLACES = 500
 """Points of each line along the bar."""
@@ -23,15 +23,15 @@ PLACES = 500
 
 @styled
 def plot_gauge(gauge: Gauge, findings: Findings) -> Figure:
-    """The history, with the tension peaks and their exponential fit if they were used; beside it the stress by the end.
+    """The history, with the tension peaks and their exponential fit if used; next to it the stress near the end.
 
     The latter, at several times, is that of the incident pulse and its image near the free end, without attenuation. It
-    is drawn if it is known where the bar has spalled.
+    is drawn if the position of the spall is given.
 
     Parameters
     ----------
     gauge, findings
-        its signal, and the estimates of `spalling.evaluate`.
+        the gauge with its signal, and the estimates of `spalling.evaluate`.
     """
     figure = new_figure(10.0 if findings.strength else 7.0, 4.6)
     panels = figure.subplots(1, 2 if findings.strength else 1, squeeze=False)[0]

@@ -19,16 +19,16 @@ Histories = dict[str, History]
 """The histories of one run by monitor."""
 
 SENSES = {"stress": ", tension positive"}
-"""What a positive value means, where the axis does not show it."""
+"""The meaning of a positive value, if the axis does not show it."""
 
 MOST_PLACES = 2
-"""More places than this of a monitor in several runs are counted, not listed."""
+"""Largest number of positions of a monitor in several runs that are listed; more are only counted."""
 
 BESIDE_TWINS: tuple[Any, ...] = ("-", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
-"""Lines of runs beside free-field twins, whose own are dashed."""
+"""Line style of monitors in runs with free-field twins, whose lines are dashed."""
 
 BEHIND: dict[str, Any] = {"linestyle": "--", "linewidth": 3.0, "alpha": 0.4, "zorder": 1.9}
-"""Looks of a twin: a monitor that moves as it does, as without a hole, must not hide it."""
+"""Line style of a twin: visible also below the line of a monitor with the same motion, as without a hole."""
 
 
 @styled
@@ -38,24 +38,24 @@ def plot_histories(
     quantity: Quantity = "velocity",
     monitors: Sequence[str] | None = None,
 ) -> Figure:
-    """One panel per monitor, on common axes; several runs lie over each other in it.
+    """One panel per monitor, with common axes; several runs are drawn in the same panel.
 
-    Beside free-field sides a monitor's panel has its twin in the free-field column as well, dashed. The title gives the
-    place of its particle, and the one wanted where it differs.
+    With free-field sides the panel of a monitor also has its twin in the free-field column, dashed. The title gives the
+    position of its particle, and the position given in the case if it differs.
 
     Parameters
     ----------
     runs
         ``run.h5`` files; a monitor need not occur in all of them.
     component
-        of a motion, by default whichever of x and y moved most in any run; both: x on the left, y on the right.
+        of a motion, by default x or y, whichever is larger in any run; both: x on the left, y on the right.
     quantity
         velocity in m/s, displacement in m, acceleration in m/s² (rad/s, rad, rad/s² for the rotation), or of bars
         stress in MPa.
     monitors
-        names of those to show, in this order; by default all. A twin that is named itself has a panel of its own.
+        names of those to show, in this order; by default all. A twin that is given by its name has a separate panel.
 
-    Raises CaseError when a file cannot be read or holds no stress that is asked for, no run has a monitor, none has
+    Raises CaseError when a file cannot be read or has no stress where it is asked for, no run has a monitor, none has
     one of those asked for, or a component of a stress is asked for.
     """
     if quantity == "stress" and component is not None:
@@ -97,7 +97,7 @@ def _draw(
 
 
 def _name_axes(figure: Figure, panels: np.ndarray, quantity: Quantity, columns: Sequence[int]) -> None:
-    """Say which quantity and component the panels (rows, columns) show, and in which unit."""
+    """Write quantity, component and unit on the axes of the panels (rows, columns)."""
     sense, unit = SENSES.get(quantity, ""), UNITS[quantity][columns[0]]
     shown = f"{quantity} {' and '.join(map(_direction, columns))}"
     if len(columns) > 1:
@@ -109,19 +109,19 @@ def _name_axes(figure: Figure, panels: np.ndarray, quantity: Quantity, columns: 
 
 
 def _twin(monitor: str) -> str:
-    """What records call a monitor's twin in the free-field column."""
+    """Name of a monitor's twin in the free-field column in records."""
     return f"{monitor}{FREE_FIELD}"
 
 
 def _title(monitor: str, histories: Sequence[History]) -> str:
-    """The monitor's name, the place of its particle in each of the runs, and where it was wanted if that differs."""
+    """Name of the monitor, position of its particle in each run, and the given position if it differs."""
     places, wanted = (list(dict.fromkeys(getattr(each, what) for each in histories)) for what in ("place", "wanted"))
     asked = "" if places == wanted else f", wanted {_in_words(wanted)}"
     return f"{monitor} at {_in_words(places)}{asked}"
 
 
 def _in_words(places: Sequence[str]) -> str:
-    """Places in words, or some of many."""
+    """Positions as text, or some of many."""
     if len(places) <= MOST_PLACES:
         return " and ".join(places)
     return f"{places[0]} and {len(places) - 1} other places"

@@ -14,7 +14,7 @@ from dembound.plot.style import COLOURS, new_figure, outside_legend, styled
 BLUE, RED, GREEN, YELLOW = (COLOURS[index] for index in (0, 1, 2, 5))
 
 KINDS = {"interior": YELLOW, "controller": BLUE, "follower": RED, "regular row": GREEN}
-"""Kinds of disks and their colours, Z's but for the rows: followers are controllers seen through a face."""
+"""Kinds of disks and their colours, Z's but for the rows: followers are periodic images of controllers."""
 
 CLOSE_UP_DIAMETERS = 16
 """Width of a close-up in the largest mean diameter of its packings."""
@@ -29,10 +29,10 @@ def plot_brick(
     pairs: np.ndarray | None = None,
     images: np.ndarray | None = None,
 ) -> Figure:
-    """A brick with what reaches into it from its neighbours; with pairs and images, its contacts too.
+    """A brick with the disks of its neighbours that extend into it; with pairs and images, its contacts too.
 
-    A disk that crosses a face of the periodic box is a controller; where it comes in again on the other side it
-    is drawn as a follower. A copy of the brick laid there has its controller in that place.
+    A disk that crosses a face of the periodic box is a controller; on the other side its periodic image is drawn as a
+    follower. In a copy of the brick there, this disk is the controller.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def plot_brick(
     title = f"Brick of {size[0]:g} m × {size[1]:g} m; disks: {len(radii)}"
     if pairs is not None and images is not None:
         ends = np.stack([positions[pairs[:, 0]], positions[pairs[:, 1]] + images * size], axis=1)
-        across = images.any(axis=1)  # shown on both faces: where it leaves the brick and where it comes in again
+        across = images.any(axis=1)  # shown at both faces, on either side of the brick
         ends = np.concatenate([ends, ends[across] - (images[across] * size)[:, None, :]])
         panel.add_collection(LineCollection(list(ends), colors="black", linewidths=0.6, label="contact"), autolim=False)
         title += f", contacts: {len(pairs)}"
@@ -69,10 +69,10 @@ def plot_brick(
 def brick_disks(
     positions: np.ndarray, radii: np.ndarray, rows: np.ndarray, size: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Every disk of a brick and every follower of its neighbours that reaches into the box.
+    """Every disk of a brick and every follower of its neighbours that extends into the box.
 
     Arguments as in `plot_brick`. Returns places (m, 2) m, numbers (m,) of the disks in the brick, and kinds
-    (m,), keys of `KINDS`; the first n are the brick's own.
+    (m,), keys of `KINDS`; the first n are those of the brick.
     """
     box = Window(np.zeros(2), size)
     own = np.arange(len(radii))

@@ -1,4 +1,4 @@
-"""The whole scene at one moment, or a long one at several, its disks coloured by a field."""
+"""The whole scene at one time, or a long one at several times, with disks coloured by a field."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,10 +17,10 @@ from dembound.plot.style import new_figure, outside_legend, styled
 from dembound.results.reader import open_record
 
 LONG = 6.0
-"""A scene this many times as long as wide gets a second panel, which shows a part of it closely."""
+"""A scene longer than this many times its width has a second panel with an enlarged part of it."""
 
 CLOSE_UP_DIAMETERS = 40
-"""Width of that part in mean disk diameters, or that of the scene if it is less: every disk can be seen."""
+"""Width of that part in mean disk diameters, or that of the scene if it is less, so that every disk is visible."""
 
 CLOSE_UP_ASPECT = 3.0
 """Length of that part over its width, but its length is never below `CLOSE_UP_DIAMETERS` either."""
@@ -29,22 +29,22 @@ DRAWING = (9.5, 6.5)
 """Largest width and height of the scene on the page in inches."""
 
 MOST_STRIPS = 8
-"""A scene that lies long is shown at no more moments than this, strip below strip."""
+"""A long horizontal scene is shown at no more times than this, as strips below each other."""
 
 STRIP_GAP = 0.12
 """Inches between two strips."""
 
 CRACKS = {"bond broken in tension": ("o", 14.0, "black"), "bond broken in shear": ("X", 26.0, "#C000C0")}
-"""What the legend calls the two kinds of cracks; shape, size in points² and colour of their marks."""
+"""Names of the two kinds of cracks in the legend; shape, size in points² and colour of their marks."""
 
 ABOVE_DISKS, ABOVE_CRACKS = 2.5, 3.0
-"""Where marks lie."""
+"""Drawing order of marks."""
 
 NAME_HEIGHT, LETTER_WIDTH = 12.0, 5.2
-"""Of a monitor's name in points, its plate included."""
+"""Size of a monitor's name in points, with its background."""
 
 BESIDE_MARK = ((0.0, 7.0), (0.0, -19.0), (1.0, -6.0), (-1.0, -6.0), (0.0, 20.0), (0.0, -32.0))
-"""Where the name of a monitor may stand: right or left of it, and the points from it to the name's lower end."""
+"""Positions for the name of a monitor: right or left of it, and the points from it to the name's lower end."""
 
 
 @styled
@@ -54,11 +54,10 @@ def plot_scene(
     field: FieldName = "velocity",
     component: Literal["x", "y", "rotation"] | None = None,
 ) -> Figure:
-    """The scene at a snapshot, at its undeformed places, with the monitors; colours mean the same all through a run.
+    """The scene at a snapshot, at its undeformed places, with the monitors; with one colour scale for the run.
 
-    Bonds that have broken by then are marked where they stood, above the disks and as large in every scene; the legend
-    has their number. A very long scene gets one more panel that shows a part
-    of it closely.
+    Bonds broken up to this time are marked at their positions, above the disks and with the same size in every scene;
+    the legend has their number. A very long scene has one more panel with an enlarged part of it.
 
     Parameters
     ----------
@@ -66,14 +65,14 @@ def plot_scene(
         the ``run.h5`` of a run.
     snapshot
         number of the snapshot; negative ones count from the last. By default the one in which the field is largest; of
-        a scene that lies long, as many as fit on the page, evenly picked, one below the other.
+        a long horizontal scene, as many as fit on the page, evenly chosen, one below the other.
     field
         velocity in m/s or displacement in m; a stress in MPa, tension positive; peak, the largest speed of each disk in
-        the whole run in m/s. The record must hold it.
+        the whole run in m/s. The record must contain it.
     component
         of a velocity or displacement, by default whichever of x and y is largest in any snapshot of the run.
 
-    Raises CaseError when the file cannot be read, has no such snapshot or does not hold the field.
+    Raises CaseError when the file cannot be read, has no such snapshot or does not contain the field.
     """
     with open_record(run) as file:
         disks = read_disks(file)
@@ -93,7 +92,7 @@ def plot_scene(
 
 
 def strips_on_page(scene: Window) -> int:
-    """How many pictures of a whole scene fit one below the other: one unless it lies long, at most `MOST_STRIPS`."""
+    """Number of pictures of a whole scene below each other: one unless it is long, at most `MOST_STRIPS`."""
     length, width = scene.size
     if length <= LONG * width:
         return 1
@@ -113,7 +112,7 @@ def _draw_whole(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarM
 
 
 def _draw_long(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMappable]:
-    """The whole scene as strips, one per moment, and below or beside them a part of one of them closely."""
+    """The whole scene as strips, one per time, and below or next to them an enlarged part of one of them."""
     upright = bool(disks.window.size[1] > disks.window.size[0])
     count = len(shown.captions)
     framed = int(np.argmax(np.abs(shown.values).max(axis=1)))
@@ -136,7 +135,7 @@ def _draw_long(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMa
 
 
 def _draw_strips(panels: Sequence[Axes], disks: Disks, shown: Field, scale: float) -> None:
-    """The whole scene at each of its moments, on one axis at the last; `scale` in pixels per metre."""
+    """The whole scene at each of its times, with one axis at the last; `scale` in pixels per metre."""
     for index, (panel, caption) in enumerate(zip(panels, shown.captions, strict=True)):
         _draw_panel(panel, disks, shown, index, disks.window, scale)
         beside: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 9}
@@ -147,14 +146,14 @@ def _draw_strips(panels: Sequence[Axes], disks: Disks, shown: Field, scale: floa
 
 
 def _frame(panel: Axes, part: Window) -> None:
-    """Mark the part of the scene that is shown closely."""
+    """Mark the enlarged part of the scene."""
     left, right, bottom, top = part.extent
     looks: dict[str, Any] = {"fill": False, "linewidth": 1.5, "clip_on": False, "label": "part shown closely"}
     panel.add_patch(Rectangle((left, bottom), right - left, top - bottom, **looks))
 
 
 def close_up(disks: Disks, values: np.ndarray) -> Window:
-    """The part of a long scene around half the largest of values (n,), on a wave's flank, where colours change most."""
+    """The part of a long scene around half the largest of values (n,), where colours change most."""
     scene, sizes = disks.window, np.abs(values)
     along = int(np.argmax(scene.size))
     width = CLOSE_UP_DIAMETERS * 2.0 * float(disks.radii.mean())
@@ -165,7 +164,7 @@ def close_up(disks: Disks, values: np.ndarray) -> Window:
 
 
 def _draw_panel(panel: Axes, disks: Disks, shown: Field, index: int, window: Window, scale: float) -> ScalarMappable:
-    """A window of the scene at one of its moments, at `scale` pixels per metre."""
+    """A window of the scene at one of its times, at `scale` pixels per metre."""
     colours = draw_field(panel, window, disks.positions, disks.radii, shown.values[index], shown.limits, scale)
     if disks.seam is not None and disks.seam > window.corner[0]:
         panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
@@ -180,7 +179,7 @@ def _draw_panel(panel: Axes, disks: Disks, shown: Field, index: int, window: Win
 
 
 def _mark_cracks(panel: Axes, shown: Field, index: int) -> None:
-    """A mark at each bond broken at one of the moments; the legend has the number at the last of them."""
+    """A mark at each bond broken up to one of the times; the legend has the number at the last of them."""
     until = f" until {shown.captions[-1]}" if len(shown.captions) > 1 else ""
     for shear, (label, (mark, size, colour)) in enumerate(CRACKS.items()):
         places, last = (each["position"][each["shear"] == shear] for each in (shown.cracks[index], shown.cracks[-1]))
@@ -211,7 +210,7 @@ def _mark_monitors(panel: Axes, disks: Disks, scale: float) -> None:
 
 
 def name_sides(marks: np.ndarray, letters: Sequence[int]) -> list[tuple[float, float]]:
-    """For each mark the entry of `BESIDE_MARK` at which its name covers least names and other marks.
+    """For each mark the entry of `BESIDE_MARK` at which its name covers the least area of names and other marks.
 
     Parameters
     ----------
@@ -232,7 +231,7 @@ def name_sides(marks: np.ndarray, letters: Sequence[int]) -> list[tuple[float, f
 
 
 def _name_box(x: float, y: float, letters: int, side: tuple[float, float]) -> tuple[float, float, float, float]:
-    """Left, bottom, right and top of a name beside a mark at (x, y), points."""
+    """Left, bottom, right and top of a name next to a mark at (x, y), points."""
     width, (way, up) = LETTER_WIDTH * letters + 4.0, side
     left = x + 8.0 * way + 0.5 * (way - 1.0) * width
     return left, y + up, left + width, y + up + NAME_HEIGHT

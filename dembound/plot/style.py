@@ -1,4 +1,4 @@
-"""What all figures share: type, colours, size, and how they are saved."""
+"""The style of all figures: fonts, colours, size, and saving."""
 
 from collections.abc import Callable, Iterable
 from functools import wraps
@@ -13,12 +13,12 @@ from matplotlib.font_manager import get_font_names
 
 from dembound.results.reader import replacing
 
-# Okabe & Ito: distinct with every kind of colour vision; yellow is left out, too faint for lines on white
+# Okabe & Ito: distinct with every kind of colour vision; without yellow, which is too pale for lines on white
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 DASHES = ("-", "--", "-.", ":")
 MARKERS = "os^Dv"
 REFERENCE = "#7F7F7F"
-"""Colour of what the eye compares with: incident peaks, frames."""
+"""Colour of lines for comparison: incident peaks, frames."""
 
 SIGNED_MAP = "RdBu_r"
 """Colour map of fields that may have either sign; white is zero."""
@@ -26,11 +26,11 @@ SIGNED_MAP = "RdBu_r"
 UNSIGNED_MAP = "viridis"
 """Colour map of fields that are never negative."""
 
-# DejaVu comes with matplotlib; the others supply Chinese characters in titles wherever one is installed
+# DejaVu comes with matplotlib; the others, if installed, have Chinese characters for titles
 FONTS = ("DejaVu Sans", "Noto Sans CJK SC", "Microsoft YaHei", "PingFang SC", "SimHei", "WenQuanYi Zen Hei")
 
 SHORT = 0.1
-"""A picture of less than so many seconds has times in milliseconds."""
+"""A picture of less than this many seconds has times in milliseconds."""
 
 Parameters = ParamSpec("Parameters")
 
@@ -78,7 +78,7 @@ def styled(draw: Callable[Parameters, Figure]) -> Callable[Parameters, Figure]:
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure of this size in inches that arranges its parts itself."""
+    """An empty figure of this size in inches with automatic layout."""
     return Figure(figsize=(width, height), dpi=150, layout="constrained")
 
 
@@ -112,7 +112,7 @@ def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None
 
 
 def save(figure: Figure, path: Path, title: str | None = None) -> None:
-    """Write the figure as a PNG file, whole or not at all; a title given here takes the place of its own."""
+    """Write the figure as a PNG file, either completely or not at all; `title` replaces the title of the figure."""
     if title is not None:
         figure.suptitle(title, fontsize=11)
     with replacing(path) as part:

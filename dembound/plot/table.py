@@ -1,4 +1,4 @@
-"""The lines of a picture as numbers: what is drawn, in the units it is drawn in."""
+"""The lines of a picture as numbers, in the units of the picture."""
 
 import csv
 from collections.abc import Iterator
@@ -17,12 +17,12 @@ Column = tuple[str, np.ndarray]
 
 
 def write_lines(figure: Figure, path: Path) -> None:
-    """Write the lines of a figure as CSV, a column each, whole or not at all.
+    """Write the lines of a figure as CSV, a column each, either completely or not at all.
 
-    Lines drawn over the same places share one column of these, which stands before theirs. Columns end where their
-    lines do; cells below are empty. Frames and other lines that show no numbers are left out.
+    Lines with the same x values share one column of them, which comes first. Columns end with their lines; cells below
+    are empty. Frames and other lines without data are left out.
 
-    Raises FileNotFoundError where the folder of the path is not there.
+    Raises FileNotFoundError if the folder of the path does not exist.
     """
     columns = list(columns_of(figure))
     with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
@@ -32,7 +32,7 @@ def write_lines(figure: Figure, path: Path) -> None:
 
 
 def columns_of(figure: Figure) -> Iterator[Column]:
-    """The columns of that table: of each group of lines over the same places these, then the lines' own values."""
+    """The columns of that table: for each group of lines with the same x values these, then the values of the lines."""
     groups: list[tuple[np.ndarray, list[tuple[Axes, Line2D]]]] = []
     for panel, line in _lines(figure):
         along = np.asarray(line.get_xdata(), dtype=float)
@@ -60,11 +60,11 @@ def _head(figure: Figure, panel: Axes, line: Line2D) -> str:
     """A line's name, its run, and what its axis shows with the unit."""
     axis = ", ".join(filter(None, (figure.get_supylabel(), panel.get_ylabel())))
     name, label = str(line.get_gid()), str(line.get_label())
-    run = "" if label.startswith(("_", name)) else f", {label}"  # matplotlib's own word for none, or the name again
+    run = "" if label.startswith(("_", name)) else f", {label}"  # matplotlib's label for none, or the name again
     return f"{name}{run}: {axis}"
 
 
 def _x_label(panel: Axes) -> str:
-    """What stands below a panel, or below the lowest that shares its axis."""
+    """The label below a panel, or below the lowest panel with the same axis."""
     sharing = [panel, *panel.get_shared_x_axes().get_siblings(panel)]
     return next(filter(None, (each.get_xlabel() for each in sharing)), "x")

@@ -1,4 +1,4 @@
-"""How far histories of runs are from those of a reference run."""
+"""Differences between histories of runs and those of a reference run."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,10 +12,10 @@ from dembound.results.reader import COMPONENTS, record_names
 
 @dataclass(frozen=True)
 class Difference:
-    """One monitor of a run beside the reference, in the component that moves most there.
+    """One monitor of a run compared with the reference, in the component with the largest motion there.
 
     rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; last, reference_last : the values at the end;
-    unit : theirs; place, reference_place : where the monitor was asked for in both, in words.
+    unit : theirs; place, reference_place : the positions given for the monitor in both, as text.
     """
 
     run: str
@@ -44,7 +44,7 @@ def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Diffe
         if monitor in wanted
     ]
     if not found:
-        raise CaseError([f"{reference}: shares no monitor with the runs to compare"])
+        raise CaseError([f"{reference}: has no monitor in common with the runs to compare"])
     return found
 
 
@@ -55,7 +55,7 @@ def _difference(run: str, monitor: str, history: History, reference: History, qu
     time = reference.time[reference.time <= end]
     expected = reference.values[: len(time), column]
     if not expected.any():
-        raise CaseError([f"monitor {monitor}: its {quantity} stays zero in the reference"])
+        raise CaseError([f"monitor {monitor}: its {quantity} is zero in the reference"])
     values = np.interp(time, history.time, history.values[:, column])
     error = values - expected
     return Difference(

@@ -7,7 +7,7 @@ from typing import Literal
 import h5py
 import numpy as np
 
-from dembound.casefile.disks.monitor import FREE_FIELD as FREE_FIELD  # the ending of a twin's name, for pictures, too
+from dembound.casefile.disks.monitor import FREE_FIELD as FREE_FIELD  # ending of a twin's name, also for pictures
 from dembound.errors import CaseError
 from dembound.results.reader import open_record, place_in_words
 
@@ -25,15 +25,15 @@ SCALES = {"velocity": 1.0, "displacement": 1.0, "acceleration": 1.0, "stress": 1
 """SI units in the units shown."""
 
 SOURCES = {"acceleration": "velocity"}
-"""What a quantity is computed from that no record holds."""
+"""The recorded quantity from which a quantity that is not recorded is computed."""
 
 
 @dataclass(frozen=True)
 class History:
-    """What one monitor recorded in one run.
+    """The record of one monitor in one run.
 
-    time (k,) s; values in `UNITS`, of a motion (k, 3), of a stress along x (k, 1); the place of its particle, and the
-    one wanted in the case, in words.
+    time (k,) s; values in `UNITS`, of a motion (k, 3), of a stress along x (k, 1); the position of its particle, and
+    the position given in the case, as text.
     """
 
     time: np.ndarray
@@ -48,16 +48,16 @@ def read_histories(path: Path, quantity: Quantity) -> dict[str, History]:
     Accelerations are central differences of the recorded velocity, one-sided ones at both ends; with
     `output.history_interval` they are means over that interval on either side.
 
-    Raises CaseError when the file cannot be read, holds no stress that is asked for, or too few samples for an
+    Raises CaseError when the file cannot be read, has no stress where it is asked for, or too few samples for an
     acceleration.
     """
     source = SOURCES.get(quantity, quantity)
     with open_record(path) as file:
         groups = dict(file.get("histories", {}).items())
         if any(source not in group for group in groups.values()):
-            raise CaseError([f"{path}: holds no {quantity} of its monitors; runs of bars do"])
+            raise CaseError([f"{path}: has no {quantity} of its monitors; only runs of bars have it"])
         if source != quantity and any(len(group["time"]) < 2 for group in groups.values()):
-            raise CaseError([f"{path}: holds fewer than two samples of its monitors, too few for an {quantity}"])
+            raise CaseError([f"{path}: has fewer than two samples of its monitors, too few for an {quantity}"])
         return {name: _read(group, quantity, file.attrs["size"].tolist()) for name, group in groups.items()}
 
 

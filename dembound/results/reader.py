@@ -1,4 +1,4 @@
-"""Result files: opening records, and writing what is made of them whole or not at all."""
+"""Result files: opening records, and writing derived files either completely or not at all."""
 
 import errno
 from collections.abc import Iterator, Sequence
@@ -17,7 +17,7 @@ COMPONENTS = ("x", "y", "rotation")
 def open_record(path: Path) -> h5py.File:
     """Open a record (``run.h5``, ``calibration.h5``) for reading; use it in a ``with`` statement.
 
-    Raises CaseError when it is not there or not readable.
+    Raises CaseError when it does not exist or is not readable.
     """
     try:
         return h5py.File(path, "r")
@@ -32,12 +32,12 @@ def has_monitors(path: Path) -> bool:
 
 
 def is_line(size: Sequence[float]) -> bool:
-    """Whether a scene of this size, (2,) m, has no height: one of nodes in a row."""
+    """Whether a scene of this size, (2,) m, has no height, as nodes in a row."""
     return not size[1] > 0.0
 
 
 def place_in_words(place: Sequence[float], size: Sequence[float]) -> str:
-    """A place (2,) m in words; on a line, in a scene of size (2,) m, one number is enough, and millimetres count."""
+    """A position (2,) m as text; in a scene of size (2,) m without height only x, with millimetres."""
     return f"{place[0]:.4g} m" if is_line(size) else "({:.2f}, {:.2f}) m".format(*place)
 
 
@@ -53,7 +53,7 @@ def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
 
 
 def _numbers(count: int) -> str:
-    """How snapshots are numbered, in words."""
+    """The numbers of the snapshots, as text."""
     return f"0 to {count - 1}" if count else "none"
 
 
@@ -83,7 +83,7 @@ def laws_in_words(laws: Sequence[tuple[str, float]]) -> str:
 
 
 def laws_of(file: h5py.File) -> list[tuple[str, float]]:
-    """The laws of an open record, each with the time in s it began at; none if the run was cut off before."""
+    """The laws of an open record, each with the time in s it began at; none if the run was interrupted before."""
     if "laws" not in file:
         return []
     return list(zip(file["laws/name"].asstr()[:], file["laws/time"][:].tolist(), strict=True))
@@ -92,9 +92,10 @@ def laws_of(file: h5py.File) -> list[tuple[str, float]]:
 def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
     """The energy ledger of an open record: its columns (k,) by name, time in s and energies in J per metre (a bar: J).
 
-    One more column, relative_error, is the error in parts of what the run was given: the kinetic energy at the start
-    and the most that boundaries and steady loads have each brought in at any time. What balances the stress of a
-    settled body does not count, nor does what boundaries take: in a run that gains energy from nothing both grow.
+    One more column, relative_error, is the error over the supplied energy: the kinetic energy at the start plus the
+    largest energies that boundaries with driven loads, and steady loads, have each supplied up to any time. The work of
+    the forces that balance a settled stress and the energy absorbed by boundaries are not included, as both also grow
+    in an unstable run.
 
     Raises CaseError when there is no entry.
     """
@@ -107,7 +108,7 @@ def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
 
 
 def record_names(paths: Sequence[Path]) -> list[str]:
-    """A name for each record, for legends: its case's name, where two share it its folder's, else its path."""
+    """A name for each record, for legends: its case's name, if two have the same its folder's name, else its path."""
     names = []
     for path in paths:
         with open_record(path) as file:
@@ -120,14 +121,14 @@ def record_names(paths: Sequence[Path]) -> list[str]:
 
 
 def require_folder(path: Path) -> None:
-    """Raise FileNotFoundError, which names the folder, where the one that `path` is to be in is not there."""
+    """Raise FileNotFoundError, with the name of the folder, if the folder of `path` does not exist."""
     if not path.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(path.parent))
 
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Give a neighbouring path to write to, which takes the place of `path` when all went well.
+    """Yield a neighbouring path to write to; the file replaces `path` if there was no error.
 
     Raises FileNotFoundError as `require_folder`.
     """

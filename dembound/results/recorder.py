@@ -1,6 +1,6 @@
-"""The recorder: a run in one HDF5 file. Pictures, VTU files and reports are made from that file alone.
+"""The recorder: writes a run to one HDF5 file. Pictures, VTU files and reports are made only from that file.
 
-Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset of numbers)::
+Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit``)::
 
     /                       attributes: case, name, kind ("disks", "bar"), version, size, time_step, step_limit, steps,
                             complete; of disks seed, of a bar density, section, wave_speed, attenuation, loaded,
@@ -13,14 +13,14 @@ Layout of ``run.h5`` (units stand as attribute ``unit`` on every dataset of numb
     boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2)
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
                             under a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
-                            and local damage (n,); of a static stage that stalled unbalanced (n, 2), what the forces on
-                            each particle come to; attribute time
+                            and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
+                            on each particle; attribute time
     energy/                 time and the columns of `motion.energy.Entry`, (k,) each
     cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
                             displacements, positions count from the start of the run
     laws/                   name (l,) of each law or method used and time (l,) it began at
-    static/                 attributes: what the static stage came to, if there was one; displacement (n, 3) at its end
-    static/before/          the same before an excavation, of the particles that are left by it
+    static/ attributes: results of the static stage, if there was one; displacement (n, 3) at its end static/before/ the
+    same before an excavation, of the particles that are left by it
 """
 
 from __future__ import annotations
@@ -44,16 +44,15 @@ VELOCITY_UNIT = "m/s, m/s, rad/s"
 
 
 class Recorder:
-    """Writes one run, appending as it goes; ``complete`` turns true only when the run is over.
+    """Writes one run, appending during the run; ``complete`` becomes true only at its end.
 
     Parameters
     ----------
     path : file to create.
-    run : what to record; its first probes are the monitors in their order.
-    step_limit : stability limit in s, kept for the record.
-    interval : time between two history samples in s; 0 keeps every step.
-    ledger : the run's energy ledger, kept when it is over; None: it has none.
-    stages : those that came before the run.
+    run : the run to record; its first probes are the monitors in their order.
+    step_limit : stability limit in s, written to the record.
+    interval : time between two history samples in s; 0: every step is recorded. ledger : the run's energy ledger,
+    written at the end; None: without a ledger. stages : those before the run.
     """
 
     def __init__(
@@ -93,7 +92,7 @@ class Recorder:
         self.file.close()
 
     def append(self, record: np.ndarray) -> None:
-        """Keep every stride-th step of the last ones, of which `record` has the probes; see `Simulation.advance`."""
+        """Write every stride-th of the last steps; record : of the probes, see `Simulation.advance`."""
         state, step = self.run.state, self.run.time_step
         begun = state.step - len(record)
         rows = np.arange(-begun % self.stride, len(record), self.stride)
@@ -108,7 +107,7 @@ class Recorder:
         self.file.flush()
 
     def snapshot(self) -> None:
-        """Keep the whole scene as it is now."""
+        """Write the present state of the whole scene."""
         state = self.run.state
         group = self.file.create_group(f"snapshots/{self._snapshots:04d}")
         group.attrs["time"] = self.run.time
@@ -119,7 +118,7 @@ class Recorder:
         self._snapshots += 1
 
     def stalled_snapshot(self, stalled: StalledError) -> None:
-        """Keep the scene as a stage that stalled left it, unbalanced forces and cracks with it."""
+        """Write the scene at the end of a stage that stalled, with unbalanced forces and cracks."""
         self.snapshot()
         self._append_cracks(stalled.cracks, self.run.time_step)
         _write(self.file[f"snapshots/{self._snapshots - 1:04d}"], "unbalanced", stalled.unbalanced, "N")
@@ -147,15 +146,15 @@ class Recorder:
             _write(group, name, values, unit)
 
     def _make_histories(self) -> list[dict[str, h5py.Dataset]]:
-        """The datasets of each monitor by name; to look one up in the file costs as much as to extend it."""
+        """The datasets of each monitor by name; searching one in the file takes as long as extending it."""
         scene = self.run.scene
-        histories = self.file.create_group("histories", track_order=True)  # the case's order, not the alphabet's
+        histories = self.file.create_group("histories", track_order=True)  # in the order of the case, not alphabetical
         kept = []
         for name, node in scene.monitors.items():
             group = histories.create_group(name)
             group.attrs["particle"] = node
             group.attrs["position"] = scene.positions[node]
-            group.attrs["wanted"] = scene.places.get(name, scene.positions[node])  # a twin was not asked for
+            group.attrs["wanted"] = scene.places.get(name, scene.positions[node])  # a twin has no given position
             group.attrs["unit"] = "m"
             columns = [
                 ("time", (), "f8", "s"),
@@ -180,13 +179,13 @@ class Recorder:
         if len(cracks.step) == 0:
             return
         _extend(self._cracks["time"], cracks.step * time_step)
-        before = 0.5 * self.run.state.datum[:2, cracks.pair].sum(axis=2).T  # of the middle, until the run began
+        before = 0.5 * self.run.state.datum[:2, cracks.pair].sum(axis=2).T  # of the middle, up to the start of the run
         _extend(self._cracks["position"], cracks.position - before)
         _extend(self._cracks["particles"], cracks.pair)
         _extend(self._cracks["shear"], cracks.shear)
 
     def _write_stage(self, stage: Stage) -> None:
-        """What a stage before the run came to."""
+        """Write the results of a stage before the run."""
         group = self.file.require_group(stage.name)
         group.attrs.update(stage.facts)
         _write(group, "displacement", stage.displacement.T, DISPLACEMENT_UNIT)
@@ -223,7 +222,7 @@ class Recorder:
 
 
 class Histories(Tracker):
-    """Keeps what the monitors did, and the bonds that broke, whenever the loop comes back."""
+    """Writes the motion of the monitors, and the bonds that broke, after every return of the loop."""
 
     name = "histories"
 
@@ -231,7 +230,7 @@ class Histories(Tracker):
         self.recorder = recorder
 
     def handle(self, run: Run) -> None:
-        """It is never due."""
+        """Does nothing, as it is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Append the record."""
@@ -239,11 +238,11 @@ class Histories(Tracker):
 
 
 class Snapshots(Tracker):
-    """Keeps the whole scene at some steps.
+    """Writes the whole scene at some steps.
 
     Parameters
     ----------
-    recorder : where.
+    recorder : writes the file.
     steps : those steps.
     """
 
@@ -258,7 +257,7 @@ class Snapshots(Tracker):
         self.due = next((later for later in self._steps if later > step), NEVER)
 
     def handle(self, run: Run) -> None:
-        """Keep the scene."""
+        """Write the scene."""
         self.recorder.snapshot()
         self._after(run.state.step)
 

@@ -13,11 +13,11 @@ from dembound.results.reader import energy_of, laws_of, open_record
 
 
 class Arrays(Mapping[str, np.ndarray]):
-    """The datasets of one group of a record, each read when it is asked for.
+    """The datasets of one group of a record, each read from the file when it is accessed.
 
     Attributes
     ----------
-    attributes : what else is known of the group, such as ``time`` of a snapshot in s.
+    attributes : attributes of the group, such as ``time`` of a snapshot in s.
     """
 
     def __init__(self, record: Path, group: h5py.Group) -> None:
@@ -26,7 +26,7 @@ class Arrays(Mapping[str, np.ndarray]):
         self.attributes: dict[str, Any] = {name: _plain(value) for name, value in group.attrs.items()}
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """The array of a name, in SI units; raises KeyError, which names those there are."""
+        """The array of a name, in SI units; raises KeyError with the existing names."""
         if name not in self._names:
             raise KeyError(f"{self._group} has no {name}; it has {', '.join(self._names)}")
         with open_record(self._record) as file:
@@ -56,7 +56,7 @@ class Results:
 
     Attributes
     ----------
-    folder : where everything is.
+    folder : path of the folder.
     attributes : name, kind, time_step, steps, size … of the run, see docs/results.md.
     particles : reference positions and the like, one row per particle (of a bar, node).
     histories : of every monitor ``time`` (k,), ``displacement`` and ``velocity`` (k, 3), of a bar ``stress`` (k,).
@@ -95,7 +95,7 @@ class Results:
 
     @property
     def summary(self) -> dict[str, Any]:
-        """What ``summary.json`` holds; raises CaseError for a run that is not complete, which has none."""
+        """The contents of ``summary.json``; raises CaseError for a run that is not complete, which has none."""
         path = self.folder / "summary.json"
         if not path.is_file():
             raise CaseError([f"{path}: is missing, the run is not complete"])
@@ -114,7 +114,7 @@ class Results:
 
 
 def _plain(value: Any) -> Any:
-    """An attribute as Python has it."""
+    """An attribute as a plain Python value."""
     if isinstance(value, np.ndarray):
         return value.tolist()
     return value.item() if isinstance(value, np.generic) else value

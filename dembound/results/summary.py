@@ -1,4 +1,4 @@
-"""A run in numbers, for scripts: what every kind of body has."""
+"""The summary of a run as numbers, for scripts: the entries of all kinds of bodies."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,7 +14,7 @@ from dembound.version import __version__
 
 
 def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float]) -> dict[str, Any]:
-    """The run in numbers, for scripts: plain JSON values, SI units; seconds : time spent by what for."""
+    """The run in numbers, for scripts: plain JSON values, SI units; seconds : time spent, by part of the run."""
     scene, state = planned.scene, run.state
     return {
         "name": scene.case.name,
@@ -45,7 +45,7 @@ def _count_cracks(record: Path) -> dict[str, int]:
 
 
 def _describe_energy(record: Path) -> dict[str, float]:
-    """Last entry of the ledger (J/m), and the largest error of any over what came in from outside at most."""
+    """Last entry of the ledger (J/m), and the largest error of any entry over the supplied energy."""
     with open_record(record) as file:
         columns = energy_of(file)
     last = {name: float(column[-1]) for name, column in columns.items()}
@@ -68,9 +68,9 @@ def _describe_monitors(record: Path) -> dict[str, Any]:
 
 
 def arrival(time: np.ndarray, velocity: np.ndarray) -> dict[str, Any]:
-    """Largest motion of a history and when it came.
+    """Largest motion of a history and its time.
 
-    time (k,) s, velocity (k, 2) m/s. Taken from the component that moves most: `peak_velocity` (signed),
+    time (k,) s, velocity (k, 2) m/s. Taken from the component with the largest motion: `peak_velocity` (signed),
     `peak_time`, and `arrival`, the moment |velocity| first passes half its peak, interpolated; null at rest.
     """
     axis = int(np.argmax(np.abs(velocity).max(axis=0)))

@@ -1,4 +1,4 @@
-"""The disks of a run in a window to zoom into, or drawn without one into a picture."""
+"""Shows the disks of a run in a window, or draws them into a picture file."""
 
 import subprocess
 import sys
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 Field = Literal["velocity", "displacement"]
 LABELS = {"velocity": "speed (m/s)", "displacement": "displacement (m)"}
 
-CRACKS = "red"  # unlike every disk; black would be lost on those at rest
+CRACKS = "red"  # a colour that no disk has; black is hard to see on disks at rest
 
 CORNERS = 24  # of a disk's polygon; a multiple of four, so that it is as wide and as high as the disk
 
-# Without OpenGL, VTK does not raise but crashes, so another process tries first; it says what it would draw in. Without
-# pyvista, which takes longer to import than all of this.
+# Without OpenGL, VTK crashes instead of raising an error, so drawing is tried in another process first, which prints
+# the class of its window. It does not import pyvista, which would take longer than the trial.
 TRIAL = """
 import vtkmodules.vtkRenderingOpenGL2
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
@@ -47,7 +47,7 @@ NO_DISPLAY = (
     "--output picture.png, or open paraview/particles.pvd of the results in ParaView"
 )
 
-WINDOWLESS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")  # what VTK draws in where it finds no display
+WINDOWLESS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")  # VTK's windows without a display
 
 
 def view(
@@ -106,15 +106,15 @@ def make_plotter(
     file: h5py.File, first: h5py.Group, field: Field, exaggerate: float, off_screen: bool
 ) -> "pyvista.Plotter":
     """The scene of an open record, ready to show, at its snapshot `first`; one colour scale for the whole run."""
-    import pyvista  # here, for it takes seconds and other commands can do without
+    import pyvista  # imported here, as it takes seconds and other commands do not need it
     from vtkmodules.vtkCommonCore import vtkLogger
 
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)  # to draw without a display is no reason to warn
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)  # no warnings about drawing without a display
     snapshots = list(file["snapshots"].values())
     label = LABELS[field]
     disks = disk_mesh(file["particles/position"][:], file["particles/radius"][:])
     still = disks.points.copy()
-    limit = max(lengths(each, field).max() for each in snapshots) or 1.0  # of a run at rest
+    limit = max(lengths(each, field).max() for each in snapshots) or 1.0  # 1 for a run at rest
     plotter = pyvista.Plotter(off_screen=off_screen, window_size=(1600, 900))
     disks.cell_data[label] = lengths(first, field)
     plotter.add_mesh(disks, scalars=label, clim=(0.0, limit), lighting=False, scalar_bar_args={"vertical": True})
@@ -134,7 +134,7 @@ def make_plotter(
     if len(snapshots) > 1 and not off_screen:
         span, place = (0, len(snapshots) - 1), {"pointa": (0.03, 0.1), "pointb": (0.28, 0.1)}  # lower left
         slider = plotter.add_slider_widget(show, span, value=snapshots.index(first), title="snapshot", **place)
-        slider.GetRepresentation().ShowSliderLabelOff()  # its number has decimals, and the time is shown anyway
+        slider.GetRepresentation().ShowSliderLabelOff()  # its label has decimals, and the time is shown instead
     look_from_above(plotter, file.attrs["size"])
     return plotter
 
@@ -143,7 +143,7 @@ def show_cracks(plotter: "pyvista.Plotter", positions: np.ndarray) -> None:
     """Mark broken bonds at positions (k, 2) m by points, in place of those marked before."""
     plotter.remove_actor("cracks", render=False)
     if len(positions) > 0:
-        raised = np.column_stack([positions, np.ones(len(positions))])  # from above, no height shows
+        raised = np.column_stack([positions, np.ones(len(positions))])  # the height is not visible from above
         plotter.add_points(raised, color=CRACKS, point_size=6.0, name="cracks", reset_camera=False)
         plotter.renderer.ResetCameraClippingRange()
 

@@ -1,8 +1,9 @@
 """Snapshots for ParaView: one VTU file each, a PVD file listing their times, and a script that shows them.
 
-What the files of each kind of body hold stands in `disks.mesh` and `bar.mesh`.
+The contents of the files are described in `disks.mesh` and `bar.mesh`.
 
-Where bonds broke in the run, ``cracks.vtu`` has one vertex per broken bond, between its two disks as they stood then:
+Where bonds broke in the run, ``cracks.vtu`` has one vertex per broken bond, in the middle between its two disks at that
+time:
 
 | name | unit | shape | what |
 |---|---|---|---|
@@ -30,12 +31,12 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
     run
         the ``run.h5`` of a run.
     folder
-        made when it is not there; gets ``particles_0000.vtu`` …, ``particles.pvd``, ``view.py`` and, where bonds
+        created if it does not exist; receives ``particles_0000.vtu`` …, ``particles.pvd``, ``view.py`` and, where bonds
         broke, ``cracks.vtu``; of a bar ``bar_0000.vtu`` … and ``bar.pvd``.
     kind
         the kind of body that the run is of.
 
-    The PVD file is written last, so it never names a file that is not there.
+    The PVD file is written last, so all files it lists exist.
 
     Raises CaseError when the record cannot be read.
     """
@@ -68,7 +69,7 @@ def vertices(points: np.ndarray, data: dict[str, np.ndarray]) -> meshio.Mesh:
 
 
 def _write(path: Path, mesh: meshio.Mesh) -> None:
-    """A VTU file, whole or not at all."""
+    """Write a VTU file, either completely or not at all."""
     with replacing(path) as part:
         meshio.write(part, mesh, file_format="vtu")
 

@@ -1,4 +1,4 @@
-"""What a run has shown that was probably not meant, whatever moved, from its finished record."""
+"""Warnings from the finished record of a run, for all kinds of bodies."""
 
 from collections.abc import Iterator
 
@@ -9,27 +9,27 @@ from dembound.casefile.magnitudes import waves_used
 from dembound.motion.scene import Scene
 
 MOVING = 0.2
-"""Share of a monitor's peak velocity by which it must move, and its velocity change, to count as moving.
+"""Share of a monitor's peak velocity that its velocity, and the change of it, must exceed to count as moving.
 
-Behind a pulse random packings leave a coda of some per cent, and sides whose factors are 1 return up to a sixth:
-neither is what a run is made for. What moves by such a share and does not change is a steady motion: a piece in flight,
-a grip, a body that drifts on its dashpots.
+Behind a pulse, random packings have a coda of some per cent, and sides with factors of 1 reflect up to a sixth; both
+are below this share. A velocity above this share that does not change is a steady motion: of a piece in flight, a grip,
+or a body that drifts on its dashpots.
 """
 
 LATELY, NOW = 0.1, 0.05
-"""Last parts of a run: over the one a velocity must change, in the other it must be that large.
+"""Last parts of a run: the velocity must change over the one, and must be large in the other.
 
-The one is half a period at least, as a velocity stands still for a moment at its crest.
+The first is at least half a period, as the velocity hardly changes near its crest.
 """
 
 QUIET = 0.01
-"""Share of the largest peak of all monitors below which one has not been reached by the motion."""
+"""Share of the largest peak of all monitors; a monitor with a smaller peak has not been reached by the motion."""
 
 
 def still_moving(scene: Scene, duration: float, file: h5py.File, pieces: np.ndarray) -> Iterator[str]:
-    """Monitors whose motion the end of the run cuts off, though it would come to an end, a line for all of them.
+    """A warning about monitors that still move at the end of the run and would come to rest later.
 
-    duration : of the run, s. file : its open record. pieces : (n,) number of the piece that each node has ended up in.
+    duration : of the run, s. file : its open record. pieces : (n,) number of the piece of each node at the end.
     """
     braked = _braked(scene, pieces)
     histories = {
@@ -56,9 +56,9 @@ def still_moving(scene: Scene, duration: float, file: h5py.File, pieces: np.ndar
 
 
 def _braked(scene: Scene, pieces: np.ndarray) -> set[int]:
-    """Nodes from which motion is taken away: all under local damping, else those that hang together with dashpots.
+    """Nodes whose motion is damped: all with local damping, else those connected to dashpots.
 
-    Pieces that have come off fly on and ring.
+    Pieces that have broken off continue to move and vibrate.
     """
     if scene.damp > 0.0:
         return set(range(scene.count))
@@ -68,5 +68,5 @@ def _braked(scene: Scene, pieces: np.ndarray) -> set[int]:
 
 
 def _largest_component(velocity: np.ndarray) -> np.ndarray:
-    """Of velocities (k, 2) the component (k,) that comes to the largest value."""
+    """Of velocities (k, 2) the component (k,) with the largest value."""
     return velocity[:, int(np.abs(velocity).max(axis=0).argmax())]

@@ -1,7 +1,7 @@
 """Starting points: the commented case files that ``dembound new`` writes.
 
-Each is one TOML file of this folder and is known by being here: it goes by the file's name, and is listed with its
-title.
+Each is one TOML file in this folder. Its name is that of the file, and it is listed with its title. No other
+registration is needed.
 """
 
 import tomllib
@@ -11,7 +11,7 @@ from dembound.casefile.messages import choices, show
 from dembound.errors import CaseError
 
 DEFAULT = "long_bar"
-"""The one that is written unless another is named."""
+"""The default starting point."""
 
 ENDING = ".toml"
 
@@ -28,7 +28,7 @@ def titles() -> dict[str, str]:
 
 
 def starting_point(name: str = DEFAULT) -> str:
-    """The TOML text of a starting point; raises CaseError where there is none of that name."""
+    """The TOML text of a starting point; raises CaseError for an unknown name."""
     known = names()
     if name not in known:
         raise CaseError([f"--from: is {show(name)}, must be one of {choices(name, known)}"])

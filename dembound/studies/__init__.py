@@ -1,1 +1,1 @@
-"""Studies: questions answered by building cases and running them."""
+"""Studies: results computed by building cases and running them."""

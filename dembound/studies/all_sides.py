@@ -1,4 +1,4 @@
-"""Calibration of all sides of a case that have dashpots, for both waves that can move there."""
+"""Calibration of all sides of a case that have dashpots, for P and S waves as far as their motion is not held."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, get_args
@@ -13,7 +13,7 @@ from dembound.version import __version__
 def factors_of(case: DiskCase) -> list[tuple[str, Motion]]:
     """The sides with dashpots, each with the waves ("p", "s") whose motion is not held there.
 
-    Raises CaseError where there are none.
+    Raises CaseError if there are none.
     """
     found = [
         (side, motion)
@@ -35,9 +35,9 @@ def calibrate_all(
     full: bool = False,
     report: Report | None = None,
 ) -> list[Calibration]:
-    """Find all factors of a case, in the order of `factors_of`; parameters as of `calibration.calibrate`.
+    """Find all factors of a case, in the order of `factors_of`; parameters as for `calibration.calibrate`.
 
-    Each is found by itself, on the case as it is: the result does not depend on the order.
+    Each is calibrated separately on the unchanged case, so the result does not depend on the order.
 
     Raises CaseError when nothing can be calibrated, RunError when a factor does not converge.
     """

@@ -1,11 +1,12 @@
-"""Calibration: the factor β with which a side's dashpots absorb, or let in, a plane wave whole.
+"""Calibration: the factor β with which a side's dashpots completely absorb, or transmit, a plane wave.
 
-A pulse of peak M_in meets the side at normal incidence; M_out is the mean peak velocity of the side's particles. An
-absorbing side of impedance β/β0 answers M_out/M_in = 2/(1 + β/β0), an input side 2/(1 + β0/β); both are 1 at β0.
+A pulse of peak M_in meets the side at normal incidence; M_out is the mean peak velocity of the side's particles. For an
+absorbing side of relative impedance β/β0, M_out/M_in = 2/(1 + β/β0); for an input side it is 2/(1 + β0/β). Both are 1
+at β0.
 
-No more is modelled than decides M_out: a strip of the scene's own bricks, just long enough that nothing returns
-to the side before the peak has left it, and each pass ends then. It is a linear medium under one wave: no loads, no
-static stage, the elastic law.
+Only the part of the scene that affects M_out is modelled: a strip of the scene's bricks, just long enough that no
+reflection returns to the side before the peak has left it. Each pass ends at that time. The strip is a linear medium
+under one wave: no loads, no static stage, the elastic law.
 """
 
 from collections.abc import Callable
@@ -32,20 +33,20 @@ Method = Literal["impedance", "ratio", "homogenised"]
 MOST_PASSES = 40
 
 LARGEST_RATIO = 1.99
-"""M_out/M_in is 2 at most; dispersion may lift a free end's a little above, where the relation has no factor."""
+"""Largest M_out/M_in used: dispersion may raise the ratio above 2, for which the relation has no solution."""
 
 
 PAST = 0.99
-"""Share of its peak below which the side's velocity is when a pass ends; a cosine's is 0.905 then, AFTER its peak."""
+"""Largest velocity of the side at the end of a pass over its peak; AFTER its peak a cosine is at 0.905."""
 
 
 @dataclass
 class Calibration:
-    """What a calibration found.
+    """The results of a calibration.
 
     Attributes
     ----------
-    case, side, motion ("p" or "s"), method : what was asked.
+    case, side, motion ("p" or "s"), method : the arguments.
     kind : "absorbing" or "input".
     incident : M_in, m/s.
     beta, outgoing : per pass, the factor tried and the M_out (m/s) it gave.
@@ -127,16 +128,16 @@ def calibrate(
 
     Parameters
     ----------
-    motion : by default P, or S where the scene holds the motion along the normal or sends only S waves that way.
-    method : "impedance" solves the end's impedance relation for β0 and checks it; "ratio" multiplies β by
+    motion : by default P, or S if the motion along the normal is held or only S waves run along it. method :
+    "impedance" solves the end's impedance relation for β0 and checks it; "ratio" multiplies β by
         M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised" takes β0 = (c_eff/c)·H/ΣD from the
-        brick alone and runs nothing.
+        brick alone, without a run.
     start : first β; by default the case's.
     tolerance : ends when |M_out/M_in − 1| is below it.
     full : use the whole scene, with its own boundaries all around, instead of a strip.
     report : called after every pass.
 
-    Raises CaseError when the side has no dashpots or cannot move that way, RunError when β does not converge.
+    Raises CaseError when the side has no dashpots or its motion is held, RunError when β does not converge.
     """
     if not 0.0 < tolerance < np.inf:
         raise CaseError([f"--tolerance: is {tolerance:g}, must be above 0"])
@@ -163,7 +164,7 @@ def calibrate(
     beta = table.factors[motion] if start is None else start
     if not 0.0 < beta < np.inf:
         raise CaseError([f"boundary.{side}.{found.factor}: is {beta:g}, must be above 0 to start a calibration"])
-    time_step, _ = choose_step(scene)  # β does not change it: centred dashpots cost no stability
+    time_step, _ = choose_step(scene)  # it does not depend on β: centred dashpots do not reduce the stability limit
     for _ in range(MOST_PASSES):
         trial = with_boundaries(scene, _with_beta(strip, side, found.factor, beta))
         outgoing, steps = _pass(trial, time_step, found, pulse)
@@ -202,13 +203,13 @@ def _pass(scene: DiskScene, time_step: float, found: Calibration, pulse: Cosine)
 
 
 def _must_be_past(simulation: Simulation, found: Calibration, peak: float) -> None:
-    """Raise RunError where the pulse that an input side lets in has not passed its peak (m/s) when a pass ends."""
+    """Raise RunError if the pulse at an input side has not passed its peak (m/s) when a pass ends."""
     scene = simulation.scene
     velocity = simulation.state.velocity[axis_of_motion(found.side, found.motion), scene.edges[found.side].nodes]
     if found.kind == "input" and np.abs(velocity).mean() >= PAST * peak:
         raise RunError(
             f"calibration of {found.side}: the pulse is not past its peak after {simulation.time:.4g} s, when a pass "
-            f'ends; "{scene.case.side(found.side).type}" lets its waves in late or not at all'
+            f'ends; "{scene.case.side(found.side).type}" transmits its waves late or not at all'
         )
 
 
@@ -227,7 +228,7 @@ def _dashpots(case: DiskCase, side: str) -> Boundary:
 
 
 def _default_motion(case: DiskCase, side: str) -> Motion:
-    """S where the normal motion is held, or where only S waves run between this side and the opposite one."""
+    """S where the normal motion is held, or if only S waves run between this side and the opposite one."""
     driven = {motion for end in (side, OPPOSITE[side]) for motion in case.side(end).waves}
     held = "xy"[normal_axis(side)] in case.motion.held
     return "s" if held or driven == {"s"} else "p"

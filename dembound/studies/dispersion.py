@@ -1,4 +1,4 @@
-"""Dispersion of bars of nodes: lattices from numbers or cases, their table, and what simulations say of them."""
+"""Dispersion of bars of nodes: lattices from numbers or cases, their table, and simulations for comparison."""
 
 import csv
 from collections.abc import Iterator, Sequence
@@ -36,13 +36,16 @@ COLUMNS = (
     "phase_velocity",
     "group_velocity",
 )
-"""Of the table; SI units, wave numbers in rad/m; shares other than L's with slashes between them, see `Lattice`."""
+"""Columns of the table; SI units, wave numbers in rad/m.
+
+Shares that differ from those of L are separated by slashes, see `Lattice`.
+"""
 
 STEPS = 20
-"""Steps simulated to measure a frequency. Two would do; more of them average the rounding."""
+"""Steps simulated to measure a frequency. Two would be enough; more reduce rounding errors."""
 
 WIDEST = 1000
-"""Largest horizon in spacings; wider ones only take long."""
+"""Largest horizon in spacings; wider ones would take too long."""
 
 ROWS = 100
 """Wave numbers of each lattice in the table, evenly up to its shortest wave."""
@@ -53,7 +56,7 @@ def lattices(
 ) -> list[Lattice]:
     """Rows of nodes with all combinations of horizons, spacings (m) and time steps (s).
 
-    Raises CaseError, as the options of the command line, for a number that makes no sense and if no lattice is stable.
+    Raises CaseError, as the options of the command line, for a number outside its range and if no lattice is stable.
     """
     limits = (
         ("horizon", horizons, 1, WIDEST, ""),
@@ -77,11 +80,11 @@ def lattices(
 
 
 def lattices_of(case: Case) -> list[Lattice]:
-    """The rows of nodes that a case's bar is inside, narrow horizons first; several where its method changes.
+    """The infinite rows of nodes that correspond to a case's bar, narrow horizons first; several if its method changes.
 
     Attenuation is left out. Raises CaseError for a case without a bar and a step above its stability limit.
     """
-    bar = as_kind(case, BarCase, "bar: is missing; only the dispersion of bars is known")
+    bar = as_kind(case, BarCase, "bar: is missing; dispersion is computed for bars only")
     scene = build_bar(bar)
     time_step, _ = choose_step(scene)
     found = {lattice_of(bonds, time_step, bar.bar.speed) for bonds in bar.method.stages(scene.rod)}
@@ -91,9 +94,9 @@ def lattices_of(case: Case) -> list[Lattice]:
 def measure(lattice: Lattice, wavenumbers: np.ndarray) -> np.ndarray:
     """Angular frequencies (k,) rad/s of harmonic waves of some wave numbers (k,) rad/m in simulations.
 
-    A bar is strained to a cosine and let go; the node in its middle does not hear of the ends. Its displacements u and
-    their second differences δ²u give sin²(ωΔt/2) = −¼ Σu δ²u/Σu²; no formula for ω comes in. The lattice must be stable
-    and have a time step.
+    A bar is released from a displacement in the form of a cosine. The ends have no influence on the node in its middle
+    during the simulation. Its displacements u and their second differences δ²u give sin²(ωΔt/2) = −¼ Σu δ²u/Σu²,
+    without any formula for ω. The lattice must be stable and have a time step.
     """
     return np.array([_frequency(lattice, wavenumber) for wavenumber in wavenumbers])
 
@@ -105,7 +108,7 @@ def _frequency(lattice: Lattice, wavenumber: float) -> float:
     simulation.state.u[0] = np.cos(wavenumber * (x - x[lattice.horizon * STEPS]))
     u = simulation.advance(STEPS)[:, 0, 0]
     square = -0.25 * np.sum(u[1:-1] * np.diff(u, 2)) / np.sum(u[1:-1] ** 2)
-    sine = min(1.0, float(np.sqrt(square)))  # at the stability limit rounding may take it beyond 1
+    sine = min(1.0, float(np.sqrt(square)))  # at the stability limit rounding may make it larger than 1
     return float(2.0 * np.arcsin(sine) / lattice.time_step)
 
 
@@ -123,7 +126,7 @@ class _Bonded(Peridynamics):
 
 
 def _endless(lattice: Lattice) -> BarCase:
-    """A bar so long that nothing comes from its ends to its middle within STEPS steps."""
+    """A bar so long that its ends do not affect its middle within STEPS steps."""
     tables = {
         "bar": {
             "length": 2 * lattice.horizon * STEPS * lattice.spacing,
@@ -142,7 +145,7 @@ def _endless(lattice: Lattice) -> BarCase:
 
 
 def write_table(rows: Sequence[Lattice], path: Path) -> None:
-    """Write frequencies and speeds of waves on some lattices as CSV, whole or not at all.
+    """Write frequencies and speeds of waves on some lattices as CSV, completely or not at all.
 
     Empty where a wave grows.
     """

@@ -1,6 +1,6 @@
-"""The exact motion of the half-space that a case of Lamb's problem stands for, at the case's own monitors.
+"""The exact motion of the half-space of a case of Lamb's problem, at the case's monitors.
 
-Written as a record like a run's, so that it is plotted and compared like one.
+It is written as a record with the layout of a run, so that it can be plotted and compared in the same way.
 """
 
 from collections.abc import Callable, Iterator
@@ -20,19 +20,19 @@ from dembound.results.reader import replacing
 from dembound.version import __version__
 
 ISOTROPY = 1e-6
-"""Relative difference of C11 − C12 and 2 C66 up to which a medium counts as isotropic."""
+"""Relative difference of C11 − C12 and 2 C66 up to which a medium is treated as isotropic."""
 
 CORNER = 0.25
-"""Share of the way to a monitor that a side which does not mirror the load must be away from it."""
+"""Least distance between the load and a side that does not mirror it, over the distance from load to monitor."""
 
 SAMPLES = 2000
-"""Times at which the exact motion is written down."""
+"""Number of times at which the exact motion is written."""
 
 JUMP = 0.01
-"""Part of the largest load beyond which a jump is refused at once.
+"""Jump over the largest load above which a load is refused at once.
 
-The quadrature does not settle with it, and takes a minute to find that out; with a tenth of it, as at the end of a
-measured record, it does.
+The quadrature does not converge with such a jump, which takes a minute to detect; with a jump of a tenth of it, as at
+the end of a measured record, it converges.
 """
 
 CONTINUOUS = "the solution needs a continuous load"
@@ -40,7 +40,7 @@ CONTINUOUS = "the solution needs a continuous load"
 
 @dataclass(frozen=True)
 class LineLoad:
-    """Vertical force history on the surface: where along x (m), and N per metre, downwards, per unit of the wave."""
+    """Vertical force history on the surface: position along x (m), and N per metre, downwards, per unit of the wave."""
 
     x: float
     force: float
@@ -50,13 +50,13 @@ class LineLoad:
 def write_exact(case: DiskCase, path: Path) -> None:
     """Write the exact histories of a case as a record; its monitors must lie on the surface.
 
-    The load is a line on the surface. With a symmetry side it lies in that plane, and twice the case's force acts. A
-    monitor is as far from it as the particle it records, taken to be on the surface.
+    The load is a line on the surface. With a symmetry side it lies in that plane, and twice the case's force acts. The
+    distance of a monitor is that of its particle, assumed to be on the surface.
 
-    The folder of `path` is made where it is not there.
+    The folder of `path` is created if it does not exist.
 
-    Raises CaseError where the case is not Lamb's problem: one vertical load that follows a continuous wave, on a free
-    top, away from sides that do not mirror it, an isotropic and linear medium, monitors on the top and beside the load.
+    Raises CaseError if the case is not Lamb's problem: one vertical load that follows a continuous wave, on a free top,
+    away from sides that do not mirror it, an isotropic and linear medium, monitors on the top and not under the load.
     """
     scene = build(case)
     load, speeds = _line_load(scene), _wave_speeds(scene)
@@ -99,24 +99,24 @@ def _motion(scene: DiskScene, load: LineLoad, speeds: tuple[float, float], name:
     velocity = scene.case.wave[load.wave].velocity
     when, step = _largest_jump(velocity, times[-1] - abs(away) / speeds[0])
     if step > JUMP:
-        raise CaseError([f"wave.{load.wave}: jumps on its way, at {when:.3g} s; {CONTINUOUS}"])
+        raise CaseError([f"wave.{load.wave}: has a jump at {when:.3g} s; {CONTINUOUS}"])
     try:
         along, down = surface_displacement(
             times, abs(away), lambda t: load.force * velocity(t), scene.ground.density, *speeds
         )
     except RuntimeError:
-        raise CaseError([f"wave.{load.wave}: is so rough that the solution does not settle; {CONTINUOUS}"]) from None
+        raise CaseError([f"wave.{load.wave}: is so rough that the solution does not converge; {CONTINUOUS}"]) from None
     return np.column_stack([np.sign(away) * along, -down, np.zeros(len(times))])
 
 
 def _largest_jump(velocity: Callable[[np.ndarray], np.ndarray], end: float) -> tuple[float, float]:
-    """When (s) a wave jumps most after t = 0 and before `end` (s), and by what part of its largest velocity there.
+    """Time (s) of the largest jump of a wave after t = 0 and before `end` (s), and its size over the largest velocity.
 
-    Every interval between samples is halved time and again, and the half with the larger change is kept: there the
-    change of a continuous wave falls with the width, that of a jump stays. What jumps to and fro between two samples
-    is missed.
+    Every interval between samples is halved repeatedly, and the half with the larger change is kept. The change of a
+    continuous wave decreases with the width, that of a jump does not. Two opposite jumps between two samples are not
+    detected.
     """
-    # from just after t = 0, where a load may jump; 30 halvings leave 1e-9 of the way from sample to sample
+    # from just after t = 0, where a load may jump; 30 halvings reduce an interval to 1e-9 of its width
     times = max(end, 0.0) * np.linspace(1e-9, 1.0, SAMPLES)
     low, high = times[:-1], times[1:]
     largest = np.abs(velocity(times)).max()
@@ -147,7 +147,7 @@ def _line_load(scene: DiskScene) -> LineLoad:
 
 
 def _yielding(case: DiskCase) -> Iterator[str]:
-    """What makes the body other than a linear half-space below a free surface."""
+    """Properties of the case that differ from a linear half-space with a free surface."""
     if LAWS[case.material.law].has_history:
         name = case.material.law
         yield f'material.law: is "{name}", must have no history, as "elastic"; the solution is that of a linear solid'
@@ -157,7 +157,7 @@ def _yielding(case: DiskCase) -> Iterator[str]:
 
 
 def _ends_of_the_surface(scene: DiskScene, load: LineLoad) -> Iterator[str]:
-    """Sides so near that the load stands on the corner of a quarter space; one that mirrors it is at distance zero."""
+    """Sides so near that the body is a quarter space with the load at its corner; a mirror side is at distance zero."""
     monitors = scene.assembly.positions[[scene.monitors[monitor.name] for monitor in scene.case.monitor], 0]
     reach = np.abs(monitors - load.x).max(initial=0.0)
     for side, plane in (("left", 0.0), ("right", float(scene.assembly.size[0]))):
@@ -171,7 +171,7 @@ def _ends_of_the_surface(scene: DiskScene, load: LineLoad) -> Iterator[str]:
 
 def _must_be_on_top(scene: DiskScene, node: int, place: str) -> None:
     if "top" not in scene.edges or node not in scene.edges["top"].nodes:
-        raise CaseError([f"{place}: must be on the top of the scene, where the solution is known"])
+        raise CaseError([f"{place}: must be on the top of the scene, where the solution is computed"])
 
 
 def _write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:

@@ -1,6 +1,6 @@
-"""The scene a calibration runs on: the case under one pulse, and no larger than it takes.
+"""The scene of a calibration: the case under one pulse, no larger than necessary.
 
-A strip of the scene's own bricks, just long enough that nothing returns to the side before the peak has left it.
+A strip of the scene's bricks, just long enough that no reflection returns to the side before the peak has left it.
 """
 
 from collections.abc import Iterator
@@ -18,10 +18,10 @@ from dembound.waves import Cosine
 PULSE = "calibration"
 STRIP = 0.35
 """Strip length in pulse lengths cT. The front is T/2 before the peak and needs 2L/c for an echo; a pass ends AFTER
-the peak, 0.6 T after the front, so L > 0.3 cT keeps M_out clean, and a sixth more makes it sure."""
+the peak, 0.6 T after the front, so with L > 0.3 cT no echo affects M_out; a sixth is added as a reserve."""
 
 AFTER = 0.1
-"""How long a pass goes on after the peak is due at the side, in pulse lengths T: the peak may be a little late."""
+"""Time from the expected peak at the side to the end of a pass, in pulse lengths T: the peak may be a little late."""
 
 
 def _waves_of(case: DiskCase, motion: Motion) -> Iterator[str]:
@@ -47,10 +47,10 @@ def calibration_pulse(case: DiskCase, side: str, motion: Motion) -> Cosine:
 
 
 def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
-    """The case as what β is about, dashpots on a linear medium, and sentences that say what was left out.
+    """The case reduced to dashpots on a linear medium, for which β is defined, and sentences about what was left out.
 
-    Springs reflect whatever β is; seam forces of a column come and go with the wave; holes scatter; loads, a static
-    stage and a history-dependent law add what is no wave's.
+    Springs reflect for any β; seam forces of a column depend on the wave; holes scatter; loads, a static stage and a
+    history-dependent law cause motion that does not belong to the wave.
     """
     boundary = {side: table.dashpots_alone() for side, table in case.boundary.items()}
     material = case.material.model_copy(update={"law": LAWS[case.material.law].linear})
@@ -66,7 +66,7 @@ def linear_medium(case: DiskCase) -> tuple[DiskCase, list[str]]:
 
 
 def _driven(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> DiskCase:
-    """The case with the pulse as its only wave: sent from the opposite side, or let in by the side itself."""
+    """The case with the pulse as its only wave: sent from the opposite side, or from an input side itself."""
     boundary = {name: table.at_rest() for name, table in case.boundary.items()}
     table = case.boundary[side]
     if table.waves:
@@ -77,7 +77,7 @@ def _driven(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> DiskCas
 
 
 def _least_length(case: DiskCase, axis: int, motion: Motion, pulse: Cosine) -> float:
-    """Length (m) along the normal that keeps echoes away from M_out."""
+    """Length (m) along the normal with which no echo affects M_out."""
     return STRIP * _speed_of(case, axis, motion) * pulse.period
 
 
@@ -93,7 +93,7 @@ def full_scene(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tupl
 
 
 def short_strip(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tuple[DiskCase, list[str]]:
-    """The least scene that decides M_out, and sentences that say how it differs from the case's."""
+    """The smallest scene that gives M_out, and sentences about its differences from the scene of the case."""
     case = _driven(case, side, motion, pulse)
     axis = normal_axis(side)
     bricks, brick = list(case.packing.copies), case.packing.brick_size
@@ -114,6 +114,6 @@ def short_strip(case: DiskCase, side: str, motion: Motion, pulse: Cosine) -> tup
 
 
 def _speed_of(case: DiskCase, axis: int, motion: Motion) -> float:
-    """The packing's own wave speed (m/s) along an axis."""
+    """The wave speed (m/s) of the packing along an axis."""
     ground = ground_of(case)
     return ground.wave_speeds(axis)[0 if motion == "p" else 1]

@@ -1,4 +1,4 @@
-"""Waves: named velocity histories that drive sides, or time factors of loads, one type a file.
+"""Waves: named velocity histories that drive sides, or time factors of loads, one type per file.
 
 A new type is one file and its class's name in `TYPES`; another package registers its own, see casefile/types.py.
 """

@@ -1,4 +1,4 @@
-"""A velocity that is switched on and stays."""
+"""A velocity that is switched on and remains constant."""
 
 import math
 from typing import ClassVar, Literal
@@ -11,7 +11,7 @@ from dembound.waves.wave import Shape
 
 
 class Constant(Shape):
-    """v = M from `rise` seconds after the start on; on the way there v = M[s − sin(2πs)/2π], s = t/rise.
+    """v = M from `rise` seconds after the start on; during the rise v = M[s − sin(2πs)/2π], s = t/rise.
 
     The ramp's acceleration is one Hann lobe, so velocity and acceleration are continuous. rise = 0 is a step.
     """
@@ -41,7 +41,7 @@ class Constant(Shape):
         return self.start + self.rise
 
     def duration(self) -> float:
-        """Infinite: the motion goes on."""
+        """Infinite, as the motion does not end."""
         return math.inf
 
     def dominant_frequency(self) -> float:
@@ -51,6 +51,6 @@ class Constant(Shape):
     def highest_frequency(self) -> float:
         """Frequency above which the *acceleration's* spectrum stays below 1 % of its largest value, Hz.
 
-        Infinite for a step. A velocity that stays has no spectrum of its own.
+        Infinite for a step. A velocity that does not return to zero has no amplitude spectrum.
         """
         return HANN_FADE * self.dominant_frequency()

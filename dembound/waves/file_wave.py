@@ -16,7 +16,7 @@ from dembound.waves.wave import NonZero, Wave
 class FileWave(Wave):
     """Velocities from a file, joined by straight lines and zero outside.
 
-    The file is one for `read_samples`, of times (s) and velocities (m/s). Its times are counted from `start`. A
+    The file is read by `read_samples` and has times (s) and velocities (m/s). Its times are counted from `start`. A
     relative path is taken from the case file's folder, which validation passes as the context ``{"folder": Path}``;
     without one, from the current folder.
     """
@@ -69,11 +69,11 @@ class FileWave(Wave):
         return self.start + self._times[-1]
 
     def time_scale(self) -> float:
-        """Its length: single samples may vary much faster."""
+        """Its length, although single samples may vary much faster."""
         return self.duration() - self.start
 
     def moved(self, here: Path, there: Path) -> dict[str, str]:
-        """The file's relative path."""
+        """The new relative path of the file."""
         if Path(self.path).is_absolute() or here == there:
             return {}
         return {"path": Path(os.path.relpath(here / self.path, there)).as_posix()}
@@ -109,7 +109,7 @@ def read_samples(path: Path, quantity: str = "values") -> np.ndarray:
     Raises
     ------
     ValueError
-        If the file is absent or does not hold a history; the message starts with ``path:``.
+        If the file is absent or does not contain a history; the message starts with ``path:``.
     """
     if not path.is_file():
         raise ValueError(f'path: no file "{path}"')
@@ -131,8 +131,8 @@ def read_samples(path: Path, quantity: str = "values") -> np.ndarray:
 
 
 def _numbers(path: Path) -> tuple[list[str], str | None]:
-    """The lines of a file that hold numbers, with decimal points, and what separates their columns; None: blanks."""
-    text = path.read_text(encoding="utf-8-sig")  # which takes the mark that spreadsheets begin with
+    """The lines with numbers of a file, with decimal points, and the separator of their columns; None: blanks."""
+    text = path.read_text(encoding="utf-8-sig")  # removes the byte order mark of spreadsheets
     lines = [line for line in (line.partition("#")[0] for line in text.splitlines()) if line.strip()]
     separator = "," if path.suffix.lower() == ".csv" else None
     if lines and ";" in lines[-1]:
@@ -142,7 +142,7 @@ def _numbers(path: Path) -> tuple[list[str], str | None]:
 
 
 def _is_number(text: str) -> bool:
-    """Whether a text reads as a number."""
+    """Whether a text is a number."""
     try:
         float(text)
     except ValueError:
@@ -151,19 +151,19 @@ def _is_number(text: str) -> bool:
 
 
 def _problem(samples: np.ndarray, quantity: str) -> str:
-    """What keeps samples (k, c) from being a history of a quantity; empty if nothing does."""
+    """Message why samples (k, c) are not a history of a quantity; empty if they are."""
     if samples.size == 0:
-        return "holds no numbers"
+        return "contains no numbers"
     if samples.shape[1] != 2:
         return f"has {samples.shape[1]} columns, must have two: time (s), {quantity}"
     if not np.isfinite(samples).all():
-        return "holds values that are not finite"
+        return "contains values that are not finite"
     if len(samples) < 2:
-        return "holds one line, must hold at least two"
+        return "contains one line, must contain at least two"
     steps = np.diff(samples[:, 0])
     if not (steps > 0.0).all():
         line = int(np.argmin(steps > 0.0)) + 2
         return f"must have increasing times; row {line} of its numbers does not follow the row before"
     if not samples[:, 1].any():
-        return "holds nothing but zeros"
+        return "contains only zeros"
     return ""

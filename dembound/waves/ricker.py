@@ -17,7 +17,7 @@ The wavelet is nowhere exactly zero and is not cut off: it is 1e-8 of its amplit
 """
 
 FADE = math.sqrt(-lambertw(-FADED / math.e, -1).real)
-"""Frequency over crest frequency, x, at which the spectrum x² exp(1 − x²) has faded: 2.764."""
+"""Frequency over crest frequency, x, above which the spectrum x² exp(1 − x²) is below 1 %: 2.764."""
 
 
 class Ricker(Shape):

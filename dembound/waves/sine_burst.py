@@ -14,8 +14,8 @@ from dembound.waves.wave import Shape
 class SineBurst(Shape):
     """v = M w(t) sin 2πft for n cycles, w = ½(1 − cos 2πft/n) when tapered, else 1. No net displacement.
 
-    The taper lets velocity and acceleration start and end at zero and narrows the spectrum; the amplitude M
-    is then the crest of the envelope, which the velocity itself does not quite reach.
+    With the taper, velocity and acceleration start and end at zero, and the spectrum is narrower; the amplitude M is
+    then the crest of the envelope, and the velocity itself is slightly smaller.
     """
 
     type: Literal["sine_burst"]
@@ -41,7 +41,7 @@ class SineBurst(Shape):
         return per_radian * shape
 
     def _crest(self) -> float:
-        """How far before the middle of a tapered burst |velocity| is largest, as a phase of the window.
+        """Time from the largest |velocity| to the middle of a tapered burst, as a phase of the window.
 
         With e that phase (π over the whole length) the burst is ±cos²e · sin 2ne, largest where
         n cos e cos 2ne = sin e sin 2ne; the root nearest the middle lies between 0 and π/4n.
@@ -77,7 +77,7 @@ class SineBurst(Shape):
     def highest_frequency(self) -> float:
         """Frequency above which the spectrum stays below 1 % of its largest value, Hz; an upper bound.
 
-        Tapered: the window's own band on top of f (the sine's negative frequency only lowers it). Plain: the
+        Tapered: the bandwidth of the window added to f (the sine's negative frequency only lowers it). Plain: the
         envelope f/[π(F² − f²)] of the spectrum at frequency F against its value n/(2f) at f.
         """
         if self.taper:

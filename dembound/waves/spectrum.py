@@ -1,11 +1,11 @@
-"""How far up a wave's amplitude spectrum reaches."""
+"""The highest frequency in a wave's amplitude spectrum."""
 
 import math
 
 import numpy as np
 
 FADED = 0.01
-"""Share of its largest value below which an amplitude spectrum counts as faded."""
+"""Share of its largest value below which an amplitude spectrum is treated as faded."""
 
 HANN_FADE = 2.0 / math.sqrt(3.0) * math.cosh(math.acosh(1.5 * math.sqrt(3.0) / (math.pi * FADED)) / 3.0)
 """Frequency times length at which the spectrum of one Hann lobe, ½(1 − cos 2πt/T) on 0…T, has faded: 3.274.

@@ -11,7 +11,7 @@ from dembound.waves.spectrum import FADED
 from dembound.waves.wave import Shape
 
 FADED_AT_LATEST = 2.0 / (math.pi * FADED)
-"""Frequency times length from which on the spectrum of any triangle has faded, as both its boxes are at most 1."""
+"""Frequency times length above which the spectrum of any triangle is below 1 %, as both sinc terms are at most 1."""
 
 PER_LOBE = 64
 """Samples per lobe of the spectrum: between two of them it rises above both by at most (π/64)²/8 = 0.03 % of itself."""
@@ -25,7 +25,7 @@ class Triangle(Shape):
     fall: float = quantity(..., unit="s", help="time from the crest to the end", gt=0.0)
 
     def _legs(self, since: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Share of the rise that is done, and of the fall that is still to come."""
+        """Part of the rise that has passed, and part of the fall that remains."""
         return np.clip(since / self.rise, 0.0, 1.0), np.clip(1.0 - (since - self.rise) / self.fall, 0.0, 1.0)
 
     def _velocity_shape(self, since: np.ndarray) -> np.ndarray:

@@ -18,17 +18,17 @@ def _not_zero(value: float) -> float:
 
 
 NonZero = Annotated[float, AfterValidator(_not_zero)]
-"""A number of either sign; zero would be no wave at all."""
+"""A number of either sign, but not zero."""
 
 
 class Wave(Table, ABC):
-    """A velocity history that is at rest before `start` and known at every time.
+    """A velocity history that is zero before `start` and defined at every time.
 
     As the factor of a load its values are pure numbers.
 
     Attributes
     ----------
-    stays : whether the velocity, once it is there, stays for good.
+    stays : whether the velocity remains constant for good.
     """
 
     stays: ClassVar[bool] = False
@@ -64,8 +64,8 @@ class Wave(Table, ABC):
     def highest_frequency(self) -> float:
         """Frequency above which the amplitude spectrum stays below 1 % of its largest value, Hz.
 
-        It is what particle spacing and time step have to carry. The spectrum is the velocity's unless the
-        type defines it otherwise.
+        Particle spacing and time step must resolve this frequency. The spectrum is that of the velocity unless the type
+        defines it otherwise.
         """
 
     def dominant_period(self) -> float:
@@ -78,7 +78,7 @@ class Wave(Table, ABC):
         return self.dominant_period()
 
     def moved(self, here: Path, there: Path) -> dict[str, str]:
-        """Keys that name files relative to the folder `here`, with what they read in `there`; by default none."""
+        """Keys with paths relative to the folder `here`, with the corresponding paths in `there`; by default none."""
         return {}
 
 

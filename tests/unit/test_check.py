@@ -39,7 +39,7 @@ def test_a_bar_is_told_of_as_a_bar(spalling) -> None:
     [
         ({}, ""),
         ({"static": {"stress": [-1e6, -2e6, 0.0]}}, ", without the static stage"),
-        ({"material.law": "linearpbond"}, ", without what linearpbond takes longer once it begins"),
+        ({"material.law": "linearpbond"}, ", without the additional time of linearpbond once it begins"),
         ({"material.law": "linearpbond", "material.elastic_start": False}, ""),
     ],
 )

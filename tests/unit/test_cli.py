@@ -152,7 +152,7 @@ def test_new_overwrites_nothing(dembound, tmp_path) -> None:
 
     (tmp_path / "dembound.schema.json").write_text("precious")
     answer = dembound("new", "other.toml")
-    said = "dembound.schema.json: exists and is no schema of dembound; move it, or give --no-schema\n"
+    said = "dembound.schema.json: exists and is not a schema of dembound; move it, or give --no-schema\n"
     assert answer == Answer(2, "", said)
     assert dembound("new", "--no-schema", "other.toml").code == 0
     assert files(tmp_path) == {"mine.toml", "other.toml", "dembound.schema.json"}
@@ -258,7 +258,7 @@ def test_what_was_probably_not_meant_is_warned_of(dembound, written, tmp_path) -
     answer = dembound("run", written(changes=weight))
 
     assert answer.code == 0
-    assert answer.err.startswith("bar: warning: load.weight: is steady, and without [static] falls on the body")
+    assert answer.err.startswith("bar: warning: load.weight: is steady, and without [static] acts suddenly")
     found = json.loads((tmp_path / "results" / "bar" / "summary.json").read_text())["warnings"]
     assert answer.err.splitlines() == [f"bar: warning: {warning}" for warning in found]
 
@@ -332,7 +332,7 @@ def test_differences_are_told_with_what_they_are_parts_of(dembound, written, mon
         ["two", "middle", "x"],
         ["other", "middle", "x"],
     ]
-    assert answer.out.splitlines()[-1] == "middle stands at (6.00, 0.50) m in other, at (5.00, 0.50) m in the reference"
+    assert answer.out.splitlines()[-1] == "middle is at (6.00, 0.50) m in other, at (5.00, 0.50) m in the reference"
     assert "in two, at" not in answer.out
 
 
@@ -486,10 +486,10 @@ def test_what_cannot_be_drawn_is_bad_input(dembound, written, tmp_path) -> None:
     periodic = {"boundary.bottom": {"type": "periodic"}, "boundary.top": {"type": "periodic"}}
     dembound("run", written("periodic", periodic))
     for arguments, said in (
-        (["nowhere"], "nowhere: holds no results"),
+        (["nowhere"], "nowhere: contains no results"),
         (["bar.toml"], "bar.toml: cannot be read as a record of results"),
         (["results/bar", "--quantity", "force"], "--quantity"),
-        (["results/bar", "passes"], "make no common picture"),
+        (["results/bar", "passes"], "cannot be drawn in one picture"),
         (["results/periodic", "--boundary", "top"], "has no particles of side top"),
         (["results/bar", "results/periodic", "--energy"], "--energy: shows one run"),
         (["results/bar", "results/periodic", "--field", "peak"], "--field: shows one run"),
@@ -557,7 +557,7 @@ def test_options_of_another_picture_are_bad_input(dembound, spalled_run, small_r
         (["passes", "--boundary", "left"], "--boundary: is for runs, not for calibrations\n"),
         (
             [spalled_run, small_run],
-            "RESULTS: holds runs of bars and runs of disks, which make no common picture; name one kind\n",
+            "RESULTS: holds runs of bars and runs of disks, which cannot be drawn in one picture; name one kind\n",
         ),
     ):
         assert dembound("plot", *arguments) == Answer(2, "", said)
@@ -585,8 +585,8 @@ def test_what_bars_and_disks_do_not_have_is_bad_input(dembound, spalled_run, sma
         (["plot", small_run, "--field", "damage"], "field: is damage, must be one of velocity, "),
         (["plot", small_run, "--field", "velocity", "--table", "a.csv"], "--table: is of lines, a field has none"),
         (["plot", small_run, "--field", "velocity", "--component", "x"], "--component: is not allowed together with"),
-        (["plot", small_run, "--quantity", "stress"], "holds no stress of its monitors"),
-        (["compare", small_run, small_run, "--quantity", "stress"], "holds no stress of its monitors"),
+        (["plot", small_run, "--quantity", "stress"], "has no stress of its monitors"),
+        (["compare", small_run, small_run, "--quantity", "stress"], "has no stress of its monitors"),
         (["view", spalled_run], "is a bar, view shows disks"),
         (["view", small_run, "--field", "stress"], "--field"),
     ):
@@ -693,7 +693,7 @@ def test_bars_of_cases_are_told_and_simulated(dembound, tmp_path) -> None:
     assert first.startswith("horizon 1, Δx = 5 mm, Δt = 1 µs: 12 simulated frequencies differ by at most ")
     assert second.startswith("horizon 3, Δx = 5 mm, Δt = 1 µs: 12 simulated frequencies differ by at most ")
     for arguments, said in (
-        (["bar.toml", "--horizon", 3], "--horizon: is the case's own, change it with --set\n"),
+        (["bar.toml", "--horizon", 3], "--horizon: is given by the case, change it with --set\n"),
         (["--set", "run.time_step=1e-6"], "--set: changes a case, and none is given\n"),
     ):
         assert dembound("dispersion", *arguments) == Answer(2, "", said)
@@ -735,13 +735,13 @@ def test_gauges_that_tell_nothing_are_bad_input(dembound, written) -> None:
     Path("gauge.txt").write_text("0 1\n1 -2\n2 1\n")
     dembound("run", written())
     for arguments, said in (
-        (["gauge.txt"], "--position: is not known, give it\n--length: is not known, give it\n"),
+        (["gauge.txt"], "--position: is missing, give it\n--length: is missing, give it\n"),
         (
             ["gauge.txt", "--position", 2, "--length", 1],
             "--position: is 2 m, must be above 0 and below the length, 1 m\n",
         ),
         (["absent.txt"], 'no file "absent.txt"\n'),
-        (["results/bar"], "results/bar/run.h5: holds no history of stress between the ends of a bar\n"),
+        (["results/bar"], "results/bar/run.h5: contains no history of stress between the ends of a bar\n"),
     ):
         assert dembound("gauge", *arguments) == Answer(2, "", said)
 
@@ -782,7 +782,7 @@ def test_the_starter_of_a_bar_tells_its_strength_and_no_speed(dembound) -> None:
     assert float(rows[4][1]) == pytest.approx(10.0, abs=known)
 
     asked = dembound("gauge", "results/bar", "--estimate")  # the pulse is not yet back at the gauge
-    said = "--wave-speed: takes two tension peaks to be estimated, 0 found; give it\n"
+    said = "--wave-speed: needs two tension peaks to be estimated, 0 found; give it\n"
     assert asked == Answer(2, "", said)
 
 
@@ -804,7 +804,7 @@ def test_runs_on_bars_are_read_by_gauge_where_one_end_is_loaded(dembound, spalli
     speed, attenuation = [cells(line) for line in told.out.splitlines()[3:5]]
     assert (speed[1], speed[2]) == ("1000", "results")
     assert (attenuation[1], attenuation[2]) == ("0.1", "given")
-    refused = "/run.h5: is of a bar loaded at {}, must be loaded at the left or the right\n"
+    refused = "/run.h5: has a bar loaded at {}, must be loaded at the left or the right\n"
     for arguments, said in (
         (["results/one", "--monitor", "far"], "--monitor: is far, must be between the bar's ends, which is gauge\n"),
         (["results/one", "--monitor", "end"], "--monitor: is end, must be between the bar's ends, which is gauge\n"),
@@ -812,9 +812,9 @@ def test_runs_on_bars_are_read_by_gauge_where_one_end_is_loaded(dembound, spalli
             ["results/one", "--free-end", "end.txt"],
             "--free-end: is end.txt, must be a monitor at the end opposite the load, which is end\n",
         ),
-        (["results/blind"], "results/blind/run.h5: holds no history of stress between the ends of a bar\n"),
+        (["results/blind"], "results/blind/run.h5: contains no history of stress between the ends of a bar\n"),
         (["results/both", "--monitor", "gauge"], f"results/both{refused.format('both ends')}"),
         (["results/none", "--monitor", "gauge"], f"results/none{refused.format('neither end')}"),
-        (["results"], "results: holds no results, must be a folder with run.h5 or calibration.h5\n"),
+        (["results"], "results: contains no results, must be a folder with run.h5 or calibration.h5\n"),
     ):
         assert dembound("gauge", *arguments) == Answer(2, "", said)

@@ -1,4 +1,4 @@
-"""The ``[bar]`` table: a straight bar that moves along itself, and what it is made of."""
+"""The ``[bar]`` table: a straight bar that moves along its axis, and its material."""
 
 import math
 from collections.abc import Iterator
@@ -8,19 +8,19 @@ from pydantic import model_validator
 from dembound.table import Table, quantity
 
 PAIRS = (("section", "diameter"), ("wave_speed", "youngs_modulus"), ("strength", "critical_stretch"))
-"""Keys of which a bar takes one or the other."""
+"""Pairs of keys of which a bar may have only one."""
 
 MOST_CELLS = 2_000_000
-"""A bar cut into more is a mistake; its limit of stability alone would take minutes."""
+"""Largest number of cells: more is a mistake, and computing the stability limit alone would take minutes."""
 
 SMALLEST, LARGEST = 1e-30, 1e30
-"""Lengths (m), sections (m²), moduli (Pa) and squared speeds (m²/s²) between these neither overflow nor vanish."""
+"""Within these limits lengths (m), sections (m²), moduli (Pa) and squared speeds (m²/s²) cause no overflow."""
 
 
 class Bar(Table):
-    """Length, section and material of a bar, and how finely it is cut into nodes.
+    """Length, section and material of a bar, and the spacing of its nodes.
 
-    Nodes stand at x = 0, Δx, … L; the two at the ends have half a volume. The section is given by its area or by the
+    Nodes are at x = 0, Δx, … L; the two at the ends have half a volume. The section is given by its area or by the
     diameter of a round bar, the stiffness by wave speed c = √(E/ρ) or Young's modulus E, the strength by the stress or
     the stretch at which a bond breaks, s₀ = σ_t/E. Without a strength nothing breaks.
     """
@@ -51,14 +51,14 @@ class Bar(Table):
         return self
 
     def _problems_with_size(self) -> Iterator[str]:
-        """A length or a section beyond what numbers can hold."""
+        """A length or a section outside the range of numbers."""
         for key in ("length", "section", "diameter"):
             value = getattr(self, key)
             if value is not None and not SMALLEST < value < LARGEST:
                 yield f"{key}: is {value:g}, beyond any bar"
 
     def _problems_with_stiffness(self) -> Iterator[str]:
-        """No stiffness, or one beyond what numbers can hold."""
+        """No stiffness, or one outside the range of numbers."""
         key = "youngs_modulus" if self.wave_speed is None else "wave_speed"
         if self.wave_speed is None and self.youngs_modulus is None:
             yield "wave_speed: is missing; give either wave_speed or youngs_modulus"
@@ -77,7 +77,7 @@ class Bar(Table):
 
     @property
     def cells(self) -> int:
-        """Number of spacings in the length; there is one node more."""
+        """Number of spacings in the length; the number of nodes is larger by one."""
         return round(self.length / self.spacing)
 
     @property

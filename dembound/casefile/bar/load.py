@@ -8,8 +8,8 @@ from dembound.table import FileName, Table, quantity
 class BarLoad(Table):
     """A pressure on one end of a bar, on its last node or spread over its last few, in proportion to their volume.
 
-    A wave's values, taken as pure numbers, are the time factor. Coarse peridynamic bars need a spread load: on one node
-    it tears them.
+    A wave's values, taken as pure numbers, are the time factor. Coarse peridynamic bars need a load on several nodes:
+    on one node it breaks them.
     """
 
     name: FileName = quantity(..., unit="1", help="name of the load in messages and results")

@@ -1,4 +1,4 @@
-"""Mistakes in a bar's case that show only when tables are looked at together."""
+"""Mistakes between the tables of a bar's case."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -37,18 +37,18 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
 
 
 def _courant_too_large(bar: Bar, run: BarRun) -> Iterator[str]:
-    """A step by its Courant number that the run is over before."""
+    """A step, given by its Courant number, that is longer than the run."""
     if run.courant is not None and (step := run.courant * bar.spacing / bar.speed) > run.duration:
         yield f"run.courant: makes a step of {step:g} s, must be at most run.duration, {run.duration:g} (s)"
 
 
 def _across_the_bar(ends: Mapping[str, Any]) -> Iterator[str]:
-    """What only sides of disks have: motion across, and a choice of half masses."""
+    """Keys that only sides of disks have: motion across, and half masses."""
     for side, end in ((side, end) for side, end in ends.items() if end):
         if "s" in end.waves:
-            yield f"boundary.{side}.wave_s: moves across the bar, which moves along itself alone; use wave_p"
+            yield f"boundary.{side}.wave_s: moves across the bar, which moves only along its axis; use wave_p"
         if "beta_s" in end.model_fields_set:
-            yield f"boundary.{side}.beta_s: is for waves across, and a bar moves along itself alone; use beta_p"
+            yield f"boundary.{side}.beta_s: is for waves across, and a bar moves only along its axis; use beta_p"
         if end.half_cells:
             yield f"boundary.{side}.half_mass: is for disks; end nodes of a bar have half a mass in any case"
 
@@ -60,12 +60,12 @@ def _loaded_but_held(ends: Mapping[str, Any], loads: Sequence[BarLoad | None]) -
         if end and 0 in end.prescribed(normal_axis(load.side)):
             yield (
                 f'{place}.side: is "{load.side}", whose motion boundary.{load.side} prescribes ("{end.type}"); '
-                "must be an end that can give way"
+                "must be an end that can move"
             )
 
 
 def _beyond_the_bar(bar: Bar, tables: Mapping[str, Any]) -> Iterator[str]:
-    """Gauges and loads that lie where no node is."""
+    """Gauges and loads outside the bar."""
     for place, monitor in numbered("monitor", tables["monitor"]):
         if monitor.position > bar.length:
             yield f"{place}.position: is {monitor.position:g}, must be at most bar.length, {bar.length:g} (m)"
@@ -76,6 +76,6 @@ def _beyond_the_bar(bar: Bar, tables: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _horizon_too_long(bar: Bar, method: Method) -> Iterator[str]:
-    """Families longer than the bar."""
+    """Horizons too long for the bar."""
     if 2 * method.largest_horizon > bar.cells:
         yield f"method.horizon: is {method.largest_horizon}, must be at most {bar.cells // 2}, half the bar's spacings"

@@ -7,7 +7,7 @@ from dembound.table import quantity
 
 
 class BarRun(Run):
-    """How long a bar lives and how finely time is cut; its step may be given by the Courant number."""
+    """The simulated time and the time step of a bar; the step may be given by the Courant number."""
 
     courant: float | None = quantity(None, unit="1", help="Courant number ν = cΔt/Δx, instead of a time step", gt=0.0)
 

@@ -1,4 +1,4 @@
-"""What the case file of a bar consists of."""
+"""The tables in the case file of a bar."""
 
 from pydantic import TypeAdapter
 

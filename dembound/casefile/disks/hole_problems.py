@@ -1,4 +1,4 @@
-"""Mistakes of holes that show only beside the other tables."""
+"""Mistakes of holes that depend on other tables."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -21,14 +21,14 @@ def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
 
 
 def _outside(place: str, hole: Hole, size: tuple[float, float]) -> Iterator[str]:
-    """A hole that takes nothing away."""
+    """A hole outside the scene."""
     x0, y0, x1, y1 = hole.box
     if x1 <= 0.0 or y1 <= 0.0 or x0 >= size[0] or y0 >= size[1]:
         yield f"{place}: lies outside the scene, {corners(*size)}"
 
 
 def _places_in_it(place: str, hole: Hole, key: str, tables: Any) -> Iterator[str]:
-    """Loads or monitors whose particles would be gone."""
+    """Loads or monitors in the hole, whose particles are removed."""
     for where, table in numbered(key, tables):
         if table.position is not None and hole.contains(np.array([table.position]))[0]:
-            yield f"{where}.position: lies in {place}; must be where particles are left"
+            yield f"{where}.position: lies in {place}; must be where particles remain"

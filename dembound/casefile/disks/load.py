@@ -25,7 +25,7 @@ class Load(Table):
 
     @property
     def key(self) -> str:
-        """The key that says what acts: ``force`` or ``acceleration``."""
+        """The key that is given: ``force`` or ``acceleration``."""
         return "acceleration" if self.force is None else "force"
 
     @property
@@ -46,7 +46,7 @@ class Load(Table):
         return self
 
     def _problems_with_action(self) -> list[str]:
-        """Mistakes in what acts."""
+        """Mistakes in force and acceleration."""
         given = [key for key in ("force", "acceleration") if getattr(self, key) is not None]
         if not given:
             return ["force: is missing; give either force or acceleration"]
@@ -55,7 +55,7 @@ class Load(Table):
         return [] if self.axes else [f"{self.key}: is zero along x and y, must not be"]
 
     def _problems_with_place(self) -> list[str]:
-        """Mistakes in where it acts."""
+        """Mistakes in position and region."""
         if self.position is not None and self.region is not None:
             return ["region: is not allowed together with position"]
         if self.region is not None:

@@ -15,11 +15,11 @@ HISTORY_KEYS = (*STRENGTH_KEYS, "pb_fa", "locked_in", "geometry", "elastic_start
 
 
 class Material(Table):
-    """What the particles are made of: bulk density, and contact and bond properties in PFC's words.
+    """The material: bulk density, and contact and bond properties under their PFC names.
 
-    Stiffness is given either by the wave speed wanted (Z eqs 9-11) or by the two moduli. The law "elastic" has no
-    history; "linearpbond" is PFC's linear contact, without tension and with Coulomb friction, plus a parallel bond
-    that breaks for good.
+    Stiffness is given either by the wave speed (Z eqs 9-11) or by the two moduli. The law "elastic" has no history;
+    "linearpbond" is PFC's linear contact, without tension and with Coulomb friction, plus a parallel bond that breaks
+    for good.
     """
 
     density: float = quantity(..., unit="kg/m³", help="bulk density: mass over scene area", gt=0.0)
@@ -27,7 +27,7 @@ class Material(Table):
     match: Literal["lattice", "assembly"] = quantity(
         "lattice",
         unit="1",
-        help="what shall have that speed: the square lattice of Z eq. 11, or the packing itself along x",
+        help="medium with that speed: the square lattice of Z eq. 11, or the packing itself along x",
     )
     contact_share: float = quantity(
         0.5,
@@ -97,7 +97,7 @@ class Material(Table):
         return problems
 
     def _problems_without_history(self) -> list[str]:
-        """Keys that mean nothing to a law without history."""
+        """Keys that have no effect under a law without history."""
         needed = " or ".join(f'"{name}"' for name, law in LAWS.items() if law.has_history)
         return [f"{key}: is only allowed with law = {needed}" for key in HISTORY_KEYS if key in self.model_fields_set]
 

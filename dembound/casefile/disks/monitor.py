@@ -7,17 +7,17 @@ from pydantic import AfterValidator
 from dembound.table import FileName, Table, quantity
 
 FREE_FIELD = ".free_field"
-"""What the history of a monitor's twin in the free-field column is called, behind the monitor's name."""
+"""Ending of the history's name of a monitor's twin in the free-field column, after the monitor's name."""
 
 
 def _is_no_twin(name: str) -> str:
     if name.endswith(FREE_FIELD):
-        raise ValueError(f'is "{name}", must not end in "{FREE_FIELD}", which a monitor\'s twin is called')
+        raise ValueError(f'is "{name}", must not end in "{FREE_FIELD}", which is kept for a monitor\'s twin')
     return name
 
 
 class Monitor(Table):
-    """A place whose nearest particle's motion is written down at every history step."""
+    """A place; the motion of the nearest particle is recorded at every history step."""
 
     name: Annotated[FileName, AfterValidator(_is_no_twin)] = quantity(
         ..., unit="1", help="name of the history in the results"

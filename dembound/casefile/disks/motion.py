@@ -10,7 +10,7 @@ Freedom = Literal["x", "y", "rotation"]
 
 
 class Motion(Table):
-    """Which motions no particle makes."""
+    """The motions that are held for all particles."""
 
     held: tuple[Freedom, ...] = quantity((), unit="1", help="motions that are held for every particle")
 

@@ -1,4 +1,4 @@
-"""Mistakes that show only when tables are looked at together."""
+"""Mistakes between the tables of a case of disks."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
@@ -18,8 +18,8 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     """Check the tables of a case against each other.
 
     `tables` has the fields of `Case` as keys. A table that is invalid on its own is None, and so is an
-    invalid entry of `boundary`, `wave`, `hole`, `load` or `monitor`: checks that would need it are left out.
-    `given` are the keys that the file has, valid or not.
+    invalid entry of `boundary`, `wave`, `hole`, `load` or `monitor`: checks that need it are skipped. `given` are the
+    keys that the file has, valid or not.
     """
     named = [(f"{place}.wave", load.wave) for place, load in numbered("load", tables["load"]) if load.wave is not None]
     yield from unknown_waves([*driving_waves(tables["boundary"]), *named], tables["wave"])
@@ -38,7 +38,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
             yield from _places_outside(key, tables[key], tables["packing"].extent)
     yield from hole_problems(tables, "static" in given)
     if tables["material"] and tables["material"].locked_in and "static" not in given:
-        yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must come to rest in [static]"
+        yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
     if tables["static"]:
         yield from static_problems(*(tables[key] for key in ("static", "boundary", "load", "material", "motion")))
     if tables["run"]:
@@ -54,20 +54,20 @@ def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[s
 
 
 def _nothing_to_pack_with(material: Material, packing: Packing) -> Iterator[str]:
-    """Contacts without stiffness, asked to hold a packing under stress."""
+    """Contacts without stiffness in a packing that is held by contacts under stress."""
     key = "contact_share" if material.emod is None else "emod"
     if packing.packed_under_stress and getattr(material, key) == 0.0:
         yield f"material.{key}: is 0, but contacts hold pattern {packing.pattern} under stress; must be greater than 0"
 
 
 def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
-    """A wave speed asked of a packing in which no P wave can run."""
+    """A given wave speed for a packing in which no P wave can run."""
     if material.match == "assembly" and {"x", "y"} <= set(motion.held):
         yield 'material.match: is "assembly", but motion.held holds x and y, so the packing has no P-wave speed'
 
 
 def _places_outside(key: str, tables: Sequence[Load | Monitor | None], size: tuple[float, float]) -> Iterator[str]:
-    """Loads or monitors that lie where no particle can be."""
+    """Loads or monitors outside the scene."""
     for place, table in numbered(key, tables):
         for where in ("position", "region"):
             values = getattr(table, where, None) or ()

@@ -1,4 +1,4 @@
-"""What the case file of bonded disks consists of."""
+"""The tables in the case file of bonded disks."""
 
 from pydantic import TypeAdapter
 

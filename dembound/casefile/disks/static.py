@@ -7,9 +7,9 @@ from dembound.table import Table, quantity
 
 
 class Static(Table):
-    """The damped stage before the run that brings the body to rest under steady loads and a given stress.
+    """The damped stage before the run, which brings the body to rest under steady loads and a given stress.
 
-    Its supports stand for the sides until it is over; what they carried then acts on as a constant force.
+    Its supports replace the boundaries of the sides during the stage; their reactions then act as constant forces.
     """
 
     stress: tuple[float, float, float] | None = quantity(

@@ -1,4 +1,4 @@
-"""Mistakes of a static stage that show only beside the other tables."""
+"""Mistakes of a static stage that depend on other tables."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -32,7 +32,7 @@ def static_problems(
 
 
 def _unreachable_stress(static: Static, stress: tuple[float, float, float]) -> Iterator[str]:
-    """Stresses asked for between two sides of which neither gives way."""
+    """Stresses along an axis on which both sides are held."""
     for axis, (low, high) in enumerate((("left", "right"), ("bottom", "top"))):
         if stress[axis] != 0.0 and all(_stands(static, side, axis) for side in (low, high)):
             name = "xy"[axis]
@@ -40,14 +40,14 @@ def _unreachable_stress(static: Static, stress: tuple[float, float, float]) -> I
 
 
 def _nothing_to_settle(static: Static, loads: Sequence[Load | None], material: Material) -> Iterator[str]:
-    """A stage that would end where it begins."""
+    """A stage without anything that could move the body."""
     steady = any(load and load.wave is None for load in loads)
     if not (static.stress or steady or material.locked_in):
         yield "static: has nothing to settle; give it a stress, give the case a steady load, or the material locked_in"
 
 
 def _unheld_loads(static: Static, boundaries: Sides, loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:
-    """Steady loads that would push the body, or the free-field column beside it, away."""
+    """Steady loads against which the body, or the free-field column, is not held."""
     beside = any(table.needs_column for table in boundaries.values() if table)
     for place, load in numbered("load", loads):
         if load.wave is not None:
@@ -63,7 +63,7 @@ def _unheld_loads(static: Static, boundaries: Sides, loads: Sequence[Load | None
 
 
 def _holds(static: Static, sides: Sequence[str], motion: Motion, axis: int) -> bool:
-    """Whether some sides leave no way to go along an axis; periodic ones leave it, round and round."""
+    """Whether these sides hold the body along an axis; periodic sides do not."""
     return "xy"[axis] in motion.held or any(_stands(static, side, axis) for side in sides)
 
 

@@ -130,4 +130,4 @@ def test_the_command_line_says_it_without_python(python, found) -> None:
 
 def test_a_side_whose_wave_comes_too_late_is_not_calibrated(found) -> None:
     assert found["late"].startswith("calibration of left: the pulse is not past its peak after ")
-    assert found["late"].endswith('"late_input" lets its waves in late or not at all')
+    assert found["late"].endswith('"late_input" transmits its waves late or not at all')

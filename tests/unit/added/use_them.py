@@ -107,7 +107,7 @@ def refusal(text: str, **changes: object) -> list[str]:
 
 
 def halved(made) -> dict[str, list]:
-    """Where the disks of the bottom and the top of a scene stand, and what part of their mass they have."""
+    """Positions of the disks of the bottom and the top of a scene, and the part of their mass that they have."""
     scene = plan(made).scene
     edges = {side: scene.edges[side].nodes for side in ("bottom", "top")}
     return {

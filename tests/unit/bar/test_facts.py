@@ -40,7 +40,7 @@ def test_facts_are_those_of_the_bar(spalling) -> None:
 
 def test_numbers_of_an_end_of_another_type_are_told(spalling) -> None:
     class Layered(Viscous):
-        """A dashpot that says how deep it is."""
+        """A dashpot whose description includes its depth."""
 
         def describe(self, edge, medium):
             return super().describe(edge, medium) | {"depth": 2.5}

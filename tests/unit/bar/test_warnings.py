@@ -208,7 +208,7 @@ def test_there_is_nothing_to_wait_for(spalling, changes: dict) -> None:
 
 
 class LateInput(ViscousInput):
-    """Lets its wave in half a millisecond later, and twice as strong."""
+    """Transmits its wave half a millisecond later, with twice the amplitude."""
 
     def support(self, edge, medium, waves, supports) -> None:
         ((name, damping),) = zip(self.waves.values(), self.dampings(edge, medium)[0], strict=True)

@@ -44,8 +44,10 @@ SUDDEN = {"wave.hit.rise": 2.5e-5, "wave.hit.fall": 2.5e-4}
 def test_a_load_that_tears_its_own_end_is_warned_of(run, side: str) -> None:
     (warning,) = run(SUDDEN | blow(9e7, 1, side))
 
-    assert warning.startswith("load.blow: the load itself tore the bar, at ")
-    assert warning.endswith(" m from the loaded end, before any wave was back there; give load.blow.nodes = 3")
+    assert warning.startswith("load.blow: the load itself broke the bar, at ")
+    assert warning.endswith(
+        " m from the loaded end, before any reflected wave had returned there; give load.blow.nodes = 3"
+    )
 
 
 def test_a_load_that_is_spread_already_takes_finer_nodes(run) -> None:
@@ -70,8 +72,8 @@ def test_the_first_spall_tells_who_tore_the_bar(spalling, spalled_run, place: fl
     found = warnings_after_bar(build_bar(spalling()), {"duration": 1.0, "spalls": [first, later]}, spalled_run)
 
     # the load of this bar is spread over the horizon
-    said = f"load.hit: the load itself tore the bar, at {time:.4g} s and {place:g} m from the loaded end, before any "
-    assert found == warned * [f"{said}wave was back there; take a smaller bar.spacing"]
+    said = f"load.hit: the load itself broke the bar, at {time:.4g} s and {place:g} m from the loaded end, before any "
+    assert found == warned * [f"{said}reflected wave had returned there; take a smaller bar.spacing"]
 
 
 FIRM = {"method": {"type": "finite_difference"}, "boundary.right": {"type": "viscous"}}
@@ -120,5 +122,5 @@ def test_places_count_from_the_end_that_is_loaded(spalling, spalled_run, near: f
     scene = build_bar(spalling(blow(12e6, 3, "right")))
     found = warnings_after_bar(scene, {"duration": 1.0, "spalls": [first]}, spalled_run)
 
-    said = "load.blow: the load itself tore the bar, at 0.0001 s and 0.07 m from the loaded end, before any "
-    assert found == warned * [f"{said}wave was back there; take a smaller bar.spacing"]
+    said = "load.blow: the load itself broke the bar, at 0.0001 s and 0.07 m from the loaded end, before any "
+    assert found == warned * [f"{said}reflected wave had returned there; take a smaller bar.spacing"]

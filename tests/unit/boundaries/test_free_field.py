@@ -57,7 +57,7 @@ def test_at_a_corner_only_the_free_fields_share_follows() -> None:
 
 def test_half_masses_are_not_for_a_free_field() -> None:
     assert not TABLE.half_mass
-    with pytest.raises(ValidationError, match="half_mass: is not for a free-field side"):
+    with pytest.raises(ValidationError, match="half_mass: is not allowed on a free-field side"):
         FreeField(type="free_field", half_mass=True)
 
 

@@ -82,7 +82,7 @@ def test_with_a_memory_a_strong_wave_is_no_warning_but_where_the_law_changes(bar
     else:  # 2500·1000·0.5 Pa
         assert facts["stress of pulse"] == (
             f"ρcv = 1.25 MPa, above the confining stress of {pressure} MPa; "
-            "where it pulls contacts open, and linearpbond takes over"
+            "in tension contacts open, and the law changes to linearpbond"
         )
 
 
@@ -132,7 +132,7 @@ def test_tension_meets_the_bonds_share_of_the_stiffness(bar, material: dict, sha
     if share is None:
         assert "tension" not in facts
     else:
-        assert facts["tension"].startswith(f"meets {share} % of the stiffness where")
+        assert facts["tension"].startswith(f"has {share} % of the stiffness where")
 
 
 PACKED = {
@@ -185,7 +185,7 @@ def test_holes_are_told_with_what_they_leave(bar) -> None:
     facts = facts_of(bar({**tables, "hole": [niche]}))
 
     assert facts["particles"] == "36"
-    assert facts["hole niche"] == "rectangle, there from the start"
+    assert facts["hole niche"] == "rectangle, present from the start"
     facts = facts_of(bar({**tables, "hole": [niche, gap]}))
     assert facts["particles"] == "35, 36 before the excavation"
     assert facts["hole gap"] == "rectangle, excavated once the body has settled"

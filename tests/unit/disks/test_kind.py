@@ -103,11 +103,11 @@ def test_what_would_stop_a_run_is_found_before_it(bar, changes: dict, said: str)
     [
         ({}, ""),
         (HANGING, ", without the static stage"),
-        ({"material.law": "linearpbond"}, ", without what linearpbond takes longer once it begins"),
+        ({"material.law": "linearpbond"}, ", without the additional time of linearpbond once it begins"),
         ({"material.law": "linearpbond", "material.elastic_start": False}, ""),
         (
             {**HANGING, "material.law": "linearpbond"},
-            ", without the static stage and what linearpbond takes longer once it begins",
+            ", without the static stage and the additional time of linearpbond once it begins",
         ),
     ],
 )

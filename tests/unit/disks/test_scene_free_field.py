@@ -250,9 +250,7 @@ def test_a_column_alone_is_that_beside_the_body_particle_by_particle(beside: tup
     assert not column.monitors
 
 
-def test_a_column_alone_has_the_contacts_of_that_beside_the_body(
-    beside: tuple[DiskScene, DiskScene], in_order
-) -> None:
+def test_a_column_alone_has_the_contacts_of_that_beside_the_body(beside: tuple[DiskScene, DiskScene], in_order) -> None:
     scene, column = map(in_order, beside)
     count = scene.seam.count
     inside = scene.assembly.pairs.max(axis=1) < count

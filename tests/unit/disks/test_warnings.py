@@ -79,7 +79,7 @@ def test_locked_in_stress_that_breaks_bonds_is_warned_of(bar, changes: dict, bey
     found = warned(bar({**DENSE, **locked_in, **changes}))
 
     # more than half of 2 MPa, the bonds share of the stiffness as contacts without friction bear no shear, times 3.5
-    start = "material.locked_in: is 2 MPa; where it relaxes the most strained bonds come to some 3."
+    start = "material.locked_in: is 2 MPa; where it relaxes, the largest bond stress is about 3."
     assert [warning[: len(start)] for warning in found] == [start] * beyond
 
 

@@ -91,7 +91,7 @@ def test_two_peaks_have_no_standard_error_and_one_makes_no_line():
     speed = wave_speed(np.array([1.0, 3.0]), 2.0)
     assert (speed.value, speed.points) == (2.0, 2)
     assert np.isnan(speed.error)
-    with pytest.raises(CaseError, match="--wave-speed: takes two tension peaks to be estimated, 1 found; give it"):
+    with pytest.raises(CaseError, match="--wave-speed: needs two tension peaks to be estimated, 1 found; give it"):
         wave_speed(np.array([1.0]), 2.0)
 
 
@@ -123,7 +123,7 @@ def test_the_end_of_the_pulse_may_be_told(felt):
 
 def test_a_pulse_that_goes_on_is_refused_unless_its_end_is_told(felt):
     time, stress = felt(rise=100e-6, fall=300e-6)
-    with pytest.raises(CaseError, match="--pulse-end: give it, the pulse goes on when its reflection is back"):
+    with pytest.raises(CaseError, match="--pulse-end: give it, the pulse has not ended when its reflection is back"):
         incident_pulse(time, stress, *BAR)
     assert incident_pulse(time, stress, *BAR, end=400e-6)[0][-1] == pytest.approx(400e-6, abs=1e-6)
 
@@ -138,7 +138,7 @@ def test_a_pulse_does_not_end_before_it_has_come(felt, end):
 
 
 def test_a_front_that_is_back_before_the_pulse_has_risen_is_refused(felt):
-    with pytest.raises(CaseError, match="--pulse-end: give it, the pulse goes on when its reflection is back"):
+    with pytest.raises(CaseError, match="--pulse-end: give it, the pulse has not ended when its reflection is back"):
         incident_pulse(*felt(rise=400e-6), POSITION, POSITION + 0.01, SPEED)
 
 
@@ -149,7 +149,7 @@ def test_a_pulse_of_two_samples_is_refused():
 
 def test_without_compression_there_is_no_pulse(felt):
     time, stress = felt()
-    with pytest.raises(CaseError, match="--scale: leaves no compression"):
+    with pytest.raises(CaseError, match="--scale: gives no compression"):
         incident_pulse(time, np.abs(stress), *BAR)
 
 

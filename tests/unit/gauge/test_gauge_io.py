@@ -65,8 +65,8 @@ def test_the_only_gauge_needs_no_name_and_a_record_no_density(record):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({}, ["--position: is not known, give it", "--length: is not known, give it"]),
-        ({"position": 0.6}, ["--length: is not known, give it"]),
+        ({}, ["--position: is missing, give it", "--length: is missing, give it"]),
+        ({"position": 0.6}, ["--length: is missing, give it"]),
         (BAR | {"position": 0.99}, ["--position: is 0.99 m, must be above 0 and below the length, 0.99 m"]),
         (BAR | {"position": 0.0}, ["--position: is 0 m, must be above 0 and below the length, 0.99 m"]),
         (BAR | {"position": np.nan}, ["--position: is nan m, must be above 0 and below the length, 0.99 m"]),
@@ -96,8 +96,8 @@ def test_files_that_hold_no_history_are_refused(tmp_path, small_run):
     for path, said in (
         (tmp_path / "absent.txt", "no file"),
         (tmp_path / "wide.txt", r"has 3 columns, must have two: time \(s\), stress \(Pa\)"),
-        (short, "holds 2 samples, must hold three or more"),
-        (small_run, "holds no history of stress between the ends of a bar"),
+        (short, "contains 2 samples, must contain three or more"),
+        (small_run, "contains no history of stress between the ends of a bar"),
     ):
         with pytest.raises(CaseError, match=said):
             read_gauge(path, position=0.6, length=0.99)
@@ -119,7 +119,7 @@ def test_monitors_at_the_ends_are_no_gauges(record):
     assert read_gauge(record).position == 0.6
     with h5py.File(record, "r+") as file:
         del file["histories/near"]
-    with pytest.raises(CaseError, match="holds no history of stress between the ends of a bar"):
+    with pytest.raises(CaseError, match="contains no history of stress between the ends of a bar"):
         read_gauge(record)
 
 
@@ -152,7 +152,7 @@ def test_beside_a_text_file_the_free_end_is_another(text, tmp_path):
         read_free_end(text, "end")
     assert caught.value.problems == ["--free-end: is end, must be a text file of time (s) and velocity (m/s)"]
     (tmp_path / "end.txt").write_text("0 1\n1 2\n")
-    with pytest.raises(CaseError, match="holds 2 samples, must hold three or more"):
+    with pytest.raises(CaseError, match="contains 2 samples, must contain three or more"):
         read_free_end(text, str(tmp_path / "end.txt"))
 
 
@@ -203,5 +203,5 @@ def test_a_bar_that_is_not_loaded_at_one_end_is_refused(record, loaded, said):
         with pytest.raises(CaseError) as caught:
             read(record, "far")
         assert caught.value.problems == [
-            f"{record}: is of a bar loaded at {said}, must be loaded at the left or the right"
+            f"{record}: has a bar loaded at {said}, must be loaded at the left or the right"
         ]

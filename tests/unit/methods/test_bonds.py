@@ -82,7 +82,7 @@ def test_bonds_without_a_stiffness_are_none() -> None:
     assert cone.damage()[20] == pytest.approx(0.5, rel=8 * EPS)
     assert whole.damage()[20] == pytest.approx(0.5, rel=8 * EPS)
     for influence in ([0.0], [1.0, -0.1]):
-        with pytest.raises(CaseError, match=r"method: makes bonds without a stiffness above 0"):
+        with pytest.raises(CaseError, match=r"method: gives no bond a stiffness above 0"):
             ROD.bond_rows(len(influence), np.array(influence))
 
 

@@ -325,8 +325,8 @@ def test_a_run_that_gains_energy_from_nothing_is_stopped(bar, gain: float, stops
     with pytest.raises(RunError, match="has gained") as caught:
         simulation.advance(2)
     message = str(caught.value)
-    assert f"has gained {gain * came:.3g} J/m from nothing until t = {2 * STEP:g} s" in message
-    assert f"had brought in {came:.3g} J/m at most; take a smaller run.safety or run.time_step" in message
+    assert f"has gained {gain * came:.3g} J/m without input until t = {2 * STEP:g} s" in message
+    assert f"had supplied {came:.3g} J/m at most; take a smaller run.safety or run.time_step" in message
 
 
 @pytest.mark.parametrize(("gain", "stops"), [(0.99 * GAIN, False), (1.01 * GAIN, True)])
@@ -345,7 +345,7 @@ def test_what_loads_bring_in_a_run_may_have(bar, gain: float, stops: bool) -> No
         assert len(ledger.entries) == 7
         assert ledger.entries[-1].error == pytest.approx(gain * brought, rel=1e-10)
         return
-    with pytest.raises(RunError, match=f"gained {gain * brought:.3g} J/m .* had brought in {brought:.3g} J/m at most"):
+    with pytest.raises(RunError, match=f"gained {gain * brought:.3g} J/m .* had supplied {brought:.3g} J/m at most"):
         simulation.advance(2)
 
 

@@ -111,7 +111,7 @@ def test_row_disks_keep_their_size_while_the_core_is_scaled(edged_brick, recipe)
 def test_failure_says_how_far_it_got(recipe, monkeypatch):
     monkeypatch.setattr(dense, "MAX_STARTS", 1)
     monkeypatch.setattr(dense, "SIZE_TOLERANCE", 0.0)
-    with pytest.raises(PackingError, match=r"no nearer than 0\.\d\d % in 1 starts"):
+    with pytest.raises(PackingError, match=r"at least 0\.\d\d % in 1 starts"):
         pack_dense(recipe)
 
 

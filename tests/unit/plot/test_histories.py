@@ -189,7 +189,7 @@ def test_gauges_of_bars_show_their_stress_and_their_place_along_the_bar(spalled_
 
 
 def test_stress_that_is_not_there_is_refused(spalled_run, small_run):
-    with pytest.raises(CaseError, match=f"{small_run}: holds no stress of its monitors; runs of bars do"):
+    with pytest.raises(CaseError, match=f"{small_run}: has no stress of its monitors; only runs of bars have it"):
         plot_histories([spalled_run, small_run], quantity="stress")
 
 

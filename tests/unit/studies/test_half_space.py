@@ -103,7 +103,7 @@ HAMMER = {"name": "hammer", "force": [0.0, -1000.0], "position": [4.75, 4.75], "
         ({"boundary.top": {"type": "viscous"}}, 'boundary.top.type: is "viscous", must be "free"'),
         ({"load": [{**HAMMER, "position": [0.75, 4.75]}]}, "load: is 0.75 m from the left side and 6 m from a monitor"),
         ({"monitor": [{"name": "under", "position": [4.75, 4.75]}]}, "monitor.under.position: lies under the load"),
-        ({"wave.pulse": {"type": "constant", "amplitude": 1.0, "start": 0.05}}, "jumps on its way, at 0.05 s"),
+        ({"wave.pulse": {"type": "constant", "amplitude": 1.0, "start": 0.05}}, "has a jump at 0.05 s"),
     ],
 )
 def test_other_problems_are_refused_and_leave_nothing(tmp_path, changes, message):
@@ -129,7 +129,7 @@ def test_jumps_are_found_beside_steep_flanks_and_before_the_quadrature(tmp_path,
     monkeypatch.setattr(module, "surface_displacement", lambda times, *_: np.zeros((2, len(times))))
     case = with_changes(loads(CASE, tmp_path), {"wave.pulse": {"type": "file", "path": "wave.txt"}})
     if refused:
-        with pytest.raises(CaseError, match=rf"wave\.pulse: jumps on its way, at {at:.3g} s; .* continuous load$"):
+        with pytest.raises(CaseError, match=rf"wave\.pulse: has a jump at {at:.3g} s; .* continuous load$"):
             write_exact(case, tmp_path / "run.h5")
     else:
         write_exact(case, tmp_path / "run.h5")

@@ -114,22 +114,22 @@ def test_equal_files_make_equal_waves(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("", "holds no numbers"),
-        ("# only words\n", "holds no numbers"),
+        ("", "contains no numbers"),
+        ("# only words\n", "contains no numbers"),
         ("0 0 0\n1 1 1\n", "has 3 columns, must have two"),
         ("0\n1\n", "has 1 columns"),
         ("0 0\n1 1 1\n", "is not two columns of numbers"),
         ("time velocity\ns m/s\n0 0\n1 1\n", "is not two columns of numbers"),
         ("time 0\n0 0\n1 1\n", "is not two columns of numbers"),
         ("0,0;1.000,5\n1;1\n", "is not two columns of numbers"),
-        ("time velocity\n", "holds no numbers"),
+        ("time velocity\n", "contains no numbers"),
         ("0,0\n1,1\n", "is not two columns of numbers"),
         ("0 0\n1 nan\n", "not finite"),
         ("0 0\ninf 1\n", "not finite"),
         ("0 1\n", "at least two"),
         ("0 0\n1 1\n1 2\n", "row 3"),
         ("0 0\n2 1\n1 2\n3 0\n", "row 3"),
-        ("0 0\n1 0\n", "nothing but zeros"),
+        ("0 0\n1 0\n", "only zeros"),
     ],
 )
 def test_bad_files_are_refused_with_their_name(tmp_path: Path, text: str, reason: str) -> None:

@@ -51,7 +51,7 @@ snapshots = 3
 """
 
 NO_PLACE = (
-    "has no place here, as [bar] makes this a case of a bar; allowed: title, bar, method, boundary, wave, load, "
+    "is not allowed here, as [bar] makes this a case of a bar; allowed: title, bar, method, boundary, wave, load, "
     "monitor, run, output"
 )
 
@@ -259,13 +259,13 @@ def test_a_horizon_may_be_half_the_bar() -> None:
         (
             'type = "viscous"\n',
             'type = "viscous"\nbeta_s = 0.5\n',
-            "boundary.right.beta_s: is for waves across, and a bar moves along itself alone; use beta_p",
+            "boundary.right.beta_s: is for waves across, and a bar moves only along its axis; use beta_p",
         ),
         ('type = "viscous"\n', 'type = "viscous"\nbeta_p = -1\n', "boundary.right.beta_p: is -1, must be at least 0"),
         (
             'wave_p = "pulse"',
             'wave_s = "pulse"',
-            "boundary.left.wave_s: moves across the bar, which moves along itself alone; use wave_p",
+            "boundary.left.wave_s: moves across the bar, which moves only along its axis; use wave_p",
         ),
         (
             'wave_p = "pulse"',
@@ -366,7 +366,7 @@ def test_tables_of_disks_are_told_apart_from_unknown_ones(table: str) -> None:
 def test_a_method_alone_makes_it_the_case_of_a_bar() -> None:
     found = problems(f'[method]\ntype = "finite_difference"\n{STARTER[STARTER.index("[packing]") :]}')
 
-    assert found[0].startswith("packing: has no place here, as [method] makes this a case of a bar; allowed: ")
+    assert found[0].startswith("packing: is not allowed here, as [method] makes this a case of a bar; allowed: ")
     assert any(line.startswith("bar.length: is missing") for line in found)
 
 

@@ -115,8 +115,8 @@ def test_names_are_unique() -> None:
 
 def test_nothing_is_watched_or_pushed_where_nothing_is_left() -> None:
     assert problems(hole(), monitor(5.0, 3.4), load("position = [4.1, 2.5]")) == [
-        "load[1, tap].position: lies in hole[1, tunnel]; must be where particles are left",
-        "monitor[1, P1].position: lies in hole[1, tunnel]; must be where particles are left",
+        "load[1, tap].position: lies in hole[1, tunnel]; must be where particles remain",
+        "monitor[1, P1].position: lies in hole[1, tunnel]; must be where particles remain",
     ]
     assert problems(hole(), monitor(5.0, 3.6), load("position = [3.9, 2.5]")) == []
     # a region is loaded where particles are left in it

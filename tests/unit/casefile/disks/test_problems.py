@@ -114,8 +114,7 @@ def test_a_free_field_is_for_left_and_right() -> None:
         assert problems(side(name, "free_field", "beta_p = 0.9")) == []
     for name in ("bottom", "top"):
         assert problems(side(name, "free_field")) == [
-            f'boundary.{name}.type: "free_field" is for left and right; '
-            "its column stands upright and ends where the body does"
+            f'boundary.{name}.type: "free_field" is for left and right; its column is vertical and as high as the body'
         ]
 
 
@@ -124,7 +123,7 @@ def test_a_column_has_two_ends() -> None:
 
     assert problems(side("right", "free_field") + side("left", "viscous") + side("bottom", "fixed")) == []
     assert problems(side("right", "free_field") + around) == [
-        f'boundary.{name}.type: is "periodic", but beside boundary.right stands a column with two ends'
+        f'boundary.{name}.type: is "periodic", but the column of boundary.right needs two ends'
         for name in ("bottom", "top")
     ]
     assert problems(side("right", "free_field") + side("left", "periodic")) == [
@@ -140,8 +139,8 @@ def test_the_springs_that_let_a_wave_into_a_column_are_alike() -> None:
     assert problems(column + side("bottom", "viscoelastic", source)) == []
     assert problems(column + side("left", "viscoelastic_input", wave + source)) == []
     assert problems(column + side("bottom", "viscoelastic_input", wave + source)) == [
-        "boundary.bottom.source: makes springs differ along the side, and the column beside boundary.right with them; "
-        "give distance"
+        "boundary.bottom.source: makes springs differ along the side, and those of the column at boundary.right differ "
+        "from them; give distance"
     ]
 
 
@@ -174,7 +173,7 @@ def test_a_monitor_is_not_called_as_a_twin_is() -> None:
     assert problems(monitor("free_field", "[0, 0]") + monitor("a.free", "[0, 0]")) == []
     assert problems(monitor("a.free_field", "[0, 0]")) == [
         'monitor[1, a.free_field].name: is "a.free_field", must not end in ".free_field", '
-        "which a monitor's twin is called"
+        "which is kept for a monitor's twin"
     ]
 
 

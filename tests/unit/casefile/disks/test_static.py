@@ -98,7 +98,7 @@ def test_stress_has_three_components() -> None:
 
 def test_a_locked_in_stress_needs_a_stage() -> None:
     locked_in = BREAKABLE + "locked_in = 1e6\n"
-    line = "material.locked_in: is a stress that is not in equilibrium at cut sides; must come to rest in [static]"
+    line = "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
     assert problems("", material=locked_in) == [line]
     assert problems("[static]\n", material=locked_in) == []
 
