@@ -1,5 +1,6 @@
 """How a run goes, on stderr: a bar on a terminal, a line every ten seconds elsewhere; and its warnings."""
 
+import logging
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,6 +14,18 @@ from dembound.running import Progress
 
 INTERVAL = 10.0
 """Seconds from one line to the next."""
+
+
+class _Printed(logging.Handler):
+    """Prints what the package logs of work that takes long, as of a brick that is packed."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """A line of its own."""
+        err.print(record.getMessage(), markup=False)
+
+
+logging.getLogger("dembound").addHandler(_Printed(logging.INFO))
+logging.getLogger("dembound").setLevel(logging.INFO)
 
 
 @contextmanager
@@ -48,8 +61,10 @@ class Lines(Progress):
     def __init__(self, name: str, now: Callable[[], float] = time.monotonic) -> None:
         self.name, self.now = name, now
         self.began = self.said = now()
-        self.steps = 0
-        """Steps of the run at the last line."""
+        self.steps: int | None = None
+        """Steps of the run at the last line; None before the first block."""
+        self.compiled = 0.0
+        """Seconds spent on compiling by then, which a rate must not count."""
 
     def warned(self, message: str) -> None:
         """A line of its own, at once."""
@@ -64,9 +79,13 @@ class Lines(Progress):
 
     def running(self, run: Run, steps: int) -> None:
         """The run itself: steps done and in all, simulated time, and particle-steps a second since the last line."""
-        if (since := self.now() - self.said) >= INTERVAL:
-            rate = (run.state.step - self.steps) * run.scene.count / since / 1e6
-            self.said, self.steps = self.said + since, run.state.step
+        compiled = run.clock.seconds["compile"]
+        if self.steps is None:
+            self.said, self.steps, self.compiled = self.now(), run.state.step, compiled
+        elif (since := self.now() - self.said) >= INTERVAL:
+            stepping = since - (compiled - self.compiled)
+            rate = (run.state.step - self.steps) * run.scene.count / stepping / 1e6
+            self.said, self.steps, self.compiled = self.said + since, run.state.step, compiled
             err.print(
                 f"{self.name}: {run.state.step:,} of {steps:,} steps, {run.time:.4g} s simulated, "
                 f"{rate:.3g} M particle-steps/s",
