@@ -16,7 +16,7 @@ NEVER = 2**62
 
 
 class Run(Protocol):
-    """The data of a run that trackers use: scene, parts, state, time step (s), clock; setting `stopped` ends the run."""
+    """Data of a run that trackers use: scene, parts, state, time step (s), clock; setting `stopped` ends the run."""
 
     scene: Scene
     system: System
