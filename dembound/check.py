@@ -3,6 +3,7 @@
 import time
 
 from dembound.casefile import Case
+from dembound.casefile.messages import counted
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
 from dembound.running import plan, warnings_before
@@ -43,7 +44,7 @@ def duration_in_words(seconds: float) -> str:
 
 def _threads_in_words(count: int) -> str:
     """How many threads a run uses."""
-    return f"with {count} thread{'' if count == 1 else 's'}"
+    return f"with {counted(count, 'thread')}"
 
 
 def _estimate(planned: Plan) -> float:

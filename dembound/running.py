@@ -220,7 +220,7 @@ def _begin(planned: Plan, path: Path, progress: Progress) -> Beginning:
     except StalledError as stalled:
         with Recorder(path, stalled.run, planned.step_limit) as recorder:
             recorder.stalled_snapshot(stalled)
-            raise RunError(f"{stalled}; to see it: dembound plot {path.parent} --field unbalanced") from None
+            raise RunError(f"{stalled}\nto see it: dembound plot {path.parent} --field unbalanced") from None
 
 
 def _steps_between_entries(planned: Plan) -> int:

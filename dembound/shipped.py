@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from dembound.casefile import Case
-from dembound.casefile.messages import choices, show
+from dembound.casefile.messages import did_you_mean, show
 from dembound.errors import CaseError
 from dembound.kinds import load
 
@@ -55,8 +55,8 @@ def copy(name: str, target: Path) -> list[Path]:
     copies = dict(_files(name))
     taken = [str(target / place) for place in copies if (target / place).exists()]
     if taken:
-        others = f", as {len(taken) - 1} more of its files do" if len(taken) > 1 else ""
-        raise CaseError([f"{taken[0]}: exists already{others}; give another folder"])
+        others = f", together with {len(taken) - 1} more of the files to copy" if len(taken) > 1 else ""
+        raise CaseError([f"{taken[0]}: exists already{others}; nothing was copied, give another folder"])
     for place, source in copies.items():
         (target / place).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(source, target / place)
@@ -79,7 +79,13 @@ def _files(name: str) -> Iterator[tuple[Path, Path]]:
             if file.is_file() and NOT_COPIED not in file.parts:
                 yield file.relative_to(folder()), file
     else:
-        raise CaseError([f"NAME: is {show(name)}, must be one of {choices(name, [*groups(), *names()])}"])
+        alike = did_you_mean(name, [*groups(), *names()])
+        raise CaseError([f"NAME: is {show(name)}, must be one of these{alike}:", *map(", ".join, _names_by_group())])
+
+
+def _names_by_group() -> list[list[str]]:
+    """The groups, the cases of no group, and those of each group."""
+    return [groups(), *([name for name in names() if name.rpartition("/")[0] == group] for group in ("", *groups()))]
 
 
 def _read_by(case: Case) -> Iterator[Path]:

@@ -9,6 +9,7 @@ from dembound.boundaries.words import side_in_words
 from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import Bar
 from dembound.casefile.magnitudes import stress_in_words, waves_used
+from dembound.casefile.messages import counted, show
 from dembound.exact.dispersion import cells_per_wavelength
 
 ERROR = 0.01
@@ -25,7 +26,7 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
     facts = {
         "nodes": f"{scene.count:,}, {bar['spacing']:g} m apart",
         "method": method_in_words(case),
-        "Courant number": f"{_courant(case, time_step):.6g}",
+        "Courant number": f"{_courant(case, time_step):.4g}",
         "bar": f"{bar['length']:g} m long, section {bar['section']:.4g} m², density {bar['density']:g} kg/m³",
         "stiffness": f"E = {case.bar.modulus / 1e9:.4g} GPa, c = {case.bar.speed:.4g} m/s",
         "strength": _strength_in_words(case.bar),
@@ -38,7 +39,7 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
         largest = abs(load.pressure) * case.wave[load.wave].peak()
         facts[f"load {load.name}"] = (
             f"up to {largest / 1e6:.4g} MPa, {stress_in_words(load.pressure)} times wave {load.wave}, "
-            f"on {load.nodes} node(s) at the {load.side} end"
+            f"on {counted(load.nodes, 'node')} at the {load.side} end"
         )
     for name, node in scene.monitors.items():
         facts[f"monitor {name}"] = f"node {node} at {scene.positions[node, 0]:.4g} m"
@@ -52,7 +53,7 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
 def method_in_words(case: BarCase) -> str:
     """The method and its keys."""
     keys = case.method.model_dump(exclude={"type"})
-    return f"{case.method.type}" + "".join(f", {key} = {value}" for key, value in keys.items())
+    return f"{case.method.type}" + "".join(f", {key} = {show(value)}" for key, value in keys.items())
 
 
 def _strength_in_words(bar: Bar) -> str:

@@ -1,5 +1,6 @@
 """Place and time of spalls, from the steps in which bonds broke."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -61,3 +62,11 @@ def spalls(bonds: Bonds, positions: np.ndarray, time_step: float) -> list[Spall]
             )
         )
     return sorted(found, key=lambda spall: spall.time)
+
+
+def breaks_at_ends(found: Sequence[Spall], ends: Mapping[str, float]) -> dict[str, Spall]:
+    """Those that began at an end whose node is held: the bar has come off there, and no piece has off the bar.
+
+    ends : side -> place (m) of those ends.
+    """
+    return {side: spall for spall in found for side, place in ends.items() if place in spall.start}

@@ -11,8 +11,12 @@ LISTED = 3
 
 
 def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
-    """Changes of method, place and time of the spalls, and which of these results converge."""
+    """Changes of method, place and time of breaks and spalls, and which of these results converge."""
     facts = [f"{used['law']} from {used['from'] * 1e3:.4g} ms" for used in summary["laws"][1:]]
+    facts += [
+        f"broke at the {side} end ({summary['boundaries'][side]['type']}), {broken['time'] * 1e3:.4f} ms"
+        for side, broken in summary["breaks_at_ends"].items()
+    ]
     facts += [
         f"spall at {_range(spall['start'])} m, {spall['time'] * 1e3:.4f} ms" for spall in summary["spalls"][:LISTED]
     ]
@@ -20,7 +24,7 @@ def bar_outcome(summary: Mapping[str, Any]) -> list[str]:
         facts.append(f"and {more} more, see summary.json")
     if summary["spalls_note"] is not None:
         facts.append(summary["spalls_note"])
-    if not summary["spalls"] and summary["bar"]["strength"] is not None:
+    if not summary["spalls"] and not summary["breaks_at_ends"] and summary["bar"]["strength"] is not None:
         facts.append("no spall")
     gained = -summary["energy"]["crack"]
     if gained > GAINED * abs(summary["energy"]["outside"]):

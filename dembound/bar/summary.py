@@ -5,7 +5,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from dembound.bar.fracture import spalls
+from dembound.bar.fracture import breaks_at_ends, spalls
 from dembound.bar.part import BarPart
 from dembound.bar.scene import BarScene, bar_medium
 from dembound.gauge.estimates import pull_back_strength
@@ -23,13 +23,16 @@ OF_DISKS = {"beta_s", "half_mass"}
 def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
     """Entries of a bar's summary in addition to those of every run: plain JSON values, SI units."""
     bar = part_of(run)
-    found = spalls(bar.bonds, scene.positions[:, 0], run.time_step)
+    places = spalls(bar.bonds, scene.positions[:, 0], run.time_step)
+    at_ends = breaks_at_ends(places, _held_ends(scene))
+    found = [place for place in places if place not in at_ends.values()]
     return {
         "nodes": scene.count,
         "method": scene.case.method.model_dump(),
         "bond_updates": bar.bond_updates,
         "courant": run.time_step * scene.case.bar.speed / scene.rod.spacing,
         "spalls": [spall.describe() for spall in found],
+        "breaks_at_ends": {side: spall.describe() for side, spall in at_ends.items()},
         "spalls_note": LATER_SPALLS if len(found) > 1 else None,
         "bar": describe_bar(scene),
         "boundaries": {side: describe_end(scene, side) for side in scene.edges},
@@ -67,6 +70,15 @@ def describe_end(scene: BarScene, side: str) -> dict[str, Any]:
     table = scene.case.side(side)
     numbers = table.describe(scene.edges[side], bar_medium(scene.case))
     return {"type": table.type} | {key: value for key, value in numbers.items() if key not in OF_DISKS}
+
+
+def _held_ends(scene: BarScene) -> dict[str, float]:
+    """Ends whose node a boundary moves or holds: side -> place, m."""
+    return {
+        side: float(scene.positions[edge.nodes[0], 0])
+        for side, edge in scene.edges.items()
+        if 0 in scene.case.side(side).prescribed(edge.axis)
+    }
 
 
 def _largest_stresses(record: Path) -> dict[str, dict[str, float]]:

@@ -120,7 +120,8 @@ def _crest_and_break(case: BarCase) -> tuple[float | None, float | None]:
 
 def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path) -> list[str]:
     """Warnings from the summary and record of a run of a bar, one line each."""
-    cuts = np.array([spall["end"] for spall in summary["spalls"]]).reshape(-1, 2).mean(axis=1)
+    broken = [*summary["spalls"], *summary["breaks_at_ends"].values()]
+    cuts = np.array([place["end"] for place in broken]).reshape(-1, 2).mean(axis=1)
     pieces = np.searchsorted(np.sort(cuts), scene.positions[:, 0])
     with open_record(record) as file:
         return [

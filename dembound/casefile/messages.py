@@ -108,8 +108,18 @@ def unknown(what: str, name: str, known: Collection[str]) -> str:
 
 def choices(name: str, known: Collection[str]) -> str:
     """The known names, and the one that is most similar to `name`."""
+    return ", ".join(known) + did_you_mean(name, known)
+
+
+def did_you_mean(name: str, known: Collection[str]) -> str:
+    """The name most similar to `name`, in brackets after a blank; empty if none is similar."""
     alike = difflib.get_close_matches(name, known, n=1)
-    return ", ".join(known) + (f" (did you mean {alike[0]}?)" if alike else "")
+    return f" (did you mean {alike[0]}?)" if alike else ""
+
+
+def counted(count: int, noun: str) -> str:
+    """A number of things in words: ``1 disk``, ``1,200 disks``."""
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
 
 
 def numbered(key: str, tables: Iterable[Any]) -> Iterator[tuple[str, Any]]:

@@ -71,6 +71,12 @@ class Case:
         return self.boundary.get(name, FREE)
 
     @property
+    def file(self) -> Path | None:
+        """The file of its name in its folder; None where there is none, as of a case that was made otherwise."""
+        path = self.folder / f"{self.name}.toml"
+        return path if path.is_file() else None
+
+    @property
     def driving(self) -> dict[str, dict[Motion, str]]:
         """The waves that drive sides: side -> kind of wave -> name."""
         return {side: dict(table.waves) for side, table in self.boundary.items() if table.waves}
@@ -81,8 +87,11 @@ FREE = Free()
 K = TypeVar("K", bound=Case)
 
 
-def as_kind(case: Case, kind: type[K], otherwise: str) -> K:
-    """The case, if it is of a kind; else raises CaseError with the message `otherwise`."""
+def as_kind(case: Case, kind: type[K], otherwise: str, source: str = "") -> K:
+    """The case, if it is of a kind; else raises CaseError with the message `otherwise`.
+
+    source : what the message is about, by default the case's name.
+    """
     if not isinstance(case, kind):
-        raise CaseError([otherwise], case.name)
+        raise CaseError([otherwise], source or case.name)
     return case

@@ -22,10 +22,10 @@ from dembound.kinds import load, with_changes
 from dembound.results.reader import require_folder
 from dembound.version import __version__
 
-EXIT_CODES = """
-Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration or view failed; 4 a packing
-could not be made; 5 a file could not be read or written; 130 stopped with Ctrl-C.
-"""
+EXIT_CODES = (  # in one line: line breaks within a paragraph stay in the help
+    "Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration or view failed; 4 a packing "
+    "could not be made; 5 a file could not be read or written; 130 stopped with Ctrl-C."
+)
 CANNOT_WRITE = 5
 
 app = typer.Typer(
@@ -99,7 +99,8 @@ def load_case(path: Path, changes: list[str] | None, name: str | None = None) ->
 
 def load_disks(path: Path, changes: list[str] | None, name: str | None = None) -> DiskCase:
     """The same for commands that accept only disks."""
-    return as_kind(load_case(path, changes, name), DiskCase, "is the case of a bar, this command is for disks")
+    case = load_case(path, changes, name)
+    return as_kind(case, DiskCase, "is the case of a bar, this command is for disks", str(path))
 
 
 def _setting(text: str) -> tuple[str, Any]:

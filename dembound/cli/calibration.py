@@ -55,8 +55,9 @@ def calibrate_sides(
     method: Annotated[
         CalibrationMethod,
         typer.Option(
+            metavar="METHOD",
             help="impedance: solve for β, then check; ratio: multiply by M_out/M_in; "
-            "homogenised: from the brick alone, no run."
+            "homogenised: from the brick alone, no run.",
         ),
     ] = CalibrationMethod.impedance,
     start: Annotated[float | None, typer.Option(help="First β; by default the case's own.")] = None,

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from dembound.cli.app import PICTURE, PictureTitle, app, compact_table, out
+from dembound.cli.app import PICTURE, PictureTitle, app, compact_table, err, out
 from dembound.cli.results import results_file
 from dembound.gauge.estimates import Estimate
 from dembound.gauge.gauge_io import read_free_end, read_gauge
@@ -66,6 +66,8 @@ def gauge(
         speed=wave_speed,
         coefficient=attenuation,
     )
+    if peaks is not None and found.peaks is not None and len(found.peaks.time) < peaks:
+        err.print(f"--peaks: asks for {peaks} tension peaks, there are {len(found.peaks.time)}")
     out.print(_overview(found, *("results" if given is None else "given" for given in (wave_speed, attenuation))))
     if output is not None:
         save(plot_gauge(gauge, found), output, title)

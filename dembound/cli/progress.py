@@ -1,5 +1,6 @@
 """Progress of a run on stderr: a bar on a terminal, else a line every ten seconds; and its warnings."""
 
+import logging
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,6 +14,18 @@ from dembound.running import Progress
 
 INTERVAL = 10.0
 """Seconds between two lines."""
+
+
+class _Printed(logging.Handler):
+    """Prints the log messages of the package about long work, for example packing a brick."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print a message on a separate line."""
+        err.print(record.getMessage(), markup=False)
+
+
+logging.getLogger("dembound").addHandler(_Printed(logging.INFO))
+logging.getLogger("dembound").setLevel(logging.INFO)
 
 
 @contextmanager
@@ -48,8 +61,10 @@ class Lines(Progress):
     def __init__(self, name: str, now: Callable[[], float] = time.monotonic) -> None:
         self.name, self.now = name, now
         self.began = self.said = now()
-        self.steps = 0
-        """Steps of the run when the last line was printed."""
+        self.steps: int | None = None
+        """Steps of the run at the last line; None before the first block."""
+        self.compiled = 0.0
+        """Seconds of compiling up to the last line, which a rate does not include."""
 
     def warned(self, message: str) -> None:
         """Print the warning at once, on a separate line."""
@@ -64,9 +79,13 @@ class Lines(Progress):
 
     def running(self, run: Run, steps: int) -> None:
         """Print steps done and in all, simulated time, and particle-steps per second since the last line."""
-        if (since := self.now() - self.said) >= INTERVAL:
-            rate = (run.state.step - self.steps) * run.scene.count / since / 1e6
-            self.said, self.steps = self.said + since, run.state.step
+        compiled = run.clock.seconds["compile"]
+        if self.steps is None:
+            self.said, self.steps, self.compiled = self.now(), run.state.step, compiled
+        elif (since := self.now() - self.said) >= INTERVAL:
+            stepping = since - (compiled - self.compiled)
+            rate = (run.state.step - self.steps) * run.scene.count / stepping / 1e6
+            self.said, self.steps, self.compiled = self.said + since, run.state.step, compiled
             err.print(
                 f"{self.name}: {run.state.step:,} of {steps:,} steps, {run.time:.4g} s simulated, "
                 f"{rate:.3g} M particle-steps/s",

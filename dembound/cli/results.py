@@ -72,8 +72,9 @@ def plot(
     quantity: Annotated[
         Quantity | None,
         typer.Option(
-            help="Quantity of the monitors, by default velocity; acceleration is that of central differences of "
-            "the velocity, stress is for bars only."
+            metavar="QUANTITY",
+            help=f"Quantity of the monitors: {', '.join(Quantity)}; by default velocity; acceleration is that of "
+            "central differences of the velocity, stress of bars alone.",
         ),
     ] = None,
     component: Annotated[
@@ -90,13 +91,17 @@ def plot(
     field: Annotated[
         SceneField | None,
         typer.Option(
-            help="Show the scene of one run instead, its disks coloured by this; of a bar it over place and time, "
-            "stress, damage and motion."
+            metavar="FIELD",
+            help=f"Show the scene of one run instead, its disks coloured by this: {', '.join(SceneField)}; of a bar it "
+            "over place and time, stress, damage and motion.",
         ),
     ] = None,
     snapshot: Annotated[
         int | None,
-        typer.Option(help="With --field: number of the snapshot, −1 the last; by default the largest, of a bar all."),
+        typer.Option(
+            help="With --field: number of the snapshot, −1 the last; by default the one where the field is largest, of "
+            "a bar all."
+        ),
     ] = None,
     table: Annotated[
         Path | None,
@@ -172,7 +177,8 @@ def _one_picture(pictures: Mapping[str, object], choices: Mapping[str, object], 
 def view_disks(
     results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
     snapshot: Annotated[
-        int | None, typer.Option(help="Number of the first snapshot, −1 the last; by default the largest motion.")
+        int | None,
+        typer.Option(help="Number of the first snapshot, −1 the last; by default the one with the largest motion."),
     ] = None,
     field: Annotated[Field, typer.Option(help="What colours the disks.")] = Field.velocity,
     picture: Annotated[
@@ -209,13 +215,18 @@ def compare_histories(
     reference: Annotated[Path, typer.Argument(metavar="REFERENCE", help="Results to measure against.")],
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     quantity: Annotated[
-        Quantity, typer.Option(help="What of the monitors to compare; the stress of bars alone.")
+        Quantity,
+        typer.Option(
+            metavar="QUANTITY",
+            help=f"Quantity of the monitors: {', '.join(Quantity)}; the stress of bars alone.",
+        ),
     ] = Quantity.velocity,
 ) -> None:
     """Print the differences between the histories of runs and those of a reference, monitor by monitor.
 
-    RMS: RMS of the difference in % of the RMS of the reference. largest: largest difference in % of the reference's
-    peak. end and reference: the values of both at the end.
+    RMS is that of the difference in % of the reference's, largest the largest difference in % of its peak.
+
+    End and reference are the values of both at the end.
     """
     found = compare(results_file(reference), [results_file(path) for path in results], quantity.value)
     unit = found[0].unit

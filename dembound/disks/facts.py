@@ -3,6 +3,7 @@
 from dembound.boundaries.words import side_in_words
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
+from dembound.casefile.messages import counted
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.summary import describe_packing, describe_side
@@ -51,7 +52,7 @@ def _particles(scene: DiskScene) -> str:
     """Number of particles, also before an excavation."""
     loose = scene.assembly.loose
     before = f", {scene.before.count:,} before the excavation" if scene.before is not None else ""
-    severed = f"; {loose:,} severed {'disk' if loose == 1 else 'disks'} left out" if loose else ""
+    severed = f"; {counted(loose, 'severed disk')} left out" if loose else ""
     return f"{scene.count:,}{before}{severed}"
 
 
@@ -70,7 +71,7 @@ def _packing_facts(scene: DiskScene) -> dict[str, str]:
     ]
     stiffness = ", ".join(f"{name} {packing[name] / 1e9:.4f}" for name in ("C11", "C22", "C12", "C66"))
     return {
-        "brick": f"{packing['disks_per_brick']:,} disk(s), solid fraction {packing['solid_fraction']:.4f}, "
+        "brick": f"{counted(packing['disks_per_brick'], 'disk')}, solid fraction {packing['solid_fraction']:.4f}, "
         f"{packing['coordination']:.3f} contacts per disk",
         "brick equilibrium": f"residual force ratio {packing['residual_ratio']:.1e}, "
         f"packed under {scene.ground.packed_pressure / 1e6:.3f} MPa",
@@ -99,8 +100,8 @@ def _law_facts(scene: DiskScene) -> dict[str, str]:
     }
     if scene.ground.moduli.emod > 0.0:
         facts["tension"] = (
-            f"has {100.0 * scene.ground.bond_share:.0f} % of the stiffness where nothing presses contacts together: "
-            "they open and only the bonds resist; confine them (static.stress) or lower material.contact_share"
+            f"in tension the stiffness falls to {100.0 * scene.ground.bond_share:.0f} %, as contacts open and only "
+            "bonds carry; confine the contacts (static.stress) or lower material.contact_share"
         )
     if material.locked_in is not None:
         shares = [
@@ -136,7 +137,7 @@ def _load_facts(scene: DiskScene) -> dict[str, str]:
         nodes, forces = forces_of(load, scene.assembly, scene.mass)
         fx, fy = forces.sum(axis=0)
         factor = "steady" if load.wave is None else f"times wave {load.wave}"
-        facts[f"load {load.name}"] = f"({fx:.4g}, {fy:.4g}) N/m on {len(nodes):,} particle(s), {factor}"
+        facts[f"load {load.name}"] = f"({fx:.4g}, {fy:.4g}) N/m on {counted(len(nodes), 'particle')}, {factor}"
     return facts
 
 

@@ -225,19 +225,19 @@ class _UntilAtRest(Tracker):
 
 
 def _where_it_ended(static: Static, run: Run, ratio: float, unbalanced: np.ndarray, cracks: Cracks) -> str:
-    """Text about a stage that takes too long, with its state and advice; unbalanced (2, n) N as for `_lacking`."""
+    """Lines about a stage that takes too long, with its state and advice; unbalanced (2, n) N as for `_lacking`."""
     steps = run.state.step
-    facts = f"static.ratio asks for {static.ratio:g}; broken bonds: {len(cracks):,}; {_lacking(run, unbalanced)}"
+    facts = f"static.ratio asks for {static.ratio:g}; broken bonds: {len(cracks):,}\n{_lacking(run, unbalanced)}"
     if steps >= static.max_steps:
-        return f"came to a force ratio of {ratio:.3g} in {steps:,} steps, {facts}; allow more with static.max_steps"
+        return f"came to a force ratio of {ratio:.3g} in {steps:,} steps, {facts}\nallow more with static.max_steps"
     return (
-        f"stalls at a force ratio of {ratio:.3g} after {steps:,} steps, {facts}; "
+        f"stalls at a force ratio of {ratio:.3g} after {steps:,} steps, {facts}\n"
         "is the body held, and can its contacts carry the load?"
     )
 
 
 def _lacking(run: Run, unbalanced: np.ndarray) -> str:
-    """Text with the particles of largest unbalanced force, their positions, and how many have half of the sum.
+    """The particles with the largest unbalanced forces, a line each, and how many have half of the sum.
 
     unbalanced (2, n) N is the sum of the forces on each particle.
     """
@@ -246,15 +246,16 @@ def _lacking(run: Run, unbalanced: np.ndarray) -> str:
     half = 1 + int(np.searchsorted(np.cumsum(size[order]), 0.5 * size.sum()))
     places = scene.positions + run.state.displacement[:2].T
     worst = [
-        f"particle {i} at ({places[i, 0]:.2f}, {places[i, 1]:.2f}) m lacks ({0.0 - unbalanced[0, i]:.3g}, "
-        f"{0.0 - unbalanced[1, i]:.3g}) N"
+        f"unbalanced force on particle {i} at ({places[i, 0]:.2f}, {places[i, 1]:.2f}) m: "
+        f"({unbalanced[0, i] + 0.0:.3g}, {unbalanced[1, i] + 0.0:.3g}) N"  # + 0.0: no −0
         for i in order[: min(WORST, len(order))]
     ]
     low, high = places[order[:half]].min(axis=0), places[order[:half]].max(axis=0)
-    return (
-        f"{', '.join(worst)}; {half:,} of {scene.count:,} particles lack half of all, between "
+    share = (
+        f"{half:,} of {scene.count:,} particles have half of all unbalanced force, between "
         f"({low[0]:.2f}, {low[1]:.2f}) and ({high[0]:.2f}, {high[1]:.2f}) m"
     )
+    return "\n".join([*worst, share])
 
 
 class _StaticScene:

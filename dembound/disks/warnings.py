@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from dembound.boundaries import SIDES, axis_of_motion
+from dembound.boundaries import SIDES, Motion, axis_of_motion
 from dembound.casefile.disks.load import Load
 from dembound.casefile.magnitudes import grip_stress, stress_warnings, time_warnings
 from dembound.disks.matching import homogenised_beta, reflected
@@ -147,24 +147,37 @@ def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
 
 def _default_factors(scene: DiskScene) -> Iterator[str]:
     """Sides with default factors on packings that need other factors."""
-    for side in scene.edges:
-        table = scene.case.side(side)
-        matched = {motion: homogenised_beta(scene, side, motion) for motion in table.factors}
-        shares = {motion: abs(reflected(factor, matched[motion])) for motion, factor in table.factors.items()}
-        wrong = [
-            motion
-            for motion in table.factors
-            if f"beta_{motion}" not in table.model_fields_set and shares[motion] > REFLECTED  # nan where it is held
-        ]
-        if wrong:
-            waves = " and ".join(f"{100.0 * shares[motion]:.2g} % of {motion.upper()}" for motion in wrong)
-            factors = " and ".join(
-                f"beta_{motion} = {table.factors[motion]:g} (the packing has {matched[motion]:.3g})" for motion in wrong
-            )
-            yield (
-                f"boundary.{side}: reflects {waves} waves with the default {factors}; "
-                f"run: {' and '.join(f'dembound calibrate CASE --boundary {side} --wave {motion}' for motion in wrong)}"
-            )
+    wrong = {side: found for side in scene.edges if (found := _factors_off(scene, side))}
+    each = [f"--boundary {side} --wave {motion}" for side, found in wrong.items() for motion in found]
+    which = "--all" if len(each) > 1 else "".join(each)
+    for side, found in wrong.items():
+        factors = scene.case.side(side).factors
+        waves = " and ".join(
+            f"{100.0 * abs(reflected(factors[motion], matched)):.2g} % of {motion.upper()}"
+            for motion, matched in found.items()
+        )
+        defaults = " and ".join(
+            f"beta_{motion} = {factors[motion]:g} (matched: about {matched:.3g})" for motion, matched in found.items()
+        )
+        yield (
+            f"boundary.{side}: reflects {waves} waves with the default {defaults}; "
+            f"run: dembound calibrate {scene.case.file or 'CASE'} {which}"
+        )
+
+
+def _factors_off(scene: DiskScene, side: str) -> dict[Motion, float]:
+    """Kinds of waves whose factor of a side is the default and reflects too much -> the matched factor."""
+    table = scene.case.side(side)
+    matched = {
+        motion: homogenised_beta(scene, side, motion)
+        for motion in table.factors
+        if f"beta_{motion}" not in table.model_fields_set
+    }
+    return {
+        motion: beta
+        for motion, beta in matched.items()
+        if abs(reflected(table.factors[motion], beta)) > REFLECTED  # nan where the motion is held
+    }
 
 
 def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:

@@ -140,9 +140,10 @@ def not_on_bar(option: str, place: float, length: float) -> Iterator[str]:
 
 def _problems_with_bar(position: float | None, length: float | None, density: float | None) -> Iterator[str]:
     """Missing or impossible data of a gauge on a bar."""
-    for option, value in (("--position", position), ("--length", length)):
-        if value is None:
-            yield f"{option}: is missing, give it"
+    if position is None:
+        yield "--position: is missing, must be the gauge's place (m) from the loaded end"
+    if length is None:
+        yield "--length: is missing, must be that of the bar (m)"
     unfit = list(not_above_zero("--length", length, "m"))
     yield from unfit
     if position is not None and length is not None and not unfit:

@@ -87,7 +87,7 @@ def evaluate(
         coefficient = metadata.attenuation if coefficient is None else coefficient
     problems = list(_problems_with_options(gauge, spall, speed, coefficient))
     if free_end is not None and gauge.density is None:
-        problems.append("--density: is missing, give it")
+        problems.append("--density: is missing, must be that of the bar (kg/m³)")
     if problems:
         raise CaseError(problems)
     peaks, found, decay = _waves(gauge, speed, coefficient, count)

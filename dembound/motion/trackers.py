@@ -6,6 +6,7 @@ from typing import Protocol
 import numpy as np
 
 from dembound.errors import RunError
+from dembound.motion.clock import Clock
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
 from dembound.motion.state import Arrays, State
@@ -15,12 +16,13 @@ NEVER = 2**62
 
 
 class Run(Protocol):
-    """The data of a run that trackers use: scene, parts, state, time step (s); setting `stopped` ends the run."""
+    """Data of a run that trackers use: scene, parts, state, time step (s), clock; setting `stopped` ends the run."""
 
     scene: Scene
     system: System
     state: State
     time_step: float
+    clock: Clock
     stopped: bool
 
     @property

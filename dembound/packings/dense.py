@@ -1,5 +1,6 @@
 """Dense random packing of disks in a periodic box, with or without fixed rows."""
 
+import logging
 import math
 from dataclasses import dataclass
 
@@ -10,6 +11,8 @@ from dembound.kernels import pack
 from dembound.packings.bed import Bed
 from dembound.packings.brick import Brick, contact_stress, contact_vectors
 from dembound.packings.contacts import near_pairs, strip_order
+
+LOGGER = logging.getLogger(__name__)
 
 # force balance: of the first compression, while loose disks grow, and of the finished brick
 ROUGH, MEDIUM, FINE = 1e-3, 1e-4, 1e-9
@@ -61,6 +64,7 @@ def pack_dense(recipe: Recipe, rows: RegularRows = NO_ROWS) -> Brick:
     mean radius cannot be reached.
     """
     count = first_count(recipe, rows)
+    LOGGER.info("packing a brick of %s disks", f"{count + len(rows.radii):,}")
     best = math.inf
     estimates = []  # of the number of disks that would give the mean radius, one from each start
     for attempt in range(MAX_STARTS):

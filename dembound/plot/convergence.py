@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from dembound.errors import CaseError
-from dembound.plot.style import REFERENCE, new_figure, outside_legend, point_style, styled
+from dembound.plot.style import REFERENCE, new_figure, open_point_style, outside_legend, styled
 from dembound.results.reader import open_record, record_names
 
 
@@ -41,7 +41,7 @@ def plot_convergence(records: Sequence[Path]) -> Figure:
     upper, lower = figure.subplots(2, 1, sharex=True)
     for index, (name, each) in enumerate(zip(record_names(records), calibrations, strict=True)):
         passes = np.arange(1, len(each.beta) + 1)
-        style = point_style(index)
+        style = open_point_style(index)
         upper.plot(passes, each.outgoing, label=f"{name}, {each.asked}", gid=name, **style)
         lower.plot(passes, each.beta, gid=name, label=name, **style)
     for incident in sorted({each.incident for each in calibrations}):

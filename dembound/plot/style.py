@@ -93,6 +93,11 @@ def point_style(index: int) -> dict[str, Any]:
     return {"color": colour, "marker": marker, "linewidth": 0.8}
 
 
+def open_point_style(index: int) -> dict[str, Any]:
+    """The same with hollow markers and dashes, so that rows show that lie on each other."""
+    return point_style(index) | {"linestyle": DASHES[index % len(DASHES)], "markersize": 6.0, "fillstyle": "none"}
+
+
 def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None:
     """Put one legend of all labels in the panels, each once, below everything else.
 

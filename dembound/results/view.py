@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 from matplotlib.image import imsave
 
+from dembound.casefile.messages import counted
 from dembound.errors import CaseError, DemboundError
 from dembound.results.reader import (
     cracks_until,
@@ -26,6 +27,14 @@ Field = Literal["velocity", "displacement"]
 LABELS = {"velocity": "speed (m/s)", "displacement": "displacement (m)"}
 
 CRACKS = "red"  # a colour that no disk has; black is hard to see on disks at rest
+
+CRACK_SIZE = 10.0  # pixels
+
+WINDOW = 1600, 900  # pixels
+
+ROUND = 300  # pixels above and below the disks together in a picture: title, axis, and room for the colour bar
+
+MARGIN = 0.7  # half the width of a view over that of the disks; 0.5 would leave none
 
 CORNERS = 24  # of a disk's polygon; a multiple of four, so that it is as wide and as high as the disk
 
@@ -115,9 +124,12 @@ def make_plotter(
     disks = disk_mesh(file["particles/position"][:], file["particles/radius"][:])
     still = disks.points.copy()
     limit = max(lengths(each, field).max() for each in snapshots) or 1.0  # 1 for a run at rest
-    plotter = pyvista.Plotter(off_screen=off_screen, window_size=(1600, 900))
+    size = picture_size(file.attrs["size"]) if off_screen else WINDOW
+    plotter = pyvista.Plotter(off_screen=off_screen, window_size=size)
     disks.cell_data[label] = lengths(first, field)
-    plotter.add_mesh(disks, scalars=label, clim=(0.0, limit), lighting=False, scalar_bar_args={"vertical": True})
+    bar = {"vertical": True, "position_x": 0.91, "position_y": 0.1, "height": 0.7}
+    plotter.add_mesh(disks, scalars=label, clim=(0.0, limit), lighting=False, scalar_bar_args=bar)
+    plotter.scalar_bar.SetVerticalTitleSeparation(20)  # pixels, for the uppermost number
     plotter.enable_anti_aliasing("ssaa")
 
     def show(number: float) -> None:
@@ -128,7 +140,10 @@ def make_plotter(
         cracks = cracks_until(file, shown.attrs["time"])
         show_cracks(plotter, cracks["position"] + moved[cracks["particles"]].mean(axis=1))
         scale = f", displacements × {exaggerate:g}" if exaggerate else ""
-        plotter.add_text(f"{file.attrs['name']}: t = {shown.attrs['time']:.3g} s{scale}", name="time", font_size=12)
+        broken = len(cracks["position"])
+        marked = f", {counted(broken, 'broken bond')} ({CRACKS})" if broken else ""
+        title = f"{file.attrs['name']}: t = {shown.attrs['time']:.3g} s{scale}{marked}"
+        plotter.add_text(title, name="time", font_size=12)
 
     show(snapshots.index(first))
     if len(snapshots) > 1 and not off_screen:
@@ -144,25 +159,44 @@ def show_cracks(plotter: "pyvista.Plotter", positions: np.ndarray) -> None:
     plotter.remove_actor("cracks", render=False)
     if len(positions) > 0:
         raised = np.column_stack([positions, np.ones(len(positions))])  # the height is not visible from above
-        plotter.add_points(raised, color=CRACKS, point_size=6.0, name="cracks", reset_camera=False)
+        plotter.add_points(raised, color=CRACKS, point_size=CRACK_SIZE, name="cracks", reset_camera=False)
         plotter.renderer.ResetCameraClippingRange()
+
+
+def picture_size(size: np.ndarray) -> tuple[int, int]:
+    """Width and height of a picture in pixels for a scene of this size, (2,) m: low for one that lies long."""
+    across, up = WINDOW
+    return across, min(up, round(across / (2.0 * MARGIN) * size[1] / size[0]) + ROUND)
 
 
 def look_from_above(plotter: "pyvista.Plotter", size: np.ndarray) -> None:
     """Put labelled axes around a scene of this size, (2,) m, and a camera above all that only moves and zooms."""
     width, height = size
     share = size / size.max()
-    x_labels, y_labels = 2 * np.ceil(3.0 * share).astype(int)  # even: an axis has its title at its middle
-    x_shown, y_shown = share > 0.05  # labels across a narrower scene collide
+    x_labels, y_labels = map(label_count, size, share)
+    x_shown, y_shown = share > 0.03  # labels across a narrower scene collide
     x_axis = {"xtitle": "x (m)", "n_xlabels": x_labels, "show_xlabels": x_shown}
     y_axis = {"ytitle": "y (m)", "n_ylabels": y_labels, "show_ylabels": y_shown}
-    plotter.show_bounds(bounds=(0.0, width, 0.0, height, 0.0, 0.0), use_2d=True, show_zaxis=False, **x_axis, **y_axis)
+    plotter.show_bounds(
+        bounds=(0.0, width, 0.0, height, 0.0, 0.0), use_2d=True, show_zaxis=False, fmt="%.4g", **x_axis, **y_axis
+    )
     plotter.view_xy()
     plotter.enable_parallel_projection()
     plotter.enable_custom_trackball_style(left="pan")
     across, up = plotter.window_size
     left, right, bottom, top, *_ = plotter.bounds
-    plotter.camera.parallel_scale = 0.7 * max(top - bottom, (right - left) * up / across)  # 0.5 fills the window
+    plotter.camera.parallel_scale = MARGIN * max(top - bottom, (right - left) * up / across)
+
+
+def label_count(length: float, share: float) -> int:
+    """How many evenly spaced numbers to ask for on an axis from 0 to its length (m), whose share of the longest it is.
+
+    As many as there is room for, or two more or less where that makes them round. Even, as an axis has its title at its
+    middle.
+    """
+    room = 2 * int(np.ceil(3.0 * share))
+    steps = {count: length / (count - 1) for count in (room, room + 2, room - 2) if count > 0}
+    return next((count for count, step in steps.items() if np.isclose(float(f"{step:.2g}"), step, atol=0.0)), room)
 
 
 def lengths(snapshot: h5py.Group, field: Field) -> np.ndarray:

@@ -84,7 +84,7 @@ def lattices_of(case: Case) -> list[Lattice]:
 
     Attenuation is left out. Raises CaseError for a case without a bar and a step above its stability limit.
     """
-    bar = as_kind(case, BarCase, "bar: is missing; dispersion is computed for bars only")
+    bar = as_kind(case, BarCase, "is the case of disks, this command is for bars")
     scene = build_bar(bar)
     time_step, _ = choose_step(scene)
     found = {lattice_of(bonds, time_step, bar.bar.speed) for bonds in bar.method.stages(scene.rod)}

@@ -1,6 +1,7 @@
 """The command line: what it writes, what it says, and the code it ends with."""
 
 import csv
+import inspect
 import json
 import re
 import runpy
@@ -100,6 +101,17 @@ def test_version_and_help_end_well(dembound) -> None:
     assert told.code == 0
     for command in ("new", "cases", "schema", "check", "run", "calibrate", "plot", "dispersion", "gauge"):
         assert command in told.out
+
+
+def test_helps_wrap_at_80_columns(dembound, command, monkeypatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    for name, each in command.commands.items():
+        told = dembound(name, "--help").out
+        # no type or list of choices is cut
+        assert not re.findall(r"<[^>\n]*\n", told)
+        # line breaks of all but a first paragraph would stay
+        assert not [text for text in inspect.cleandoc(each.help).split("\n\n")[1:] if "\n" in text]
+    assert "\n" not in command.epilog
 
 
 def test_unknown_commands_and_options_are_bad_input(dembound) -> None:
@@ -279,18 +291,19 @@ def test_off_a_terminal_a_run_says_every_ten_seconds_how_far_it_is(bar, capsys) 
     clock = Clock(100.0)
     lines = Lines("bar", clock)
     lines.warned("wave.pulse: is odd")
-    for now, steps in ((109.9, 10), (112.0, 10), (121.9, 5)):
+    for now, steps, compiled in ((100.0, 1, 0.0), (109.9, 9, 0.0), (112.0, 11, 2.0), (121.9, 5, 0.0)):
         clock.time = now
+        simulation.clock.seconds["compile"] += compiled
         simulation.advance(steps)
         lines.running(simulation, 1234)
     clock.time = 122.0
     lines.running(simulation, 1234)
 
-    # 20 steps of 40 disks in 12 s, then 5 in 10 s
+    # the first step only starts the clock; 20 steps of 40 disks in 12 s, 2 of them spent on compiling, then 5 in 10 s
     assert capsys.readouterr().err.splitlines() == [
         "bar: warning: wave.pulse: is odd",
-        f"bar: 20 of 1,234 steps, {20 * planned.time_step:.4g} s simulated, 6.67e-05 M particle-steps/s",
-        f"bar: 25 of 1,234 steps, {25 * planned.time_step:.4g} s simulated, 2e-05 M particle-steps/s",
+        f"bar: 21 of 1,234 steps, {21 * planned.time_step:.4g} s simulated, 8e-05 M particle-steps/s",
+        f"bar: 26 of 1,234 steps, {26 * planned.time_step:.4g} s simulated, 2e-05 M particle-steps/s",
     ]
 
 
@@ -721,6 +734,13 @@ def test_a_gauge_tells_what_its_history_and_options_allow(dembound, felt, tmp_pa
     assert float(attenuation[1]) == pytest.approx(0.52, rel=0.01)
     assert "strength" not in alone.out
 
+    some = dembound("gauge", "gauge.txt", *bar, "--peaks", 3)
+    assert (some.err, "times of 3 peaks" in some.out) == ("", True)
+    count = int(re.search(r"of (\d+) peaks", speed[-1]).group(1))
+    many = dembound("gauge", "gauge.txt", *bar, "--peaks", count + 1)
+    assert many.err == f"--peaks: asks for {count + 1} tension peaks, there are {count}\n"
+    assert many.out == alone.out
+
     known = ("--wave-speed", 2740, "--attenuation", 0.52, "--density", 2620)
     full = dembound("gauge", "gauge.txt", *bar, *known, "--spall", 0.9, "--free-end", "end.txt", "-o", "gauge.png")
     assert full.code == 0
@@ -735,7 +755,11 @@ def test_gauges_that_tell_nothing_are_bad_input(dembound, written) -> None:
     Path("gauge.txt").write_text("0 1\n1 -2\n2 1\n")
     dembound("run", written())
     for arguments, said in (
-        (["gauge.txt"], "--position: is missing, give it\n--length: is missing, give it\n"),
+        (
+            ["gauge.txt"],
+            "--position: is missing, must be the gauge's place (m) from the loaded end\n"
+            "--length: is missing, must be that of the bar (m)\n",
+        ),
         (
             ["gauge.txt", "--position", 2, "--length", 1],
             "--position: is 2 m, must be above 0 and below the length, 1 m\n",
@@ -818,3 +842,22 @@ def test_runs_on_bars_are_read_by_gauge_where_one_end_is_loaded(dembound, spalli
         (["results"], "results: contains no results, must be a folder with run.h5 or calibration.h5\n"),
     ):
         assert dembound("gauge", *arguments) == Answer(2, "", said)
+
+
+DENSE = {"pattern": "B", "size": [2.0, 2.0], "radius": 0.1, "radius_ratio": 1.5, "brick": [2.0, 2.0]}
+
+
+def test_a_brick_that_is_packed_is_told_of_and_a_cached_one_is_not(dembound, written, tmp_path, monkeypatch) -> None:
+    monkeypatch.setenv("DEMBOUND_CACHE", str(tmp_path / "bricks"))
+    path = written(changes={"packing": DENSE, "monitor": [], "boundary.right": {"type": "free"}})
+    told = dembound("check", path).err.splitlines()
+
+    assert re.fullmatch(r"packing a brick of \d+ disks", told[0])
+    assert dembound("check", path).err.splitlines() == told[1:]
+
+
+def test_commands_for_one_kind_of_body_name_the_file_of_another(dembound, spalling, written) -> None:
+    Path("rod.toml").write_text(spalling().text, encoding="utf-8")
+
+    assert dembound("exact", "rod.toml").err == "rod.toml: is the case of a bar, this command is for disks\n"
+    assert dembound("dispersion", written()).err == "bar: is the case of disks, this command is for bars\n"

@@ -326,7 +326,7 @@ def test_a_static_stage_that_fails_does_not_stand_in_the_way_of_the_next_run(bar
     with pytest.raises(RunError, match="static stage") as caught:
         run_case(bar({**HANGING, "static.ratio": 1e-12, "static.max_steps": 1}), tmp_path)
     assert caught.value.source == "bar"
-    assert str(caught.value).endswith(f"; to see it: dembound plot {tmp_path / 'bar.partial'} --field unbalanced")
+    assert str(caught.value).endswith(f"\nto see it: dembound plot {tmp_path / 'bar.partial'} --field unbalanced")
     # the state it reached is kept to be looked at
     with h5py.File(tmp_path / "bar.partial" / "run.h5") as file:
         assert not file.attrs["complete"]

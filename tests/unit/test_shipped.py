@@ -42,18 +42,24 @@ def test_a_group_is_copied_with_its_scripts_which_stay_executable(tmp_path) -> N
 
 def test_nothing_is_overwritten(tmp_path) -> None:
     (tmp_path / "spall_pulse.txt").write_text("precious")
-    with pytest.raises(CaseError, match=r"spall_pulse\.txt: exists already; give another folder"):
+    with pytest.raises(CaseError, match=r"spall_pulse\.txt: exists already; nothing was copied, give another folder"):
         shipped.copy("spall", tmp_path)
 
     assert [path.name for path in tmp_path.iterdir()] == ["spall_pulse.txt"]
     shipped.copy("lu2016", tmp_path)
-    with pytest.raises(CaseError, match=r"exists already, as \d+ more of its files do; give another folder"):
+    with pytest.raises(CaseError, match=r"exists already, together with \d+ more of the files to copy; nothing"):
         shipped.copy("lu2016", tmp_path)
 
 
 def test_an_unknown_name_is_refused(tmp_path) -> None:
-    with pytest.raises(CaseError, match=r"NAME: is \"zhou218\", must be one of .*did you mean zhou2018\?"):
+    with pytest.raises(CaseError) as caught:
         shipped.copy("zhou218", tmp_path)
+    first, *lines = caught.value.problems
+
+    assert first == 'NAME: is "zhou218", must be one of these (did you mean zhou2018?):'
+    # groups, cases of no group, and a line of each group's
+    assert [line.split(", ")[0] for line in lines] == ["lu2016", "gravity", "lu2016/fig7", "zhou2018/external_source"]
+    assert ", ".join(lines).split(", ") == [*shipped.groups(), *shipped.names()]
 
 
 def test_a_wheel_keeps_them_in_the_package_and_a_broken_one_says_so(tmp_path, monkeypatch) -> None:

@@ -27,14 +27,14 @@ def test_facts_are_those_of_the_bar(spalling) -> None:
     facts = facts_of(spalling(ends))
 
     assert facts["nodes"] == "41, 0.025 m apart"
-    assert facts["method"] == "peridynamics, horizon = 3, corrected_ends = False"
+    assert facts["method"] == "peridynamics, horizon = 3, corrected_ends = false"
     assert facts["Courant number"] == "1"
     assert facts["bar"] == "1 m long, section 1 m², density 2500 kg/m³"
     assert facts["stiffness"] == "E = 2.5 GPa, c = 1000 m/s"
     assert facts["strength"] == "8 MPa, critical stretch 0.0032"
     assert facts["attenuation"] == "α = 0.2 1/m"
     assert (facts["left end"], facts["right end"]) == ("free", "viscous, β_P = 0.9")
-    assert facts["load hit"] == "up to 12 MPa, 12 MPa times wave hit, on 3 node(s) at the left end"
+    assert facts["load hit"] == "up to 12 MPa, 12 MPa times wave hit, on 3 nodes at the left end"
     assert facts["monitor gauge"] == "node 21 at 0.525 m"
 
 
@@ -61,7 +61,7 @@ def test_the_largest_pressure_is_told_whatever_a_wave_reaches(spalling) -> None:
     load = {"name": "hit", "pressure": -1.0, "side": "right", "wave": "hit"}
     facts = facts_of(spalling({"load": [load], "wave.hit.amplitude": 9e6}))
 
-    assert facts["load hit"] == "up to 9 MPa, -1 Pa times wave hit, on 1 node(s) at the right end"
+    assert facts["load hit"] == "up to 9 MPa, -1 Pa times wave hit, on 1 node at the right end"
 
 
 def test_methods_in_words(spalling) -> None:

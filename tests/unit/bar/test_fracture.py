@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.bar.fracture import Spall, cracked_since, spalls
+from dembound.bar.fracture import Spall, breaks_at_ends, cracked_since, spalls
 from dembound.methods.bonds import Bonds, Rod
 
 COUNT, SPACING, STEP = 41, 0.25, 1e-3
@@ -106,6 +106,24 @@ def test_a_spall_may_reach_an_end(bonds, plane: int, nodes: tuple[int, int]) -> 
     # the end node has lost all, the next one half a volume of three
     (spall,) = spalls(bonds, PLACES, STEP)
     assert spall.end == (PLACES[nodes[0]], PLACES[nodes[1]])
+
+
+@pytest.mark.parametrize(("plane", "off"), [(0, "left"), (20, None), (39, "right")])
+def test_a_bar_comes_off_an_end_where_its_node_is_the_first_to_crack(bonds, plane: int, off: str | None) -> None:
+    cut(bonds, plane, step=3)
+    (spall,) = spalls(bonds, PLACES, STEP)
+
+    assert breaks_at_ends([spall], {"left": PLACES[0], "right": PLACES[-1]}) == ({off: spall} if off else {})
+    assert breaks_at_ends([spall], {}) == {}
+
+
+def test_a_spall_that_grows_to_an_end_later_is_one_all_the_same(bonds) -> None:
+    cut(bonds, 36, step=3)
+    cut(bonds, 39, step=5)
+    (spall,) = spalls(bonds, PLACES, STEP)
+
+    assert spall.end[1] == PLACES[-1]
+    assert breaks_at_ends([spall], {"right": PLACES[-1]}) == {}
 
 
 def test_springs_count_as_well() -> None:

@@ -105,6 +105,21 @@ def test_spalls_and_cracks_are_those_of_the_bonds(run) -> None:
     assert found["cracks"] == {"tension": len(bonds.breaks(0)[0]), "shear": 0}
 
 
+@pytest.mark.parametrize("held", [{"type": "fixed"}, {"type": "velocity", "wave_p": "still"}], ids=["fixed", "moved"])
+def test_a_bar_torn_off_the_end_that_holds_it_has_not_spalled(run, held: dict) -> None:
+    # tension, which an end that is held doubles: the bar breaks there at the latest
+    pull = {"name": "pull", "pressure": -6e6, "nodes": 3, "wave": "hit"}
+    still = {"wave.still": {"type": "constant", "amplitude": 1e-9, "start": 0.0}} if "wave_p" in held else {}
+    planned, simulation, path = run(**{"boundary.right": held, "load": [pull], **still})
+    found = summary_of(planned, simulation, path)
+
+    assert found["spalls"] == []
+    assert list(found["breaks_at_ends"]) == ["right"]
+    assert found["breaks_at_ends"]["right"]["start"][1] == 1.0
+    # the front is there at 1 ms
+    assert found["breaks_at_ends"]["right"]["time"] > 1e-3
+
+
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_spalls_after_the_first_are_not_to_be_relied_on(run, monkeypatch, count: int) -> None:
     planned, simulation, path = run()

@@ -25,6 +25,11 @@ def run(spalling, tmp_path):
     return make
 
 
+def summary_of(*spalls: dict, duration: float = 1.0) -> dict:
+    """What warnings ask of the summary of a run with these spalls."""
+    return {"duration": duration, "spalls": list(spalls), "breaks_at_ends": {}}
+
+
 def _summary(folder: Path) -> dict:
     return json.loads((folder / "summary.json").read_text())
 
@@ -69,7 +74,7 @@ def test_a_load_that_is_spread_already_takes_finer_nodes(run) -> None:
 def test_the_first_spall_tells_who_tore_the_bar(spalling, spalled_run, place: float, time: float, warned: bool) -> None:
     first = {"time": time, "start": [place, 0.5], "end": [place, 0.5]}
     later = {"time": 1e-6, "start": [0.0, 0.0], "end": [0.0, 0.0]}
-    found = warnings_after_bar(build_bar(spalling()), {"duration": 1.0, "spalls": [first, later]}, spalled_run)
+    found = warnings_after_bar(build_bar(spalling()), summary_of(first, later), spalled_run)
 
     # the load of this bar is spread over the horizon
     said = f"load.hit: the load itself broke the bar, at {time:.4g} s and {place:g} m from the loaded end, before any "
@@ -111,7 +116,7 @@ def test_a_bar_comes_to_rest_where_a_dashpot_holds_the_piece(spalling, spalled_r
     scene = build_bar(spalling({"boundary.left": {"type": "viscous"}}))
     spall = {"time": 1.2e-3, "start": [0.9, 0.9], "end": [0.9, 0.95]}
     for where, warned in ((spall, True), ({**spall, "end": [0.3, 0.4]}, False)):
-        found = warnings_after_bar(scene, {"duration": 1.5e-3, "spalls": [where]}, path)
+        found = warnings_after_bar(scene, summary_of(where, duration=1.5e-3), path)
         assert [warning.split(":")[0] for warning in found] == warned * ["monitor.gauge"]
 
 
@@ -120,7 +125,7 @@ def test_places_count_from_the_end_that_is_loaded(spalling, spalled_run, near: f
     # cracked from the middle up to 0.07 or 0.08 m from the right end; the horizon is 0.075 m
     first = {"time": 1e-4, "start": [0.5, near], "end": [0.5, near]}
     scene = build_bar(spalling(blow(12e6, 3, "right")))
-    found = warnings_after_bar(scene, {"duration": 1.0, "spalls": [first]}, spalled_run)
+    found = warnings_after_bar(scene, summary_of(first), spalled_run)
 
     said = "load.blow: the load itself broke the bar, at 0.0001 s and 0.07 m from the loaded end, before any "
     assert found == warned * [f"{said}reflected wave had returned there; take a smaller bar.spacing"]

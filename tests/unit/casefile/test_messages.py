@@ -7,7 +7,7 @@ import pytest
 import tomli_w
 from pydantic import Field, TypeAdapter, ValidationError
 
-from dembound.casefile.messages import allowed, corners, describe, show, unknown
+from dembound.casefile.messages import allowed, corners, counted, describe, show, unknown
 from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.table import Table, quantity
@@ -135,3 +135,8 @@ def test_unknown_offers_the_nearest_name_only_if_there_is_one() -> None:
 
 def test_a_scene_is_told_without_the_rounding_of_its_bricks() -> None:
     assert corners(3 * 0.1, 6.0 * 0.8660254037844386) == "[0, 0] to [0.3, 5.196152423] (m)"
+
+
+@pytest.mark.parametrize(("count", "words"), [(0, "0 disks"), (1, "1 disk"), (2, "2 disks"), (1200, "1,200 disks")])
+def test_things_are_counted(count: int, words: str) -> None:
+    assert counted(count, "disk") == words

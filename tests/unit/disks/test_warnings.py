@@ -1,5 +1,7 @@
 """What a run of disks will do that was probably not meant."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -225,10 +227,17 @@ def test_factors_that_nobody_has_chosen_are_warned_of(bar) -> None:
 
     assert found == (
         f"boundary.right: reflects {100 * shares['p']:.2g} % of P and {100 * shares['s']:.2g} % of S waves with the "
-        f"default beta_p = 1 (the packing has {matched['p']:.3g}) and beta_s = 1 (the packing has {matched['s']:.3g}); "
-        "run: dembound calibrate CASE --boundary right --wave p and dembound calibrate CASE --boundary right --wave s"
+        f"default beta_p = 1 (matched: about {matched['p']:.3g}) and beta_s = 1 (matched: about {matched['s']:.3g}); "
+        "run: dembound calibrate CASE --all"
     )
     assert min(shares.values()) > 0.02
+
+
+def test_the_file_to_calibrate_is_named_where_it_is_there(bar, tmp_path) -> None:
+    case = replace(bar({**RANDOM, "boundary.right": {"type": "viscous"}}), folder=tmp_path)
+    assert warned(case)[0].endswith("run: dembound calibrate CASE --boundary right --wave p")
+    (tmp_path / "bar.toml").touch()
+    assert warned(case)[0].endswith(f"run: dembound calibrate {tmp_path / 'bar.toml'} --boundary right --wave p")
 
 
 def _matched(case: Case, motion: str) -> float:
@@ -270,7 +279,7 @@ def test_reflections_of_two_per_cent_are_warned_of(bar, speed: float, other: boo
 
     # (1 − β)/(1 + β) is 0.02 at β = 0.98/1.02 = 0.9608 and at its inverse, 1.0408
     assert [warning.split(":")[0] for warning in found] == other * ["boundary.left", "boundary.right"]
-    assert all(warning.endswith("--wave s") for warning in found)
+    assert all(warning.endswith("run: dembound calibrate CASE --all") for warning in found)
 
 
 @pytest.mark.parametrize(("ratio", "other"), [(1.09, False), (1.11, True), (0.91, False), (0.89, True)])

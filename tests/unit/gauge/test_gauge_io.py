@@ -65,8 +65,14 @@ def test_the_only_gauge_needs_no_name_and_a_record_no_density(record):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({}, ["--position: is missing, give it", "--length: is missing, give it"]),
-        ({"position": 0.6}, ["--length: is missing, give it"]),
+        (
+            {},
+            [
+                "--position: is missing, must be the gauge's place (m) from the loaded end",
+                "--length: is missing, must be that of the bar (m)",
+            ],
+        ),
+        ({"position": 0.6}, ["--length: is missing, must be that of the bar (m)"]),
         (BAR | {"position": 0.99}, ["--position: is 0.99 m, must be above 0 and below the length, 0.99 m"]),
         (BAR | {"position": 0.0}, ["--position: is 0 m, must be above 0 and below the length, 0.99 m"]),
         (BAR | {"position": np.nan}, ["--position: is nan m, must be above 0 and below the length, 0.99 m"]),

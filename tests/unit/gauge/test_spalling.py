@@ -131,7 +131,7 @@ def test_without_attenuation_the_strength_stays_nominal(gauge):
         ({"speed": np.inf}, "--wave-speed: is inf m/s, must be finite and above 0"),
         ({"coefficient": -0.1}, "--attenuation: is -0.1 1/m, must be finite and not below 0"),
         ({"coefficient": np.nan}, "--attenuation: is nan 1/m, must be finite and not below 0"),
-        ({"free_end": FREE_END}, "--density: is missing, give it"),
+        ({"free_end": FREE_END}, "--density: is missing, must be that of the bar (kg/m³)"),
         (
             {"spall": -1.0, "coefficient": -1.0},
             "--spall: is -1 m, must be above 0 and below the length, 0.99 m\n"

@@ -4,7 +4,16 @@ import matplotlib
 import pytest
 from matplotlib import image
 
-from dembound.plot.style import line_style, new_figure, outside_legend, point_style, save, styled, time_unit
+from dembound.plot.style import (
+    line_style,
+    new_figure,
+    open_point_style,
+    outside_legend,
+    point_style,
+    save,
+    styled,
+    time_unit,
+)
 
 
 def test_a_saved_figure_is_a_png_of_its_size(tmp_path):
@@ -64,6 +73,6 @@ def test_the_style_ends_with_the_drawing_and_does_not_depend_on_the_users():
     assert sizes == [1.4]
 
 
-@pytest.mark.parametrize(("style", "count"), [(line_style, 28), (point_style, 35)])
+@pytest.mark.parametrize(("style", "count"), [(line_style, 28), (point_style, 35), (open_point_style, 35)])
 def test_styles_tell_many_apart(style, count):
     assert len({tuple(style(index).values()) for index in range(count)}) == count

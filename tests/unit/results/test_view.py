@@ -12,7 +12,7 @@ from matplotlib import image
 
 from dembound.errors import CaseError, DemboundError
 from dembound.results import view as module
-from dembound.results.view import disk_mesh, lengths, require_rendering, view
+from dembound.results.view import disk_mesh, label_count, lengths, picture_size, require_rendering, view
 
 
 def test_every_disk_is_a_polygon_as_wide_and_high_as_itself():
@@ -33,6 +33,20 @@ def test_the_length_is_that_of_the_field_in_the_plane(small_run):
         for field in ("velocity", "displacement"):
             x, y, _ = snapshot[field][:].T
             np.testing.assert_array_equal(lengths(snapshot, field), np.hypot(x, y))
+
+
+@pytest.mark.parametrize(
+    ("length", "share", "count"),
+    [(100.0, 1.0, 6), (5.0, 0.05, 2), (20.0, 0.4, 6), (30.0, 0.4, 4), (10.0, 1.0, 6), (17.3, 1.0, 6)],
+)
+def test_axes_have_round_numbers_where_they_can(length, share, count):
+    # 20 m are cut into fives, not into three times 6.67 m
+    assert label_count(length, share) == count
+
+
+def test_pictures_of_long_scenes_are_low():
+    assert picture_size(np.array([100.0, 5.0])) == (1600, 357)
+    assert picture_size(np.array([50.0, 50.0])) == (1600, 900)
 
 
 def test_without_opengl_there_is_one_line_instead_of_a_crash(small_run, tmp_path, monkeypatch):
@@ -77,6 +91,9 @@ for arguments in json.loads(sys.argv[1]):
 """Does one command after the other, in a process of its own; what the first has tried, the others need not."""
 
 CRACK = 7.75, 1.25
+
+HEIGHT = 586
+"""Of the pictures, pixels: that of the scene, 1600 / 1.4 · 2.5 / 10, and 300 around it."""
 
 
 @dataclass
@@ -126,30 +143,34 @@ def drawn(cracked_run, tmp_path_factory) -> Drawn:
 def test_cracks_are_shown_up_to_their_snapshot(drawn):
     assert len(drawn.cracks("first")) == 0
     # a pixel of rounding
-    expected = [450.0, 800.0 + (CRACK[0] - 5.0) * 1600.0 / 14.0]
+    expected = [0.5 * HEIGHT, 800.0 + (CRACK[0] - 5.0) * 1600.0 / 14.0]
     np.testing.assert_allclose(drawn.cracks("last").mean(axis=0), expected, atol=1.0)
 
 
 def test_exaggerated_displacements_move_disks_and_cracks_with_them(drawn):
     # they end 1 m to the right: from the axes' 0 to there, 11 m are 1600 / 1.4 pixels wide and lie in the middle
     column = 800.0 + (np.array([0.05, 0.95, 1.05, 10.95, CRACK[0] + 1.0]) - 5.5) * 1600.0 / 15.4
-    inked = np.ptp(drawn.pictures["moved"][320:580], axis=2) > 0.1  # coloured, not white or black
+    inked = (
+        np.ptp(drawn.pictures["moved"][HEIGHT // 2 - 130 : HEIGHT // 2 + 130], axis=2) > 0.1
+    )  # coloured, not white or black
     left, before, after, end, crack = column.round().astype(int)
     assert not inked[:, left:before].any()
     # disks in a square lattice fill π/4, their polygons 1.1 % less; half a pixel on their rims, whose radius is 26, is
     # 3.8 % of them; and the ends that are left out, where there is less of them, are 1 % of the length
     assert inked[:, after:end].mean() == pytest.approx(np.pi / 4, rel=0.06)
-    np.testing.assert_allclose(drawn.cracks("moved").mean(axis=0), [450.0, crack], atol=1.5)
+    np.testing.assert_allclose(drawn.cracks("moved").mean(axis=0), [0.5 * HEIGHT, crack], atol=1.5)
 
 
 def test_a_picture_shows_the_snapshot_asked_for(drawn):
     first, last = (drawn.pictures[name] for name in ("first", "last"))
-    assert first.shape == last.shape == (900, 1600, 3)
+    assert first.shape == last.shape == (HEIGHT, 1600, 3)
     assert drawn.files == {"first.png", "last.png", "moved.png", "run.h5"}
     changed = np.abs(first - last).max(axis=2) > 0.5  # from the dark to the bright end of the scale
     row, column = drawn.cracks("last").mean(axis=0).round().astype(int)
-    changed[row - 5 : row + 6, column - 5 : column + 6] = False  # the crack itself, 6 pixels wide
-    left, right = (changed[307:593, half].mean() for half in (slice(229, 800), slice(800, 1371)))
+    changed[row - 7 : row + 8, column - 7 : column + 8] = False  # the crack itself, 10 pixels wide
+    left, right = (
+        changed[HEIGHT // 2 - 143 : HEIGHT // 2 + 143, half].mean() for half in (slice(229, 800), slice(800, 1371))
+    )
     # disks in a square lattice fill π/4 of it, their polygons 1.1 % less; pixels on the rim of a disk, whose radius
     # is 28.6 of them, move it by half a pixel at most, 3.5 % of the area
     assert left == pytest.approx(np.pi / 4, rel=0.046)

@@ -118,7 +118,7 @@ def test_bars_of_cases_have_the_horizons_their_method_comes_to(method, horizons)
 
 
 def test_only_bars_have_lattices():
-    with pytest.raises(CaseError, match="bar: is missing") as refused:
+    with pytest.raises(CaseError, match="is the case of disks, this command is for bars") as refused:
         lattices_of(loads(STARTER, Path(), "disks"))
     assert refused.value.source == "disks"
 
