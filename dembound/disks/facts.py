@@ -4,6 +4,7 @@ from dembound.boundaries.words import side_in_words
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.casefile.messages import counted
+from dembound.disks.layout import fill
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.summary import describe_packing, describe_side
@@ -14,6 +15,8 @@ def disk_facts(scene: DiskScene) -> dict[str, str]:
     """Facts about a packing, its law and what acts on it."""
     case = scene.case
     facts = {"particles": _particles(scene), "contacts": f"{len(scene.assembly.pairs):,}"}
+    if not scene.layout.is_plain:
+        facts["rows of copies"] = f"{100.0 * fill(scene.layout):.0f} % of the lanes hold particles"
     facts |= _packing_facts(scene) | _law_facts(scene) | _hole_facts(case) | _static_facts(case)
     for side in scene.edges:
         facts[f"{side} side"] = _side_fact(scene, side)

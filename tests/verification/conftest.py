@@ -177,7 +177,7 @@ class Lab:
         force = np.zeros_like(u)
         for rows in scene.rows:
             contact_forces(u, rows, force)
-        return scene.layout.gather(force)
+        return scene.layout.gather(force).copy()
 
 
 @pytest.fixture(scope="session")

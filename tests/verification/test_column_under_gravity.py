@@ -68,10 +68,10 @@ def test_a_section_carries_what_is_above(standing):
     scene, contacts = standing
     y = scene.assembly.positions[:, 1]
     above_base = y > y[scene.edges["bottom"].nodes].max()
-    pairs = contacts.arrays
+    pairs, (first, second) = contacts.arrays, contacts.pairs
     # a section goes below a disk and all that stand higher; what crosses it upwards pushes the lower disk down
     carried = [
-        np.sum(pairs.force[:, 1] * ((y[pairs.second] >= height).astype(int) - (y[pairs.first] >= height)))
+        np.sum(pairs.force[:, 1] * ((y[second] >= height).astype(int) - (y[first] >= height)))
         for height in y[above_base]
     ]
     weights = GRAVITY * scene.mass

@@ -18,7 +18,8 @@ STEPS = 1000
 @pytest.fixture(scope="module")
 def scene(lab):
     boundary = {"left": {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}, "right": "viscous"}
-    return lab.scene("B", (30.0, 10.0), held=(), boundary=boundary, wave=lab.pulse(0.02))
+    scene = lab.scene("B", (30.0, 10.0), held=(), boundary=boundary, wave=lab.pulse(0.02))
+    return replace(scene, slots=None, rows=(contact_rows(scene.assembly, scene.ground),))
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +38,7 @@ def renumbered(scene, number):
         positions=body.positions[old],
         radii=body.radii[old],
         brick_particle=body.brick_particle[old],
+        tile=body.tile[old],
         pairs=pairs[order],
         contact_type=body.contact_type[order],
     )

@@ -202,9 +202,9 @@ def copy_column(lists: dict[str, ContactList], column: ContactList, ground: Disk
 
 
 @pytest.mark.parametrize("packing", PACKINGS)
-def test_every_pair_takes_the_history_of_its_twin_in_the_column(scene, packing: str) -> None:
+def test_every_pair_takes_the_history_of_its_twin_in_the_column(scene, in_order, packing: str) -> None:
     ground, rng = scene(packing), np.random.default_rng(2)
-    bare = column_alone(ground)
+    bare = in_order(column_alone(ground))
     column, lists = bare.contact_lists()["body"], ground.contact_lists()
     alone = shaken(bare, 0.0 if packing.startswith("A") else 0.2)
     column.search(alone)

@@ -1,0 +1,127 @@
+"""Lanes compute in compiled code what their Python lines compute, on processors of all kinds, and without compiling."""
+
+import os
+import platform
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numba import njit
+
+from dembound.kernels.common import FAST, U
+from dembound.kernels.lanes import LANES, at_most, bits, choose, lane, load, magnitude, root, splat, store, with_sign
+
+OPTIONS = {name: value for name, value in FAST.items() if name != "cache"}
+
+
+def arithmetic(x, y):  # type: ignore[no-untyped-def]
+    z = 2.0 * x + y * x - y / x
+    z += 1.0
+    z -= y
+    z *= 0.5
+    return z - 3.0
+
+
+def chosen(x, y):  # type: ignore[no-untyped-def]
+    return choose(at_most(x, y), choose(bits(np.uint8(0b01101001)), x, 7.0), 0.0)
+
+
+def parts(x, y):  # type: ignore[no-untyped-def]
+    return with_sign(root(magnitude(x)), y)
+
+
+def alike(x, y):  # type: ignore[no-untyped-def]
+    return splat(lane(x, U(3)) + lane(y, U(LANES - 1)))
+
+
+@pytest.mark.parametrize("function", [arithmetic, chosen, parts, alike])
+def test_compiled_lanes_are_what_python_says(function: Callable) -> None:
+    compute = njit(**OPTIONS)(function)
+
+    @njit(**OPTIONS)
+    def compiled(a, b, result):  # type: ignore[no-untyped-def]
+        store(result, U(2), compute(load(a, U(1)), load(b, U(0))))
+
+    a, b = np.random.default_rng(0).uniform(-2.0, 2.0, (2, LANES + 1))
+    found, expected = np.full((2, LANES + 3), np.nan)
+    compiled(a, b, found)
+    store(expected, 2, function(load(a, 1), load(b, 0)))
+
+    # a fused multiply-add rounds once where Python rounds twice
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-14)
+    assert np.isnan(found[[0, 1, -1]]).all()
+
+
+SCENE = """
+import numpy as np
+from dembound.api import case
+from dembound.disks.scene import build
+from dembound.kernels.elastic import contact_forces
+from dembound.motion.simulation import Simulation
+
+side = {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}
+scene = build(case(
+    packing={"pattern": "A", "size": [9.0, 1.5], "radius": 0.25},
+    material={"density": 2500.0, "p_wave_speed": 1000.0},
+    boundary={"left": side},
+    wave={"pulse": {"type": "cosine", "amplitude": 0.5, "period": 0.005}},
+    run={"duration": 0.01},
+))
+assert not scene.layout.is_plain
+"""
+
+FORCES = """
+u = scene.layout.spread(np.random.default_rng(0).uniform(-1.0, 1.0, (3, scene.count)))
+result = np.zeros_like(u)
+contact_forces(u, scene.rows[0], result)
+"""
+
+MOTION = """
+simulation = Simulation(scene, 1e-4)
+simulation.run(3)
+result = simulation.state.velocity
+"""
+
+FEATURES = {"haswell": "+avx2,+fma", "x86-64": "+sse2"}
+"""Two kinds of x86 processors: instructions for four doubles with fused multiply-adds, and for two without."""
+
+
+def here(code: str) -> np.ndarray:
+    """The result of some code for that scene."""
+    scope: dict[str, Any] = {}
+    exec(SCENE + code, scope)
+    return scope["result"]
+
+
+def elsewhere(code: str, folder: Path, **environment: str) -> np.ndarray:
+    """The same in a process of its own."""
+    path = folder / "result.npy"
+    subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", f"{SCENE}{code}np.save({str(path)!r}, result)"],
+        env=os.environ | {"NUMBA_CACHE_DIR": str(folder / "cache")} | environment,
+        check=True,
+    )
+    return np.load(path)
+
+
+def test_kernels_run_without_being_compiled(tmp_path) -> None:
+    stepped, compiled = elsewhere(MOTION, tmp_path, NUMBA_DISABLE_JIT="1"), here(MOTION)
+
+    assert np.abs(stepped).max() > 0.0
+    # some ten sums a step, which fused multiply-adds round otherwise
+    np.testing.assert_allclose(stepped, compiled, rtol=0.0, atol=1e-13 * np.abs(compiled).max())
+
+
+@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="names of x86 processors")
+@pytest.mark.parametrize("processor", FEATURES)
+def test_other_processors_compute_the_same(tmp_path, processor: str) -> None:
+    features = {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": FEATURES[processor]}
+    found, expected = elsewhere(FORCES, tmp_path, **features), here(FORCES)
+
+    assert np.abs(found).max() > 0.0
+    # some ten sums of products
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-14 * np.abs(found).max())

@@ -1,0 +1,67 @@
+"""How kernels hold particles is bookkeeping: rows of copies move as particles one by one do, all parts of the step."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dembound.disks.rows import contact_rows
+from dembound.disks.stability import choose_step
+from dembound.motion.simulation import Simulation
+
+STEPS = 400
+SIDES = {"left": {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}, "right": "viscous"}
+FREE_FIELD = {"left": "free_field", "right": "free_field", "bottom": {**SIDES["left"]}}
+BOUNDARIES = {"two sides": SIDES, "half cells": {**SIDES, "right": {"type": "viscous", "half_mass": True}}}
+
+
+def in_order(scene):
+    """The same scene held particle by particle."""
+    rows = tuple(contact_rows(scene.assembly.part(part), scene.ground, part.start) for part in scene.parts.values())
+    return replace(scene, slots=None, rows=rows)
+
+
+def assert_same_motion(scene, *, damp=0.0):
+    step = choose_step(scene)[0] / np.sqrt(1.0 + damp)
+    simulations = [Simulation(each, step, damp=damp) for each in (in_order(scene), scene)]
+    for simulation in simulations:
+        simulation.advance(STEPS)
+    before, after = (simulation.state for simulation in simulations)
+    # sums in another order differ by the rounding of displacements, a few ε·u/Δt of velocity per step
+    largest = np.abs(before.displacement).max()
+    tolerance = 4.0 * np.finfo(float).eps * largest / step * STEPS
+    if damp > 0.0:  # its force jumps where a velocity changes its sign, which rounding may move by a step
+        tolerance = 1e-7 * np.abs(before.peaks).max()
+    assert not scene.layout.is_plain
+    assert np.abs(before.peaks).max() > 0.1  # the pulse did run
+    np.testing.assert_allclose(after.velocity, before.velocity, rtol=0.0, atol=tolerance)
+    np.testing.assert_allclose(after.peaks, before.peaks, rtol=0.0, atol=tolerance)
+    # works are differences of what came in and what went out, some STEPS terms of the size of the pulse's energy
+    energy = 0.5 * scene.mass.sum() * np.abs(before.peaks).max() ** 2
+    accuracy = 1e-7 if damp > 0.0 else np.finfo(float).eps * STEPS
+    np.testing.assert_allclose(after.work, before.work, rtol=0.0, atol=accuracy * energy)
+
+
+@pytest.mark.parametrize("pattern", ["A", "B", "C"])
+def test_sides_that_absorb_and_send_waves(lab, pattern):
+    assert_same_motion(lab.scene(pattern, (20.0, 20.0), held=(), boundary=SIDES, wave=lab.pulse(0.02)))
+
+
+def test_half_cells(lab):
+    boundary = BOUNDARIES["half cells"]
+    assert_same_motion(lab.scene("A", (20.0, 5.0), held=(), boundary=boundary, wave=lab.pulse(0.02)))
+
+
+def test_a_free_field(lab):
+    assert_same_motion(lab.scene("B", (20.0, 20.0), held=(), boundary=FREE_FIELD, wave=lab.pulse(0.02)))
+
+
+@pytest.mark.parametrize("held", [("y", "rotation"), ("x", "rotation")])
+def test_held_components(lab, held):
+    wave = {"y": "wave_p", "x": "wave_s"}[held[0]]
+    boundary = {"left": {"type": "viscous_input", wave: "pulse"}, "right": "viscous"}
+    assert_same_motion(lab.scene("A", (20.0, 5.0), held=held, boundary=boundary, wave=lab.pulse(0.02)))
+
+
+def test_local_damping_and_its_work(lab):
+    assert_same_motion(lab.scene("B", (20.0, 20.0), held=(), boundary=SIDES, wave=lab.pulse(0.02)), damp=0.3)
