@@ -101,70 +101,80 @@ def _bond_state(Fn, Fs, M, per_area, per_section, limits):
     return after
 
 
+@njit(**FAST, inline="always")
+def push_pair(c, u, v, step, number, contacts, limits):
+    """Force of pair c, see `push`; returns the energy (J) taken by friction and by cracks, and 1 if its bond broke."""
+    _, first, second, contact_type, constants, state, all_shear, all_slip, cracked, _, force, _, _ = contacts
+    geometry = limits.geometry
+    rubbed = 0.0
+    broken = 0.0
+    breaks = 0
+    i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
+    was = all_shear[c]
+    intact = state[c] == INTACT
+    if geometry == REFERENCE or (geometry == BONDED and intact):
+        nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, constants)
+    else:
+        nx, ny, distance, stretch, shear = _updated_strain(i, j, k, dx, dy, was, v, step, constants)
+    overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
+    arm_i = 0.5 * distance + constants[k, U(4)]
+    arm_j = distance - arm_i
+    all_shear[c] = shear
+    N = constants[k, U(5)] * overlap
+    S = constants[k, U(6)] * (shear - all_slip[c])
+    opening = nx * (v[U(0), j] - v[U(0), i]) + ny * (v[U(1), j] - v[U(1), i])
+    if geometry != REFERENCE or constants[k, U(3)] < constants[k, U(2)]:
+        N = max(N, 0.0)
+        if overlap + step * opening <= 0.0:  # it was open one step earlier
+            N *= CLOSING
+        most = limits.friction * N
+        if abs(S) > most:
+            before = constants[k, U(6)] * (was - all_slip[c])
+            S = np.copysign(most, S)
+            slip = shear - (S / constants[k, U(6)])
+            rubbed = 0.5 * (before + S) * (slip - all_slip[c])
+            all_slip[c] = slip
+    pull = -N
+    moment = 0.0
+    if intact:
+        turn = u[U(2), j] - u[U(2), i]
+        Fn = constants[k, U(7)] * stretch
+        Fs = constants[k, U(8)] * shear
+        M = constants[k, U(9)] * turn
+        state[c] = _bond_state(Fn, Fs, M, constants[k, U(10)], constants[k, U(11)], limits)
+        if state[c] == INTACT:
+            pull += Fn
+            S += Fs
+            moment = M
+        else:
+            cracked[c] = number
+            breaks = 1
+            turning = v[U(2), j] - v[U(2), i]
+            broken = 0.5 * (Fn * (stretch - step * opening) + Fs * was + M * (turn - step * turning))
+    force[c, U(0)] = pull * nx - S * ny
+    force[c, U(1)] = pull * ny + S * nx
+    force[c, U(2)] = arm_i * S + moment
+    force[c, U(3)] = arm_j * S - moment
+    return rubbed, broken, breaks
+
+
 @njit(**PARALLEL)
-def push(u, v, step, number, contacts, limits, lost):
+def push(u, v, step, number, contacts, limits, lost, begin=0):
     """Fill contacts.force for displacements u (3, n) reached with velocities v (3, n) after a step (s).
 
     Contacts and bonds at their limits slide and break; number is that of the step. lost (chunks, 2) receives the energy
-    taken by friction and by cracks in this step, J. Returns the number of bonds that broke.
+    taken by friction and by cracks in this step, J. begin : the first pair. Returns the number of bonds that broke.
     """
-    _, first, second, contact_type, constants, state, all_shear, all_slip, cracked, _, force, _, _ = contacts
-    friction, geometry = limits.friction, limits.geometry
-    b = first.size
+    b = contacts.first.size - begin
     breaks = 0
     for chunk in prange(CHUNKS):
         rubbed = 0.0
         broken = 0.0
-        for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
-            c = U(p)
-            i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
-            was = all_shear[c]
-            intact = state[c] == INTACT
-            if geometry == REFERENCE or (geometry == BONDED and intact):
-                nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, constants)
-            else:
-                nx, ny, distance, stretch, shear = _updated_strain(i, j, k, dx, dy, was, v, step, constants)
-            overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
-            arm_i = 0.5 * distance + constants[k, U(4)]
-            arm_j = distance - arm_i
-            all_shear[c] = shear
-            N = constants[k, U(5)] * overlap
-            S = constants[k, U(6)] * (shear - all_slip[c])
-            opening = nx * (v[U(0), j] - v[U(0), i]) + ny * (v[U(1), j] - v[U(1), i])
-            if geometry != REFERENCE or constants[k, U(3)] < constants[k, U(2)]:
-                N = max(N, 0.0)
-                if overlap + step * opening <= 0.0:  # it was open one step earlier
-                    N *= CLOSING
-                most = friction * N
-                if abs(S) > most:
-                    before = constants[k, U(6)] * (was - all_slip[c])
-                    S = np.copysign(most, S)
-                    slip = shear - (S / constants[k, U(6)])
-                    rubbed += 0.5 * (before + S) * (slip - all_slip[c])
-                    all_slip[c] = slip
-            pull = -N
-            moment = 0.0
-            if intact:
-                turn = u[U(2), j] - u[U(2), i]
-                Fn = constants[k, U(7)] * stretch
-                Fs = constants[k, U(8)] * shear
-                M = constants[k, U(9)] * turn
-                state[c] = _bond_state(Fn, Fs, M, constants[k, U(10)], constants[k, U(11)], limits)
-                if state[c] == INTACT:
-                    pull += Fn
-                    S += Fs
-                    moment = M
-                else:
-                    cracked[c] = number
-                    breaks += 1
-                    turning = v[U(2), j] - v[U(2), i]
-                    broken += 0.5 * (Fn * (stretch - step * opening) + Fs * was + M * (turn - step * turning))
-            fx = pull * nx - S * ny
-            fy = pull * ny + S * nx
-            force[c, U(0)] = fx
-            force[c, U(1)] = fy
-            force[c, U(2)] = arm_i * S + moment
-            force[c, U(3)] = arm_j * S - moment
+        for p in range(begin + chunk * b // CHUNKS, begin + (chunk + 1) * b // CHUNKS):
+            by_friction, by_crack, broke = push_pair(U(p), u, v, step, number, contacts, limits)
+            rubbed += by_friction
+            broken += by_crack
+            breaks += broke
         lost[chunk, 0] = rubbed
         lost[chunk, 1] = broken
     return breaks

@@ -14,17 +14,17 @@ all copies have also has a mask of those that do. Contacts that no row shares, s
 import numpy as np
 from numba import njit, prange
 
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, REST, U
+from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
 from dembound.kernels.elastic import fill_forces, move_rows, row_force
-from dembound.kernels.lanes import LANES, at_most, bits, choose, lane, load, magnitude, splat, store, with_sign
+from dembound.kernels.lane_step import INLINED, first_at, go_on, kick, larger, local_damping, next_place, place_of
+from dembound.kernels.lanes import LANES, at_most, bits, choose, lane, load, magnitude, splat, store
 from dembound.kernels.law import answer
 from dembound.kernels.tables import LaneRows
 
-_INLINED = FAST | {"inline": "always"}
 _ALL = np.uint8(2**LANES - 1)
 
 
-@njit(**_INLINED)
+@njit(**INLINED)
 def _matrix_force(k, e, j, x, y, ux, uy, ut):
     """What the neighbours in slots j to j + 7 do to eight disks by entry e, but for the disks' own rotation."""
     dx = load(ux, j) - x
@@ -36,7 +36,7 @@ def _matrix_force(k, e, j, x, y, ux, uy, ut):
     return gx, gy, about
 
 
-@njit(**_INLINED)
+@njit(**INLINED)
 def _block_force(rows, r, column, i, x, y, turn, ux, uy, ut):
     """Forces and moments on eight disks of row r, displaced by x, y and turn, by the contacts that rows share.
 
@@ -70,44 +70,11 @@ def _block_force(rows, r, column, i, x, y, turn, ux, uy, ut):
     return fx, fy, moment
 
 
-@njit(**_INLINED)
-def _kick(v, f, b):
-    """Half-step velocity after a force f, see step.kick."""
-    w = v + b * f
-    return choose(at_most(magnitude(w), REST), 0.0, w)
-
-
-@njit(**_INLINED)
-def _local_damping(v, f, damp):
-    """The force of local damping (Cundall: −damp·|F|·sign(v)), turned round."""
-    return choose(at_most(magnitude(v), 0.0), 0.0, with_sign(damp * magnitude(f), v))
-
-
-@njit(**_INLINED)
-def _larger(a, b):
-    """The larger of two numbers in each lane."""
-    return choose(at_most(a, b), b, a)
-
-
-@njit(**FAST)
-def _first_at(numbers, least):
-    """Index of the first of ascending numbers that is not below the least."""
-    low = 0
-    high = numbers.size
-    while low < high:
-        middle = (low + high) // 2
-        if numbers[middle] < least:
-            low = middle + 1
-        else:
-            high = middle
-    return low
-
-
 @njit(**FAST)
 def _stray_forces(rows, first, last, u):
     """Forces and moments of strays on the disks in blocks first to last − 1, in rows.extra."""
     extra = rows.extra
-    for k in range(_first_at(rows.stray, LANES * first), _first_at(rows.stray, LANES * last)):
+    for k in range(first_at(rows.stray, LANES * first), first_at(rows.stray, LANES * last)):
         i = U(rows.stray[k])
         fx, fy, moment = row_force(
             U(k), i, u, rows.stray_start, rows.stray_neighbour, rows.stray_type, rows.stray_constants
@@ -117,28 +84,6 @@ def _stray_forces(rows, first, last, u):
         extra[U(2), i] = moment
 
 
-@njit(**_INLINED)
-def _place_of(rows, block):
-    """Group, column and row of a block."""
-    group = _first_at(rows.group_block, block + 1) - 1
-    begin, end = rows.group_row[group], rows.group_row[group + 1]
-    before = block - rows.group_block[group]
-    return group, before // (end - begin), begin + before % (end - begin)
-
-
-@njit(**_INLINED)
-def _next_place(rows, block, group, column, r):
-    """Those of a block, from those of the one before."""
-    r += 1
-    if r == rows.group_row[group + 1]:
-        if block == rows.group_block[group + 1]:
-            group += 1
-            column = -1
-        column += 1
-        r = rows.group_row[group]
-    return group, column, r
-
-
 @njit(**FAST)
 def _force_blocks(rows, first, last, u, force):
     """Fill force (3, slots) for blocks first to last − 1."""
@@ -146,10 +91,10 @@ def _force_blocks(rows, first, last, u, force):
         return
     _stray_forces(rows, first, last, u)
     ux, uy, ut = u[0], u[1], u[2]
-    group, column, r = _place_of(rows, first)
+    group, column, r = place_of(rows, first)
     for block in range(first, last):
         if block > first:
-            group, column, r = _next_place(rows, block, group, column, r)
+            group, column, r = next_place(rows, block, group, column, r)
         i = U(LANES * block)
         x, y, turn = load(ux, i), load(uy, i), load(ut, i)
         fx, fy, moment = _block_force(rows, r, column, LANES * block, x, y, turn, ux, uy, ut)
@@ -162,7 +107,7 @@ def _force_blocks(rows, first, last, u, force):
         store(force[2], i, moment)
 
 
-@njit(**_INLINED)
+@njit(**INLINED)
 def _gathered(rows, block, r, column, u, body):
     """Forces on the disks of a block, but for steady loads, their displacements, and what turns forces into speeds.
 
@@ -185,25 +130,6 @@ def _gathered(rows, block, r, column, u, body):
     return fx, fy, moment, x, y, turn, b, b_turn, special
 
 
-@njit(**_INLINED)
-def _go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, step, v, u_next):
-    """Store velocities and the displacements that follow; of supported disks forces in place of displacements."""
-    store(v[0], i, now_x)
-    store(v[1], i, now_y)
-    store(v[2], i, now_t)
-    x += step * now_x
-    y += step * now_y
-    turn += step * now_t
-    if special:
-        held = at_most(b, 0.0)
-        x = choose(held, fx, x)
-        y = choose(held, fy, y)
-        turn = choose(held, moment, turn)
-    store(u_next[0], i, x)
-    store(u_next[1], i, y)
-    store(u_next[2], i, turn)
-
-
 @njit(**FAST)
 def _move_blocks(rows, first, last, u, v, body, u_next):
     """One step of the disks in blocks first to last − 1 without steady loads and local damping."""
@@ -211,16 +137,16 @@ def _move_blocks(rows, first, last, u, v, body, u_next):
         return
     _stray_forces(rows, first, last, u)
     across, up, about = body.free[0], body.free[1], body.free[2]
-    group, column, r = _place_of(rows, first)
+    group, column, r = place_of(rows, first)
     for block in range(first, last):
         if block > first:
-            group, column, r = _next_place(rows, block, group, column, r)
+            group, column, r = next_place(rows, block, group, column, r)
         i = U(LANES * block)
         fx, fy, moment, x, y, turn, b, b_turn, special = _gathered(rows, block, r, column, u, body)
-        now_x = _kick(load(v[0], i), fx, across * b)
-        now_y = _kick(load(v[1], i), fy, up * b)
-        now_t = _kick(load(v[2], i), moment, about * b_turn)
-        _go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, body.step, v, u_next)
+        now_x = kick(load(v[0], i), fx, across * b)
+        now_y = kick(load(v[1], i), fy, up * b)
+        now_t = kick(load(v[2], i), moment, about * b_turn)
+        go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, body.step, v, u_next)
 
 
 @njit(**FAST)
@@ -232,10 +158,10 @@ def _move_blocks_and_more(rows, first, last, u, v, body, u_next, arms, result):
     across, up, about = body.free[0], body.free[1], body.free[2]
     nothing = splat(0.0)
     whole, half, speed, spin = nothing, nothing, nothing, nothing
-    group, column, r = _place_of(rows, first)
+    group, column, r = place_of(rows, first)
     for block in range(first, last):
         if block > first:
-            group, column, r = _next_place(rows, block, group, column, r)
+            group, column, r = next_place(rows, block, group, column, r)
         i = U(LANES * block)
         fx, fy, moment, x, y, turn, b, b_turn, special = _gathered(rows, block, r, column, u, body)
         if body.load.shape[1] > 0:
@@ -243,19 +169,19 @@ def _move_blocks_and_more(rows, first, last, u, v, body, u_next, arms, result):
             fy += load(body.load[1], i)
             moment += load(body.load[2], i)
         was_x, was_y, was_t = load(v[0], i), load(v[1], i), load(v[2], i)
-        dx = _local_damping(was_x, fx, body.damp)
-        dy = _local_damping(was_y, fy, body.damp)
-        dt = _local_damping(was_t, moment, body.damp)
-        now_x = _kick(was_x, fx - dx, across * b)
-        now_y = _kick(was_y, fy - dy, up * b)
-        now_t = _kick(was_t, moment - dt, about * b_turn)
+        dx = local_damping(was_x, fx, body.damp)
+        dy = local_damping(was_y, fy, body.damp)
+        dt = local_damping(was_t, moment, body.damp)
+        now_x = kick(was_x, fx - dx, across * b)
+        now_y = kick(was_y, fy - dy, up * b)
+        now_t = kick(was_t, moment - dt, about * b_turn)
         held = at_most(b, 0.0)
         half += choose(held, 0.0, across * dx * was_x + up * dy * was_y + about * dt * was_t)
         whole += choose(held, 0.0, across * dx * now_x + up * dy * now_y + about * dt * now_t)
-        _go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, body.step, v, u_next)
+        go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, body.step, v, u_next)
         if arms.size > 0:
-            speed = _larger(now_x * now_x + now_y * now_y, speed)
-            spin = _larger(load(arms, i) * magnitude(now_t), spin)
+            speed = larger(now_x * now_x + now_y * now_y, speed)
+            spin = larger(load(arms, i) * magnitude(now_t), spin)
     fastest = 0.0
     turning = 0.0
     taken = 0.0

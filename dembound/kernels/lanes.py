@@ -72,6 +72,16 @@ def bits(byte: int) -> np.ndarray:
     return np.unpackbits(np.array([byte], np.uint8), bitorder="little").astype(np.bool_)
 
 
+def byte_of(chosen: np.ndarray) -> np.uint8:
+    """The byte whose bits are these truth values, see `bits`."""
+    return np.packbits(chosen, bitorder="little")[0]
+
+
+def where_equal(array: np.ndarray, i: int, value: int) -> np.ndarray:
+    """Where the eight bytes of a contiguous array (n,) from index i on have a value."""
+    return array[int(i) : int(i) + LANES] == value
+
+
 def choose(chosen: np.ndarray, values: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Values where chosen, else the others."""
     return np.where(chosen, values, others)
@@ -144,7 +154,7 @@ def _fits(given: Any, wanted: Any) -> bool:
     if wanted == lanes:
         return given == lanes or isinstance(given, types.Float)
     if isinstance(wanted, types.Array):
-        return isinstance(given, types.Array) and given.dtype == types.float64 and given.ndim == 1
+        return isinstance(given, types.Array) and given.dtype == wanted.dtype and given.ndim == 1
     return bool(given == wanted)
 
 
@@ -168,7 +178,7 @@ def _intrinsic(function: Any, name: str, count: int) -> None:
     _compiled(function, lanes, *[lanes] * count)(call)
 
 
-_array = types.Array(types.float64, 1, "C")
+_array, _bytes = types.Array(types.float64, 1, "C"), types.Array(types.uint8, 1, "C")
 
 for _operator, _in_place, _name in (
     (operator.add, operator.iadd, "fadd"),
@@ -202,6 +212,20 @@ def _splat(builder: Any, number: Any) -> Any:
 @_compiled(bits, mask, types.uint8)
 def _bits(builder: Any, byte: Any) -> Any:
     return builder.bitcast(byte, _BITS)
+
+
+@_compiled(byte_of, types.uint8, mask)
+def _byte_of(builder: Any, chosen: Any) -> Any:
+    return builder.bitcast(chosen, ir.IntType(LANES))
+
+
+@_compiled(where_equal, mask, _bytes, types.uint64, types.uint8)
+def _where_equal(builder: Any, first: Any, i: Any, value: Any) -> Any:
+    kind = ir.VectorType(ir.IntType(8), LANES)
+    values = builder.load(builder.bitcast(builder.gep(first, [i]), kind.as_pointer()), align=1)
+    one = builder.insert_element(ir.Constant(kind, ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
+    everywhere = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+    return builder.icmp_unsigned("==", values, builder.shuffle_vector(one, ir.Constant(kind, ir.Undefined), everywhere))
 
 
 @_compiled(choose, lanes, mask, lanes, lanes)

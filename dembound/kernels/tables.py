@@ -245,6 +245,51 @@ class Bonded(NamedTuple):
     lost: np.ndarray
 
 
+class PairRows(NamedTuple):
+    """Pairs in rows of copies, q rows in g groups, which come before all others among the contacts.
+
+    group_row, group_block : (g + 1,) rows and blocks of pairs of each group; column by column, every row of a group has
+    a block there, as disks have (LaneRows). disk_block, disk_rows : (g,) first block and number of rows of the group's
+    disks. owner : (q,) row of the first disk within its group; shift : (q,) slots from the first disk to the second;
+    contact_type : (q,) row of the table of constants; exists : (blocks,) uint8, the bits of the lanes that hold a pair.
+    start : (r + 1,) entries of each row of disks: a pair offset (e,) places from the first one of the column, of which
+    the disk is second (e,) or first; mask : (e,) where the bits of the disks for which this is a pair of their own row
+    begin in masks (m,) uint8, one byte a column, −1: for all.
+    """
+
+    group_row: np.ndarray
+    group_block: np.ndarray
+    disk_block: np.ndarray
+    disk_rows: np.ndarray
+    owner: np.ndarray
+    shift: np.ndarray
+    contact_type: np.ndarray
+    exists: np.ndarray
+    start: np.ndarray
+    offset: np.ndarray
+    second: np.ndarray
+    mask: np.ndarray
+    masks: np.ndarray
+
+
+class LaneBonded(NamedTuple):
+    """The history-dependent law in rows of copies; the other pairs come after those in rows.
+
+    bonded : the law, for all pairs; rows : the disks, whose contacts are not used; pairs : the rows of pairs. Disks with
+    ends of other pairs : stray (k,), ascending slots; stray_start (k + 1,), stray_end (e,) those ends, as in Contacts.
+    extra : (3, slots), also_lost (chunks, 2) : work space.
+    """
+
+    bonded: Bonded
+    rows: LaneRows
+    pairs: PairRows
+    stray: np.ndarray
+    stray_start: np.ndarray
+    stray_end: np.ndarray
+    extra: np.ndarray
+    also_lost: np.ndarray
+
+
 class BarBonds(NamedTuple):
     """Springs and bonds of a bar of n nodes; horizon m, 0 if there is no peridynamic bond.
 

@@ -1,0 +1,127 @@
+"""Pairs of disks with a history in rows of copies, as their first disks are, for kernels/bonded_lanes.py."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dembound.disks.lane_rows import RowPlan
+from dembound.kernels.lanes import LANES
+from dembound.kernels.tables import PairRows
+from dembound.packings.tiling import Assembly
+
+LEAST_SHARE = 0.3
+"""Share of the lanes of a pair row that have to hold pairs; others are computed one by one."""
+
+
+@dataclass(frozen=True, eq=False)
+class PairPlan:
+    """The rows of pairs, q of them: all copies of a contact whose disks are as many slots apart.
+
+    A pair stands in the column and lane of its first disk. key (q,), ascending: row of the first disk times `types`,
+    plus the type of the contact; shift (q,) slots from the first disk to the second; other (q,) row of the second;
+    step_column, step_lane (q,) columns and lanes from the first to the second. group_row, group_block (g + 1,) rows and
+    blocks of pairs in each group of disks.
+    """
+
+    plan: RowPlan
+    types: int
+    key: np.ndarray
+    shift: np.ndarray
+    other: np.ndarray
+    step_column: np.ndarray
+    step_lane: np.ndarray
+    group_row: np.ndarray
+    group_block: np.ndarray
+
+    @property
+    def count(self) -> int:
+        """Number of places for pairs in rows."""
+        return LANES * int(self.group_block[-1])
+
+    @classmethod
+    def of(cls, assembly: Assembly, plan: RowPlan, types: int) -> "PairPlan":
+        """Rows for the contacts of an assembly, of so many types."""
+        i, j = assembly.pairs.T
+        shift = plan.slot[j] - plan.slot[i]
+        far = int(np.abs(shift).max(initial=0)) + 1
+        key = plan.row[i] * types + assembly.contact_type
+        _, sample, counts = np.unique(key * (2 * far) + shift + far, return_index=True, return_counts=True)
+        most = np.lexsort((-counts, key[sample]))
+        most = most[np.diff(key[sample][most], prepend=-1) > 0]
+        group = plan.group[plan.row]
+        kept = counts[most] >= LEAST_SHARE * LANES * plan.columns[group[i[sample[most]]]]
+        sample = sample[most[kept]]
+        sample = sample[group[i[sample]] == group[j[sample]]]
+        i, j, key = i[sample], j[sample], key[sample]
+        group_row = np.searchsorted(group[i], np.arange(len(plan.columns) + 1))  # rows are in the order of groups
+        return cls(
+            plan=plan,
+            types=types,
+            key=key,
+            shift=shift[sample],
+            other=plan.row[j],
+            step_column=plan.column[j] - plan.column[i],
+            step_lane=plan.lane[j] - plan.lane[i],
+            group_row=group_row,
+            group_block=np.concatenate([[0], np.cumsum(np.diff(group_row) * plan.columns)]),
+        )
+
+    def place(self, first: np.ndarray, second: np.ndarray, contact_type: np.ndarray) -> np.ndarray:
+        """Place (b,) of pairs of particles (b,) in the rows, −1 for those that are in none."""
+        plan = self.plan
+        place = np.full(len(first), -1)
+        if len(self.key) == 0 or len(first) == 0:
+            return place
+        slot, group = plan.slot, plan.group
+        key = plan.row[first] * self.types + contact_type
+        q = np.minimum(np.searchsorted(self.key, key), len(self.key) - 1)
+        fits = (contact_type < self.types) & (self.key[q] == key) & (self.shift[q] == slot[second] - slot[first])
+        q, i = q[fits], first[fits]
+        g = group[plan.row[i]]
+        block = self.group_block[g] + plan.column[i] * np.diff(self.group_row)[g] + q - self.group_row[g]
+        place[fits] = LANES * block + plan.lane[i]
+        return place
+
+    def rows(self, begin: int, place: np.ndarray) -> PairRows:
+        """The rows for kernels; begin : slot of the part's first block; place (b,) of the pairs that are in rows."""
+        plan = self.plan
+        exists = np.zeros(int(self.group_block[-1]), dtype=np.uint8)
+        np.bitwise_or.at(exists, place // LANES, np.left_shift(1, place % LANES).astype(np.uint8))
+        owner, group = self.key // self.types, plan.group[self.key // self.types]
+        within = np.arange(len(self.key)) - self.group_row[group]
+        back = LANES * (within - self.step_column * np.diff(self.group_row)[group]) - self.step_lane
+        row, offset = np.concatenate([owner, self.other]), np.concatenate([LANES * within, back])
+        second = np.repeat([False, True], len(owner))
+        order = np.lexsort((offset, second, row))
+        mask, masks = self._masks(group)
+        return PairRows(
+            group_row=self.group_row,
+            group_block=self.group_block,
+            disk_block=begin // LANES + plan.group_block[:-1],
+            disk_rows=np.diff(plan.group_row),
+            owner=owner - plan.group_row[group],
+            shift=self.shift,
+            contact_type=self.key % self.types,
+            exists=exists,
+            start=np.concatenate([[0], np.cumsum(np.bincount(row, minlength=int(plan.group_row[-1])))]),
+            offset=offset[order],
+            second=second[order],
+            mask=np.concatenate([np.full(len(owner), -1), mask])[order],
+            masks=masks,
+        )
+
+    def _masks(self, group: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Which columns and lanes of second disks have their pair within the rows: where its bytes begin, the bytes.
+
+        −1 : the pair is in the same column and lane. group (q,) of each row of pairs.
+        """
+        apart = (self.step_column != 0) | (self.step_lane != 0)
+        mask, masks, begin = np.full(len(group), -1), [np.zeros(0, np.uint8)], 0
+        for q in np.flatnonzero(apart):
+            columns = int(self.plan.columns[group[q]])
+            column = np.arange(columns) - self.step_column[q]
+            lane = np.arange(LANES) - self.step_lane[q]
+            byte = np.packbits((lane >= 0) & (lane < LANES), bitorder="little")[0]
+            masks.append(np.where((column >= 0) & (column < columns), byte, 0).astype(np.uint8))
+            mask[q], begin = begin, begin + columns
+        return mask, np.concatenate(masks)

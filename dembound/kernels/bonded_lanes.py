@@ -1,0 +1,357 @@
+"""The history-dependent law on rows of copies, eight pairs and eight disks at once (lanes.py).
+
+The formulas are those of contacts.py. A block of eight pairs of which one breaks, or of which bonds follow the
+geometry of the start while one is broken, is computed pair by pair. Pairs that are in no row, found by search or between
+rows of different groups, are as well, and their forces are added to those of the rows.
+"""
+
+import numpy as np
+from numba import njit, prange
+
+from dembound.kernels import bonded as law
+from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
+from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, ends_force, note_places, push_pair
+from dembound.kernels.contacts import push as push_others
+from dembound.kernels.lane_step import INLINED, first_at, go_on, kick, larger, local_damping, next_place, place_of
+from dembound.kernels.lanes import (
+    LANES,
+    at_most,
+    bits,
+    byte_of,
+    choose,
+    lane,
+    load,
+    magnitude,
+    root,
+    splat,
+    store,
+    where_equal,
+    with_sign,
+)
+from dembound.kernels.law import is_law
+from dembound.kernels.tables import LaneBonded
+
+_ALL = np.uint8(2**LANES - 1)
+_INTACT = np.uint8(INTACT)
+
+
+@njit(**INLINED)
+def _reference(k, t, dx, dy, turn_i, turn_j):
+    """Normal, arms, stretch and shear of pairs for small displacements, see contacts._reference_strain."""
+    rest = k[t, U(2)]
+    nx = k[t, U(0)] / rest
+    ny = k[t, U(1)] / rest
+    arm = 0.5 * rest + k[t, U(4)]
+    stretch = nx * dx + ny * dy
+    shear = nx * dy - ny * dx - arm * turn_i - (rest - arm) * turn_j
+    return splat(nx), splat(ny), splat(arm), splat(rest - arm), stretch, shear
+
+
+@njit(**INLINED)
+def _updated(k, t, dx, dy, dvx, dvy, spin_i, spin_j, was, step):
+    """The same where normal and arms follow the motion, see contacts._updated_strain."""
+    rest = k[t, U(2)]
+    x = k[t, U(0)] + dx
+    y = k[t, U(1)] + dy
+    distance = root(x * x + y * y)
+    stretch = ((k[t, U(0)] + x) * dx + (k[t, U(1)] + y) * dy) / (distance + rest)
+    inverse = 1.0 / distance
+    nx = x * inverse
+    ny = y * inverse
+    arm = 0.5 * distance + k[t, U(4)]
+    slide = nx * dvy - ny * dvx
+    shear = was + step * (slide - arm * spin_i - (distance - arm) * spin_j)
+    return nx, ny, arm, distance - arm, stretch, shear
+
+
+@njit(**INLINED)
+def _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result):
+    """The pairs of a block in turn."""
+    for k in range(LANES):
+        if exists & np.uint8(1 << k):
+            rubbed, broken, broke = push_pair(U(LANES * block + k), u, v, step, number, contacts, limits)
+            result[0] += rubbed
+            result[1] += broken
+            result[2] += broke
+
+
+@njit(**INLINED)
+def _push_block(pairs, q, block, i, u, v, step, number, contacts, limits, result):
+    """Forces of the eight pairs of a block of row q, whose first disks are in the slots from i on.
+
+    Returns the energy (J) that friction took; result (3,) is advanced where pairs are computed in turn.
+    """
+    exists = pairs.exists[block]
+    t, c, j = U(pairs.contact_type[q]), U(LANES * block), U(i + pairs.shift[q])
+    i = U(i)
+    k = contacts.constants
+    nothing = splat(0.0)
+    whole = where_equal(contacts.state, c, _INTACT)
+    intact = byte_of(whole)
+    if limits.geometry == BONDED and (intact & exists) != exists:
+        _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
+        return nothing
+    turn_i, turn_j = load(u[2], i), load(u[2], j)
+    dx = load(u[0], j) - load(u[0], i)
+    dy = load(u[1], j) - load(u[1], i)
+    was = load(contacts.shear, c)
+    dvx, dvy = nothing, nothing
+    touches = k[t, U(5)] > 0.0 or k[t, U(6)] > 0.0
+    gives_way = touches and (limits.geometry != REFERENCE or k[t, U(3)] < k[t, U(2)])
+    if gives_way or limits.geometry == UPDATED:
+        dvx = load(v[0], j) - load(v[0], i)
+        dvy = load(v[1], j) - load(v[1], i)
+    if limits.geometry == UPDATED:
+        spin_i, spin_j = load(v[2], i), load(v[2], j)
+        nx, ny, arm_i, arm_j, stretch, shear = _updated(k, t, dx, dy, dvx, dvy, spin_i, spin_j, was, step)
+    else:
+        nx, ny, arm_i, arm_j, stretch, shear = _reference(k, t, dx, dy, turn_i, turn_j)
+    pull = nothing
+    side = nothing
+    rubbed = nothing
+    slip = nothing
+    slides = False
+    if touches:
+        overlap = (k[t, U(3)] - k[t, U(2)]) - stretch
+        slip = load(contacts.slip, c)
+        N = k[t, U(5)] * overlap
+        side = k[t, U(6)] * (shear - slip)
+        if gives_way:
+            N = larger(N, 0.0)
+            opening = nx * dvx + ny * dvy
+            N = choose(at_most(overlap + step * opening, 0.0), CLOSING * N, N)
+            most = limits.friction * N
+            stays = at_most(magnitude(side), most)
+            slides = (byte_of(stays) & exists) != exists
+            if slides:
+                before = k[t, U(6)] * (was - slip)
+                side = choose(stays, side, with_sign(most, side))
+                slid = choose(stays, slip, shear - side / splat(k[t, U(6)]))
+                rubbed = choose(bits(exists), 0.5 * (before + side) * (slid - slip), 0.0)
+                slip = slid
+        pull = -1.0 * N
+    moment = nothing
+    if intact != 0:
+        bent = k[t, U(9)] * (turn_j - turn_i)
+        normal = k[t, U(7)] * stretch
+        sheared = k[t, U(8)] * shear
+        stress = normal * k[t, U(10)]
+        torn = at_most(limits.tension, stress + magnitude(bent) * k[t, U(11)])
+        cut = at_most(limits.cohesion - stress * limits.tan_fa, magnitude(sheared) * k[t, U(10)])
+        if ((byte_of(torn) | byte_of(cut)) & intact & exists) != 0:
+            _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
+            return nothing
+        pull += choose(whole, normal, 0.0)
+        side += choose(whole, sheared, 0.0)
+        moment = choose(whole, bent, 0.0)
+    store(contacts.shear, c, shear)
+    if slides:
+        store(contacts.slip, c, slip)
+    fx = pull * nx - side * ny
+    fy = pull * ny + side * nx
+    on_i = arm_i * side + moment
+    on_j = arm_j * side - moment
+    if exists != _ALL:
+        there = bits(exists)
+        fx, fy = choose(there, fx, 0.0), choose(there, fy, 0.0)
+        on_i, on_j = choose(there, on_i, 0.0), choose(there, on_j, 0.0)
+    force = contacts.force.T
+    store(force[0], c, fx)
+    store(force[1], c, fy)
+    store(force[2], c, on_i)
+    store(force[3], c, on_j)
+    return rubbed
+
+
+@njit(**FAST)
+def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, result):
+    """The pairs in blocks first to last − 1; result (3,): energy taken by friction and by cracks, bonds that broke."""
+    result[:] = 0.0
+    if first == last:
+        return
+    rubbed = splat(0.0)
+    group, column, q = place_of(pairs, first)
+    for block in range(first, last):
+        if block > first:
+            group, column, q = next_place(pairs, block, group, column, q)
+        if pairs.exists[block] != 0:
+            disks = pairs.disk_block[group] + column * pairs.disk_rows[group] + pairs.owner[q]
+            rubbed += _push_block(pairs, q, block, LANES * disks, u, v, step, number, contacts, limits, result)
+    for k in range(LANES):
+        result[0] += lane(rubbed, U(k))
+
+
+@njit(**PARALLEL)
+def _push(u, v, step, number, pairs, contacts, limits, lost):
+    """Forces of the pairs in rows, see contacts.push."""
+    n = pairs.exists.size
+    result = np.zeros((CHUNKS, 3))
+    for chunk in prange(CHUNKS):
+        _push_blocks(
+            pairs, chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS, u, v, step, number, contacts, limits, result[chunk]
+        )
+        lost[chunk, 0] = result[chunk, 0]
+        lost[chunk, 1] = result[chunk, 1]
+    breaks = 0
+    for chunk in range(CHUNKS):
+        breaks += int(result[chunk, 2])
+    return breaks
+
+
+@njit(**INLINED)
+def _row_forces(pairs, force, r, column, first):
+    """Forces and moments on eight disks of row r by the pairs in rows; `first` is the first place of their column."""
+    fx = splat(0.0)
+    fy = splat(0.0)
+    moment = splat(0.0)
+    for entry in range(pairs.start[r], pairs.start[r + 1]):
+        e = U(entry)
+        mask = pairs.mask[e]
+        byte = _ALL
+        if mask >= 0:
+            byte = pairs.masks[U(mask + column)]
+            if byte == 0:
+                continue
+        c = U(first + pairs.offset[e])
+        gx, gy = load(force[0], c), load(force[1], c)
+        about = load(force[3], c) if pairs.second[e] else load(force[2], c)
+        if byte != _ALL:
+            own = bits(byte)
+            gx, gy, about = choose(own, gx, 0.0), choose(own, gy, 0.0), choose(own, about, 0.0)
+        if pairs.second[e]:
+            fx -= gx
+            fy -= gy
+        else:
+            fx += gx
+            fy += gy
+        moment += about
+    return fx, fy, moment
+
+
+@njit(**FAST)
+def _stray_forces(stray, start, end, force, first, last, extra):
+    """Forces and moments of the other pairs on the disks in blocks first to last − 1, in extra (3, slots)."""
+    for k in range(first_at(stray, LANES * first), first_at(stray, LANES * last)):
+        i = U(stray[k])
+        extra[U(0), i], extra[U(1), i], extra[U(2), i] = ends_force(U(k), force, start, end)
+
+
+@njit(**FAST)
+def _move_blocks(rows, pairs, first, last, u, v, body, contacts, extra, u_next, result):
+    """One step of the disks in blocks first to last − 1; result (3,) gets the largest speed and works."""
+    result[:] = 0.0
+    if first == last:
+        return
+    across, up, about = body.free[0], body.free[1], body.free[2]
+    nothing = splat(0.0)
+    whole, half, speed = nothing, nothing, nothing
+    force = contacts.force.T
+    group, column, r = place_of(rows, first)
+    for block in range(first, last):
+        if block > first:
+            group, column, r = next_place(rows, block, group, column, r)
+        i = U(LANES * block)
+        width = pairs.group_row[group + 1] - pairs.group_row[group]
+        fx, fy, moment = _row_forces(pairs, force, r, column, LANES * (pairs.group_block[group] + column * width))
+        b = splat(body.step * rows.inverse_mass[r])
+        b_turn = splat(body.step * rows.inverse_inertia[r])
+        special = rows.special[block]
+        if special:
+            b = load(body.mobility, i)
+            b_turn = load(body.inverse_inertia, i)
+            fx += load(extra[0], i)
+            fy += load(extra[1], i)
+            moment += load(extra[2], i)
+        if body.load.shape[1] > 0:
+            fx += load(body.load[0], i)
+            fy += load(body.load[1], i)
+            moment += load(body.load[2], i)
+        x, y, turn = load(u[0], i), load(u[1], i), load(u[2], i)
+        was_x, was_y, was_t = load(v[0], i), load(v[1], i), load(v[2], i)
+        if body.damp > 0.0:
+            dx = local_damping(was_x, fx, body.damp)
+            dy = local_damping(was_y, fy, body.damp)
+            dt = local_damping(was_t, moment, body.damp)
+            now_x = kick(was_x, fx - dx, across * b)
+            now_y = kick(was_y, fy - dy, up * b)
+            now_t = kick(was_t, moment - dt, about * b_turn)
+            held = at_most(b, 0.0)
+            half += choose(held, 0.0, across * dx * was_x + up * dy * was_y + about * dt * was_t)
+            whole += choose(held, 0.0, across * dx * now_x + up * dy * now_y + about * dt * now_t)
+        else:
+            now_x = kick(was_x, fx, across * b)
+            now_y = kick(was_y, fy, up * b)
+            now_t = kick(was_t, moment, about * b_turn)
+        go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, body.step, v, u_next)
+        speed = larger(now_x * now_x + now_y * now_y, speed)
+    fastest = 0.0
+    taken = 0.0
+    late = 0.0
+    for k in range(LANES):
+        fastest = max(fastest, lane(speed, U(k)))
+        taken += lane(whole, U(k))
+        late += lane(half, U(k))
+    result[0] = np.sqrt(fastest)
+    result[1] = 0.5 * body.step * (taken + late)
+    result[2] = 0.5 * body.step * late
+
+
+@njit(**PARALLEL)
+def _move(u, v, rows, pairs, contacts, stray, stray_start, stray_end, extra, body, u_next, fastest, damped):
+    """One step of all disks; fastest (chunks,) gets speeds, damped (chunks, 2) the work of local damping."""
+    begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]
+    n = end - begin
+    result = np.zeros((CHUNKS, 3))
+    for chunk in prange(CHUNKS):
+        first, last = begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS
+        _stray_forces(stray, stray_start, stray_end, contacts.force, first, last, extra)
+        _move_blocks(rows, pairs, first, last, u, v, body, contacts, extra, u_next, result[chunk])
+        fastest[chunk] = result[chunk, 0]
+        damped[chunk, 0] = result[chunk, 1]
+        damped[chunk, 1] = result[chunk, 2]
+
+
+@njit(**FAST)
+def begin(lanes):
+    """Compute anew, before the first step, how far particles have moved."""
+    law.begin(lanes.bonded)
+
+
+@njit(**FAST)
+def check(lanes, u, u_next, v):
+    """Whether a pair that is not listed may have come into contact."""
+    return law.check(lanes.bonded, u, u_next, v)
+
+
+@njit(**FAST)
+def push(lanes, u, u_next, v, number, step, work):
+    """Compute the forces of all pairs; returns the number of bonds that broke, if the loop is to stop at breaks."""
+    bonded = lanes.bonded
+    others = LANES * lanes.pairs.exists.size
+    breaks = _push(u, v, step, number, lanes.pairs, bonded.contacts, bonded.limits, bonded.lost)
+    breaks += push_others(u, v, step, number, bonded.contacts, bonded.limits, lanes.also_lost, others)
+    if breaks > 0:
+        note_places(u, number, bonded.contacts)
+    for way in range(2):
+        work[0, 2 + way] += column_sum(bonded.lost, way) + column_sum(lanes.also_lost, way)
+        work[1, 2 + way] = work[0, 2 + way]
+    return breaks if bonded.stops else 0
+
+
+@njit(**FAST)
+def move(lanes, u, u_next, v, body, nodes):
+    """One step of all particles, see law.move."""
+    bonded = lanes.bonded
+    _move(
+        u, v, lanes.rows, lanes.pairs, bonded.contacts, lanes.stray, lanes.stray_start, lanes.stray_end, lanes.extra,
+        body, u_next, bonded.fastest, bonded.damped,
+    )  # fmt: skip
+
+
+@njit(**FAST)
+def finish(lanes, v, body, nodes, work):
+    """Enter what local damping took, and how far particles have travelled."""
+    law.finish(lanes.bonded, v, body, nodes, work)
+
+
+is_law(LaneBonded, begin=begin, check=check, push=push, move=move, finish=finish)

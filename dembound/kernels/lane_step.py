@@ -1,0 +1,83 @@
+"""The step of central differences on blocks of eight disks: what kernels of rows of copies share."""
+
+from numba import njit
+
+from dembound.kernels.common import FAST, REST
+from dembound.kernels.lanes import at_most, choose, magnitude, store, with_sign
+
+INLINED = FAST | {"inline": "always"}
+"""Options of small functions, which become part of the loops that call them."""
+
+
+@njit(**INLINED)
+def kick(v, f, b):
+    """Half-step velocity after a force f, see step.kick."""
+    w = v + b * f
+    return choose(at_most(magnitude(w), REST), 0.0, w)
+
+
+@njit(**INLINED)
+def local_damping(v, f, damp):
+    """The force of local damping (Cundall: −damp·|F|·sign(v)), turned round."""
+    return choose(at_most(magnitude(v), 0.0), 0.0, with_sign(damp * magnitude(f), v))
+
+
+@njit(**INLINED)
+def larger(a, b):
+    """The larger of two numbers in each lane."""
+    return choose(at_most(a, b), b, a)
+
+
+@njit(**FAST)
+def first_at(numbers, least):
+    """Index of the first of ascending numbers that is not below the least."""
+    low = 0
+    high = numbers.size
+    while low < high:
+        middle = (low + high) // 2
+        if numbers[middle] < least:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@njit(**INLINED)
+def place_of(rows, block):
+    """Group, column and row of a block."""
+    group = first_at(rows.group_block, block + 1) - 1
+    begin, end = rows.group_row[group], rows.group_row[group + 1]
+    before = block - rows.group_block[group]
+    return group, before // (end - begin), begin + before % (end - begin)
+
+
+@njit(**INLINED)
+def next_place(rows, block, group, column, r):
+    """Those of a block, from those of the one before."""
+    r += 1
+    if r == rows.group_row[group + 1]:
+        if block == rows.group_block[group + 1]:
+            group += 1
+            column = -1
+        column += 1
+        r = rows.group_row[group]
+    return group, column, r
+
+
+@njit(**INLINED)
+def go_on(i, special, b, fx, fy, moment, x, y, turn, now_x, now_y, now_t, step, v, u_next):
+    """Store velocities and the displacements that follow; of supported disks forces in place of displacements."""
+    store(v[0], i, now_x)
+    store(v[1], i, now_y)
+    store(v[2], i, now_t)
+    x += step * now_x
+    y += step * now_y
+    turn += step * now_t
+    if special:
+        held = at_most(b, 0.0)
+        x = choose(held, fx, x)
+        y = choose(held, fy, y)
+        turn = choose(held, moment, turn)
+    store(u_next[0], i, x)
+    store(u_next[1], i, y)
+    store(u_next[2], i, turn)
