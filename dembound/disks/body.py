@@ -11,9 +11,11 @@ from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.disks import DiskCase
 from dembound.disks.contacts import ContactList
+from dembound.disks.lane_rows import RowPlan, plan_rows
 from dembound.disks.layout import Rows
 from dembound.disks.loads import steady
 from dembound.disks.packed_material import PackedMaterial
+from dembound.kernels.tables import LaneRows
 from dembound.motion.layout import Layout
 from dembound.motion.scene import Scene
 from dembound.motion.threads import thread_count_for
@@ -160,7 +162,21 @@ class DiskBody(Scene):
         if self.seam is not None and name == "column":
             along_x, held = self.seam.width, self.seam.pairs(self.ground.brick)
         part = self.assembly.part(nodes)
-        return ContactList(self.ground, self.case.material, part, (along_x, along_y), nodes.start, held, self.layout)
+        return ContactList(
+            self.ground,
+            self.case.material,
+            part,
+            (along_x, along_y),
+            nodes.start,
+            held,
+            self.layout,
+            self._row_plan(name, part),
+        )
+
+    def _row_plan(self, name: str, part: Assembly) -> tuple[RowPlan, int] | None:
+        """The rows of copies that a part's particles are held in, if they are, and their first block."""
+        rows = self.rows[list(self.parts).index(name)]
+        return (plan_rows(part), int(rows.group_block[0])) if isinstance(rows, LaneRows) else None
 
 
 def parts_of(count: int, seam: Seam | None) -> dict[str, slice]:

@@ -6,12 +6,14 @@ import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.constants import brick_constants, limits_of, shared_constants
+from dembound.disks.lane_rows import RowPlan
 from dembound.disks.neighbours import near_pairs, pair_keys
 from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.pair_rows import PairPlan
 from dembound.kernels import contacts as kernel
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
-from dembound.kernels.tables import Contacts
+from dembound.kernels.tables import Contacts, PairRows
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.layout import Layout
 from dembound.motion.state import Arrays
@@ -48,10 +50,15 @@ class ContactList:
     begin : number of its first particle in the scene.
     held : first, second (k,) particles of the part and vectors (k, 2) m of pairs that stay listed at any distance.
     layout : the slots in which kernels hold the scene's particles; None: in their order.
+    plan : the rows of copies in which the part's particles are held, and their first block; None: one by one.
 
     Attributes
     ----------
-    arrays : the pairs for the kernels, by slots.
+    arrays : the pairs for the kernels, by slots. In rows of copies some places hold no pair; these have no stiffness.
+    live : (b,) the places of the pairs in `arrays`, ascending; `pairs`, `image` and `of` have these alone.
+    rows : the pairs in rows of copies, which come first in `arrays`; None: there are none. With rows, strays : slots of
+        the disks (k,) that have ends of other pairs, where each one's begin (k + 1,), and these ends (e,); extra :
+        (3, slots) work space of the kernels.
     limits : strengths and friction.
     origin : (2, m) m, displacements of the part's m slots at which the list was made.
     skin : m, gap up to which it is complete.
@@ -67,6 +74,7 @@ class ContactList:
         begin: int = 0,
         held: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None,
         layout: Layout | None = None,
+        plan: tuple[RowPlan, int] | None = None,
     ) -> None:
         self.ground = ground
         self.assembly = assembly
@@ -81,6 +89,8 @@ class ContactList:
         self.skin = SKIN * ground.brick.mean_diameter
         self.origin = np.zeros((2, self._slots.stop - self._slots.start))
         self.bonds = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
+        self._plan = None if plan is None else PairPlan.of(assembly, *plan, len(self.bonds))
+        self.rows: PairRows | None = None
         first, second = assembly.pairs.T.astype(np.int64)
         images = self.images(first, second, self.bonds[assembly.contact_type, :2])
         pairs = Pairs(first, second, images, assembly.contact_type)
@@ -130,12 +140,12 @@ class ContactList:
         here = self.assembly.positions + moved
         if not np.isfinite(here).all():
             return  # the `Watch` of the run raises the error
-        old, count = self.arrays, len(radii)
+        count, state, contact_type = len(radii), self.of("state"), self.of("contact_type")
         old_first, old_second = self.pairs
         near, image = near_pairs(here, radii, self.skin, self.periods)
-        vectors = moved[old_second] - moved[old_first] + old.constants[old.contact_type, :2]
+        vectors = moved[old_second] - moved[old_first] + self._constants[contact_type, :2]
         gap = np.hypot(*vectors.T) - radii[old_first] - radii[old_second]
-        kept = (old.state == INTACT) | (gap <= self.skin)
+        kept = (state == INTACT) | (gap <= self.skin)
         if self._held is not None:
             kept[self.find(*self._held)[1]] = True
         keys = pair_keys(old_first[kept], old_second[kept], self.image[kept], count)
@@ -149,7 +159,7 @@ class ContactList:
         constants, row_of_new = shared_constants(constants, self.skin)
         # rows of earlier searches that are still in use are moved up to follow those of the brick
         own = len(self.bonds)
-        used, row = np.unique(old.contact_type[kept], return_inverse=True)
+        used, row = np.unique(contact_type[kept], return_inverse=True)
         extra = used >= own
         place = used.astype(np.int64)
         place[extra] = own + np.arange(np.count_nonzero(extra))
@@ -162,10 +172,10 @@ class ContactList:
         )
         self._list(
             pairs,
-            np.concatenate([old.state[kept], np.full(len(first), NONE, dtype=np.uint8)]),
-            np.concatenate([old.shear[kept], np.zeros(len(first))]),
-            np.concatenate([old.slip[kept], np.zeros(len(first))]),
-            np.concatenate([old.cracked[kept], np.full(len(first), -1)]),
+            np.concatenate([state[kept], np.full(len(first), NONE, dtype=np.uint8)]),
+            np.concatenate([self.of("shear")[kept], np.zeros(len(first))]),
+            np.concatenate([self.of("slip")[kept], np.zeros(len(first))]),
+            np.concatenate([self.of("cracked")[kept], np.full(len(first), -1)]),
         )
         self._set_origin(displacement[:2, self.nodes])
 
@@ -173,13 +183,12 @@ class ContactList:
         """Copy the pairs, with their history, from a list of more particles, of which this list has `kept` (m,)."""
         number = np.full(len(other.assembly.radii), -1)
         number[kept] = np.arange(len(kept))
-        old, (old_first, old_second) = other.arrays, other.pairs
-        first, second = number[old_first], number[old_second]
+        first, second = (number[particles] for particles in other.pairs)
         left = (first >= 0) & (second >= 0)
         self._constants = other._constants
         self._set_origin(other.origin[:, other._slot[kept] - other._slots.start])
-        pairs = Pairs(first[left], second[left], other.image[left], old.contact_type[left])
-        self._list(pairs, old.state[left], old.shear[left], old.slip[left], old.cracked[left], old.place[left])
+        pairs = Pairs(first[left], second[left], other.image[left], other.of("contact_type")[left])
+        self._list(pairs, *(other.of(name)[left] for name in ("state", "shear", "slip", "cracked", "place")))
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
         """Copy the history of each pair's twin from a free-field column settled alone, at displacements (3, n).
@@ -190,14 +199,13 @@ class ContactList:
         self.search(displacement)
         pairs = self.arrays
         first, second = (twin[particles] for particles in self.pairs)
-        found, at = column.find(first, second, pairs.constants[pairs.contact_type, :2])
-        there = column.arrays
-        for ours, theirs in ((pairs.state, there.state), (pairs.shear, there.shear), (pairs.slip, there.slip)):
-            ours[found] = theirs[at[found]]
+        found, at = column.find(first, second, self._constants[self.of("contact_type"), :2])
+        for name in ("state", "shear", "slip"):
+            getattr(pairs, name)[self.live[found]] = column.of(name)[at[found]]
         pairs.cracked[(pairs.state == TENSION) | (pairs.state == SHEAR)] = 0
         first, second = self.pairs
         moved = displacement[:2, self.nodes].T
-        pairs.place[:] = 0.5 * (moved[first] + moved[second])
+        pairs.place[self.live] = 0.5 * (moved[first] + moved[second])
         self.note_cracks()
 
     def find(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -214,18 +222,18 @@ class ContactList:
 
     def note_cracks(self) -> None:
         """Record the bonds that broke since the last call, with their positions."""
-        pairs = self.arrays
-        broken = np.flatnonzero(pairs.cracked >= 0)
-        if len(broken) == 0:
+        if not (self.arrays.cracked >= 0).any():
             return
+        cracked, state = self.of("cracked"), self.of("state")
+        broken = np.flatnonzero(cracked >= 0)
         first, second = (particles[broken] for particles in self.pairs)
-        order = np.lexsort((second, first, pairs.cracked[broken]))
+        order = np.lexsort((second, first, cracked[broken]))
         broken, first, second = broken[order], first[order], second[order]
-        half = 0.5 * pairs.constants[pairs.contact_type[broken], :2]
-        middle = self.assembly.positions[first] + half + pairs.place[broken]
+        half = 0.5 * self._constants[self.of("contact_type")[broken], :2]
+        middle = self.assembly.positions[first] + half + self.of("place")[broken]
         both = np.column_stack([first, second]) + self.nodes.start
-        self._cracks.append(Cracks(pairs.cracked[broken], both, middle, pairs.state[broken] == SHEAR))
-        pairs.cracked[broken] = -1
+        self._cracks.append(Cracks(cracked[broken], both, middle, state[broken] == SHEAR))
+        self.arrays.cracked[:] = -1
 
     def take_cracks(self) -> Cracks:
         """The bonds that broke since this was last called."""
@@ -237,7 +245,16 @@ class ContactList:
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
         """First and second particle (b,) int64 of every pair, numbered from the part's first one."""
         begin, node = self.nodes.start, self.layout.node
-        return node[self.arrays.first] - begin, node[self.arrays.second] - begin
+        return node[self.of("first")] - begin, node[self.of("second")] - begin
+
+    def of(self, name: str) -> np.ndarray:
+        """A column of `arrays` for the pairs alone, (b,) or (b, …)."""
+        return getattr(self.arrays, name)[self.live]
+
+    @property
+    def force(self) -> np.ndarray:
+        """Last forces (b, 4) of the pairs, see kernels/contacts.py."""
+        return self.arrays.force[:, self.live].T
 
     def images(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> np.ndarray:
         """Whole periods (b, 2) that a pair's vector goes beyond the difference of its positions."""
@@ -248,11 +265,11 @@ class ContactList:
 
     def freshly_torn(self) -> np.ndarray:
         """Particles (m,) bool with a bond that has broken since cracks were last recorded."""
-        return self._counted(self.arrays.cracked >= 0) > 0
+        return self._counted(self.of("cracked") >= 0) > 0
 
     def coordination(self) -> np.ndarray:
         """Number (m,) of intact bonds and closed contacts of every particle, from the pairs' last forces."""
-        return self._counted((self.arrays.state == INTACT) | self.arrays.force[:, :2].any(axis=1))
+        return self._counted((self.of("state") == INTACT) | self.force[:, :2].any(axis=1))
 
     def _counted(self, chosen: np.ndarray) -> np.ndarray:
         """Number (m,) of the chosen pairs (b,) that each particle has."""
@@ -262,7 +279,7 @@ class ContactList:
     def memory(self) -> Arrays:
         """The pairs with their history, and cracks not yet recorded."""
         self.note_cracks()
-        memory = {name: getattr(self.arrays, name) for name in _KEPT}
+        memory = {name: self.of(name) for name in _KEPT} | {"force": self.force}
         memory |= {"image": self.image, "constants": self._constants, "origin": self.origin}
         cracks = joined(self._cracks)
         return memory | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
@@ -275,7 +292,7 @@ class ContactList:
         pairs = Pairs(first, second, memory["image"], memory["contact_type"])
         columns = (memory[name] for name in ("state", "shear", "slip", "cracked"))
         self._list(pairs, *columns)
-        self.arrays.force[:] = memory["force"]
+        self.arrays.force[:, self.live] = memory["force"].T
         self._cracks = [Cracks(*(memory[f"crack_{field.name}"] for field in fields(Cracks)))]
 
     def _set_origin(self, displacement: np.ndarray) -> None:
@@ -292,35 +309,63 @@ class ContactList:
         cracked: np.ndarray,
         place: np.ndarray | None = None,
     ) -> None:
-        """Sort the pairs, and list the contact ends of each particle."""
+        """Give the pairs their places, and list the contact ends of each particle."""
         first, second = self._slot[pairs.first], self._slot[pairs.second]
-        order = np.lexsort((pairs.image[:, 1], pairs.image[:, 0], second, first))
+        in_rows = np.full(len(first), -1)
+        if self._plan is not None:
+            in_rows = self._plan.place(pairs.first, pairs.second, pairs.contact_type)
+        order = np.lexsort((pairs.image[:, 1], pairs.image[:, 0], second, first, in_rows, in_rows < 0))
         self.image = pairs.image[order]
-        first, second = first[order], second[order]
-        b, begin, stop = len(order), self._slots.start, self._slots.stop
+        first, second, in_rows = first[order], second[order], in_rows[order]
+        places = 0 if self._plan is None else self._plan.count
+        shared = int(np.count_nonzero(in_rows >= 0))
+        self.live = np.concatenate([in_rows[:shared], places + np.arange(len(order) - shared)])
+        count, begin, stop = places + len(order) - shared, self._slots.start, self._slots.stop
         owner = np.concatenate([first, second])
-        end = np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
+        end = np.concatenate([2 * self.live, 2 * self.live + 1])
         start = np.zeros(stop + 1, dtype=np.uint32)
         np.cumsum(np.bincount(owner - begin, minlength=stop - begin), out=start[begin + 1 :])
+
+        def placed(values: np.ndarray, empty: float = 0.0) -> np.ndarray:
+            """Values of the pairs in their places."""
+            column = np.full((count, *values.shape[1:]), empty, dtype=values.dtype)
+            column[self.live] = values
+            return column
+
         self.arrays = Contacts(
             begin=begin,
-            first=first.astype(np.uint32),
-            second=second.astype(np.uint32),
-            contact_type=pairs.contact_type[order].astype(np.uint32),
-            constants=self._constants,
-            state=state[order],
-            shear=shear[order],
-            slip=slip[order],
-            cracked=cracked[order],
-            place=np.zeros((b, 2)) if place is None else place[order],
-            force=np.zeros((b, 4)),
+            first=placed(first.astype(np.uint32), int(self._slot[0])),
+            second=placed(second.astype(np.uint32), int(self._slot[0])),
+            contact_type=placed(pairs.contact_type[order].astype(np.uint32), len(self._constants)),
+            constants=self._constants if self._plan is None else np.vstack([self._constants, NOTHING]),
+            state=placed(state[order], NONE),
+            shear=placed(shear[order]),
+            slip=placed(slip[order]),
+            cracked=placed(cracked[order], -1),
+            place=np.zeros((count, 2)) if place is None else placed(place[order]),
+            force=np.zeros((4, count)),
             start=start,
             end=end[np.lexsort((end, owner))].astype(np.uint32),
         )
+        if self._plan is not None:
+            self._list_rows(in_rows[:shared], owner, end)
+
+    def _list_rows(self, in_rows: np.ndarray, owner: np.ndarray, end: np.ndarray) -> None:
+        """Make the rows for kernels, of pairs in some places (k,), and list the ends (e,) of others by their owners."""
+        assert self._plan is not None
+        self.rows = self._plan.rows(in_rows)
+        others = end >= 2 * self._plan.count
+        order = np.lexsort((end[others], owner[others]))
+        slot, start = np.unique(owner[others][order], return_index=True)
+        self.strays = slot, np.append(start, len(order)), end[others][order].astype(np.uint32)
+        self.extra = np.zeros((3, self.layout.count))
 
 
-_KEPT = ("first", "second", "contact_type", "state", "shear", "slip", "cracked", "force")
-"""The arrays of the pairs that memory() returns."""
+NOTHING = np.array([[1e6, 0.0, 1e6, -1e100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]])
+"""Constants of a place without a pair: far apart, without stiffness."""
+
+_KEPT = ("first", "second", "contact_type", "state", "shear", "slip", "cracked")
+"""The arrays of the pairs, beside their forces, that memory() returns."""
 
 
 def plain_contacts(ground: PackedMaterial, assembly: Assembly, slot: np.ndarray) -> Contacts:
@@ -342,7 +387,7 @@ def plain_contacts(ground: PackedMaterial, assembly: Assembly, slot: np.ndarray)
         slip=nothing,
         cracked=np.zeros(0, dtype=np.int64),
         place=np.zeros((0, 2)),
-        force=np.zeros((0, 4)),
+        force=np.zeros((4, 0)),
         start=first[:0],
         end=first[:0],
     )

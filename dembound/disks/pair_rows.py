@@ -1,6 +1,7 @@
 """Pairs of disks with a history in rows of copies, as their first disks are, for kernels/bonded_lanes.py."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -17,13 +18,14 @@ LEAST_SHARE = 0.3
 class PairPlan:
     """The rows of pairs, q of them: all copies of a contact whose disks are as many slots apart.
 
-    A pair stands in the column and lane of its first disk. key (q,), ascending: row of the first disk times `types`,
+    A pair stands in the column and lane of its first disk. first_block : that of the part's disks. key (q,), ascending: row of the first disk times `types`,
     plus the type of the contact; shift (q,) slots from the first disk to the second; other (q,) row of the second;
     step_column, step_lane (q,) columns and lanes from the first to the second. group_row, group_block (g + 1,) rows and
     blocks of pairs in each group of disks.
     """
 
     plan: RowPlan
+    first_block: int
     types: int
     key: np.ndarray
     shift: np.ndarray
@@ -39,8 +41,8 @@ class PairPlan:
         return LANES * int(self.group_block[-1])
 
     @classmethod
-    def of(cls, assembly: Assembly, plan: RowPlan, types: int) -> "PairPlan":
-        """Rows for the contacts of an assembly, of so many types."""
+    def of(cls, assembly: Assembly, plan: RowPlan, first_block: int, types: int) -> "PairPlan":
+        """Rows for the contacts of an assembly, of so many types, whose disks begin with a block."""
         i, j = assembly.pairs.T
         shift = plan.slot[j] - plan.slot[i]
         far = int(np.abs(shift).max(initial=0)) + 1
@@ -56,6 +58,7 @@ class PairPlan:
         group_row = np.searchsorted(group[i], np.arange(len(plan.columns) + 1))  # rows are in the order of groups
         return cls(
             plan=plan,
+            first_block=first_block,
             types=types,
             key=key,
             shift=shift[sample],
@@ -82,11 +85,16 @@ class PairPlan:
         place[fits] = LANES * block + plan.lane[i]
         return place
 
-    def rows(self, begin: int, place: np.ndarray) -> PairRows:
-        """The rows for kernels; begin : slot of the part's first block; place (b,) of the pairs that are in rows."""
-        plan = self.plan
+    def rows(self, place: np.ndarray) -> PairRows:
+        """The rows for kernels; place (b,) of the pairs that are in them."""
         exists = np.zeros(int(self.group_block[-1]), dtype=np.uint8)
         np.bitwise_or.at(exists, place // LANES, np.left_shift(1, place % LANES).astype(np.uint8))
+        return self._empty._replace(exists=exists)
+
+    @cached_property
+    def _empty(self) -> PairRows:
+        """The rows without pairs."""
+        plan = self.plan
         owner, group = self.key // self.types, plan.group[self.key // self.types]
         within = np.arange(len(self.key)) - self.group_row[group]
         back = LANES * (within - self.step_column * np.diff(self.group_row)[group]) - self.step_lane
@@ -97,12 +105,12 @@ class PairPlan:
         return PairRows(
             group_row=self.group_row,
             group_block=self.group_block,
-            disk_block=begin // LANES + plan.group_block[:-1],
+            disk_block=self.first_block + plan.group_block[:-1],
             disk_rows=np.diff(plan.group_row),
             owner=owner - plan.group_row[group],
             shift=self.shift,
             contact_type=self.key % self.types,
-            exists=exists,
+            exists=np.zeros(0, dtype=np.uint8),
             start=np.concatenate([[0], np.cumsum(np.bincount(row, minlength=int(plan.group_row[-1])))]),
             offset=offset[order],
             second=second[order],

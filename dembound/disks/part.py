@@ -6,13 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.disks.contacts import ContactList, plain_contacts
-from dembound.disks.layout import Rows
+from dembound.disks.layout import Rows, with_special
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.rows import elastic_constants
-from dembound.kernels import bonded, elastic, elastic_lanes  # noqa: F401  # they register their laws
+from dembound.kernels import bonded, bonded_lanes, elastic, elastic_lanes  # noqa: F401  # they register their laws
 from dembound.kernels.common import CHUNKS, LIST_ENDS
 from dembound.kernels.contacts import REFERENCE, strain_energy
-from dembound.kernels.tables import Bonded, Contacts, Links, Seam, SeamEnds, WatchedLinks
+from dembound.kernels.tables import Bonded, Contacts, LaneBonded, LaneRows, Links, Seam, SeamEnds, WatchedLinks
 from dembound.motion.cracks import NO_CRACKS, Cracks
 from dembound.motion.layout import Layout
 from dembound.motion.part import Part, Tie
@@ -59,7 +59,7 @@ class DiskPart(Part):
         self.stops_at_breaks = False
         self.rows = rows
         self._fastest, self._way = np.zeros(CHUNKS), np.zeros(2)
-        self._damped, self._lost = np.zeros((CHUNKS, 2)), np.zeros((CHUNKS, 2))
+        self._damped, self._lost, self._also_lost = np.zeros((3, CHUNKS, 2))
 
     @property
     def law_name(self) -> str:  # type: ignore[override]  # an attribute of other parts
@@ -74,7 +74,13 @@ class DiskPart(Part):
         listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skin)
         if not self.uses_history:
             return WatchedLinks(links, *listed, contacts.arms, self._way)
-        return Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
+        law = Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
+        if contacts.rows is None:
+            return law
+        assert isinstance(self.rows, LaneRows)
+        slots, starts, ends = contacts.strays
+        rows = with_special(self.rows, slots)
+        return LaneBonded(law, rows, contacts.rows, slots, starts, ends, contacts.extra, self._also_lost)
 
     def react(self, why: int, steps: int, state: State) -> None:
         """List the pairs anew if some may be missing."""
@@ -187,5 +193,5 @@ class FreeFieldSeam(Tie):
             _, pair = contacts.find(owner, near, vectors)
             image = contacts.images(owner, near, vectors)
             turned = (contacts.pairs[0][pair] != owner) | (contacts.image[pair] != image).any(axis=1)
-            self._ends = contacts.arrays, 2 * pair + turned
+            self._ends = contacts.arrays, 2 * contacts.live[pair] + turned
         return self._ends[1]

@@ -341,6 +341,6 @@ class _StaticScene:
     def force_ratio(self, system: DiskSystem, forces: np.ndarray, contacts: Mapping[str, ContactList]) -> float:
         """Mean unbalanced force over the mean contact force, for contact forces (3, n) and the pairs of each part."""
         unbalanced = np.hypot(*self.unbalanced(system, forces)).mean()
-        pair = np.concatenate([np.hypot(*pairs.arrays.force[:, :2].T) for pairs in contacts.values()])
+        pair = np.concatenate([np.hypot(*pairs.arrays.force[:2]) for pairs in contacts.values()])
         acting = pair > 0.0
         return float(unbalanced / pair[acting].mean()) if acting.any() else (np.inf if unbalanced > 0.0 else 0.0)

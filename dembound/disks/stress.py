@@ -48,7 +48,7 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
         rows = contacts.constants[contacts.contact_type[piece]]
         x, y = rows[:, :2].T if elastic else rows[:, :2].T + displacement[:2, second] - displacement[:2, first]
         part = 0.5 + rows[:, 4] / np.hypot(x, y)  # part of the vector on the side of the first disk
-        pull_x, pull_y = force[:, :2].T
+        pull_x, pull_y = force[:2]
         for total, dyad in zip(moments, (pull_x * x, pull_y * y, 0.5 * (pull_x * y + pull_y * x)), strict=True):
             np.add.at(total, first, part * dyad)
             np.add.at(total, second, (1.0 - part) * dyad)
@@ -57,11 +57,11 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
 
 
 def _pieces(contacts: Contacts, u: np.ndarray, *, elastic: bool) -> Iterator[tuple[slice, np.ndarray]]:
-    """Pieces of the list of pairs and their forces (k, 4) at displacements u (3, slots); no pair is changed."""
+    """Pieces of the list of pairs and their forces (4, k) at displacements u (3, slots); no pair is changed."""
     for begin in range(0, len(contacts.first), PIECE):
         piece = slice(begin, begin + PIECE)
         if not elastic:
-            yield piece, contacts.force[piece]
+            yield piece, contacts.force[:, piece]
             continue
         count = len(contacts.first[piece])
         pairs = contacts._replace(
@@ -72,7 +72,7 @@ def _pieces(contacts: Contacts, u: np.ndarray, *, elastic: bool) -> Iterator[tup
             shear=np.zeros(count),
             slip=np.zeros(count),
             cracked=np.full(count, -1),
-            force=np.empty((count, 4)),
+            force=np.empty((4, count)),
         )
         push(u, u, 0.0, 0, pairs, UNYIELDING, np.empty((CHUNKS, 2)))  # zero step: at rest
         yield piece, pairs.force

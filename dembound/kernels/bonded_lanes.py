@@ -1,8 +1,8 @@
 """The history-dependent law on rows of copies, eight pairs and eight disks at once (lanes.py).
 
-The formulas are those of contacts.py. A block of eight pairs of which one breaks, or of which bonds follow the
-geometry of the start while one is broken, is computed pair by pair. Pairs that are in no row, found by search or between
-rows of different groups, are as well, and their forces are added to those of the rows.
+The formulas are those of contacts.py. A block of eight pairs is computed pair by pair in the step in which one breaks,
+and, where intact bonds keep the geometry of the start, from then on. So are pairs that are in no row, found by search or
+between rows of different groups; their forces are added to those of the rows.
 """
 
 import numpy as np
@@ -155,7 +155,7 @@ def _push_block(pairs, q, block, i, u, v, step, number, contacts, limits, result
         there = bits(exists)
         fx, fy = choose(there, fx, 0.0), choose(there, fy, 0.0)
         on_i, on_j = choose(there, on_i, 0.0), choose(there, on_j, 0.0)
-    force = contacts.force.T
+    force = contacts.force
     store(force[0], c, fx)
     store(force[1], c, fy)
     store(force[2], c, on_i)
@@ -245,7 +245,7 @@ def _move_blocks(rows, pairs, first, last, u, v, body, contacts, extra, u_next, 
     across, up, about = body.free[0], body.free[1], body.free[2]
     nothing = splat(0.0)
     whole, half, speed = nothing, nothing, nothing
-    force = contacts.force.T
+    force = contacts.force
     group, column, r = place_of(rows, first)
     for block in range(first, last):
         if block > first:

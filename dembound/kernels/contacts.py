@@ -101,7 +101,7 @@ def _bond_state(Fn, Fs, M, per_area, per_section, limits):
     return after
 
 
-@njit(**FAST, inline="always")
+@njit(**FAST, forceinline=True)  # by LLVM: numba's own inlining would drop writes to arrays that nothing reads
 def push_pair(c, u, v, step, number, contacts, limits):
     """Force of pair c, see `push`; returns the energy (J) taken by friction and by cracks, and 1 if its bond broke."""
     _, first, second, contact_type, constants, state, all_shear, all_slip, cracked, _, force, _, _ = contacts
@@ -151,10 +151,10 @@ def push_pair(c, u, v, step, number, contacts, limits):
             breaks = 1
             turning = v[U(2), j] - v[U(2), i]
             broken = 0.5 * (Fn * (stretch - step * opening) + Fs * was + M * (turn - step * turning))
-    force[c, U(0)] = pull * nx - S * ny
-    force[c, U(1)] = pull * ny + S * nx
-    force[c, U(2)] = arm_i * S + moment
-    force[c, U(3)] = arm_j * S - moment
+    force[U(0), c] = pull * nx - S * ny
+    force[U(1), c] = pull * ny + S * nx
+    force[U(2), c] = arm_i * S + moment
+    force[U(3), c] = arm_j * S - moment
     return rubbed, broken, breaks
 
 
@@ -200,9 +200,9 @@ def ends_force(row, force, start, end):
         c = U(end[e]) >> U(1)
         side = U(end[e]) & U(1)
         sign = 1.0 - 2.0 * np.float64(side)
-        fx += sign * force[c, U(0)]
-        fy += sign * force[c, U(1)]
-        moment += force[c, U(2) + side]
+        fx += sign * force[U(0), c]
+        fy += sign * force[U(1), c]
+        moment += force[U(2) + side, c]
     return fx, fy, moment
 
 

@@ -29,7 +29,7 @@ def pieces(contacts, begin, end):
         j = np.int64(second[c])
         if i < begin or i >= end or j < begin or j >= end:
             continue
-        if state[c] == INTACT or force[c, U(0)] != 0.0 or force[c, U(1)] != 0.0:
+        if state[c] == INTACT or force[U(0), c] != 0.0 or force[U(1), c] != 0.0:
             i = _root(parent, i)
             j = _root(parent, j)
             parent[max(i, j)] = min(i, j)

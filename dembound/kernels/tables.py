@@ -59,7 +59,7 @@ class Contacts(NamedTuple):
     first, second, contact_type : (b,) uint32 particles, and the row of the pair in constants (p, 12).
     state : (b,) uint8, see contacts.py; shear, slip : (b,) m, the tangential displacement since the start and the part
     of it that slid; cracked : (b,) int64, step in which the bond broke, else −1; place : (b, 2) m, mean displacement of
-    the two disks in that step; force : (b, 4). start, end : rows of contact ends, one per particle, those before number
+    the two disks in that step; force : (4, b). start, end : rows of contact ends, one per particle, those before number
     `begin` empty, end (e,) uint32 = 2·contact + (0 first, 1 second).
     """
 
@@ -153,7 +153,7 @@ class Seam(NamedTuple):
 class SeamEnds(NamedTuple):
     """The same for a column under the history-dependent law: start (k + 1,) rows of its contact ends, end (e,).
 
-    force : (b, 4) of its contacts, see Contacts.
+    force : (4, b) of its contacts, see Contacts.
     """
 
     start: np.ndarray
@@ -275,9 +275,9 @@ class PairRows(NamedTuple):
 class LaneBonded(NamedTuple):
     """The history-dependent law in rows of copies; the other pairs come after those in rows.
 
-    bonded : the law, for all pairs; rows : the disks, whose contacts are not used; pairs : the rows of pairs. Disks with
-    ends of other pairs : stray (k,), ascending slots; stray_start (k + 1,), stray_end (e,) those ends, as in Contacts.
-    extra : (3, slots), also_lost (chunks, 2) : work space.
+    bonded : the law, for all pairs; rows : the disks, whose contacts are not used; pairs : the rows of pairs. stray :
+    (k,) ascending slots of disks with ends of other pairs; stray_start (k + 1,), stray_end (e,) those ends, as in
+    Contacts. extra : (3, slots), also_lost (chunks, 2) : work space.
     """
 
     bonded: Bonded

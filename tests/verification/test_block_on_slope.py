@@ -48,8 +48,8 @@ def tilted(angle: float) -> tuple[float, float]:
 def on_the_slope(simulation: Simulation) -> np.ndarray:
     """Forces (DISKS, 2) N from the block on the slope."""
     pairs = simulation.system.contacts["body"].arrays
-    standing = (pairs.first < DISKS) & (pairs.second >= DISKS) & pairs.force[:, :2].any(axis=1)
-    return pairs.force[standing, :2]
+    standing = (pairs.first < DISKS) & (pairs.second >= DISKS) & pairs.force[:2].any(axis=0)
+    return pairs.force[:2, standing].T
 
 
 @pytest.mark.parametrize("angle", [15.0, 26.0])  # tan⁻¹ 0.5 = 26.57°

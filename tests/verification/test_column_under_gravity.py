@@ -51,7 +51,7 @@ def standing(request, lab) -> tuple[DiskScene, ContactList]:
 
 def left(contacts: ContactList) -> float:
     """The most (N) that what the stage has left unbalanced on all disks comes to: a share of the mean contact force."""
-    pairs = np.hypot(*contacts.arrays.force[:, :2].T)
+    pairs = np.hypot(*contacts.force[:, :2].T)
     return len(contacts.assembly.radii) * RATIO * float(pairs[pairs > 0.0].mean())
 
 
@@ -71,7 +71,7 @@ def test_a_section_carries_what_is_above(standing):
     pairs, (first, second) = contacts.arrays, contacts.pairs
     # a section goes below a disk and all that stand higher; what crosses it upwards pushes the lower disk down
     carried = [
-        np.sum(pairs.force[:, 1] * ((y[second] >= height).astype(int) - (y[first] >= height)))
+        np.sum(pairs.force[1, contacts.live] * ((y[second] >= height).astype(int) - (y[first] >= height)))
         for height in y[above_base]
     ]
     weights = GRAVITY * scene.mass

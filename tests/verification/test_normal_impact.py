@@ -55,7 +55,7 @@ def impact(request, lab) -> Impact:
         apart = np.diff(scene.assembly.positions + simulation.state.displacement[:2].T, axis=0)
         overlaps.append(RADII.sum() - np.hypot(*apart[0]))
         simulation.advance(1)
-        forces.append(np.hypot(*simulation.system.contacts["body"].arrays.force[0, :2]))
+        forces.append(np.hypot(*simulation.system.contacts["body"].force[0, :2]))
     assert simulation.state.laws[-1][0] == "linearpbond"
     assert not simulation.state.displacement[2].any()
     touching = np.flatnonzero(np.array(overlaps) > 0.0)

@@ -240,7 +240,7 @@ def test_a_contact_that_pushes_still_carries_the_forces(scene) -> None:
     corner = at(body, 0.25, 0.25)
     isolate(parts, [corner])
     pairs = parts[0].pairs
-    pairs.force[np.flatnonzero(pairs.first == corner)[0], 0] = -1.0
+    pairs.force[0, np.flatnonzero(pairs.first == corner)[0]] = -1.0
     load = steady + balance.force
     balance.end_on_debris(parts, shaken(body, 4), shaken(body, 5), STEP, load)
 
@@ -255,7 +255,7 @@ def test_a_break_is_remembered_when_its_pair_has_left_the_list(scene) -> None:
     u, v = np.zeros((3, body.count)), np.zeros((3, body.count))
     isolate(parts, [corner])
     pairs = parts[0].pairs
-    pairs.force[np.flatnonzero(pairs.first == corner)[0], 0] = -1.0
+    pairs.force[0, np.flatnonzero(pairs.first == corner)[0]] = -1.0
     balance.end_on_debris(parts, u, v, STEP, load)
     assert balance.force[:, corner].all()
 

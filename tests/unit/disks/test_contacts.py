@@ -283,10 +283,10 @@ def test_at_the_start_a_locked_in_packing_pushes_and_another_does_not(scene) -> 
     packed, free = list_of(scene("periodic", **LOCKED_IN)), list_of(scene("periodic"))
 
     # forces of some 1 MN, as of the brick in balance to 1e-4 of that
-    each = np.hypot(*packed.arrays.force[:, :2].T)
+    each = np.hypot(*packed.force[:, :2].T)
     assert not each.any()
     unbalanced = forces_of(packed, still(packed))
-    pushing = np.hypot(*packed.arrays.force[:, :2].T)
+    pushing = np.hypot(*packed.force[:, :2].T)
     assert np.hypot(*unbalanced[:2]).mean() < 1e-3 * pushing[pushing > 0.0].mean()
     # E_c = 1.25e9 Pa times distances of 0.5 m that come out an ε or two apart, for six contacts
     np.testing.assert_allclose(forces_of(free, still(free)), 0.0, atol=6.0 * 1.25e9 * 0.5 * 2.0 * np.finfo(float).eps)
@@ -361,7 +361,7 @@ def test_what_is_left_of_a_body_remembers_all_it_went_through(scene, sides: str)
     # the same pairs, so the same forces, across periodic sides as well
     forces_of(contacts, moved)
     forces_of(left, moved[:, kept])
-    assert np.array_equal(contacts.arrays.force[among], left.arrays.force)
+    assert np.array_equal(contacts.force[among], left.force)
 
 
 def test_a_list_is_old_once_two_disks_may_have_closed_its_skin(contacts: ContactList) -> None:

@@ -51,7 +51,8 @@ def seam_ends(beside: DiskSystem) -> np.ndarray:
 
 def both(lists: dict[str, ContactList], name: str) -> np.ndarray:
     """A column of the pairs of column and body."""
-    return np.concatenate([getattr(contacts.arrays, name) for contacts in lists.values()])
+    each = [contacts.force if name == "force" else contacts.of(name) for contacts in lists.values()]
+    return np.concatenate(each)
 
 
 def check_ends(beside: DiskSystem) -> None:
@@ -163,7 +164,7 @@ def test_what_comes_across_the_seam_is_what_the_twins_feel_there(scene) -> None:
     for i, j, (fx, fy, moment_i, moment_j) in zip(*columns, strict=True):
         expected[:, i] += [fx, fy, moment_i]
         expected[:, j] += [-fx, -fy, moment_j]
-    owner, force = np.repeat(seam.node, seam.contact_counts), lists["column"].arrays.force
+    owner, force = np.repeat(seam.node, seam.contact_counts), lists["column"].force
     for node, end in zip(owner, seam_ends(beside), strict=True):
         fx, fy, *moments = force[end >> 1]
         sign = -1.0 if end & 1 else 1.0
@@ -269,10 +270,7 @@ def test_what_the_column_does_not_list_keeps_its_own_state(scene) -> None:
     # a pair of the column alone is struck off its list, so that neither it nor any twin of it is known there
     struck = listed(column, bare, ground.seam.width)[7]
     kept = [key != struck for key in listed(column, bare, ground.seam.width)]
-    column.arrays = column.arrays._replace(
-        **{name: getattr(column.arrays, name)[kept] for name in ("first", "second", "state", "shear", "slip")}
-    )
-    column.image = column.image[kept]
+    column.live, column.image = column.live[kept], column.image[kept]
     copy_column(lists, column, ground, np.zeros((3, ground.count)))
 
     same = np.array([key == struck for key in twins_keys(lists, ground)])
@@ -304,7 +302,7 @@ def sheared(contacts: ContactList, upper: tuple[float, ...], lower: tuple[float,
 def test_half_contacts_push_half_as_hard(bar) -> None:
     contacts, upright, right = half_cells(bar)
     contacts.push(sheared(contacts, (2e-5, 1e-5, 3e-5)))
-    force = contacts.arrays.force
+    force = contacts.force
 
     assert (np.count_nonzero(upright), np.count_nonzero(right)) == (4, 1)
     assert np.abs(force[upright]).min() > 0.0
@@ -325,8 +323,8 @@ def test_half_bonds_break_under_the_same_stress(bar, strength: str, upper: tuple
     # bonds of 1.25 GPa over 0.5 m: 2.5 GPa per m of stretch or slide, and R̄ = 0.25 m times the turn; 1 MPa at 0.4 mm
     contacts, upright, right = half_cells(bar, **{strength: 1e6})
     contacts.push(0.999 * sheared(contacts, upper, lower))
-    assert not (contacts.arrays.state[upright] != INTACT).any()
+    assert not (contacts.of("state")[upright] != INTACT).any()
     contacts.push(1.001 * sheared(contacts, upper, lower))
 
     assert right.any()
-    assert np.array_equal(contacts.arrays.state != INTACT, upright)
+    assert np.array_equal(contacts.of("state") != INTACT, upright)

@@ -237,7 +237,7 @@ def test_bonds_and_pushing_contacts_are_known_of_every_disk_under_the_law_with_a
     forces_of(part, still)
     pairs = part.pairs
     pairs.state[pairs.state == INTACT] = SHEAR
-    pushing = pairs.force[:, :2].any(axis=1)
+    pushing = pairs.force[:2].any(axis=0)
     ends = np.concatenate([pairs.first[pushing], pairs.second[pushing]])
 
     values, unit = part.snapshot(still)["coordination"]
@@ -267,7 +267,7 @@ def test_across_the_seam_both_laws_push_alike_as_long_as_nothing_gives_way(scene
     found = tie.elastic_forces(u)
 
     # sums of some three locked-in forces, of which the difference is taken
-    rounding = 20.0 * np.finfo(float).eps * np.abs(contacts.arrays.force[:, :2]).max()
+    rounding = 20.0 * np.finfo(float).eps * np.abs(contacts.force[:, :2]).max()
     np.testing.assert_allclose(found, tie.last_forces(contacts) - locked_in, rtol=0.0, atol=rounding)
     assert np.abs(found).max() > 1e6 * rounding
 

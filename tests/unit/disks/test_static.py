@@ -89,7 +89,7 @@ def test_mean_stress_is_that_of_the_contacts_inside(bar) -> None:
     contacts = body.contact_lists()["body"]
     # one force on the first disk of all pairs along x, another along y
     pairs = contacts.arrays
-    pairs.force[:, :2] = np.where(np.abs(pairs.constants[pairs.contact_type, :1]) > 0.0, [3.0, 4.0], [5.0, 6.0])
+    pairs.force[:2] = np.where(np.abs(pairs.constants[pairs.contact_type, 0]) > 0.0, [[3.0], [4.0]], [[5.0], [6.0]])
     stress = mean_stress(body, particle_stress(body, pairs, np.zeros((3, 256)), elastic=False))
 
     # f ⊗ d / D² with d = (D, 0) or (0, D), the shear the mean of both
@@ -226,7 +226,7 @@ def test_a_hole_between_the_disks_leaves_a_body_at_rest(bar) -> None:
     # what it goes on to settle by is less than what 1e-8 of the mean contact force does, see above
     scale = np.abs(before.displacement).max()
     np.testing.assert_allclose(after.displacement, before.displacement, rtol=0.0, atol=8.0 * 1e-8 * scale)
-    shear = [start.contacts["body"].arrays.shear for start in (before, after)]
+    shear = [start.contacts["body"].of("shear") for start in (before, after)]
     assert shear[1].any()
     np.testing.assert_allclose(shear[1], shear[0], rtol=0.0, atol=2.0 * 8.0 * 1e-8 * scale)
 
@@ -350,8 +350,8 @@ def test_with_an_excavation_the_column_is_that_of_before(bar, law: dict) -> None
     before, after = settled.before.start.contacts, settled.start.contacts
     assert list(before) == list(after) == (["column", "body"] if law else [])
     if law:  # the column has lost nothing, the body some
-        assert np.array_equal(after["column"].arrays.first, before["column"].arrays.first)
-        assert len(after["body"].arrays.first) < len(before["body"].arrays.first)
+        assert np.array_equal(after["column"].of("first"), before["column"].of("first"))
+        assert len(after["body"].live) < len(before["body"].live)
 
 
 LOOSE = {
@@ -420,7 +420,7 @@ def test_what_a_stage_lacks_is_what_its_contacts_and_loads_come_to(bar) -> None:
     with pytest.raises(StalledError) as caught:
         settle(body)
     contacts, total = caught.value.run.system.contacts["body"], body.steady_load.copy()
-    for i, j, (fx, fy, *_) in zip(*contacts.pairs, contacts.arrays.force, strict=True):
+    for i, j, (fx, fy, *_) in zip(*contacts.pairs, contacts.force, strict=True):
         total[:2, i] += [fx, fy]
         total[:2, j] -= [fx, fy]
     total[:, body.edges["bottom"].nodes] = 0.0
@@ -438,7 +438,7 @@ def test_the_force_ratio_is_over_the_pairs_that_act(bar) -> None:
     with pytest.raises(StalledError) as caught:
         settle(body, lambda _, ratio: ratios.append(ratio))
     lacking = np.hypot(*caught.value.unbalanced.T)
-    pair = np.hypot(*caught.value.run.system.contacts["body"].arrays.force[:, :2].T)
+    pair = np.hypot(*caught.value.run.system.contacts["body"].force[:, :2].T)
 
     # pairs of the list that do not push say nothing of how strong forces are; those that are held lack nothing
     assert 0 < np.count_nonzero(pair == 0.0) < len(pair)

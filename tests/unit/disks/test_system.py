@@ -86,7 +86,7 @@ def test_elastic_forces_are_those_of_the_pairs_without_what_was_locked_in(scene,
     total = system.last_forces(lists)
 
     # sums of some five locked-in forces, of which the difference is taken
-    scale = max(np.abs(contacts.arrays.force[:, :2]).max() for contacts in lists.values())
+    scale = max(np.abs(contacts.force[:, :2]).max() for contacts in lists.values())
     found = system.elastic_forces(u)
     np.testing.assert_allclose(found, total - locked_in, rtol=0.0, atol=20.0 * EPS * scale)
     assert np.abs(found).max() > 1e6 * 20.0 * EPS * scale
@@ -262,7 +262,7 @@ def test_a_law_that_changes_in_good_time_changes_no_force(scene) -> None:
     after = system.steady + forces_of(system, system.contacts, state.displacement)
 
     # sums of some five locked-in forces
-    scale = np.abs(system.contacts["body"].arrays.force[:, :2]).max()
+    scale = np.abs(system.contacts["body"].force[:, :2]).max()
     np.testing.assert_allclose(after, before, rtol=0.0, atol=20.0 * EPS * scale)
 
 
@@ -336,7 +336,7 @@ def test_what_balances_ends_on_what_has_broken_away(scene, why: int, ends: bool)
         state = begun(system, start.displacement)
         pairs, loose = system.parts[0].pairs, 0
         broken = (pairs.first == loose) | (pairs.second == loose)
-        pairs.state[broken], pairs.cracked[broken], pairs.force[broken] = TENSION, 1, 0.0
+        pairs.state[broken], pairs.cracked[broken], pairs.force[:, broken] = TENSION, 1, 0.0
         force, steady = system.balance.force.copy(), system.steady.copy()
         assert force[:, loose].all()
         system.react(why, 1, state)

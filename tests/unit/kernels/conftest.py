@@ -149,7 +149,7 @@ class PlainPairs:
         for c in range(len(self.arrays.first)):
             i, j = int(self.arrays.first[c]), int(self.arrays.second[c])
             on_i, moment_i, moment_j = self._push_one(c, u[:, i], u[:, j], v[:, i], v[:, j], step, number)
-            self.arrays.force[c] = [*on_i, moment_i, moment_j]
+            self.arrays.force[:, c] = [*on_i, moment_i, moment_j]
             total[:, i] += [*on_i, moment_i]
             total[:, j] += [*-on_i, moment_j]
         return total
@@ -230,7 +230,7 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
         np.zeros(b),
         np.full(b, -1),
         np.full((b, 2), np.nan),
-        np.zeros((b, 4)),
+        np.zeros((4, b)),
         np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=count))]).astype(np.uint32),
         end[np.argsort(owner, kind="stable")].astype(np.uint32),
     )

@@ -68,8 +68,8 @@ def test_pairs_push_as_the_law_says_step_by_step(random_pairs, plain, copied, ge
         assert np.array_equal(found.state, expected.arrays.state)
         assert np.array_equal(found.cracked, expected.arrays.cracked)
         close(lost, expected.lost - before)
-        slid += np.count_nonzero((found.slip != 0.0) & found.force[:, :2].any(axis=1))
-        opened += np.count_nonzero((found.state != INTACT) & ~found.force[:, :2].any(axis=1))
+        slid += np.count_nonzero((found.slip != 0.0) & found.force[:2].any(axis=0))
+        opened += np.count_nonzero((found.state != INTACT) & ~found.force[:2].any(axis=0))
     # all of it was to be seen: bonds that hold and break either way, contacts that slide, others that are open
     assert set(found.state) == {NONE, INTACT, TENSION, SHEAR}
     assert slid > 0
@@ -86,20 +86,20 @@ def test_forces_and_moments_of_a_pair_balance(random_pairs, geometry: int) -> No
         x, y = (pairs.constants[:, :2] + np.where(still[:, None], 0.0, apart)).T
 
         # forces are opposite by the way they are listed; the couple of −F on j about i is balanced by the moments
-        close(pairs.force[:, 2] + pairs.force[:, 3] - (x * pairs.force[:, 1] - y * pairs.force[:, 0]), 0.0)
+        close(pairs.force[2] + pairs.force[3] - (x * pairs.force[1] - y * pairs.force[0]), 0.0)
 
 
 def test_particles_get_the_sum_of_their_pairs(random_pairs) -> None:
     pairs = random_pairs(PARTICLES, PAIRS)
-    pairs.force[:] = np.random.default_rng(1).uniform(-1.0, 1.0, (PAIRS, 4))
+    pairs.force[:] = np.random.default_rng(1).uniform(-1.0, 1.0, (4, PAIRS))
     total = np.full((3, PARTICLES), np.nan)
     sum_forces(pairs, total)
 
     expected = np.zeros((3, PARTICLES))
     for sign, ends, moment in ((1.0, pairs.first, 2), (-1.0, pairs.second, 3)):
-        np.add.at(expected[0], ends, sign * pairs.force[:, 0])
-        np.add.at(expected[1], ends, sign * pairs.force[:, 1])
-        np.add.at(expected[2], ends, pairs.force[:, moment])
+        np.add.at(expected[0], ends, sign * pairs.force[0])
+        np.add.at(expected[1], ends, sign * pairs.force[1])
+        np.add.at(expected[2], ends, pairs.force[moment])
     close(total, expected)
 
 
@@ -144,7 +144,7 @@ def test_a_contact_pushes_while_disks_overlap_and_never_pulls(one_pair) -> None:
     for x, force in ((-0.1, -0.4), (0.0, 0.0), (0.1, 0.0), (-0.2, -0.8)):
         pushed(pair, UNBREAKABLE, two(x), two())
         # k_n = 4; the first disk, on the left, is pushed to the left
-        close(pair.force[0], [force, 0.0, 0.0, 0.0])
+        close(pair.force[:, 0], [force, 0.0, 0.0, 0.0])
 
 
 def test_the_first_push_after_being_open_is_larger(one_pair) -> None:
@@ -180,7 +180,7 @@ def test_a_contact_that_closes_rubs_with_what_it_pushes_with(one_pair, geometry:
     # N = CLOSING · 4 · 0.1; k_s · 0.3 would be far beyond half of it
     pushed(pair, UNBREAKABLE._replace(geometry=geometry), two(-0.1, turn=0.3), two(-0.15 / STEP, turn=0.3 / STEP))
 
-    close(abs(pair.force[0, 1]), 0.5 * CLOSING * 0.4)
+    close(abs(pair.force[1, 0]), 0.5 * CLOSING * 0.4)
     # the arm of the second disk is 0.95, and its surface moves against the first's
     close(pair.slip[0], pair.shear[0] + 0.5 * CLOSING * 0.4 / 2.0)
 
@@ -207,7 +207,7 @@ def test_tiny_overlaps_of_large_distances_push_to_the_last_digit(one_pair, size:
     stored, _ = strain_energy(u, pair, UPDATED)
 
     # d − d_0 would be wrong by 1e-16/1e-12; some ten operations, each rounded
-    assert np.hypot(*pair.force[0, :2]) == pytest.approx(4.0 * size, rel=3e-15)
+    assert np.hypot(*pair.force[:2, 0]) == pytest.approx(4.0 * size, rel=3e-15)
     assert stored == pytest.approx(0.5 * 4.0 * size**2, rel=6e-15)
 
 
@@ -219,14 +219,14 @@ def test_a_contact_slides_at_the_friction_force_and_rubs_off_its_work(one_pair) 
         rubbed += pushed(pair, UNBREAKABLE, u, v)[0]
 
     # N = 4 · 0.1, F = 0.5 N = 0.2 reached after F/k_s = 0.1 m; the rest of 2 m slides
-    close(pair.force[0], [-0.4, -0.2, -0.2, -0.2])
+    close(pair.force[:, 0], [-0.4, -0.2, -0.2, -0.2])
     close(pair.slip, [-1.9])
     assert rubbed == pytest.approx(0.2 * 1.9, rel=1e-12)
     # turning back: first 0.2 m of springs, then sliding the other way
     for back, force in ((1.9, 0.0), (1.8, 0.2), (1.0, 0.2)):
         rubbed += pushed(pair, UNBREAKABLE, two(turn=back), two(turn=(back - u[2, 1]) / STEP))[0]
         u = two(turn=back)
-        close(pair.force[0], [-0.4, force, force, force])
+        close(pair.force[:, 0], [-0.4, force, force, force])
     assert rubbed == pytest.approx(0.2 * (1.9 + 0.8), rel=1e-12)
 
 
@@ -265,7 +265,7 @@ def test_what_is_broken_still_rubs(one_pair) -> None:
     pushed(pair, UNBREAKABLE, two(turn=0.05), two(turn=0.05 / STEP))
 
     # k_n 0.1, k_s 0.05 along −y on the second surface, and no bond
-    close(pair.force[0], [-0.4, -0.1, -0.1, -0.1])
+    close(pair.force[:, 0], [-0.4, -0.1, -0.1, -0.1])
 
 
 def test_a_pair_that_turns_as_a_whole_keeps_its_forces(one_pair) -> None:
@@ -278,8 +278,8 @@ def test_a_pair_that_turns_as_a_whole_keeps_its_forces(one_pair) -> None:
     # the chord seen along the new tangent is 2 sin δ, the arms take 2 δ: a step leaves 2 δ³/6 of false shear, which
     # k_s + k̄_s A = 3 N/m answer
     false = 3.0 * steps * 2.0 * (turns / steps) ** 3 / 6.0
-    np.testing.assert_allclose(pair.force[0, :2], [0.0, -0.4], rtol=0.0, atol=1.01 * false)
-    assert abs(pair.force[0, 2]) < 1.01 * false
+    np.testing.assert_allclose(pair.force[:2, 0], [0.0, -0.4], rtol=0.0, atol=1.01 * false)
+    assert abs(pair.force[2, 0]) < 1.01 * false
 
 
 @pytest.mark.parametrize("geometry", [UPDATED, BONDED])
@@ -292,7 +292,7 @@ def test_small_motions_meet_the_same_forces_in_every_geometry(random_pairs, geom
 
     # normals turn by 4e-6 at most, and push with k_n · 0.05 ≤ 0.1, arms and distances likewise; the rest is of size²
     np.testing.assert_allclose(pairs.force, still.force, rtol=0.0, atol=1e-6)
-    assert np.abs(still.force[:, :2]).max() > 0.02
+    assert np.abs(still.force[:2]).max() > 0.02
 
 
 def test_adopted_pairs_start_where_small_motions_brought_them(random_pairs, plain) -> None:

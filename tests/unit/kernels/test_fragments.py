@@ -29,9 +29,9 @@ def joined(random_pairs):
             first=first, second=second, state=np.array(states, dtype=np.uint8)
         )
         contacts.force[:] = 0.0
-        contacts.force[list(push_x), 0] = -1e-300
-        contacts.force[list(push_y), 1] = 1.0
-        contacts.force[:, 2:] = 1.0  # moments alone hold nothing together
+        contacts.force[0, list(push_x)] = -1e-300
+        contacts.force[1, list(push_y)] = 1.0
+        contacts.force[2:] = 1.0  # moments alone hold nothing together
         return contacts
 
     return make
@@ -88,8 +88,8 @@ def test_pieces_are_those_of_the_graph(random_pairs, seed: int, begin: int, end:
     contacts = random_pairs(60, 80)
     contacts.first[:], contacts.second[:] = rng.permuted(np.tile(np.arange(60), (80, 1)), axis=1)[:, :2].T
     contacts.state[:] = rng.choice([INTACT, *APART], 80)
-    contacts.force[:] = rng.uniform(-1.0, 1.0, (80, 4)) * (rng.random((80, 1)) < 0.3)
-    acts = (contacts.state == INTACT) | contacts.force[:, :2].any(axis=1)
+    contacts.force[:] = rng.uniform(-1.0, 1.0, (4, 80)) * (rng.random(80) < 0.3)
+    acts = (contacts.state == INTACT) | contacts.force[:2].any(axis=0)
     inside = ((contacts.first >= begin) & (contacts.first < end)) & (
         (contacts.second >= begin) & (contacts.second < end)
     )

@@ -91,7 +91,7 @@ def test_the_seam_forces_of_pairs_with_a_memory_are_sums_over_the_twins_ends(con
 
     def force(_: int, e: int) -> np.ndarray:
         pair, second = divmod(int(contacts.end[e]), 2)
-        fx, fy, *moments = pairs.force[pair]
+        fx, fy, *moments = pairs.force[:, pair]
         return np.array([-fx, -fy, moments[1]] if second else [fx, fy, moments[0]])
 
     across, u = np.zeros((len(TWINS), 3)), np.full((3, PARTICLES), np.nan)
