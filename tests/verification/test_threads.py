@@ -25,7 +25,8 @@ def test_same_bits_for_one_and_two_threads(lab, monkeypatch):
             scene = lab.scene("B", (40.0, 10.0), **case)
             simulation = Simulation(scene, 0.9 * step_limit(scene), np.arange(scene.count))
             record = simulation.advance(STEPS)
-            results.append((record, simulation.state.displacement, simulation.state.velocity))
+            state = simulation.state
+            results.append((record, state.displacement, state.velocity, simulation.time_step))
     finally:
         numba.set_num_threads(before)
     for one, two in zip(*results, strict=True):

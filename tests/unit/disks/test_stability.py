@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from dembound.boundaries.support import SupportBuilder
+from dembound.disks import stability
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.stability import OPENING, TOLERANCE, choose_step, step_limit
-from dembound.errors import CaseError
+from dembound.disks.stability import LEAST, OPENING, TOLERANCE, choose_step, step_limit
+from dembound.errors import CaseError, RunError
 
 MASS = 2500.0 * 0.5**2
 K = 2500.0 * 1000.0**2
@@ -62,6 +63,32 @@ def test_dashpots_cost_no_stability(bar) -> None:
 
 def test_the_same_scene_has_the_same_limit(bar) -> None:
     assert step_limit(build(bar())) == step_limit(build(bar()))
+
+
+def test_the_limit_does_not_depend_on_the_order_of_slots(bar, in_order) -> None:
+    packing = {"pattern": "B", "size": [20.0, 10.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [2.5, 2.5]}
+    scene = build(bar({"packing": packing, "motion.held": [], "monitor": []}))
+    assert not scene.layout.is_plain
+
+    # the same start, and sums of 10⁴ terms in another order
+    assert step_limit(scene) == pytest.approx(step_limit(in_order(scene)), rel=1e-10)
+
+
+def test_disks_without_contacts_do_not_vibrate(bar) -> None:
+    assert step_limit(build(bar({"packing.size": [0.5, 0.5], "monitor": []}))) == np.inf
+
+
+def test_a_limit_that_is_not_found_in_time_is_an_error(bar, monkeypatch) -> None:
+    scene = build(bar({**ONLY_X, "packing.size": [50.0, 5.0]}))
+    monkeypatch.setattr(stability, "MOST", LEAST)  # enough for scenes of few disks only
+    with pytest.raises(RunError, match="was not found in 40 iterations"):
+        step_limit(scene)
+
+
+def test_a_random_start_is_enough() -> None:
+    # the bound of Kuczyński & Woźniakowski for ten million particles and steps of 0.9 of the limit
+    components, error = 3e7, 1.0 - 0.9**2
+    assert 1.648 * np.sqrt(components) * np.exp(-(2 * LEAST - 1) * np.sqrt(error)) < 2e-11
 
 
 def given(bar, step: float | str, **more: object) -> DiskScene:
