@@ -89,7 +89,7 @@ class ContactList:
         self.skin = SKIN * ground.brick.mean_diameter
         self.origin = np.zeros((2, self._slots.stop - self._slots.start))
         self.bonds = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
-        self._plan = None if plan is None else PairPlan.of(assembly, *plan, len(self.bonds))
+        self._plan: PairPlan | None = None
         self.rows: PairRows | None = None
         first, second = assembly.pairs.T.astype(np.int64)
         images = self.images(first, second, self.bonds[assembly.contact_type, :2])
@@ -105,6 +105,12 @@ class ContactList:
         self._held = held
         if self.searches:
             self.search(np.zeros((3, len(self.layout.slot))))
+        if plan is not None:
+            self.bonds = self._constants  # near pairs of the start are the same in all copies, as contacts are
+            first, second = self.pairs
+            pairs = Pairs(first, second, self.image, self.of("contact_type"))
+            self._plan = PairPlan.of(first, second, pairs.contact_type, len(self.bonds), *plan)
+            self._list(pairs, *(self.of(name) for name in ("state", "shear", "slip", "cracked")))
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
         """Set the pairs to the state of the elastic law at displacements (3, n), without any slip."""
@@ -353,7 +359,7 @@ class ContactList:
     def _list_rows(self, in_rows: np.ndarray, owner: np.ndarray, end: np.ndarray) -> None:
         """Make the rows for kernels, of pairs in some places (k,), and list the ends (e,) of others by their owners."""
         assert self._plan is not None
-        self.rows = self._plan.rows(in_rows)
+        self.rows = self._plan.rows(in_rows, self.bonds)
         others = end >= 2 * self._plan.count
         order = np.lexsort((end[others], owner[others]))
         slot, start = np.unique(owner[others][order], return_index=True)

@@ -8,7 +8,6 @@ import numpy as np
 from dembound.disks.lane_rows import RowPlan
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import PairRows
-from dembound.packings.tiling import Assembly
 
 LEAST_SHARE = 0.3
 """Share of the lanes of a pair row that have to hold pairs; others are computed one by one."""
@@ -18,10 +17,10 @@ LEAST_SHARE = 0.3
 class PairPlan:
     """The rows of pairs, q of them: all copies of a contact whose disks are as many slots apart.
 
-    A pair stands in the column and lane of its first disk. first_block : that of the part's disks. key (q,), ascending: row of the first disk times `types`,
-    plus the type of the contact; shift (q,) slots from the first disk to the second; other (q,) row of the second;
-    step_column, step_lane (q,) columns and lanes from the first to the second. group_row, group_block (g + 1,) rows and
-    blocks of pairs in each group of disks.
+    A pair is in the column and lane of its first disk. first_block : that of the part's disks. key (q,), ascending: row
+    of the first disk times `types`, plus the type of the contact; shift (q,) slots from the first disk to the second;
+    other (q,) row of the second; step_column, step_lane (q,) columns and lanes from the first to the second. group_row,
+    group_block (g + 1,) rows and blocks of pairs in each group of disks.
     """
 
     plan: RowPlan
@@ -41,12 +40,13 @@ class PairPlan:
         return LANES * int(self.group_block[-1])
 
     @classmethod
-    def of(cls, assembly: Assembly, plan: RowPlan, first_block: int, types: int) -> "PairPlan":
-        """Rows for the contacts of an assembly, of so many types, whose disks begin with a block."""
-        i, j = assembly.pairs.T
+    def of(
+        cls, i: np.ndarray, j: np.ndarray, contact_type: np.ndarray, types: int, plan: RowPlan, first_block: int
+    ) -> "PairPlan":
+        """Rows for pairs of particles i, j (b,) of so many types, whose disks begin with a block."""
         shift = plan.slot[j] - plan.slot[i]
         far = int(np.abs(shift).max(initial=0)) + 1
-        key = plan.row[i] * types + assembly.contact_type
+        key = plan.row[i] * types + contact_type
         _, sample, counts = np.unique(key * (2 * far) + shift + far, return_index=True, return_counts=True)
         most = np.lexsort((-counts, key[sample]))
         most = most[np.diff(key[sample][most], prepend=-1) > 0]
@@ -85,11 +85,12 @@ class PairPlan:
         place[fits] = LANES * block + plan.lane[i]
         return place
 
-    def rows(self, place: np.ndarray) -> PairRows:
-        """The rows for kernels; place (b,) of the pairs that are in them."""
+    def rows(self, place: np.ndarray, constants: np.ndarray) -> PairRows:
+        """The rows for kernels; place (b,) of the pairs that are in them, constants (types, 12) of contacts."""
         exists = np.zeros(int(self.group_block[-1]), dtype=np.uint8)
         np.bitwise_or.at(exists, place // LANES, np.left_shift(1, place % LANES).astype(np.uint8))
-        return self._empty._replace(exists=exists)
+        lines = constants[self._empty.contact_type]
+        return self._empty._replace(exists=exists, normal=lines[:, :2] / lines[:, 2:3])
 
     @cached_property
     def _empty(self) -> PairRows:
@@ -99,9 +100,11 @@ class PairPlan:
         within = np.arange(len(self.key)) - self.group_row[group]
         back = LANES * (within - self.step_column * np.diff(self.group_row)[group]) - self.step_lane
         row, offset = np.concatenate([owner, self.other]), np.concatenate([LANES * within, back])
-        second = np.repeat([False, True], len(owner))
-        order = np.lexsort((offset, second, row))
         mask, masks = self._masks(group)
+        mask = np.concatenate([np.full(len(owner), -1), mask])
+        kind = np.repeat([0, 1], len(owner)) + (mask >= 0)
+        order = np.lexsort((offset, kind, row))
+        counts = np.bincount(3 * row + kind, minlength=3 * int(plan.group_row[-1])).reshape(-1, 3)
         return PairRows(
             group_row=self.group_row,
             group_block=self.group_block,
@@ -110,11 +113,11 @@ class PairPlan:
             owner=owner - plan.group_row[group],
             shift=self.shift,
             contact_type=self.key % self.types,
+            normal=np.zeros((0, 2)),
             exists=np.zeros(0, dtype=np.uint8),
-            start=np.concatenate([[0], np.cumsum(np.bincount(row, minlength=int(plan.group_row[-1])))]),
+            start=np.concatenate([[0], np.cumsum(counts)]),
             offset=offset[order],
-            second=second[order],
-            mask=np.concatenate([np.full(len(owner), -1), mask])[order],
+            mask=mask[order],
             masks=masks,
         )
 

@@ -1,8 +1,8 @@
 """The history-dependent law on rows of copies, eight pairs and eight disks at once (lanes.py).
 
 The formulas are those of contacts.py. A block of eight pairs is computed pair by pair in the step in which one breaks,
-and, where intact bonds keep the geometry of the start, from then on. So are pairs that are in no row, found by search or
-between rows of different groups; their forces are added to those of the rows.
+and, where intact bonds keep the geometry of the start, from then on. So are pairs that are in no row, found by search
+or between rows of different groups; their forces are added to those of the rows.
 """
 
 import numpy as np
@@ -36,35 +36,6 @@ _INTACT = np.uint8(INTACT)
 
 
 @njit(**INLINED)
-def _reference(k, t, dx, dy, turn_i, turn_j):
-    """Normal, arms, stretch and shear of pairs for small displacements, see contacts._reference_strain."""
-    rest = k[t, U(2)]
-    nx = k[t, U(0)] / rest
-    ny = k[t, U(1)] / rest
-    arm = 0.5 * rest + k[t, U(4)]
-    stretch = nx * dx + ny * dy
-    shear = nx * dy - ny * dx - arm * turn_i - (rest - arm) * turn_j
-    return splat(nx), splat(ny), splat(arm), splat(rest - arm), stretch, shear
-
-
-@njit(**INLINED)
-def _updated(k, t, dx, dy, dvx, dvy, spin_i, spin_j, was, step):
-    """The same where normal and arms follow the motion, see contacts._updated_strain."""
-    rest = k[t, U(2)]
-    x = k[t, U(0)] + dx
-    y = k[t, U(1)] + dy
-    distance = root(x * x + y * y)
-    stretch = ((k[t, U(0)] + x) * dx + (k[t, U(1)] + y) * dy) / (distance + rest)
-    inverse = 1.0 / distance
-    nx = x * inverse
-    ny = y * inverse
-    arm = 0.5 * distance + k[t, U(4)]
-    slide = nx * dvy - ny * dvx
-    shear = was + step * (slide - arm * spin_i - (distance - arm) * spin_j)
-    return nx, ny, arm, distance - arm, stretch, shear
-
-
-@njit(**INLINED)
 def _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result):
     """The pairs of a block in turn."""
     for k in range(LANES):
@@ -76,8 +47,64 @@ def _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result
 
 
 @njit(**INLINED)
-def _push_block(pairs, q, block, i, u, v, step, number, contacts, limits, result):
-    """Forces of the eight pairs of a block of row q, whose first disks are in the slots from i on.
+def _apart(u, i, j):
+    """Displacements of eight disks in slots from j on, relative to those from i on."""
+    return load(u[0], j) - load(u[0], i), load(u[1], j) - load(u[1], i)
+
+
+@njit(**INLINED)
+def _contact(k, t, c, stretch, opening, shear, was, step, gives_way, exists, contacts, friction):
+    """Normal and shear force of contacts, their slip, the energy (J) that friction takes, and whether any slides."""
+    overlap = (k[t, U(3)] - k[t, U(2)]) - stretch
+    slip = load(contacts.slip, c)
+    N = k[t, U(5)] * overlap
+    S = k[t, U(6)] * (shear - slip)
+    rubbed = splat(0.0)
+    slides = False
+    if gives_way:
+        N = larger(N, 0.0)
+        N = choose(at_most(overlap + step * opening, 0.0), CLOSING * N, N)
+        most = friction * N
+        stays = at_most(magnitude(S), most)
+        slides = (byte_of(stays) & exists) != exists
+        if slides:
+            before = k[t, U(6)] * (was - slip)
+            S = choose(stays, S, with_sign(most, S))
+            slid = choose(stays, slip, shear - S * (1.0 / k[t, U(6)]))
+            rubbed = choose(bits(exists), 0.5 * (before + S) * (slid - slip), 0.0)
+            slip = slid
+    return N, S, slip, rubbed, slides
+
+
+@njit(**INLINED)
+def _bond(k, t, stretch, shear, bent, whole, limits):
+    """Normal and shear force and moment of bonds, and the bits of those that would break."""
+    normal = k[t, U(7)] * stretch
+    sheared = k[t, U(8)] * shear
+    moment = k[t, U(9)] * bent
+    stress = normal * k[t, U(10)]
+    torn = at_most(limits.tension, stress + magnitude(moment) * k[t, U(11)])
+    cut = at_most(limits.cohesion - stress * limits.tan_fa, magnitude(sheared) * k[t, U(10)])
+    breaks = byte_of(torn) | byte_of(cut)
+    return choose(whole, normal, 0.0), choose(whole, sheared, 0.0), choose(whole, moment, 0.0), breaks
+
+
+@njit(**INLINED)
+def _store_forces(force, c, exists, fx, fy, on_i, on_j):
+    """Store the forces of eight pairs, zero where there is none."""
+    if exists != _ALL:
+        there = bits(exists)
+        fx, fy = choose(there, fx, 0.0), choose(there, fy, 0.0)
+        on_i, on_j = choose(there, on_i, 0.0), choose(there, on_j, 0.0)
+    store(force[0], c, fx)
+    store(force[1], c, fy)
+    store(force[2], c, on_i)
+    store(force[3], c, on_j)
+
+
+@njit(**FAST)
+def _push_reference(pairs, q, block, i, u, v, step, number, contacts, limits, result):
+    """Forces of the eight pairs of a block of row q in the geometry of the start; their first disks are from slot i on.
 
     Returns the energy (J) that friction took; result (3,) is advanced where pairs are computed in turn.
     """
@@ -88,78 +115,87 @@ def _push_block(pairs, q, block, i, u, v, step, number, contacts, limits, result
     nothing = splat(0.0)
     whole = where_equal(contacts.state, c, _INTACT)
     intact = byte_of(whole)
-    if limits.geometry == BONDED and (intact & exists) != exists:
-        _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
-        return nothing
+    nx, ny = pairs.normal[q, U(0)], pairs.normal[q, U(1)]
+    rest = k[t, U(2)]
+    arm_i = 0.5 * rest + k[t, U(4)]
+    arm_j = rest - arm_i
+    dx, dy = _apart(u, i, j)
     turn_i, turn_j = load(u[2], i), load(u[2], j)
-    dx = load(u[0], j) - load(u[0], i)
-    dy = load(u[1], j) - load(u[1], i)
-    was = load(contacts.shear, c)
-    dvx, dvy = nothing, nothing
-    touches = k[t, U(5)] > 0.0 or k[t, U(6)] > 0.0
-    gives_way = touches and (limits.geometry != REFERENCE or k[t, U(3)] < k[t, U(2)])
-    if gives_way or limits.geometry == UPDATED:
-        dvx = load(v[0], j) - load(v[0], i)
-        dvy = load(v[1], j) - load(v[1], i)
-    if limits.geometry == UPDATED:
-        spin_i, spin_j = load(v[2], i), load(v[2], j)
-        nx, ny, arm_i, arm_j, stretch, shear = _updated(k, t, dx, dy, dvx, dvy, spin_i, spin_j, was, step)
-    else:
-        nx, ny, arm_i, arm_j, stretch, shear = _reference(k, t, dx, dy, turn_i, turn_j)
-    pull = nothing
-    side = nothing
-    rubbed = nothing
-    slip = nothing
-    slides = False
-    if touches:
-        overlap = (k[t, U(3)] - k[t, U(2)]) - stretch
-        slip = load(contacts.slip, c)
-        N = k[t, U(5)] * overlap
-        side = k[t, U(6)] * (shear - slip)
+    stretch = nx * dx + ny * dy
+    shear = nx * dy - ny * dx - arm_i * turn_i - arm_j * turn_j
+    pull, side, rubbed, slip, slides = nothing, nothing, nothing, nothing, False
+    if k[t, U(5)] > 0.0 or k[t, U(6)] > 0.0:
+        opening = nothing
+        gives_way = limits.geometry != REFERENCE or k[t, U(3)] < rest
         if gives_way:
-            N = larger(N, 0.0)
+            dvx, dvy = _apart(v, i, j)
             opening = nx * dvx + ny * dvy
-            N = choose(at_most(overlap + step * opening, 0.0), CLOSING * N, N)
-            most = limits.friction * N
-            stays = at_most(magnitude(side), most)
-            slides = (byte_of(stays) & exists) != exists
-            if slides:
-                before = k[t, U(6)] * (was - slip)
-                side = choose(stays, side, with_sign(most, side))
-                slid = choose(stays, slip, shear - side / splat(k[t, U(6)]))
-                rubbed = choose(bits(exists), 0.5 * (before + side) * (slid - slip), 0.0)
-                slip = slid
+        was = load(contacts.shear, c)
+        N, side, slip, rubbed, slides = _contact(
+            k, t, c, stretch, opening, shear, was, step, gives_way, exists, contacts, limits.friction
+        )
         pull = -1.0 * N
     moment = nothing
     if intact != 0:
-        bent = k[t, U(9)] * (turn_j - turn_i)
-        normal = k[t, U(7)] * stretch
-        sheared = k[t, U(8)] * shear
-        stress = normal * k[t, U(10)]
-        torn = at_most(limits.tension, stress + magnitude(bent) * k[t, U(11)])
-        cut = at_most(limits.cohesion - stress * limits.tan_fa, magnitude(sheared) * k[t, U(10)])
-        if ((byte_of(torn) | byte_of(cut)) & intact & exists) != 0:
+        normal, sheared, moment, breaks = _bond(k, t, stretch, shear, turn_j - turn_i, whole, limits)
+        if (breaks & intact & exists) != 0:
             _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
             return nothing
-        pull += choose(whole, normal, 0.0)
-        side += choose(whole, sheared, 0.0)
-        moment = choose(whole, bent, 0.0)
+        pull += normal
+        side += sheared
     store(contacts.shear, c, shear)
     if slides:
         store(contacts.slip, c, slip)
-    fx = pull * nx - side * ny
-    fy = pull * ny + side * nx
-    on_i = arm_i * side + moment
-    on_j = arm_j * side - moment
-    if exists != _ALL:
-        there = bits(exists)
-        fx, fy = choose(there, fx, 0.0), choose(there, fy, 0.0)
-        on_i, on_j = choose(there, on_i, 0.0), choose(there, on_j, 0.0)
-    force = contacts.force
-    store(force[0], c, fx)
-    store(force[1], c, fy)
-    store(force[2], c, on_i)
-    store(force[3], c, on_j)
+    fx, fy = nx * pull - ny * side, ny * pull + nx * side
+    _store_forces(contacts.force, c, exists, fx, fy, arm_i * side + moment, arm_j * side - moment)
+    return rubbed
+
+
+@njit(**FAST)
+def _push_updated(pairs, q, block, i, u, v, step, number, contacts, limits, result):
+    """The same where normals and arms follow the motion, see contacts._updated_strain."""
+    exists = pairs.exists[block]
+    t, c, j = U(pairs.contact_type[q]), U(LANES * block), U(i + pairs.shift[q])
+    i = U(i)
+    k = contacts.constants
+    nothing = splat(0.0)
+    whole = where_equal(contacts.state, c, _INTACT)
+    intact = byte_of(whole)
+    rest = k[t, U(2)]
+    dx, dy = _apart(u, i, j)
+    dvx, dvy = _apart(v, i, j)
+    x = k[t, U(0)] + dx
+    y = k[t, U(1)] + dy
+    distance = root(x * x + y * y)
+    stretch = ((k[t, U(0)] + x) * dx + (k[t, U(1)] + y) * dy) / (distance + rest)
+    inverse = 1.0 / distance
+    nx, ny = x * inverse, y * inverse
+    arm_i = 0.5 * distance + k[t, U(4)]
+    arm_j = distance - arm_i
+    was = load(contacts.shear, c)
+    slide = nx * dvy - ny * dvx
+    shear = was + step * (slide - arm_i * load(v[2], i) - arm_j * load(v[2], j))
+    pull, side, rubbed, slip, slides = nothing, nothing, nothing, nothing, False
+    if k[t, U(5)] > 0.0 or k[t, U(6)] > 0.0:
+        opening = nx * dvx + ny * dvy
+        N, side, slip, rubbed, slides = _contact(
+            k, t, c, stretch, opening, shear, was, step, True, exists, contacts, limits.friction
+        )
+        pull = -1.0 * N
+    moment = nothing
+    if intact != 0:
+        bent = load(u[2], j) - load(u[2], i)
+        normal, sheared, moment, breaks = _bond(k, t, stretch, shear, bent, whole, limits)
+        if (breaks & intact & exists) != 0:
+            _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
+            return nothing
+        pull += normal
+        side += sheared
+    store(contacts.shear, c, shear)
+    if slides:
+        store(contacts.slip, c, slip)
+    fx, fy = pull * nx - side * ny, pull * ny + side * nx
+    _store_forces(contacts.force, c, exists, fx, fy, arm_i * side + moment, arm_j * side - moment)
     return rubbed
 
 
@@ -176,7 +212,14 @@ def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, resul
             group, column, q = next_place(pairs, block, group, column, q)
         if pairs.exists[block] != 0:
             disks = pairs.disk_block[group] + column * pairs.disk_rows[group] + pairs.owner[q]
-            rubbed += _push_block(pairs, q, block, LANES * disks, u, v, step, number, contacts, limits, result)
+            i, exists = LANES * disks, pairs.exists[block]
+            intact = byte_of(where_equal(contacts.state, U(LANES * block), _INTACT)) & exists
+            if limits.geometry == UPDATED or (limits.geometry == BONDED and intact == 0):
+                rubbed += _push_updated(pairs, q, block, i, u, v, step, number, contacts, limits, result)
+            elif limits.geometry == BONDED and intact != exists:
+                _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
+            else:
+                rubbed += _push_reference(pairs, q, block, i, u, v, step, number, contacts, limits, result)
     for k in range(LANES):
         result[0] += lane(rubbed, U(k))
 
@@ -204,27 +247,24 @@ def _row_forces(pairs, force, r, column, first):
     fx = splat(0.0)
     fy = splat(0.0)
     moment = splat(0.0)
-    for entry in range(pairs.start[r], pairs.start[r + 1]):
-        e = U(entry)
-        mask = pairs.mask[e]
-        byte = _ALL
-        if mask >= 0:
-            byte = pairs.masks[U(mask + column)]
-            if byte == 0:
-                continue
-        c = U(first + pairs.offset[e])
-        gx, gy = load(force[0], c), load(force[1], c)
-        about = load(force[3], c) if pairs.second[e] else load(force[2], c)
-        if byte != _ALL:
-            own = bits(byte)
-            gx, gy, about = choose(own, gx, 0.0), choose(own, gy, 0.0), choose(own, about, 0.0)
-        if pairs.second[e]:
-            fx -= gx
-            fy -= gy
-        else:
-            fx += gx
-            fy += gy
-        moment += about
+    start = U(3 * r)
+    for entry in range(pairs.start[start], pairs.start[start + U(1)]):
+        c = U(first + pairs.offset[U(entry)])
+        fx += load(force[0], c)
+        fy += load(force[1], c)
+        moment += load(force[2], c)
+    for entry in range(pairs.start[start + U(1)], pairs.start[start + U(2)]):
+        c = U(first + pairs.offset[U(entry)])
+        fx -= load(force[0], c)
+        fy -= load(force[1], c)
+        moment += load(force[3], c)
+    for entry in range(pairs.start[start + U(2)], pairs.start[start + U(3)]):
+        byte = pairs.masks[U(pairs.mask[U(entry)] + column)]
+        if byte != 0:
+            c, own = U(first + pairs.offset[U(entry)]), bits(byte)
+            fx -= choose(own, load(force[0], c), 0.0)
+            fy -= choose(own, load(force[1], c), 0.0)
+            moment += choose(own, load(force[3], c), 0.0)
     return fx, fy, moment
 
 

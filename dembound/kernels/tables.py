@@ -251,10 +251,11 @@ class PairRows(NamedTuple):
     group_row, group_block : (g + 1,) rows and blocks of pairs of each group; column by column, every row of a group has
     a block there, as disks have (LaneRows). disk_block, disk_rows : (g,) first block and number of rows of the group's
     disks. owner : (q,) row of the first disk within its group; shift : (q,) slots from the first disk to the second;
-    contact_type : (q,) row of the table of constants; exists : (blocks,) uint8, the bits of the lanes that hold a pair.
-    start : (r + 1,) entries of each row of disks: a pair offset (e,) places from the first one of the column, of which
-    the disk is second (e,) or first; mask : (e,) where the bits of the disks for which this is a pair of their own row
-    begin in masks (m,) uint8, one byte a column, −1: for all.
+    contact_type : (q,) row of the table of constants; normal : (q, 2) from the first disk to the second at the start;
+    exists : (blocks,) uint8, the bits of the lanes that hold a pair.
+    start : (3r + 1,) entries of each row of disks, by pairs of which the disk is the first, of which it is the second,
+    and of which it is the second in a part of the copies: offset (e,) places from the first one of the column. mask :
+    (e,) where the bits of these copies begin in masks (m,) uint8, one byte a column, else −1.
     """
 
     group_row: np.ndarray
@@ -264,10 +265,10 @@ class PairRows(NamedTuple):
     owner: np.ndarray
     shift: np.ndarray
     contact_type: np.ndarray
+    normal: np.ndarray
     exists: np.ndarray
     start: np.ndarray
     offset: np.ndarray
-    second: np.ndarray
     mask: np.ndarray
     masks: np.ndarray
 

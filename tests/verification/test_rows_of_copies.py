@@ -68,7 +68,7 @@ def test_local_damping_and_its_work(lab):
 
 
 def assert_same_breaking(scene, steps):
-    """The same cracks in the same steps, and the same motion until rounding has grown in contacts that open and close."""
+    """The same cracks in the same steps, and the same motion until rounding has grown in contacts that open."""
     step = choose_step(scene)[0]
     before, after = (Simulation(each, step) for each in (in_order(scene), scene))
     for simulation in (before, after):
