@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.kernels import near
+from dembound.kernels import near, pack
 
 
 def wrap(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
@@ -21,6 +21,16 @@ def near_pairs(
     sorted, and images (b, 2) int64: the contact vector is x_j + images·box − x_i.
     """
     return near.near_pairs(positions, radii, reach, box)
+
+
+def listed(
+    positions: np.ndarray, radii: np.ndarray, box: np.ndarray, reach: float
+) -> tuple[np.ndarray, np.ndarray, pack.Pairs]:
+    """The pairs (b, 2) and images (b, 2) of `near_pairs`, and the same for the kernels."""
+    pairs, images = near_pairs(positions, radii, box, reach)
+    first, second = pairs.T.astype(np.uint32)
+    shift_x, shift_y = np.ascontiguousarray((images * box).T)
+    return pairs, images, pack.Pairs(first, second, shift_x, shift_y, radii[first] + radii[second])
 
 
 def strip_order(positions: np.ndarray, width: float) -> np.ndarray:
