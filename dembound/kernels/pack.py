@@ -3,8 +3,8 @@
 Every contact is a spring of unit stiffness under compression only, every disk has unit mass; the contact modulus
 multiplies all forces by the same factor and is not needed.
 
-All sums are taken in the order of the list of pairs or of the disks, without fused multiply-add: a brick is the same to
-the last bit on all processors.
+All sums are taken in the order of the list of pairs or of the disks, without fused multiply-add: the
+bits of a brick depend neither on the processor's instructions nor on the number of pairs treated at once.
 """
 
 import math
