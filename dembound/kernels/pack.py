@@ -3,8 +3,8 @@
 Every contact is a spring of unit stiffness under compression only, every disk has unit mass; the contact modulus
 multiplies all forces by the same factor and is not needed.
 
-All sums are taken in the order of the list of pairs or of the disks, without fused multiply-add: the
-bits of a brick depend neither on the processor's instructions nor on the number of pairs treated at once.
+All sums are taken in the order of the list of pairs or of the disks, without fused multiply-add: the bits of a brick
+depend neither on the processor's instructions nor on the number of pairs treated at once.
 """
 
 import math
@@ -20,7 +20,6 @@ FIRST_STEP = 0.1
 # central difference limit is 2/√24 = 0.41.
 LONGEST_STEP = 0.35
 GROW, SHRINK, MIX, MIX_DECAY, PATIENCE = 1.1, 0.5, 0.25, 0.99, 20  # FIRE 2.0's published constants
-
 
 BLOCK = 256  # pairs treated at once: their work stays in the first cache
 
