@@ -1,9 +1,8 @@
 """Pairs of disks with small gaps, also through periodic sides."""
 
-from itertools import product
-
 import numpy as np
-from scipy.spatial import cKDTree
+
+from dembound.kernels import near
 
 
 def pair_keys(first: np.ndarray, second: np.ndarray, image: np.ndarray, count: int) -> np.ndarray:
@@ -21,25 +20,11 @@ def near_pairs(
     """Pairs (b, 2) of disks with gaps up to skin (m), and the periods (b, 2) between them, each pair once.
 
     positions (n, 2), radii (n,) in m. Particles may have moved out of the period, as only differences of positions are
-    used.
+    used. Periods between a pair are never negative along x, nor along y alone.
     """
-    reach = 2.0 * radii.max() + skin
-    period = np.array([length or 0.0 for length in periods])
-    tree = cKDTree(positions)
-    inside = tree.query_pairs(reach, output_type="ndarray").astype(np.int64)
-    found = [(inside, np.zeros_like(inside))]
-    for way in _half_of_the_images(periods):
-        across = tree.sparse_distance_matrix(cKDTree(positions + way * period), reach, output_type="ndarray")
-        met = np.column_stack([across["i"], across["j"]]).astype(np.int64)
-        found.append((met, np.broadcast_to(way, met.shape)))
-    pairs = np.concatenate([listed for listed, _ in found])
-    image = np.concatenate([images for _, images in found])
-    gap = np.hypot(*(positions[pairs[:, 1]] + image * period - positions[pairs[:, 0]]).T) - radii[pairs].sum(axis=1)
-    near = gap <= skin
-    return pairs[near], image[near]
-
-
-def _half_of_the_images(periods: tuple[float | None, float | None]) -> list[np.ndarray]:
-    """Neighbouring images of a periodic scene; of two opposite images only one, as both give the same pairs."""
-    steps = [(-1, 0, 1) if period else (0,) for period in periods]
-    return [np.array(image) for image in product(*steps) if image > (0, 0)]
+    lengths = np.array([length or 0.0 for length in periods])
+    pairs, images = near.near_pairs(np.ascontiguousarray(positions), radii, skin, lengths)
+    turned = (images[:, 0] < 0) | ((images[:, 0] == 0) & (images[:, 1] < 0))
+    pairs[turned] = pairs[turned, ::-1]
+    images[turned] *= -1
+    return pairs, images

@@ -20,6 +20,12 @@ a thousand nodes of a bar. Such functions cannot create arrays.
 MAKES = FAST | {"_nrt": True}
 """Compiler options of functions that create arrays."""
 
+EXACT = FAST | {"fastmath": False}
+"""Compiler options of functions whose results must be the same to the last bit on all processors."""
+
+EXACT_MAKES = EXACT | {"_nrt": True}
+"""The same for functions that create arrays."""
+
 PARALLEL = MAKES | {"parallel": True}
 """Compiler options of loops over particles and contacts."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from dembound.errors import PackingError
 from dembound.kernels import pack
 from dembound.packings.brick import contact_stress, contact_vectors
-from dembound.packings.contacts import near_pairs, wrap
+from dembound.packings.contacts import listed, near_pairs, wrap
 
 SKIN = 0.5  # largest gap in neighbour lists over the mean radius
 MAX_STEPS = 400_000  # of one relaxation; 10,000 disks at rest within 1e-9 take 1,500 to 15,000
@@ -65,16 +65,14 @@ class Bed:
         forces do not balance.
         """
         skin = SKIN * float(self.radii.mean())
-        velocities = np.zeros_like(self.positions)
+        velocities = np.zeros((2, len(self.radii)))
         pace = np.array([pack.FIRST_STEP, pack.MIX, 0.0])
         ratio, left = math.inf, MAX_STEPS
         while left > 0:
-            pairs, images = near_pairs(self.positions, self.radii, self.box, skin)
-            ratio, steps = pack.relax(
-                self.positions, velocities, self.radii, self.held, pairs, images * self.box,
-                0.5 * skin, tolerance, faint, left, pace,
-            )  # fmt: skip
-            self.positions = wrap(self.positions, self.box)
+            _, _, pairs = listed(self.positions, self.radii, self.box, skin)
+            places = self.positions.T.copy()
+            ratio, steps = pack.relax(places, velocities, self.held, pairs, 0.5 * skin, tolerance, faint, left, pace)
+            self.positions = wrap(np.ascontiguousarray(places.T), self.box)
             left -= steps
             if ratio <= tolerance:
                 return

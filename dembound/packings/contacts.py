@@ -1,9 +1,8 @@
 """Contacts between disks in a periodic box."""
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from dembound.packings.brick import contact_vectors
+from dembound.kernels import near, pack
 
 
 def wrap(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
@@ -21,14 +20,17 @@ def near_pairs(
     2·(largest diameter + reach), so that a pair can touch at one image only. Returns pairs (b, 2) int64 with i < j,
     sorted, and images (b, 2) int64: the contact vector is x_j + images·box − x_i.
     """
-    tree = cKDTree(positions, boxsize=box)
-    pairs = tree.query_pairs(2.0 * radii.max() + reach, output_type="ndarray").astype(np.int64)
-    pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
-    first, second = pairs.T
-    images = -np.rint((positions[second] - positions[first]) / box).astype(np.int64)
-    vectors = contact_vectors(positions, pairs, images, box)
-    near = np.hypot(*vectors.T) - radii[first] - radii[second] <= reach
-    return pairs[near], images[near]
+    return near.near_pairs(positions, radii, reach, box)
+
+
+def listed(
+    positions: np.ndarray, radii: np.ndarray, box: np.ndarray, reach: float
+) -> tuple[np.ndarray, np.ndarray, pack.Pairs]:
+    """The pairs (b, 2) and images (b, 2) of `near_pairs`, and the same for the kernels."""
+    pairs, images = near_pairs(positions, radii, box, reach)
+    first, second = pairs.T.astype(np.uint32)
+    shift_x, shift_y = np.ascontiguousarray((images * box).T)
+    return pairs, images, pack.Pairs(first, second, shift_x, shift_y, radii[first] + radii[second])
 
 
 def strip_order(positions: np.ndarray, width: float) -> np.ndarray:

@@ -10,7 +10,7 @@ from dembound.errors import PackingError
 from dembound.kernels import pack
 from dembound.packings.bed import Bed
 from dembound.packings.brick import Brick, contact_stress, contact_vectors
-from dembound.packings.contacts import near_pairs, strip_order
+from dembound.packings.contacts import listed, strip_order
 
 LOGGER = logging.getLogger(__name__)
 
@@ -124,12 +124,12 @@ def finish(bed: Bed, recipe: Recipe, rows: RegularRows) -> Brick:
     member[: bed.held] = rows.member
     order = strip_order(bed.positions, 4.0 * recipe.radius)
     positions, radii, member = bed.positions[order], bed.radii[order], member[order]
-    pairs, images = near_pairs(positions, radii, bed.box, recipe.bond_gap + TOUCH * recipe.radius)
+    pairs, images, near = listed(positions, radii, bed.box, recipe.bond_gap + TOUCH * recipe.radius)
     vectors = contact_vectors(positions, pairs, images, bed.box)
     overlaps = radii[pairs].sum(axis=1) - np.hypot(*vectors.T)
     free = ~member.any(axis=1)
-    forces = np.empty_like(positions)
-    mean = pack.overlap_forces(positions, radii, pairs, images * bed.box, forces)
+    forces = np.empty((2, len(radii)))
+    mean = pack.overlap_forces(positions.T.copy(), near, forces, np.empty((3, pack.BLOCK)))
     return Brick(
         size=bed.box,
         positions=positions,
@@ -138,5 +138,5 @@ def finish(bed: Bed, recipe: Recipe, rows: RegularRows) -> Brick:
         images=images,
         edge_rows=member,
         stress=contact_stress(vectors, overlaps, bed.box),
-        residual_ratio=float(np.hypot(*forces[free].T).mean() / mean),
+        residual_ratio=float(np.hypot(*forces[:, free]).mean() / mean),
     )

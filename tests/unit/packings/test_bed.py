@@ -7,6 +7,7 @@ from dembound.errors import PackingError
 from dembound.kernels import pack
 from dembound.packings import bed as module
 from dembound.packings.bed import Bed
+from dembound.packings.contacts import listed
 
 BOX = np.array([20.0, 20.0])
 
@@ -59,11 +60,34 @@ def test_running_out_of_steps_is_an_error(monkeypatch):
 
 
 def test_kernel_force_is_the_overlap_along_the_line_of_centres():
-    forces = np.full((2, 2), np.nan)
-    positions = np.array([[0.0, 0.0], [3.0, 4.0]])
-    pairs, shifts = np.array([[0, 1]]), np.zeros((1, 2))
-    mean = pack.overlap_forces(positions, np.array([3.0, 2.5]), pairs, shifts, forces)
-    assert mean == 0.5
-    assert forces == pytest.approx(np.array([[-0.3, -0.4], [0.3, 0.4]]))
-    assert pack.overlap_forces(positions, np.array([2.0, 2.5]), pairs, shifts, forces) == 0.0
+    positions, forces, work = np.array([[0.0, 0.0], [3.0, 4.0]]), np.full((2, 2), np.nan), np.empty((3, pack.BLOCK))
+    *_, pairs = listed(positions, np.array([3.0, 2.5]), BOX, 0.0)
+    assert pack.overlap_forces(positions.T.copy(), pairs, forces, work) == 0.5
+    assert forces == pytest.approx(np.array([[-0.3, 0.3], [-0.4, 0.4]]))
+    *_, pairs = listed(positions, np.array([2.0, 2.5]), BOX, 1.0)  # listed, but apart
+    assert pack.overlap_forces(positions.T.copy(), pairs, forces, work) == 0.0
     assert not forces.any()
+
+
+def plain_forces(bed):
+    """Forces (2, n) and mean contact force, one pair at a time in the order of the list."""
+    pairs, vectors, overlaps = bed.overlaps()
+    forces = np.zeros((2, len(bed.radii)))
+    for (i, j), vector, overlap in zip(pairs, vectors, overlaps, strict=True):
+        push = overlap / np.sqrt(vector[0] * vector[0] + vector[1] * vector[1]) * vector
+        forces[:, i] -= push
+        forces[:, j] += push
+    return forces, overlaps.mean()
+
+
+@pytest.mark.parametrize("count", [20, 400])  # pairs of less than a block, and of several
+def test_kernel_forces_are_those_of_single_pairs(count):
+    rng = np.random.default_rng(count)
+    bed = Bed(BOX, rng.random((count, 2)) * BOX, rng.uniform(0.5, 1.0, count), held=0)
+    *_, pairs = listed(bed.positions, bed.radii, BOX, 0.3)
+    forces = np.empty((2, count))
+    mean = pack.overlap_forces(bed.positions.T.copy(), pairs, forces, np.empty((3, pack.BLOCK)))
+    expected, expected_mean = plain_forces(bed)
+    # the same sums in the same order; only hypot and the root of squares differ, and the mean's order
+    assert forces == pytest.approx(expected, rel=1e-12, abs=1e-13)
+    assert mean == pytest.approx(expected_mean, rel=1e-13)

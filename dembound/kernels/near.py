@@ -1,0 +1,156 @@
+"""Pairs of disks with small gaps, found by a grid of cells.
+
+The grid is a table with wrap-around: cells beyond its end are entered at its beginning. Disks that share a cell only by
+that are told apart by their distance, so the table stays small when single disks are far away.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from dembound.kernels.common import FAST, U
+
+MARGIN = 1.0 + 1e-9  # of distances that only choose candidates, so that rounding misses no pair
+BITS = 4  # of the image's number, which follows that of the second disk in one code
+
+
+def near_pairs(positions, radii, gap, periods):
+    """All pairs of disks whose gap is at most `gap` (m), also through periodic sides, each once.
+
+    positions (n, 2), radii (n,) in m; periods (2,) m, 0.0 along an axis that is not periodic. Disks may be outside the
+    period, but only images from −1 to 1 are found. Returns pairs (b, 2) int64 and images (b, 2) int64, sorted by first
+    disk, second disk and image: the vector is x_j + images·periods − x_i, with i < j, or with i = j and the image after
+    (0, 0).
+    """
+    count = len(radii)
+    if count == 0:
+        return np.empty((0, 2), np.int64), np.empty((0, 2), np.int64)
+    # NumPy is slow along the first axis
+    low = np.array([positions[:, 0].min(), positions[:, 1].min()])
+    high = np.array([positions[:, 0].max(), positions[:, 1].max()])
+    width = (2.0 * radii.max() + gap) * MARGIN
+    shape = table_shape(high - low, width, count)
+    order, start = sort_into_cells(positions, low, width, shape)
+    found, room = 4 * count, -1
+    while found > room:  # once, unless the disks are crowded
+        room = found
+        first, codes = np.empty(room, np.int64), np.empty(room, np.int64)
+        found = search(positions, radii, gap, periods, low, high, width, shape, order, start, first, codes)
+    pairs, images = np.empty((found, 2), np.int64), np.empty((found, 2), np.int64)
+    unpack(first, codes, pairs, images)
+    return pairs, images
+
+
+def table_shape(extent, width, count):
+    """Cells (2,) int64 of the table along x and y, powers of two.
+
+    At least four, as a disk looks into three different ones; enough for the extent (2,) m, as long as they are at most
+    four for each of the `count` disks.
+    """
+    shape = [4, 4]
+    while shape[0] * shape[1] < 2 * count:
+        axis = 0 if extent[0] * shape[1] > extent[1] * shape[0] else 1
+        if extent[axis] < width * shape[axis]:
+            break
+        shape[axis] *= 2
+    return np.array(shape)
+
+
+def sort_into_cells(positions, low, width, shape):
+    """Entries (e,) uint32 cell after cell, up along the columns, and the first entry of each cell, (cells + 1,) int64.
+
+    A column begins with a copy of its last row and ends with one of its first, so that the three rows around a disk
+    are one range of entries.
+    """
+    start = np.zeros(shape[0] * (shape[1] + 2) + 2, np.int64)
+    enter(positions, low, width, shape, start[2:], np.empty(0, np.uint32))
+    np.cumsum(start, out=start)
+    order = np.empty(start[-1], np.uint32)
+    enter(positions, low, width, shape, start[1:], order)
+    return order, start[:-1]
+
+
+@njit(**FAST)
+def cell(value, low, width):
+    """Number of the cell of a coordinate, before wrap-around."""
+    return np.int64(math.floor((value - low) / width))
+
+
+@njit(**FAST)
+def enter(positions, low, width, shape, place, order):
+    """Write each disk to the places of its cell in `order`, and raise place (cells,); without room they are counted.
+
+    Disks of the first and the last row are also written to the rows beyond the ends that repeat them.
+    """
+    rows = shape[1]
+    for i in range(positions.shape[0]):
+        column = cell(positions[i, 0], low[0], width) & (shape[0] - 1)
+        row = cell(positions[i, 1], low[1], width) & (rows - 1)
+        for turn in range(-1, 2):
+            own = row + 1 + turn * rows
+            if 0 <= own < rows + 2:
+                at = U(column * (rows + 2) + own)
+                if order.size > 0:
+                    order[U(place[at])] = i
+                place[at] += 1
+
+
+@njit(**FAST)
+def insert(codes, begin, end, code):
+    """Enter a code into codes[begin:end], which are sorted."""
+    k = end
+    while k > begin and codes[U(k - 1)] > code:
+        codes[U(k)] = codes[U(k - 1)]
+        k -= 1
+    codes[U(k)] = code
+
+
+@njit(**FAST)
+def unpack(first, codes, pairs, images):
+    """Fill pairs (b, 2) and images (b, 2) from first disks and codes."""
+    for k in range(pairs.shape[0]):
+        c = U(k)
+        pairs[c, 0], pairs[c, 1] = first[c], codes[c] >> BITS
+        image = codes[c] & ((1 << BITS) - 1)
+        images[c, 0], images[c, 1] = image // 3 - 1, image % 3 - 1
+
+
+@njit(**FAST)
+def is_near(positions, radii, gap, i, j, shift_x, shift_y):
+    """Whether the gap between disk i and disk j, which is shifted, is at most `gap`; false for j before i."""
+    dx = positions[j, 0] + shift_x - positions[i, 0]
+    dy = positions[j, 1] + shift_y - positions[i, 1]
+    reach = (radii[i] + radii[j] + gap) * MARGIN
+    if j < i or dx * dx + dy * dy > reach * reach:
+        return False
+    return math.hypot(dx, dy) - radii[i] - radii[j] <= gap
+
+
+@njit(**FAST)
+def search(positions, radii, gap, periods, low, high, width, shape, order, start, first, codes):
+    """Number of near pairs; fills `first` with i and `codes` with j and image as far as there is room."""
+    found = 0
+    for i in range(positions.shape[0]):
+        begin = found
+        for image in range(9):  # by x, then by y; number 4 is the box itself
+            a, b = image // 3 - 1, image % 3 - 1
+            if (a != 0 and periods[0] == 0.0) or (b != 0 and periods[1] == 0.0):
+                continue
+            shift_x, shift_y = a * periods[0], b * periods[1]
+            # the pair's first disk is shifted back, so that the table need not contain images
+            x, y = positions[i, 0] - shift_x, positions[i, 1] - shift_y
+            if x < low[0] - width or x > high[0] + width or y < low[1] - width or y > high[1] + width:
+                continue
+            column, row = cell(x, low[0], width), cell(y, low[1], width)
+            for side in range(-1, 2):
+                at = (column + side & (shape[0] - 1)) * (shape[1] + 2) + (row & (shape[1] - 1))
+                for k in range(start[at], start[at + 3]):
+                    j = U(order[U(k)])
+                    if not is_near(positions, radii, gap, U(i), j, shift_x, shift_y) or (j == i and image <= 4):
+                        continue
+                    if found < codes.size:
+                        first[found] = i
+                        insert(codes, begin, found, (np.int64(j) << BITS) + image)
+                    found += 1
+    return found
