@@ -3,7 +3,6 @@
 from itertools import product
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 
 def pair_keys(first: np.ndarray, second: np.ndarray, image: np.ndarray, count: int) -> np.ndarray:
@@ -23,6 +22,8 @@ def near_pairs(
     positions (n, 2), radii (n,) in m. Particles may have moved out of the period, as only differences of positions are
     used.
     """
+    from scipy.spatial import cKDTree
+
     reach = 2.0 * radii.max() + skin
     period = np.array([length or 0.0 for length in periods])
     tree = cKDTree(positions)

@@ -1,7 +1,6 @@
 """The largest stable time step, from the largest eigenfrequency of the scene."""
 
 import numpy as np
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, RunError
@@ -42,6 +41,8 @@ def step_limit(scene: DiskScene, tolerance: float = TOLERANCE, damp: float | Non
 
     Raises RunError when the iteration does not converge.
     """
+    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
+
     root = np.sqrt(_inverse_mass(scene))
     stiffness = _support_stiffness(scene)
     force = np.empty((3, scene.count))

@@ -1,7 +1,6 @@
 """Contacts between disks in a periodic box."""
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from dembound.packings.brick import contact_vectors
 
@@ -21,6 +20,8 @@ def near_pairs(
     2·(largest diameter + reach), so that a pair can touch at one image only. Returns pairs (b, 2) int64 with i < j,
     sorted, and images (b, 2) int64: the contact vector is x_j + images·box − x_i.
     """
+    from scipy.spatial import cKDTree
+
     tree = cKDTree(positions, boxsize=box)
     pairs = tree.query_pairs(2.0 * radii.max() + reach, output_type="ndarray").astype(np.int64)
     pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
