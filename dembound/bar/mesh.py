@@ -18,17 +18,9 @@ To see a bar in ParaView, run ``paraview --script=view.py`` in the folder, or op
 an array to colour by. A bar is thin: *Warp By Scalar* with ``stress`` and the normal (0, 1, 0) draws it as a curve.
 """
 
-from __future__ import annotations
-
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
+import h5py
+import meshio
 import numpy as np
-
-from dembound.motion.mesh import Mesh
-
-if TYPE_CHECKING:
-    import h5py
 
 VIEW_SCRIPT = '''\
 """Shows the line of bar.pvd in ParaView: paraview --script=view.py, or Run Script once it is open."""
@@ -55,24 +47,24 @@ Render()
 '''
 
 
-def bar_mesh(particles: Mapping[str, np.ndarray], snapshot: h5py.Group, cracks: Mapping[str, np.ndarray]) -> Mesh:
+def bar_mesh(particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
     """One snapshot of a bar, and the cracks until then, as lines with the data of this module's table."""
     displacement = snapshot["displacement"][:]  # a bar moves along x alone, its other columns are zero
-    places = np.pad(particles["position"], ((0, 0), (0, 1)))
+    places = np.pad(particles["position"][:], ((0, 0), (0, 1)))
     count = len(places)
     data = {
         "id": np.arange(count),
-        "volume": particles["volume"],
+        "volume": particles["volume"][:],
         "displacement": displacement,
         "velocity": snapshot["velocity"][:],
         "stress": snapshot["stress"][:],
         "damage": snapshot["damage"][:],
     }
     if "peak_velocity" in particles:
-        data["peakVelocity"] = particles["peak_velocity"]
+        data["peakVelocity"] = particles["peak_velocity"][:]
     lines = np.stack([np.arange(count - 1), np.arange(1, count)], axis=1)
     broken = broken_across(cracks["particles"], count)
-    return Mesh(places + displacement, lines, data, {"brokenBonds": broken})
+    return meshio.Mesh(places + displacement, [("line", lines)], point_data=data, cell_data={"brokenBonds": [broken]})
 
 
 def broken_across(pairs: np.ndarray, count: int) -> np.ndarray:

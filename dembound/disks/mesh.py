@@ -26,18 +26,11 @@ preset *Plain circle*, scale by array ``radii``, no scale function, Gaussian rad
 *Warp By Vector* with ``displacement`` and factor k − 1 shows displacements k times as large.
 """
 
-from __future__ import annotations
-
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
+import h5py
+import meshio
 import numpy as np
 
-from dembound.motion.mesh import Mesh
 from dembound.results.vtk import in_space, vertices
-
-if TYPE_CHECKING:
-    import h5py
 
 VIEW_SCRIPT = '''\
 """Shows the disks of particles.pvd in ParaView: paraview --script=view.py, or Run Script once it is open."""
@@ -68,22 +61,22 @@ Render()
 '''
 
 
-def disk_mesh(particles: Mapping[str, np.ndarray], snapshot: h5py.Group, cracks: Mapping[str, np.ndarray]) -> Mesh:
+def disk_mesh(particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
     """One snapshot, and the cracks until then, as vertices with the point data of this module's table."""
     displacement, velocity = snapshot["displacement"][:], snapshot["velocity"][:]
     count = len(displacement)
     moved = in_space(displacement[:, :2])
-    bonds = particles["bonds"]
+    bonds = particles["bonds"][:]
     broken = np.bincount(cracks["particles"].ravel(), minlength=count)
     data = {
-        "radii": particles["radius"],
+        "radii": particles["radius"][:],
         "id": np.arange(count),
         "linVelVec": in_space(velocity[:, :2]),
         "angVelVec": np.column_stack([np.zeros((count, 2)), velocity[:, 2]]),
         "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
         "displacement": moved,
         "rotation": displacement[:, 2],
-        "brick_particle": particles["brick_particle"],
+        "brick_particle": particles["brick_particle"][:],
         "nbCracks": broken,
         "damage": broken / np.maximum(bonds, 1),  # without bonds none can break
     }
@@ -92,8 +85,8 @@ def disk_mesh(particles: Mapping[str, np.ndarray], snapshot: h5py.Group, cracks:
     if "stress" in snapshot:
         data["stress"] = _tensors(snapshot["stress"][:])
     if "peak_velocity" in particles:
-        data["peakVelocity"] = particles["peak_velocity"]
-    return vertices(in_space(particles["position"]) + moved, data)
+        data["peakVelocity"] = particles["peak_velocity"][:]
+    return vertices(in_space(particles["position"][:]) + moved, data)
 
 
 def _tensors(stress: np.ndarray) -> np.ndarray:

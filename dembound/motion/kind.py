@@ -14,13 +14,13 @@ from dembound.casefile import Case
 from dembound.casefile.schema import Schema
 from dembound.errors import RunError
 from dembound.motion.cracks import Cracks
-from dembound.motion.mesh import Mesh
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
 from dembound.motion.trackers import Run
 
 if TYPE_CHECKING:
     import h5py
+    import meshio
     from matplotlib.figure import Figure
 
 C = TypeVar("C", bound=Case)
@@ -145,8 +145,8 @@ class Kind(ABC, Generic[C, S]):
         """The results of a run in words, from its summary."""
 
     @abstractmethod
-    def mesh(self, particles: Mapping[str, np.ndarray], snapshot: h5py.Group, cracks: Mapping[str, np.ndarray]) -> Mesh:
-        """One snapshot of a record for ParaView, from the arrays of its particles and the cracks until then."""
+    def mesh(self, particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+        """One snapshot of a record for ParaView, and the cracks until then."""
 
     @abstractmethod
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:

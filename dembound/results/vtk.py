@@ -16,12 +16,11 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import meshio
 import numpy as np
 
 from dembound.motion.kind import Kind
-from dembound.motion.mesh import Mesh
 from dembound.results.reader import cracks_until, open_record, replacing
-from dembound.results.vtu import write_mesh
 
 
 def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
@@ -46,34 +45,33 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
         if not snapshots:
             return None
         folder.mkdir(parents=True, exist_ok=True)
-        particles = {name: dataset[:] for name, dataset in file["particles"].items()}
-        cracks = cracks_until(file, np.inf)
         times = {}
         for number, snapshot in snapshots.items():
             name = f"{kind.mesh_name}_{number}.vtu"
             times[name] = float(snapshot.attrs["time"])
-            write_mesh(folder / name, kind.mesh(particles, snapshot, _until(cracks, times[name])))
+            _write(folder / name, kind.mesh(file["particles"], snapshot, cracks_until(file, times[name])))
+        cracks = cracks_until(file, np.inf)
         if len(cracks["time"]) > 0:
-            write_mesh(folder / "cracks.vtu", _cracks(cracks))
+            _write(folder / "cracks.vtu", _cracks(cracks))
     (folder / "view.py").write_text(kind.view_script, encoding="utf-8")
     return _write_index(folder / f"{kind.mesh_name}.pvd", times)
 
 
-def _until(cracks: dict[str, np.ndarray], time: float) -> dict[str, np.ndarray]:
-    """Those cracks that have happened at a time in s."""
-    there = cracks["time"] <= time
-    return {name: column[there] for name, column in cracks.items()}
-
-
-def _cracks(cracks: dict[str, np.ndarray]) -> Mesh:
+def _cracks(cracks: dict[str, np.ndarray]) -> meshio.Mesh:
     """Cracks as vertices with the point data of this module's table."""
     data = {"time": cracks["time"], "mode": cracks["shear"].astype(int), "particles": cracks["particles"]}
     return vertices(in_space(cracks["position"]), data)
 
 
-def vertices(points: np.ndarray, data: dict[str, np.ndarray]) -> Mesh:
+def vertices(points: np.ndarray, data: dict[str, np.ndarray]) -> meshio.Mesh:
     """One vertex per point (n, 3) m, with arrays (n, …) on them."""
-    return Mesh(points, np.arange(len(points))[:, None], data)
+    return meshio.Mesh(points, [("vertex", np.arange(len(points))[:, None])], point_data=data)
+
+
+def _write(path: Path, mesh: meshio.Mesh) -> None:
+    """Write a VTU file, either completely or not at all."""
+    with replacing(path) as part:
+        meshio.write(part, mesh, file_format="vtu")
 
 
 def in_space(vectors: np.ndarray) -> np.ndarray:
