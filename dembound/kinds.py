@@ -1,40 +1,21 @@
-"""The list of all kinds of bodies. Only this file names them."""
+"""The list of all kinds of bodies. Only this file and `schemas`, for their case files, name them."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from dembound.bar.kind import Bars
-from dembound.casefile import Case, reader, writer
+from dembound.casefile import Case
 from dembound.disks.kind import Disks
 from dembound.motion.kind import Kind
 from dembound.results.reader import open_record
+from dembound.schemas import SCHEMAS as SCHEMAS  # with the following, for who needs the kinds as well
+from dembound.schemas import checked as checked
+from dembound.schemas import load as load
+from dembound.schemas import loads as loads
+from dembound.schemas import with_changes as with_changes
 
 KINDS: tuple[Kind[Any, Any], ...] = (Bars(), Disks())
-"""In the order in which a case file is searched for their tables."""
-
-SCHEMAS = tuple(kind.schema for kind in KINDS)
-"""The tables of their case files."""
-
-
-def load(path: Path) -> Case:
-    """Read a case file of any kind; errors as `case.reader.load`."""
-    return reader.load(path, SCHEMAS)
-
-
-def loads(text: str, folder: Path = Path(), name: str = "case") -> Case:
-    """Read a case from TOML text, as if it were the file `name` in the folder; errors as `load`."""
-    return reader.loads(text, SCHEMAS, folder, name)
-
-
-def with_changes(case: Case, changes: Mapping[str, Any]) -> Case:
-    """The case with some keys changed, see `case.writer.with_changes`."""
-    return writer.with_changes(case, changes, SCHEMAS)
-
-
-def checked(case: Case) -> Case:
-    """The case, its tables checked as if they had been read from a file; errors as `load`."""
-    return case if case.is_checked else loads(case.text, case.folder, case.name)
+"""In the order of `SCHEMAS`."""
 
 
 def kind_of(case: Case) -> Kind[Any, Any]:

@@ -16,8 +16,6 @@ from dembound.motion.energy import Ledger
 from dembound.motion.kind import Beginning, Plan, StalledError
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import Run, Tracker
-from dembound.plot.histories import plot_histories
-from dembound.plot.style import save
 from dembound.results.recorder import Histories, Recorder, Snapshots
 from dembound.results.summary import summarise
 from dembound.results.vtk import write_vtu
@@ -146,6 +144,9 @@ def _passed_on(warnings: list[str], progress: Progress) -> list[str]:
 
 def _draw(planned: Plan, folder: Path) -> None:
     """Draw the pictures of a run into its folder: the monitors' velocities, and those of its kind of body."""
+    from dembound.plot.histories import plot_histories
+    from dembound.plot.style import save
+
     record = folder / "run.h5"
     for name, figure in planned.kind.pictures(record):
         save(figure, folder / f"{name}.png")

@@ -4,15 +4,18 @@ They are in the folder ``cases`` of the repository, and in ``dembound/_cases`` o
 path there without ending, ``zhou2018/tunnel``. A folder of cases is a group, with its own scripts and tables.
 """
 
+from __future__ import annotations
+
 import shutil
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from dembound.casefile import Case
-from dembound.casefile.messages import did_you_mean, show
 from dembound.errors import CaseError
-from dembound.kinds import load
+
+if TYPE_CHECKING:
+    from dembound.casefile import Case
 
 PACKAGE = Path(__file__).parent
 
@@ -70,6 +73,9 @@ def _file(name: str) -> Path:
 
 def _files(name: str) -> Iterator[tuple[Path, Path]]:
     """The files of a case or a group: path of each one below the target, and its present path."""
+    from dembound.casefile.messages import did_you_mean, show  # here, as listing cases takes neither of these
+    from dembound.schemas import load
+
     if name in names():
         path = _file(name)
         for file in (path, *_read_by(load(path))):

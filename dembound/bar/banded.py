@@ -1,7 +1,6 @@
 """The stability limit of a chain whose stiffness matrix has few bands."""
 
 import numpy as np
-from scipy.linalg import LinAlgError, cholesky_banded
 
 ROUNDING = 1e-9
 """Share by which a step may exceed its limit, as rounding may shift the limit to either side of a round number."""
@@ -56,6 +55,8 @@ def _row_sums(bands: np.ndarray) -> float:
 
 def _is_above(bands: np.ndarray, value: float) -> bool:
     """Whether a value lies above all eigenvalues of a symmetric banded matrix."""
+    from scipy.linalg import LinAlgError, cholesky_banded
+
     shifted = -bands
     shifted[0] += value
     try:

@@ -17,14 +17,12 @@ from dembound.bar.summary import summarise_bar
 from dembound.bar.warnings import bar_warnings, warnings_after_bar
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.motion.kind import Beginning, Kind, OnLook
+from dembound.motion.mesh import Mesh
 from dembound.motion.trackers import Run
-from dembound.plot.bar import plot_bar, plot_bar_field
-from dembound.plot.histories import plot_histories
 from dembound.results.reader import has_monitors
 
 if TYPE_CHECKING:
     import h5py
-    import meshio
     from matplotlib.figure import Figure
 
 
@@ -72,16 +70,21 @@ class Bars(Kind[BarCase, BarScene]):
         """Methods and spalls in words."""
         return bar_outcome(summary)
 
-    def mesh(self, particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+    def mesh(self, particles: Mapping[str, np.ndarray], snapshot: h5py.Group, cracks: Mapping[str, np.ndarray]) -> Mesh:
         """One line from each node to the next."""
         return bar_mesh(particles, snapshot, cracks)
 
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:
         """The bar over place and time, and the stress at its monitors."""
+        from dembound.plot.bar import plot_bar
+        from dembound.plot.histories import plot_histories
+
         yield "scene", plot_bar(record)
         if has_monitors(record):
             yield "histories_stress", plot_histories([record], quantity="stress")
 
     def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
         """One field over place and time."""
+        from dembound.plot.bar import plot_bar_field
+
         return plot_bar_field(record, field, snapshot)

@@ -1,10 +1,11 @@
 """Warnings about probable mistakes in the case of a bar, before and after the run."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import h5py
 import numpy as np
 
 from dembound.bar.entering import MOMENTS, entering_pressure, moments
@@ -16,6 +17,9 @@ from dembound.casefile.bar import BarCase
 from dembound.casefile.magnitudes import grip_stress, stress_in_words, stress_warnings, time_warnings
 from dembound.results.reader import open_record
 from dembound.results.warnings import still_moving
+
+if TYPE_CHECKING:
+    import h5py
 
 NOTHING = 0.05
 """Share of the strength that the largest tension must reach; oscillations behind a pulse reach some per cent of it."""

@@ -17,7 +17,7 @@ from dembound.waves import Wave
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """All tables of one case. Cases made by `kinds.load` and `kinds.loads` are checked.
+    """All tables of one case. Cases made by `schemas.load` and `schemas.loads` are checked.
 
     Attributes
     ----------

@@ -1,25 +1,16 @@
-"""The command line. Only this package prints and exits; the commands call functions of other packages."""
+"""The command line. Only this package prints and exits; the commands call functions of other packages.
 
-import sys
-import warnings
-from typing import Any
+Each command imports what it calls when it is called, so that help and completion appear at once.
+"""
 
-
-def _in_one_line(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
-    """Print a Python warning without the place in the source that it comes from."""
-    print(f"warning: {' '.join(str(message).split())}", file=sys.stderr)
-
-
-with warnings.catch_warnings():  # about types of other packages, which are loaded during these imports
-    warnings.showwarning = _in_one_line
-    from dembound.cli import (  # each registers its commands with the application
-        calibration,
-        cases,
-        dispersion,
-        gauge,
-        results,
-        starting,
-    )
-    from dembound.cli.app import app, main
+from dembound.cli import (  # each registers its commands with the application
+    calibration,
+    cases,
+    dispersion,
+    gauge,
+    results,
+    starting,
+)
+from dembound.cli.app import app, main
 
 __all__ = ["app", "calibration", "cases", "dispersion", "gauge", "main", "results", "starting"]

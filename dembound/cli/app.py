@@ -1,26 +1,27 @@
 """The application all commands belong to, and the options they share."""
 
+from __future__ import annotations
+
+import logging
 import sys
 import tomllib
+import warnings
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-import numba
 import typer
 from rich import box
 from rich.console import Console
 from rich.table import Column, Table
 
-from dembound.boundaries import SIDES
-from dembound.casefile import Case
-from dembound.casefile.disks import DiskCase
-from dembound.casefile.model import as_kind
 from dembound.errors import CaseError, DemboundError
-from dembound.kinds import load, with_changes
-from dembound.results.reader import require_folder
 from dembound.version import __version__
+
+if TYPE_CHECKING:
+    from dembound.casefile import Case
+    from dembound.casefile.disks import DiskCase
 
 EXIT_CODES = (  # in one line: line breaks within a paragraph stay in the help
     "Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration or view failed; 4 a packing "
@@ -51,6 +52,8 @@ def writable(path: Path | None) -> Path | None:
     Raises FileNotFoundError if it does not exist.
     """
     if path is not None:
+        from dembound.results.reader import require_folder
+
         require_folder(path)
     return path
 
@@ -73,7 +76,15 @@ Settings = Annotated[
     typer.Option("--set", metavar="KEY=VALUE", help="Change a key, e.g. boundary.right.beta_p=0.8. May be repeated."),
 ]
 Name = Annotated[str | None, typer.Option(help="Name of the results folder; by default the case file's.")]
-Side = StrEnum("Side", {side: side for side in SIDES})  # type: ignore[misc]
+
+
+class Side(StrEnum):
+    """The sides of a scene."""
+
+    left = "left"
+    right = "right"
+    bottom = "bottom"
+    top = "top"
 
 
 @app.callback(invoke_without_command=True)
@@ -87,6 +98,8 @@ def _version(
 
 def load_case(path: Path, changes: list[str] | None, name: str | None = None) -> Case:
     """Read a case file, and change its keys and its name as given by the options."""
+    from dembound.schemas import load, with_changes
+
     case = load(path)
     if changes:
         case = with_changes(case, dict(_setting(text) for text in changes))
@@ -99,6 +112,9 @@ def load_case(path: Path, changes: list[str] | None, name: str | None = None) ->
 
 def load_disks(path: Path, changes: list[str] | None, name: str | None = None) -> DiskCase:
     """The same for commands that accept only disks."""
+    from dembound.casefile.disks import DiskCase
+    from dembound.casefile.model import as_kind
+
     case = load_case(path, changes, name)
     return as_kind(case, DiskCase, "is the case of a bar, this command is for disks", str(path))
 
@@ -117,16 +133,37 @@ def _setting(text: str) -> tuple[str, Any]:
 def use_threads(threads: int | None) -> None:
     """Set the number of threads, as far as there are that many."""
     if threads is not None:
+        import numba
+
         most = numba.get_num_threads()
         if threads > most:
             raise CaseError([f"--threads: is {threads}, must not be above {most}, the cores here"])
         numba.set_num_threads(threads)
 
 
+def _in_one_line(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+    """Print a Python warning without the place in the source that it comes from."""
+    print(f"warning: {' '.join(str(message).split())}", file=sys.stderr)
+
+
+class _Printed(logging.Handler):
+    """Prints the log messages of the package about long work, for example packing a brick."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print a message on a separate line."""
+        err.print(record.getMessage(), markup=False)
+
+
+logging.getLogger("dembound").addHandler(_Printed(logging.INFO))
+logging.getLogger("dembound").setLevel(logging.INFO)
+
+
 def main() -> None:
     """Run the command line; every failure a user can cause is one message and its exit code."""
     try:
-        app(prog_name="dembound")  # the name in help and completion, however it was started
+        with warnings.catch_warnings():
+            warnings.showwarning = _in_one_line
+            app(prog_name="dembound")  # the name in help and completion, however it was started
     except DemboundError as error:
         source = f"{error.source}: " if error.source else ""
         for line in str(error).splitlines():

@@ -1,23 +1,21 @@
 """The command calibrate."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.table import Table
 
-from dembound.boundaries.words import FACTORS
-from dembound.casefile import to_toml
 from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, out, use_threads
 from dembound.errors import CaseError
-from dembound.kinds import with_changes
-from dembound.plot.convergence import plot_convergence
-from dembound.plot.style import save
-from dembound.studies.all_sides import calibrate_all, changes_of, summary_of
-from dembound.studies.calibration import Calibration, calibrate
+
+if TYPE_CHECKING:
+    from dembound.studies.calibration import Calibration
 
 CALIBRATED = "_calibrated"
 """Ending of the name of a calibrated case."""
@@ -72,6 +70,9 @@ def calibrate_sides(
 
     Prints β and M_out/M_in of every pass; writes the calibrated case, the passes in HDF5 and a picture of them.
     """
+    from dembound.studies.all_sides import calibrate_all
+    from dembound.studies.calibration import calibrate
+
     _one_or_all(boundary, every, wave)
     use_threads(threads)
     loaded = load_disks(case, changes, name)
@@ -114,6 +115,8 @@ def _leave(found: Calibration, folder: Path) -> Iterator[Path]:
 
 def _leave_all(found: Sequence[Calibration], folder: Path) -> Iterator[Path]:
     """Write the results of all calibrations of a case, the passes of each in its own folder; yields each file."""
+    from dembound.studies.all_sides import summary_of
+
     records = [folder / f"{each.side}_{each.motion}" / "calibration.h5" for each in found]
     for each, record in zip(found, records, strict=True):
         record.parent.mkdir(parents=True, exist_ok=True)
@@ -126,6 +129,12 @@ def _leave_case(
     found: Sequence[Calibration], summary: Mapping[str, Any], folder: Path, records: Sequence[Path]
 ) -> Iterator[Path]:
     """Write the summary, the calibrated case and a picture of the passes; records : one of each."""
+    from dembound.casefile import to_toml
+    from dembound.plot.convergence import plot_convergence
+    from dembound.plot.style import save
+    from dembound.schemas import with_changes
+    from dembound.studies.all_sides import changes_of
+
     (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
     yield folder / "summary.json"
     case = found[0].case
@@ -140,6 +149,8 @@ def _leave_case(
 
 
 def _print_pass(found: Calibration, of: str = "") -> None:
+    from dembound.boundaries.words import FACTORS
+
     number = len(found.beta)
     out.print(
         f"{of}pass {number:2d}: {FACTORS[found.factor]} = {found.beta[-1]:.6f}, "
@@ -153,6 +164,8 @@ def _print_pass_of_side(found: Calibration) -> None:
 
 def _print_table(found: Sequence[Calibration]) -> None:
     """One line per factor: side and wave, old and new value, and M_out/M_in with the new value."""
+    from dembound.studies.all_sides import changes_of
+
     table = Table("key", "side", "β", "before", "M_out/M_in", "passes", title=found[0].case.name)
     for (key, result), each in zip(changes_of(found).items(), found, strict=True):
         before = each.case.boundary[each.side].factors[each.motion]
@@ -162,6 +175,8 @@ def _print_table(found: Sequence[Calibration]) -> None:
 
 
 def _print_result(found: Calibration) -> None:
+    from dembound.boundaries.words import FACTORS
+
     out.print(f"{found.case.name}, {found.side} ({found.kind}): {FACTORS[found.factor]} = {found.result:.6f}")
     if found.method == "homogenised":
         out.print("from the brick's homogenised wave speed and the side's ΣD/H; no wave was run")

@@ -1,14 +1,14 @@
 """Commands that begin with a case: check, run, packing, exact."""
 
+from __future__ import annotations
+
 import json
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from dembound.boundaries.support import Edge
-from dembound.check import check
 from dembound.cli.app import (
     PICTURE,
     Cases,
@@ -26,25 +26,20 @@ from dembound.cli.app import (
     out,
     use_threads,
 )
-from dembound.cli.progress import print_warning, progress_of
-from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
-from dembound.kinds import kind_of
-from dembound.plot.packing import plot_brick, plot_patterns
-from dembound.plot.style import save
-from dembound.running import preflight, run_case
-from dembound.studies.half_space import write_exact
 from dembound.version import IMPORT_BEGAN
 
-RIGHT = Side("right")
-
-IMPORT_SECONDS = time.perf_counter() - IMPORT_BEGAN
-"""Time that importing the command line took, except for its own remaining modules."""
+if TYPE_CHECKING:
+    from dembound.boundaries.support import Edge
+    from dembound.disks.scene import DiskScene
 
 
 @app.command("check", rich_help_panel="Cases")
 def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None) -> None:
     """Print the facts of a run: particles, bonds, time step, memory, time, resolution. Writes nothing."""
+    from dembound.check import check
+    from dembound.cli.progress import print_warning
+
     use_threads(threads)
     for case in [load_case(path, changes) for path in cases]:
         facts, warnings = check(case)
@@ -68,6 +63,11 @@ def run(
 
     All case files are read before the first is run, so a mistake in the last one is found at once.
     """
+    from dembound.cli.progress import progress_of
+    from dembound.kinds import kind_of
+    from dembound.running import preflight, run_case
+
+    spent = {"import": time.perf_counter() - IMPORT_BEGAN}
     use_threads(threads)
     loaded = [load_case(path, changes, name) for path in cases]
     if name is not None and len(cases) > 1:
@@ -77,7 +77,6 @@ def run(
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
     for case in loaded[1:]:  # the first is planned below, before anything is written
         preflight(case)
-    spent = {"import": IMPORT_SECONDS}
     for case in loaded:
         try:
             with progress_of(case.name) as step:
@@ -99,11 +98,15 @@ def packing(
     cases: Cases,
     output: Annotated[Path, PICTURE] = Path("packing.png"),
     title: PictureTitle = None,
-    side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = RIGHT,
+    side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = Side.right,
     brick: Annotated[bool, typer.Option("--brick", help="Show the first case's whole brick with its seams.")] = False,
     changes: Settings = None,
 ) -> None:
     """Draw packings: one side of each case next to each other, or one brick."""
+    from dembound.disks.scene import build
+    from dembound.plot.packing import plot_brick, plot_patterns
+    from dembound.plot.style import save
+
     loaded = [load_disks(path, changes) for path in cases]
     if brick:
         shown = build(loaded[0]).ground.brick
@@ -138,6 +141,8 @@ def exact(
 
     It is plotted and compared like a run. Its folder is named after the case with "_exact", or by --name.
     """
+    from dembound.studies.half_space import write_exact
+
     case = load_disks(path, changes, name or f"{path.stem}_exact")
     folder = output / case.name
     write_exact(case, folder / "run.h5")

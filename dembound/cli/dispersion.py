@@ -1,19 +1,20 @@
 """The command dispersion."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 from rich.table import Table
 
 from dembound.cli.app import PICTURE, PictureTitle, Settings, app, compact_table, load_case, out, writable
 from dembound.errors import CaseError
-from dembound.exact.dispersion import Lattice, Speed, cells_per_wavelength
-from dembound.plot.dispersion import Points, horizon_in_words, name, plot_dispersion
-from dembound.plot.style import save
-from dembound.studies.dispersion import lattices, lattices_of, measure, write_table
+
+if TYPE_CHECKING:
+    from dembound.exact.dispersion import Lattice, Speed
+    from dembound.plot.dispersion import Points
 
 HORIZONS, SPACINGS, TIME_STEPS = (1, 2, 3, 4, 8), (0.005,), (1e-6,)
 """Spacing and step as in L figs 5 and 7."""
@@ -23,8 +24,8 @@ WAVE_SPEED = 2763.0
 
 HEADS = ("horizon", "Δx (m)", "Δt (s)", "cΔt/Δx", "stable up to", "phase", "group")
 
-CHECKED = np.arange(1, 13) / 12.0
-"""Wave numbers to simulate, in parts of the shortest wave's."""
+CHECKED = 12
+"""Number of waves to simulate; their wave numbers are evenly spaced up to the shortest wave's."""
 
 
 def _several(default: Sequence[float]) -> str:
@@ -61,6 +62,10 @@ def dispersion(
 
     Computed for the bars of cases, or for all combinations of the options.
     """
+    from dembound.plot.dispersion import plot_dispersion
+    from dembound.plot.style import save
+    from dembound.studies.dispersion import lattices, lattices_of, write_table
+
     own = {"--horizon": horizons, "--spacing": spacings, "--time-step": time_steps, "--wave-speed": wave_speed}
     if cases:
         _refuse(own, "is given by the case, change it with --set")
@@ -87,6 +92,8 @@ def _refuse(options: Mapping[str, object], why: str) -> None:
 
 def _overview(shown: Sequence[Lattice]) -> Table:
     """Courant numbers, their limits, and how many spacings a wavelength needs."""
+    from dembound.plot.dispersion import horizon_in_words
+
     overview = compact_table(*HEADS, title="Spacings per wavelength from which on waves run within 1 % of c")
     for lattice in shown:
         limit = lattice.courant_limit
@@ -98,6 +105,8 @@ def _overview(shown: Sequence[Lattice]) -> Table:
 
 def _needed(lattice: Lattice, of: Speed) -> str:
     """Spacings per wavelength for 1 %, in words."""
+    from dembound.exact.dispersion import cells_per_wavelength
+
     if not lattice.stable:
         return "unstable"
     return f"{cells_per_wavelength(lattice.horizon, lattice.courant, of=of, shares=lattice.shares):.1f}"
@@ -105,9 +114,15 @@ def _needed(lattice: Lattice, of: Speed) -> str:
 
 def _simulated(shown: Sequence[Lattice]) -> list[Points]:
     """Points computed by simulation, for stable lattices; prints how far they are from the formula."""
+    import numpy as np
+
+    from dembound.plot.dispersion import name
+    from dembound.studies.dispersion import measure
+
     points = []
+    parts = np.arange(1, CHECKED + 1) / CHECKED
     for lattice in shown:
-        wavenumber = CHECKED * lattice.shortest if lattice.stable and lattice.time_step > 0.0 else np.zeros(0)
+        wavenumber = parts * lattice.shortest if lattice.stable and lattice.time_step > 0.0 else np.zeros(0)
         frequency = measure(lattice, wavenumber)
         points.append((wavenumber, frequency))
         if len(frequency):

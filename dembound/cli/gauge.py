@@ -1,18 +1,19 @@
 """The command gauge."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.table import Table
 
 from dembound.cli.app import PICTURE, PictureTitle, app, compact_table, err, out
 from dembound.cli.results import results_file
-from dembound.gauge.estimates import Estimate
-from dembound.gauge.gauge_io import read_free_end, read_gauge
-from dembound.gauge.spalling import Findings, evaluate
-from dembound.plot.gauge import plot_gauge
-from dembound.plot.style import save
+
+if TYPE_CHECKING:
+    from dembound.gauge.estimates import Estimate
+    from dembound.gauge.spalling import Findings
 
 MPA = 1e6
 """Pascals in a megapascal."""
@@ -54,6 +55,9 @@ def gauge(
 
     Results contain position, length, density, speed and attenuation. Strengths need --spall or --free-end.
     """
+    from dembound.gauge.gauge_io import read_free_end, read_gauge
+    from dembound.gauge.spalling import evaluate
+
     path = results_file(record) if record.is_dir() else record
     gauge = read_gauge(path, monitor, position, length, density, scale)
     found = evaluate(
@@ -70,6 +74,9 @@ def gauge(
         err.print(f"--peaks: asks for {peaks} tension peaks, there are {len(found.peaks.time)}")
     out.print(_overview(found, *("results" if given is None else "given" for given in (wave_speed, attenuation))))
     if output is not None:
+        from dembound.plot.gauge import plot_gauge
+        from dembound.plot.style import save
+
         save(plot_gauge(gauge, found), output, title)
         out.print(f"wrote {output}")
 

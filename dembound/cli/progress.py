@@ -1,6 +1,5 @@
 """Progress of a run on stderr: a bar on a terminal, else a line every ten seconds; and its warnings."""
 
-import logging
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,18 +13,6 @@ from dembound.running import Progress
 
 INTERVAL = 10.0
 """Seconds between two lines."""
-
-
-class _Printed(logging.Handler):
-    """Prints the log messages of the package about long work, for example packing a brick."""
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Print a message on a separate line."""
-        err.print(record.getMessage(), markup=False)
-
-
-logging.getLogger("dembound").addHandler(_Printed(logging.INFO))
-logging.getLogger("dembound").setLevel(logging.INFO)
 
 
 @contextmanager

@@ -10,16 +10,6 @@ from rich.table import Column
 
 from dembound.cli.app import PICTURE, PictureTitle, Side, app, compact_table, out, png, writable
 from dembound.errors import CaseError
-from dembound.kinds import kind_of_record
-from dembound.packings.cache import cache_folder, clear
-from dembound.plot.boundary import plot_boundary
-from dembound.plot.convergence import plot_convergence
-from dembound.plot.energy import plot_energy
-from dembound.plot.histories import plot_histories
-from dembound.plot.style import save
-from dembound.plot.table import write_lines
-from dembound.results.compare import compare
-from dembound.results.view import view
 
 CALIBRATIONS = "calibrations"
 """Name of results that do not belong to a run."""
@@ -112,6 +102,14 @@ def plot(
 
     With free-field sides, a monitor's twin in the free-field column is drawn as a dashed line.
     """
+    from dembound.kinds import kind_of_record
+    from dembound.plot.boundary import plot_boundary
+    from dembound.plot.convergence import plot_convergence
+    from dembound.plot.energy import plot_energy
+    from dembound.plot.histories import plot_histories
+    from dembound.plot.style import save
+    from dembound.plot.table import write_lines
+
     files = [results_file(path) for path in results]
     kind = _common_kind(files)
     pictures = {"--field": field, "--energy": energy, "--boundary": boundary}
@@ -155,6 +153,8 @@ def _common_kind(files: Sequence[Path]) -> str:
 
 def _kind(file: Path) -> str:
     """The kind of a result."""
+    from dembound.kinds import kind_of_record
+
     return CALIBRATIONS if file.name == "calibration.h5" else f"runs of {kind_of_record(file).plural}"
 
 
@@ -195,6 +195,8 @@ def view_disks(
 
     A window needs a display; without one, --output draws a picture.
     """
+    from dembound.results.view import view
+
     view(results_file(results), snapshot, field.value, picture, exaggerate)
     if picture is not None:
         out.print(f"wrote {picture}")
@@ -205,6 +207,8 @@ def cache(
     delete: Annotated[bool, typer.Option("--clear", help="Delete all cached bricks.")] = False,
 ) -> None:
     """Show where packed bricks are kept (DEMBOUND_CACHE moves it), or delete them."""
+    from dembound.packings.cache import cache_folder, clear
+
     out.print(str(cache_folder()))
     if delete:
         out.print(f"deleted {clear()} bricks")
@@ -228,6 +232,8 @@ def compare_histories(
 
     End and reference are the values of both at the end.
     """
+    from dembound.results.compare import compare
+
     found = compare(results_file(reference), [results_file(path) for path in results], quantity.value)
     unit = found[0].unit
     heads = ("along", "RMS (%)", "largest (%)", f"end ({unit})", "reference")

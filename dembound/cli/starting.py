@@ -8,10 +8,8 @@ from typing import Annotated
 import typer
 
 from dembound import shipped
-from dembound.casefile.json_schema import IDENTIFIER, json_schema
 from dembound.cli.app import app, out, writable
 from dembound.errors import CaseError
-from dembound.kinds import SCHEMAS
 from dembound.starting import DEFAULT, names, starting_point, titles
 
 SCHEMA_FILE = "dembound.schema.json"
@@ -49,6 +47,8 @@ def _write_schema_beside(path: Path) -> None:
 
     Raises CaseError if a file of that name is not a schema of dembound.
     """
+    from dembound.casefile.json_schema import IDENTIFIER
+
     file, text = path.parent / SCHEMA_FILE, _schema()
     if file.exists():
         if IDENTIFIER not in file.read_text(encoding="utf-8", errors="replace"):
@@ -62,6 +62,9 @@ def _write_schema_beside(path: Path) -> None:
 
 def _schema() -> str:
     """The schema as the text of a file."""
+    from dembound.casefile.json_schema import json_schema
+    from dembound.schemas import SCHEMAS
+
     return json.dumps(json_schema(SCHEMAS), indent=1, ensure_ascii=False) + "\n"
 
 

@@ -20,14 +20,14 @@ from dembound.disks.summary import asked_stress, describe_static, summarise_disk
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
 from dembound.motion.kind import Beginning, Kind, OnLook, Stage
+from dembound.motion.mesh import Mesh
 from dembound.motion.trackers import Run
-from dembound.plot.field import FieldName
-from dembound.plot.scene import plot_scene
 
 if TYPE_CHECKING:
     import h5py
-    import meshio
     from matplotlib.figure import Figure
+
+    from dembound.plot.field import FieldName
 
 
 class Disks(Kind[DiskCase, DiskScene]):
@@ -87,17 +87,21 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Static stage, laws and cracks in words."""
         return disk_outcome(summary)
 
-    def mesh(self, particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+    def mesh(self, particles: Mapping[str, np.ndarray], snapshot: h5py.Group, cracks: Mapping[str, np.ndarray]) -> Mesh:
         """One vertex per disk."""
         return disk_mesh(particles, snapshot, cracks)
 
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:
         """The scene."""
+        from dembound.plot.scene import plot_scene
+
         yield "scene", plot_scene(record)
 
     def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
         """The scene with disks coloured by a field."""
-        return plot_scene(record, snapshot, cast(FieldName, field))
+        from dembound.plot.scene import plot_scene
+
+        return plot_scene(record, snapshot, cast("FieldName", field))
 
 
 def _stages(scene: DiskScene, settled: Settled) -> Iterator[Stage]:

@@ -4,19 +4,23 @@ Everything here is computed from one brick, before any scene is built. The homog
 linear solve and gives wave speeds without a dynamic run.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_matrix, csc_matrix, diags
-from scipy.sparse.linalg import splu
 
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
 from dembound.errors import CaseError
 from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
 from dembound.packings.brick import Brick
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_matrix
 
 GRADIENTS = ("xx", "yy", "xy", "yx")
 """The four unit displacement gradients ∂u_a/∂b, in this order in every homogenised matrix."""
@@ -163,6 +167,9 @@ def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> np.
 
     Raises CaseError when disks can move without resistance, as without bonds and friction.
     """
+    from scipy.sparse import diags
+    from scipy.sparse.linalg import splu
+
     motions, gradients = _elongations(brick, stiffness)
     k = diags(np.concatenate([stiffness.normal, stiffness.shear, stiffness.bending]))
     area = float(np.prod(brick.size))
@@ -194,6 +201,8 @@ def _elongations(brick: Brick, stiffness: Stiffness) -> tuple[csc_matrix, np.nda
     Particle motions are ordered all x, all y, all rotations. Rows are scaled as in the law: n·Δu,
     t·Δu − l_iθ_i − l_jθ_j, θ_j − θ_i.
     """
+    from scipy.sparse import coo_matrix
+
     vectors = brick.vectors
     count, contacts = len(brick.radii), len(vectors)
     c, s = (vectors / np.hypot(*vectors.T)[:, None]).T

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from dembound.boundaries import Periodic
 from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
@@ -203,6 +202,8 @@ def _monitors(case: DiskCase, assembly: Assembly, seam: Seam | None) -> dict[str
     """The particle of the body nearest to each monitor's position, and its twin in the free-field column."""
     if not case.monitor:
         return {}
+    from scipy.spatial import cKDTree
+
     first = 0 if seam is None else seam.count
     _, nodes = cKDTree(assembly.positions[first:]).query([m.position for m in case.monitor])
     monitors = {m.name: first + int(node) for m, node in zip(case.monitor, nodes, strict=True)}

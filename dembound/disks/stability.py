@@ -1,7 +1,6 @@
 """The largest stable time step, from the largest eigenfrequency of the scene."""
 
 import numpy as np
-from scipy.linalg import eigh_tridiagonal
 
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, RunError
@@ -125,6 +124,8 @@ def _largest_of(diagonal: list[float], beside: list[float], size: float) -> tupl
 
     size : that of the vector after the last one, by whose share in the eigenvector the residual is found.
     """
+    from scipy.linalg import eigh_tridiagonal
+
     last = len(diagonal) - 1
     value, vector = eigh_tridiagonal(diagonal, beside, select="i", select_range=(last, last))
     return float(value[0]), size * abs(float(vector[last, 0]))

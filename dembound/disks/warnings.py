@@ -6,8 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from dembound.boundaries import SIDES, Motion, axis_of_motion
 from dembound.casefile.disks.load import Load
@@ -253,6 +251,9 @@ def _pieces(scene: DiskScene, broken: np.ndarray) -> np.ndarray:
 
     broken (k, 2) particles.
     """
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     pairs = np.sort(scene.assembly.pairs.astype(np.int64), axis=1)
     left = pairs[~np.isin(pairs @ [scene.count, 1], np.sort(broken, axis=1) @ [scene.count, 1])]
     joined = coo_matrix((np.ones(len(left)), left.T), shape=(scene.count, scene.count))

@@ -16,10 +16,11 @@ Waves whose length is the horizon mΔx divided by a whole number transport no en
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+
+from dembound.roots import root
 
 ROUNDING = 1e-12
 """Rounding error allowed in sin(ωΔt/2) ≤ 1, so that a step exactly at the limit is stable."""
@@ -141,6 +142,7 @@ def courant_limit(horizon: int, shares: tuple[float, ...] | None = None) -> floa
 
 def _searched_limit(horizon: int, shares: tuple[float, ...]) -> float:
     """1/√q for the largest q of all waves."""
+    from scipy.optimize import minimize_scalar
 
     def less(half: float) -> float:
         return -float(half**2 * _square(np.array(half), horizon, shares))
@@ -174,14 +176,14 @@ def cells_per_wavelength(
         raise ValueError(f"Courant number ({courant}) must not be above {lattice.courant_limit:.6g}, its limit")
     speed = lattice.phase_velocity if of == "phase" else lattice.group_velocity
 
-    def excess(wavenumber: np.ndarray | float) -> np.ndarray:
-        return np.abs(speed(wavenumber) - 1.0) - error
+    def margin(wavenumber: Any) -> Any:
+        return error - np.abs(speed(wavenumber) - 1.0)
 
     tried = np.linspace(0.0, np.pi, SAMPLES * horizon)[:-1]  # a curve may end at π
-    beyond = np.flatnonzero(excess(tried) > 0.0)
+    beyond = np.flatnonzero(margin(tried) < 0.0)
     if not beyond.size:
         return 2.0
-    return float(2.0 * np.pi / brentq(excess, tried[beyond[0] - 1], tried[beyond[0]], rtol=1e-12))
+    return float(2.0 * np.pi / root(margin, tried[beyond[0] - 1], tried[beyond[0]]))
 
 
 def usual_shares(horizon: int) -> tuple[float, ...]:

@@ -24,7 +24,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from scipy.optimize import brentq
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 FEWEST_PANELS = 4
@@ -77,6 +76,8 @@ def rayleigh_speed(p_wave_speed: float, s_wave_speed: float) -> float:
 
     Raises ValueError unless 0 < s_wave_speed < p_wave_speed.
     """
+    from scipy.optimize import brentq
+
     if not 0.0 < s_wave_speed < p_wave_speed:
         raise ValueError(f"speeds must be 0 < S ({s_wave_speed} m/s) < P ({p_wave_speed} m/s)")
     ratio = (s_wave_speed / p_wave_speed) ** 2

@@ -70,15 +70,30 @@ def first_fall(values: np.ndarray) -> float:
     """
     noise = _noise(values)
     least = max(DIP * float(np.ptp(values)), 2.0 * NOISE_FACTOR * noise)
-    tops, bottoms = (_summits(side * values, prominence=least) for side in (1.0, -1.0))
-    after = bottoms[bottoms > tops[0]] if len(tops) else tops
-    if not len(after):
+    turns = _turns(values, least) if least > 0.0 else []
+    if len(turns) < 2:
         return np.nan
-    top, bottom = int(tops[0]), int(after[0])
+    top, bottom = turns[:2]
     reach = _worthwhile_reach(noise / (values[top] - values[bottom]), bottom - top)
     smooth = _smooth(values, reach)
     highest, lowest = (smooth[max(place - reach, 0) : place + reach + 1] for place in (top, bottom))
     return float(highest.max() - lowest.min())
+
+
+def _turns(values: np.ndarray, least: float) -> list[int]:
+    """Samples of tops and bottoms in turn, beginning with a top, whose prominences are at least `least` > 0.
+
+    One is found where the history has gone back by `least` from its extreme since the one before.
+    """
+    found, sense, place, extreme = [], -1.0, 0, float(values[0])  # the first is the depth before the first top
+    for here, value in enumerate(values.tolist()):
+        ahead = sense * (value - extreme)
+        if ahead <= -least:
+            found.append(place)
+            sense = -sense
+        if ahead > 0.0 or ahead <= -least:
+            place, extreme = here, value
+    return found[1:]
 
 
 def _summits(values: np.ndarray, **limits: float) -> np.ndarray:

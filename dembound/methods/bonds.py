@@ -5,15 +5,20 @@ share of the stress that bonds carry across it; a local spring there carries the
 combined with local springs: forces act in pairs, and rest and uniform strain are not disturbed at the seam.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.kernels.tables import BarBonds
 from dembound.laws.peridynamic import Family, damage, families, micromodulus
+
+if TYPE_CHECKING:
+    from dembound.kernels.tables import BarBonds
 
 _EVOLVING = ("spring", "bond", "spring_broken", "bond_broken", "spring_limit", "triggers")
 """The arrays of bonds that change."""
@@ -230,6 +235,8 @@ class Bonds:
         supported (k,) are nodes that the support table moves; density kg/m³; step Δt in s; drag_rate 1/s of dashpots
         that attenuate, see case.bar.bar.Bar.
         """
+        from dembound.kernels.tables import BarBonds
+
         plain, mixed = self._ranges(supported)
         part = 0.5 * drag_rate * step
         keep = (1.0 - part) / (1.0 + part)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.errors import PackingError
-from dembound.kernels import pack
 from dembound.packings.brick import contact_stress, contact_vectors
 from dembound.packings.contacts import listed, near_pairs, wrap
 
@@ -64,6 +63,8 @@ class Bed:
         `faint` (m) : smaller overlaps are replaced by this one (see `kernels.pack.relax`). Raises PackingError when the
         forces do not balance.
         """
+        from dembound.kernels import pack
+
         skin = SKIN * float(self.radii.mean())
         velocities = np.zeros((2, len(self.radii)))
         pace = np.array([pack.FIRST_STEP, pack.MIX, 0.0])

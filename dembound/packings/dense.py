@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.errors import PackingError
-from dembound.kernels import pack
 from dembound.packings.bed import Bed
 from dembound.packings.brick import Brick, contact_stress, contact_vectors
 from dembound.packings.contacts import listed, strip_order
@@ -120,6 +119,8 @@ def pack_count(count: int, recipe: Recipe, rows: RegularRows, attempt: int) -> B
 
 def finish(bed: Bed, recipe: Recipe, rows: RegularRows) -> Brick:
     """The brick of a bed in equilibrium: sorted disks, contacts, stress and residual force ratio."""
+    from dembound.kernels import pack
+
     member = np.zeros((len(bed.radii), 2), bool)
     member[: bed.held] = rows.member
     order = strip_order(bed.positions, 4.0 * recipe.radius)

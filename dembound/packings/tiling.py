@@ -3,8 +3,6 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from dembound.errors import PackingError
 from dembound.packings.brick import Brick
@@ -116,6 +114,9 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
 
 def _body(assembly: Assembly, present: np.ndarray) -> np.ndarray:
     """The largest connected body (n,) bool of the disks present (n,) bool; isolated groups transmit no waves."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
     count = len(present)
     pairs = assembly.pairs[present[assembly.pairs].all(axis=1)]
     graph = coo_matrix((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(count, count))

@@ -29,6 +29,9 @@ UNSIGNED_MAP = "viridis"
 # DejaVu comes with matplotlib; the others, if installed, have Chinese characters for titles
 FONTS = ("DejaVu Sans", "Noto Sans CJK SC", "Microsoft YaHei", "PingFang SC", "SimHei", "WenQuanYi Zen Hei")
 
+COMPRESSION = 2
+"""Level of compression of pictures: half the time of the usual one, and a fifth more bytes."""
+
 SHORT = 0.1
 """A picture of less than this many seconds has times in milliseconds."""
 
@@ -120,5 +123,8 @@ def save(figure: Figure, path: Path, title: str | None = None) -> None:
     """Write the figure as a PNG file, either completely or not at all; `title` replaces the title of the figure."""
     if title is not None:
         figure.suptitle(title, fontsize=11)
+    if figure.axes and (layout := figure.get_layout_engine()) is not None:
+        layout.execute(figure)  # here, as savefig would draw everything once more for it
+        figure.set_layout_engine("none")
     with replacing(path) as part:
-        figure.savefig(part, format="png")
+        figure.savefig(part, format="png", pil_kwargs={"compress_level": COMPRESSION})

@@ -1,15 +1,19 @@
 """Histories of the monitors of a record."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-import h5py
 import numpy as np
 
 from dembound.casefile.disks.monitor import FREE_FIELD as FREE_FIELD  # ending of a twin's name, also for pictures
 from dembound.errors import CaseError
 from dembound.results.reader import open_record, place_in_words
+
+if TYPE_CHECKING:
+    import h5py
 
 Quantity = Literal["velocity", "displacement", "acceleration", "stress"]
 

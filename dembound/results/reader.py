@@ -1,14 +1,19 @@
 """Result files: opening records, and writing derived files either completely or not at all."""
 
+from __future__ import annotations
+
 import errno
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import h5py
 import numpy as np
 
 from dembound.errors import CaseError
+
+if TYPE_CHECKING:
+    import h5py
 
 COMPONENTS = ("x", "y", "rotation")
 """The columns of every displacement and velocity in a record."""
@@ -19,6 +24,8 @@ def open_record(path: Path) -> h5py.File:
 
     Raises CaseError when it does not exist or is not readable.
     """
+    import h5py
+
     try:
         return h5py.File(path, "r")
     except OSError as error:
@@ -137,5 +144,6 @@ def replacing(path: Path) -> Iterator[Path]:
     try:
         yield part
         part.replace(path)
-    finally:
+    except BaseException:
         part.unlink(missing_ok=True)
+        raise

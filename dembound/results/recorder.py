@@ -25,26 +25,38 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
+from typing import TYPE_CHECKING
 
-import h5py
 import numpy as np
 
-from dembound.motion.cracks import Cracks
+from dembound.motion.cracks import Cracks, joined
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.kind import Stage, StalledError
 from dembound.motion.trackers import NEVER, Run, Tracker
 from dembound.version import __version__
 
+if TYPE_CHECKING:
+    import h5py
+
 DISPLACEMENT_UNIT = "m, m, rad"
 VELOCITY_UNIT = "m/s, m/s, rad/s"
+
+KEPT_BYTES, KEPT_SECONDS = 2**20, 10.0
+"""Samples and cracks are kept in memory until the samples have this size, or for this long.
+
+Thousands of small writes take longer than all steps of a small scene.
+"""
 
 
 class Recorder:
     """Writes one run, appending during the run; ``complete`` becomes true only at its end.
+
+    At the end of its ``with`` statement the file has everything that was recorded, also after an error or Ctrl-C.
 
     Parameters
     ----------
@@ -64,6 +76,8 @@ class Recorder:
         ledger: Ledger | None = None,
         stages: Sequence[Stage] = (),
     ) -> None:
+        import h5py
+
         self.run = run
         self.ledger = ledger
         self.stride = max(1, round(interval / run.time_step))
@@ -75,6 +89,10 @@ class Recorder:
         for stage in stages:
             self._write_stage(stage)
         self._snapshots = 0
+        self._times: list[np.ndarray] = []
+        self._samples: list[np.ndarray] = []
+        self._broken: list[Cracks] = []
+        self.flush()
 
     def __enter__(self) -> Recorder:
         return self
@@ -82,6 +100,7 @@ class Recorder:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self.flush()
         if kind is None:
             self._write_boundaries()
             self._write_peaks()
@@ -92,19 +111,32 @@ class Recorder:
         self.file.close()
 
     def append(self, record: np.ndarray) -> None:
-        """Write every stride-th of the last steps; record : of the probes, see `Simulation.advance`."""
+        """Take every stride-th of the last steps; record : of the probes, see `Simulation.advance`."""
         state, step = self.run.state, self.run.time_step
         begun = state.step - len(record)
         rows = np.arange(-begun % self.stride, len(record), self.stride)
-        times = (begun + rows) * step
-        for index, history in enumerate(self._histories):
-            _extend(history["time"], times)
-            _extend(history["displacement"], record[rows, index, :3])
-            _extend(history["velocity"], record[rows, index, 3:6])
-            if "stress" in history:
-                _extend(history["stress"], record[rows, index, 6])
-        self._append_cracks(self.run.system.take_cracks(state.step), step)
+        self._times.append((begun + rows) * step)
+        self._samples.append(record[rows])
+        self._broken.append(self.run.system.take_cracks(state.step))
+        kept = sum(samples.nbytes for samples in self._samples)
+        if kept >= KEPT_BYTES or time.monotonic() - self._written >= KEPT_SECONDS:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what is kept in memory; should the process be killed, the file can be read as of now."""
+        if self._times:
+            times, samples = np.concatenate(self._times), np.concatenate(self._samples)
+            self._times, self._samples = [], []
+            for index, history in enumerate(self._histories):
+                _extend(history["time"], times)
+                _extend(history["displacement"], samples[:, index, :3])
+                _extend(history["velocity"], samples[:, index, 3:6])
+                if "stress" in history:
+                    _extend(history["stress"], samples[:, index, 6])
+        self._append_cracks(joined(self._broken), self.run.time_step)
+        self._broken = []
         self.file.flush()
+        self._written = time.monotonic()
 
     def snapshot(self) -> None:
         """Write the present state of the whole scene."""
@@ -116,6 +148,7 @@ class Recorder:
         for name, (values, unit) in self.run.system.snapshot(state.displacement).items():
             _write(group, name, values, unit)
         self._snapshots += 1
+        self.file.flush()
 
     def stalled_snapshot(self, stalled: StalledError) -> None:
         """Write the scene at the end of a stage that stalled, with unbalanced forces and cracks."""

@@ -1,16 +1,20 @@
 """The summary of a run as numbers, for scripts: the entries of all kinds of bodies."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import h5py
 import numpy as np
 
 from dembound.motion.kind import Plan
 from dembound.motion.trackers import Run
 from dembound.results.reader import energy_of, open_record
 from dembound.version import __version__
+
+if TYPE_CHECKING:
+    import h5py
 
 
 def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float]) -> dict[str, Any]:

@@ -1,12 +1,17 @@
 """Warnings from the finished record of a run, for all kinds of bodies."""
 
-from collections.abc import Iterator
+from __future__ import annotations
 
-import h5py
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from dembound.casefile.magnitudes import waves_used
 from dembound.motion.scene import Scene
+
+if TYPE_CHECKING:
+    import h5py
 
 MOVING = 0.2
 """Share of a monitor's peak velocity that its velocity, and the change of it, must exceed to count as moving.

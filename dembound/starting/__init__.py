@@ -7,7 +7,6 @@ registration is needed.
 import tomllib
 from importlib.resources import files
 
-from dembound.casefile.messages import choices, show
 from dembound.errors import CaseError
 
 DEFAULT = "long_bar"
@@ -31,5 +30,7 @@ def starting_point(name: str = DEFAULT) -> str:
     """The TOML text of a starting point; raises CaseError for an unknown name."""
     known = names()
     if name not in known:
+        from dembound.casefile.messages import choices, show  # here, as they import all tables of case files
+
         raise CaseError([f"--from: is {show(name)}, must be one of {choices(name, known)}"])
     return (files(__name__) / f"{name}{ENDING}").read_text(encoding="utf-8")

@@ -4,8 +4,8 @@ import math
 from typing import Literal
 
 import numpy as np
-from scipy.special import lambertw
 
+from dembound.roots import root
 from dembound.table import quantity
 from dembound.waves.spectrum import FADED
 from dembound.waves.wave import Shape
@@ -16,7 +16,7 @@ DELAY = 1.5
 The wavelet is nowhere exactly zero and is not cut off: it is 1e-8 of its amplitude at the start, less before.
 """
 
-FADE = math.sqrt(-lambertw(-FADED / math.e, -1).real)
+FADE = root(lambda x: x**2 * math.exp(1.0 - x**2) - FADED, 1.0, 10.0)
 """Frequency over crest frequency, x, above which the spectrum x² exp(1 − x²) is below 1 %: 2.764."""
 
 

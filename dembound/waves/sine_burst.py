@@ -4,8 +4,8 @@ import math
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import brentq
 
+from dembound.roots import root
 from dembound.table import quantity
 from dembound.waves.spectrum import FADED, HANN_FADE
 from dembound.waves.wave import Shape
@@ -51,7 +51,7 @@ class SineBurst(Shape):
         def slope(e: float) -> float:
             return n * math.cos(e) * math.cos(2 * n * e) - math.sin(e) * math.sin(2 * n * e)
 
-        return brentq(slope, 0.0, math.pi / (4 * n), xtol=1e-15)
+        return root(slope, 0.0, math.pi / (4 * n))
 
     def peak(self) -> float:
         """Largest |velocity|, m/s: the amplitude, or a little less when tapered."""

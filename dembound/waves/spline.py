@@ -3,8 +3,8 @@
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import brentq
 
+from dembound.roots import root
 from dembound.table import quantity
 from dembound.waves.spectrum import FADED
 from dembound.waves.wave import Shape
@@ -12,7 +12,7 @@ from dembound.waves.wave import Shape
 AREA = 3.0 / 8.0
 """Integral of the spline of unit height and unit length."""
 
-FADE = 4.0 * brentq(lambda x: np.sinc(x) - FADED**0.25, 0.0, 1.0, xtol=1e-15)
+FADE = 4.0 * root(lambda x: float(np.sinc(x)) - FADED**0.25, 0.0, 1.0)
 """Frequency times length at which the spectrum sinc⁴(fT/4), sinc x = sin πx/πx, has faded: 2.952.
 
 All side lobes are below: the first is 0.217⁴ = 0.22 % of the crest.

@@ -1,11 +1,11 @@
 """The triangular pulse of Lu & Wang 2016, section 3."""
 
 import math
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
-from scipy.optimize import brentq
 
+from dembound.roots import root
 from dembound.table import quantity
 from dembound.waves.spectrum import FADED
 from dembound.waves.wave import Shape
@@ -58,11 +58,11 @@ class Triangle(Shape):
         share = self.rise / self._length()
         products = np.arange(1, math.ceil(FADED_AT_LATEST * PER_LOBE) + 2) / PER_LOBE
         last = int(np.flatnonzero(_spectrum(products, share) >= FADED)[-1])
-        faded = brentq(lambda x: _spectrum(x, share) - FADED, products[last], products[last + 1], xtol=1e-12)
+        faded = root(lambda x: _spectrum(x, share) - FADED, products[last], products[last + 1])
         return faded / self._length()
 
 
-def _spectrum(products: np.ndarray, share: float) -> np.ndarray:
+def _spectrum(products: Any, share: float) -> Any:
     """Amplitude spectrum over that at zero of a triangle whose rise is this share q of its length T, at x = fT > 0.
 
     The pulse's rate is a box of area M over the rise less one over the fall, whose middles are T/2 apart; hence

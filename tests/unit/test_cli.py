@@ -5,6 +5,7 @@ import inspect
 import json
 import re
 import runpy
+import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,7 +22,9 @@ from matplotlib.figure import Figure
 from typer.main import get_command
 
 from dembound import cli, starting
+from dembound.boundaries import SIDES
 from dembound.casefile.bar import BarCase
+from dembound.cli.app import Side
 from dembound.cli.progress import Lines, progress_of
 from dembound.kinds import load
 from dembound.motion.simulation import Simulation
@@ -101,6 +104,55 @@ def test_version_and_help_end_well(dembound) -> None:
     assert told.code == 0
     for command in ("new", "cases", "schema", "check", "run", "calibrate", "plot", "dispersion", "gauge"):
         assert command in told.out
+
+
+HEAVY = {"h5py", "matplotlib", "meshio", "numba", "numpy", "pyvista", "scipy", "vtkmodules"}
+"""Packages that take long to import; pydantic is not among them, as typer imports it as well."""
+
+FIGURES = {"matplotlib", "meshio", "pyvista", "vtkmodules"}
+SIGNALS = {"scipy.optimize", "scipy.signal", "scipy.stats"}
+
+
+def imported(case: Path, *arguments: str) -> set[str]:
+    """The modules that a command imports in a process of its own; CASE stands for the path of a case."""
+    report = "import sys; print('\\n'.join(sys.modules), file=sys.__stdout__)"
+    program = f"import atexit; atexit.register(lambda: exec({report!r})); from dembound.cli import main; main()"
+    words = [str(case) if word == "CASE" else word for word in arguments]
+    done = subprocess.run(
+        [sys.executable, "-c", program, *words], cwd=case.parent, capture_output=True, text=True, check=True
+    )
+    return set(done.stdout.splitlines())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "unused"),
+    [
+        (("--help",), HEAVY),
+        (("run", "--help"), HEAVY),
+        (("cases",), HEAVY),
+        (("new", "--list"), HEAVY),
+        (("new", "made.toml"), HEAVY - {"numpy"}),
+        (("schema",), HEAVY - {"numpy"}),
+        (("check", "CASE"), FIGURES | SIGNALS | {"h5py"}),
+    ],
+)
+def test_commands_import_only_what_they_use(written, arguments, unused) -> None:
+    found = imported(written(), *arguments)
+    assert "dembound.cli.app" in found
+    assert not found & unused
+
+
+def test_completion_imports_nothing_large(written, monkeypatch) -> None:
+    monkeypatch.setenv("_DEMBOUND_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", "dembound new --from ")
+    monkeypatch.setenv("COMP_CWORD", "3")
+    found = imported(written())
+    assert starting.DEFAULT in found  # as a completion
+    assert not found & HEAVY
+
+
+def test_the_options_name_all_sides() -> None:
+    assert tuple(Side) == SIDES
 
 
 def test_helps_wrap_at_80_columns(dembound, command, monkeypatch) -> None:

@@ -7,6 +7,7 @@ from typer.testing import CliRunner
 
 from dembound import cli
 from dembound.errors import CaseError
+from dembound.plot import histories
 from dembound.plot.histories import plot_histories
 from dembound.plot.style import new_figure
 
@@ -170,7 +171,7 @@ def test_unknown_monitors_are_refused_with_those_there(small_run):
 def test_the_command_hands_on_the_monitors(small_run, tmp_path, monkeypatch):
     asked = []
     monkeypatch.setattr(
-        cli.results, "plot_histories", lambda runs, **options: asked.append(options) or new_figure(1.0, 1.0)
+        histories, "plot_histories", lambda runs, **options: asked.append(options) or new_figure(1.0, 1.0)
     )
     for options in ([], ["--monitor", "back", "--monitor", "front"]):
         command = ["plot", str(small_run), "-o", str(tmp_path / "plot.png"), *options]

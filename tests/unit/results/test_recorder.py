@@ -13,6 +13,7 @@ from dembound.disks.stability import choose_step
 from dembound.disks.system import DiskSystem, Start
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.simulation import Simulation
+from dembound.results import recorder as module
 from dembound.results.recorder import Histories, Recorder, Snapshots
 from dembound.version import __version__
 
@@ -315,15 +316,38 @@ def test_a_run_that_fails_leaves_its_histories_and_is_not_complete(tmp_path, sim
         assert "boundaries" not in file
 
 
-def test_what_was_appended_can_be_read_if_the_process_dies(tmp_path, simulation) -> None:
+@pytest.mark.parametrize(
+    ("limit", "value", "samples"), [("KEPT_BYTES", 1, 10), ("KEPT_SECONDS", 0.0, 10), (None, 0, 0)]
+)
+def test_what_was_written_can_be_read_if_the_process_dies(
+    tmp_path, simulation, monkeypatch, limit, value, samples
+) -> None:
+    if limit is not None:
+        monkeypatch.setattr(module, limit, value)
     kept = recorder(tmp_path / "run.h5", simulation)
+    kept.append(simulation.advance(5))
+    kept.snapshot()
     kept.append(simulation.advance(5))
     (tmp_path / "as_found.h5").write_bytes((tmp_path / "run.h5").read_bytes())
     kept.file.close()
 
     with h5py.File(tmp_path / "as_found.h5") as file:
         assert not file.attrs["complete"]
-        assert len(file["histories/front/time"]) == 5
+        assert len(file["histories/front/time"]) == samples
+        assert len(file["snapshots"]) == 1
+
+
+def test_ctrl_c_loses_nothing(tmp_path, simulation) -> None:
+    def stop() -> None:
+        with recorder(tmp_path / "run.h5", simulation) as kept:
+            for _ in range(3):
+                kept.append(simulation.advance(5))
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stop()
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert file["histories/front/time"][:].tolist() == [k * simulation.time_step for k in range(15)]
 
 
 def test_a_bar_is_kept_with_its_section_and_volumes(spalled_run) -> None:

@@ -1,0 +1,36 @@
+"""The case files of all kinds of bodies: reading and changing them.
+
+Apart from `kinds`, only this file names the kinds. Cases are read, described and listed without importing what runs
+them.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from dembound.casefile import Case, reader, writer
+from dembound.casefile.bar import SCHEMA as BAR
+from dembound.casefile.disks import SCHEMA as DISKS
+
+SCHEMAS = (BAR, DISKS)
+"""The tables of each kind, in the order in which a case file is searched for them."""
+
+
+def load(path: Path) -> Case:
+    """Read a case file of any kind; errors as `case.reader.load`."""
+    return reader.load(path, SCHEMAS)
+
+
+def loads(text: str, folder: Path = Path(), name: str = "case") -> Case:
+    """Read a case from TOML text, as if it were the file `name` in the folder; errors as `load`."""
+    return reader.loads(text, SCHEMAS, folder, name)
+
+
+def with_changes(case: Case, changes: Mapping[str, Any]) -> Case:
+    """The case with some keys changed, see `case.writer.with_changes`."""
+    return writer.with_changes(case, changes, SCHEMAS)
+
+
+def checked(case: Case) -> Case:
+    """The case, its tables checked as if they had been read from a file; errors as `load`."""
+    return case if case.is_checked else loads(case.text, case.folder, case.name)
