@@ -17,12 +17,12 @@ from dembound.bar.summary import summarise_bar
 from dembound.bar.warnings import bar_warnings, warnings_after_bar
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.motion.kind import Beginning, Kind, OnLook
-from dembound.motion.mesh import Mesh
 from dembound.motion.trackers import Run
 from dembound.results.reader import has_monitors
 
 if TYPE_CHECKING:
     import h5py
+    import meshio
     from matplotlib.figure import Figure
 
 
@@ -70,7 +70,7 @@ class Bars(Kind[BarCase, BarScene]):
         """Methods and spalls in words."""
         return bar_outcome(summary)
 
-    def mesh(self, particles: Mapping[str, np.ndarray], snapshot: h5py.Group, cracks: Mapping[str, np.ndarray]) -> Mesh:
+    def mesh(self, particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
         """One line from each node to the next."""
         return bar_mesh(particles, snapshot, cracks)
 

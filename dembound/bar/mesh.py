@@ -18,9 +18,15 @@ To see a bar in ParaView, run ``paraview --script=view.py`` in the folder, or op
 an array to colour by. A bar is thin: *Warp By Scalar* with ``stress`` and the normal (0, 1, 0) draws it as a curve.
 """
 
-import h5py
-import meshio
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
+
+if TYPE_CHECKING:
+    import h5py
+    import meshio
 
 VIEW_SCRIPT = '''\
 """Shows the line of bar.pvd in ParaView: paraview --script=view.py, or Run Script once it is open."""
@@ -64,6 +70,8 @@ def bar_mesh(particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.n
         data["peakVelocity"] = particles["peak_velocity"][:]
     lines = np.stack([np.arange(count - 1), np.arange(1, count)], axis=1)
     broken = broken_across(cracks["particles"], count)
+    import meshio  # imported here, as commands that write no files need not wait for it
+
     return meshio.Mesh(places + displacement, [("line", lines)], point_data=data, cell_data={"brokenBonds": [broken]})
 
 

@@ -20,11 +20,11 @@ from dembound.disks.summary import asked_stress, describe_static, summarise_disk
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
 from dembound.motion.kind import Beginning, Kind, OnLook, Stage
-from dembound.motion.mesh import Mesh
 from dembound.motion.trackers import Run
 
 if TYPE_CHECKING:
     import h5py
+    import meshio
     from matplotlib.figure import Figure
 
     from dembound.plot.field import FieldName
@@ -87,7 +87,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Static stage, laws and cracks in words."""
         return disk_outcome(summary)
 
-    def mesh(self, particles: Mapping[str, np.ndarray], snapshot: h5py.Group, cracks: Mapping[str, np.ndarray]) -> Mesh:
+    def mesh(self, particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
         """One vertex per disk."""
         return disk_mesh(particles, snapshot, cracks)
 

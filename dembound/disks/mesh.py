@@ -26,11 +26,17 @@ preset *Plain circle*, scale by array ``radii``, no scale function, Gaussian rad
 *Warp By Vector* with ``displacement`` and factor k − 1 shows displacements k times as large.
 """
 
-import h5py
-import meshio
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from dembound.results.vtk import in_space, vertices
+
+if TYPE_CHECKING:
+    import h5py
+    import meshio
 
 VIEW_SCRIPT = '''\
 """Shows the disks of particles.pvd in ParaView: paraview --script=view.py, or Run Script once it is open."""

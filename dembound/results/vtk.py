@@ -12,15 +12,19 @@ time:
 | ``particles`` | 1 | (k, 2) | ids of the two disks |
 """
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
-import meshio
 import numpy as np
 
 from dembound.motion.kind import Kind
 from dembound.results.reader import cracks_until, open_record, replacing
+
+if TYPE_CHECKING:
+    import meshio
 
 
 def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
@@ -65,12 +69,16 @@ def _cracks(cracks: dict[str, np.ndarray]) -> meshio.Mesh:
 
 def vertices(points: np.ndarray, data: dict[str, np.ndarray]) -> meshio.Mesh:
     """One vertex per point (n, 3) m, with arrays (n, …) on them."""
+    import meshio  # imported here, as commands that write no files need not wait for it
+
     return meshio.Mesh(points, [("vertex", np.arange(len(points))[:, None])], point_data=data)
 
 
 def _write(path: Path, mesh: meshio.Mesh) -> None:
     """Write a VTU file, either completely or not at all."""
     with replacing(path) as part:
+        import meshio
+
         meshio.write(part, mesh, file_format="vtu")
 
 
