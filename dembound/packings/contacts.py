@@ -1,8 +1,13 @@
 """Contacts between disks in a periodic box."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from dembound.kernels import near, pack
+if TYPE_CHECKING:
+    from dembound.kernels import pack
 
 
 def wrap(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
@@ -20,6 +25,8 @@ def near_pairs(
     2·(largest diameter + reach), so that a pair can touch at one image only. Returns pairs (b, 2) int64 with i < j,
     sorted, and images (b, 2) int64: the contact vector is x_j + images·box − x_i.
     """
+    from dembound.kernels import near
+
     return near.near_pairs(positions, radii, reach, box)
 
 
@@ -27,6 +34,8 @@ def listed(
     positions: np.ndarray, radii: np.ndarray, box: np.ndarray, reach: float
 ) -> tuple[np.ndarray, np.ndarray, pack.Pairs]:
     """The pairs (b, 2) and images (b, 2) of `near_pairs`, and the same for the kernels."""
+    from dembound.kernels import pack
+
     pairs, images = near_pairs(positions, radii, box, reach)
     first, second = pairs.T.astype(np.uint32)
     shift_x, shift_y = np.ascontiguousarray((images * box).T)
