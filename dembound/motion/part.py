@@ -50,7 +50,7 @@ class Part(ABC):
         """Restore what `memory` has returned in another run of the same case."""
 
     def blown_up(self, velocity: np.ndarray) -> int | None:
-        """The node of an instability that adds energy, if the part can detect it; velocity (3, n) m/s."""
+        """The node of an instability that adds energy, if the part can detect it; velocity (3, slots) m/s."""
         return None
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
@@ -129,7 +129,7 @@ class System:
         return joined([part.take_cracks(steps) for part in self.parts])
 
     def blown_up(self, velocity: np.ndarray) -> int | None:
-        """A node of an instability that adds energy, if a part detects one; velocity (3, n) m/s."""
+        """A node of an instability that adds energy, if a part detects one; velocity (3, slots) m/s."""
         found = (part.blown_up(velocity) for part in self.parts)
         return next((node for node in found if node is not None), None)
 
