@@ -102,46 +102,31 @@ def _store_forces(force, c, exists, fx, fy, on_i, on_j):
     store(force[3], c, on_j)
 
 
-@njit(**FAST)
-def _push_reference(pairs, q, block, i, u, v, step, number, contacts, limits, result):
-    """Forces of the eight pairs of a block of row q in the geometry of the start; their first disks are from slot i on.
+@njit(**INLINED)
+def _act(c, t, block, exists, normal, arms, strain, opening, gives_way, u, v, step, number, contacts, limits, result):
+    """Forces of the eight pairs of a block from their strain: stretch, shear and bending angle.
 
-    Returns the energy (J) that friction took; result (3,) is advanced where pairs are computed in turn.
+    normal, arms : directions and lever arms, numbers or lanes; opening : speed at which the disks part, where a contact
+    gives way. Returns the energy (J) that friction took; result (3,) is advanced where pairs are computed in turn.
     """
-    exists = pairs.exists[block]
-    t, c, j = U(pairs.contact_type[q]), U(LANES * block), U(i + pairs.shift[q])
-    i = U(i)
     k = contacts.constants
     nothing = splat(0.0)
+    (nx, ny), (arm_i, arm_j), (stretch, shear, bent) = normal, arms, strain
     whole = where_equal(contacts.state, c, _INTACT)
-    intact = byte_of(whole)
-    nx, ny = pairs.normal[q, U(0)], pairs.normal[q, U(1)]
-    rest = k[t, U(2)]
-    arm_i = 0.5 * rest + k[t, U(4)]
-    arm_j = rest - arm_i
-    dx, dy = _apart(u, i, j)
-    turn_i, turn_j = load(u[2], i), load(u[2], j)
-    stretch = nx * dx + ny * dy
-    shear = nx * dy - ny * dx - arm_i * turn_i - arm_j * turn_j
-    pull, side, rubbed, slip, slides = nothing, nothing, nothing, nothing, False
+    intact = byte_of(whole) & exists
+    pull, side, moment, rubbed, slip, slides = nothing, nothing, nothing, nothing, nothing, False
     if k[t, U(5)] > 0.0 or k[t, U(6)] > 0.0:
-        opening = nothing
-        gives_way = limits.geometry != REFERENCE or k[t, U(3)] < rest
-        if gives_way:
-            dvx, dvy = _apart(v, i, j)
-            opening = nx * dvx + ny * dvy
         was = load(contacts.shear, c)
         N, side, slip, rubbed, slides = _contact(
             k, t, c, stretch, opening, shear, was, step, gives_way, exists, contacts, limits.friction
         )
         pull = -1.0 * N
-    moment = nothing
     if intact != 0:
-        normal, sheared, moment, breaks = _bond(k, t, stretch, shear, turn_j - turn_i, whole, limits)
-        if (breaks & intact & exists) != 0:
+        stretched, sheared, moment, breaks = _bond(k, t, stretch, shear, bent, whole, limits)
+        if (breaks & intact) != 0:
             _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
             return nothing
-        pull += normal
+        pull += stretched
         side += sheared
     store(contacts.shear, c, shear)
     if slides:
@@ -152,51 +137,52 @@ def _push_reference(pairs, q, block, i, u, v, step, number, contacts, limits, re
 
 
 @njit(**FAST)
-def _push_updated(pairs, q, block, i, u, v, step, number, contacts, limits, result):
-    """The same where normals and arms follow the motion, see contacts._updated_strain."""
-    exists = pairs.exists[block]
+def _push_reference(pairs, q, block, i, u, v, step, number, contacts, limits, result):
+    """Forces of the pairs of a block of row q in the geometry of the start; their first disks are from slot i on."""
     t, c, j = U(pairs.contact_type[q]), U(LANES * block), U(i + pairs.shift[q])
     i = U(i)
     k = contacts.constants
-    nothing = splat(0.0)
-    whole = where_equal(contacts.state, c, _INTACT)
-    intact = byte_of(whole)
+    nx, ny = pairs.normal[q, U(0)], pairs.normal[q, U(1)]
     rest = k[t, U(2)]
+    arm_i = 0.5 * rest + k[t, U(4)]
+    arm_j = rest - arm_i
+    dx, dy = _apart(u, i, j)
+    turn_i, turn_j = load(u[2], i), load(u[2], j)
+    strain = nx * dx + ny * dy, nx * dy - ny * dx - arm_i * turn_i - arm_j * turn_j, turn_j - turn_i
+    gives_way = limits.geometry != REFERENCE or k[t, U(3)] < rest
+    opening = splat(0.0)
+    if gives_way:
+        dvx, dvy = _apart(v, i, j)
+        opening = nx * dvx + ny * dvy
+    return _act(
+        c, t, block, pairs.exists[block], (nx, ny), (arm_i, arm_j), strain, opening, gives_way,
+        u, v, step, number, contacts, limits, result,
+    )  # fmt: skip
+
+
+@njit(**FAST)
+def _push_updated(pairs, q, block, i, u, v, step, number, contacts, limits, result):
+    """The same where normals and arms follow the motion, see contacts._updated_strain."""
+    t, c, j = U(pairs.contact_type[q]), U(LANES * block), U(i + pairs.shift[q])
+    i = U(i)
+    k = contacts.constants
     dx, dy = _apart(u, i, j)
     dvx, dvy = _apart(v, i, j)
     x = k[t, U(0)] + dx
     y = k[t, U(1)] + dy
     distance = root(x * x + y * y)
-    stretch = ((k[t, U(0)] + x) * dx + (k[t, U(1)] + y) * dy) / (distance + rest)
+    stretch = ((k[t, U(0)] + x) * dx + (k[t, U(1)] + y) * dy) / (distance + k[t, U(2)])
     inverse = 1.0 / distance
     nx, ny = x * inverse, y * inverse
     arm_i = 0.5 * distance + k[t, U(4)]
     arm_j = distance - arm_i
-    was = load(contacts.shear, c)
     slide = nx * dvy - ny * dvx
-    shear = was + step * (slide - arm_i * load(v[2], i) - arm_j * load(v[2], j))
-    pull, side, rubbed, slip, slides = nothing, nothing, nothing, nothing, False
-    if k[t, U(5)] > 0.0 or k[t, U(6)] > 0.0:
-        opening = nx * dvx + ny * dvy
-        N, side, slip, rubbed, slides = _contact(
-            k, t, c, stretch, opening, shear, was, step, True, exists, contacts, limits.friction
-        )
-        pull = -1.0 * N
-    moment = nothing
-    if intact != 0:
-        bent = load(u[2], j) - load(u[2], i)
-        normal, sheared, moment, breaks = _bond(k, t, stretch, shear, bent, whole, limits)
-        if (breaks & intact & exists) != 0:
-            _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
-            return nothing
-        pull += normal
-        side += sheared
-    store(contacts.shear, c, shear)
-    if slides:
-        store(contacts.slip, c, slip)
-    fx, fy = pull * nx - side * ny, pull * ny + side * nx
-    _store_forces(contacts.force, c, exists, fx, fy, arm_i * side + moment, arm_j * side - moment)
-    return rubbed
+    shear = load(contacts.shear, c) + step * (slide - arm_i * load(v[2], i) - arm_j * load(v[2], j))
+    strain = stretch, shear, load(u[2], j) - load(u[2], i)
+    return _act(
+        c, t, block, pairs.exists[block], (nx, ny), (arm_i, arm_j), strain, nx * dvx + ny * dvy, True,
+        u, v, step, number, contacts, limits, result,
+    )  # fmt: skip
 
 
 @njit(**FAST)

@@ -12,7 +12,7 @@ from dembound.motion.simulation import Simulation
 STEPS = 400
 SIDES = {"left": {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}, "right": "viscous"}
 FREE_FIELD = {"left": "free_field", "right": "free_field", "bottom": {**SIDES["left"]}}
-BOUNDARIES = {"two sides": SIDES, "half cells": {**SIDES, "right": {"type": "viscous", "half_mass": True}}}
+HALF_CELLS = {**SIDES, "right": {"type": "viscous", "half_mass": True}}
 
 
 def in_order(scene):
@@ -48,8 +48,7 @@ def test_sides_that_absorb_and_send_waves(lab, pattern):
 
 
 def test_half_cells(lab):
-    boundary = BOUNDARIES["half cells"]
-    assert_same_motion(lab.scene("A", (20.0, 5.0), held=(), boundary=boundary, wave=lab.pulse(0.02)))
+    assert_same_motion(lab.scene("A", (20.0, 5.0), held=(), boundary=HALF_CELLS, wave=lab.pulse(0.02)))
 
 
 def test_a_free_field(lab):
