@@ -4,16 +4,17 @@
 
 Packs square bricks of pattern B with radii from 0.2 to 0.3 m, without the cache, compiled first. CPU seconds are taken,
 as packing uses one core; medians are quoted. "relax" are the steps, "lists" the lists of near pairs before them. The
-digest of the positions tells whether two versions pack the same brick to the last bit.
+digest of the positions is the same if two versions pack the same brick to the last bit.
 """
 
 import argparse
 import hashlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+from timing import show
 
 from dembound.kernels import pack
 from dembound.packings import bed
@@ -43,7 +44,19 @@ def packed(side: float) -> Brick:
     return pack_dense(Recipe((side, side), radius=0.25, radius_ratio=1.5, pressure=8e-3, bond_gap=0.0, seed=1))
 
 
-def measure(side: float, repeats: int) -> None:
+COLUMNS = {
+    "disks": "{disks:,}",
+    "steps": "{steps:,}",
+    "lists": "{lists}",
+    "CPU s": "{cpu:.3f}",
+    "steps: s": "{relax:.3f}",
+    "lists: s": "{listing:.3f}",
+    "ns per disk and step": "{each:.1f}",
+    "positions": "{digest}",
+}
+
+
+def measure(side: float, repeats: int) -> dict[str, Any]:
     runs = []
     for _ in range(repeats):
         spent.clear()
@@ -51,13 +64,27 @@ def measure(side: float, repeats: int) -> None:
         began = time.process_time()
         brick = packed(side)
         runs.append((time.process_time() - began, spent["relax"], spent["lists"]))
-    whole, relax, lists = np.median(runs, axis=0)
+    cpu, relax, listing = (float(value) for value in np.median(runs, axis=0))
     disks, steps = len(brick.radii), counted["steps"]
-    digest = hashlib.sha256(np.ascontiguousarray(brick.positions).tobytes()).hexdigest()[:12]
-    print(
-        f"{disks:7,} | {steps:7,} | {counted['lists']:5d} | {whole:9.3f} | {relax:8.3f} | {lists:8.3f} | "
-        f"{relax / steps / disks * 1e9:17.1f} | {digest}"
-    )
+    return {
+        "disks": disks,
+        "steps": steps,
+        "lists": counted["lists"],
+        "cpu": cpu,
+        "relax": relax,
+        "listing": listing,
+        "each": relax / steps / disks * 1e9,
+        "digest": hashlib.sha256(np.ascontiguousarray(brick.positions).tobytes()).hexdigest()[:12],
+    }
+
+
+def measured(sides: Sequence[float], repeats: int) -> list[dict[str, Any]]:
+    """Rows of `COLUMNS` for bricks of these sides (m), which are also printed."""
+    packed(5.0)  # compiles
+    pack.relax, bed.listed = timed("relax", pack.relax), timed("lists", bed.listed)
+    rows = [measure(side, repeats) for side in sides]
+    show("Packing", COLUMNS, rows)
+    return rows
 
 
 def main() -> None:
@@ -65,12 +92,7 @@ def main() -> None:
     parser.add_argument("--sides", type=float, nargs="+", default=[10.0, 50.0], help="of the bricks (m)")
     parser.add_argument("--repeats", type=int, default=5)
     options = parser.parse_args()
-    packed(5.0)  # compiles
-    pack.relax = timed("relax", pack.relax)
-    bed.listed = timed("lists", bed.listed)
-    print("disks   | steps   | lists | CPU s     | relax    | lists    | ns per disk, step | positions")
-    for side in options.sides:
-        measure(side, options.repeats)
+    measured(options.sides, options.repeats)
 
 
 if __name__ == "__main__":

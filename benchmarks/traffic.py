@@ -1,0 +1,125 @@
+"""Memory traffic and arithmetic of one step, counted from the arrays that the kernels are given.
+
+Bytes are the least that has to be moved: every array of particles or pairs once for each pass over it, 8 bytes more
+where a number is written without having been read, as its line of the cache is fetched first. Neighbours come from
+cache, and so do constants, which are stored once for all copies of a disk. Slots without a particle are moved, too, and
+count. Operations are additions and multiplications, a root or quotient counted as one, for what exists: not for slots
+or lanes without a particle, contact or pair.
+
+All numbers are for steps without steady loads, local damping and sliding contacts.
+"""
+
+from functools import singledispatch
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dembound.kernels.lanes import LANES
+from dembound.kernels.tables import Bonded, LaneBonded, LaneRows, Links, NeighbourTable
+from dembound.motion.simulation import Simulation
+
+MOVED = 120.0
+"""Bytes per slot of a step: u read (24), the next u written (48), v read and written (48)."""
+
+MOTION = 12.0
+"""Operations per particle of a step: six for new velocities, six for new displacements."""
+
+PAIR_BYTES = 121.0
+"""Bytes per pair: state (1) and slip (8) read, shear read and written (16), force written (64) and read (32)."""
+
+UPDATED_PAIR, REFERENCE_PAIR = 72.0, 54.0
+"""Operations per pair in rows, its force added at both disks included (bonded_lanes.py): strain 36 or 18, contact and
+bond 18, force and moments 12, sums 6."""
+
+UPDATED_STRAY, REFERENCE_STRAY = 91.0, 75.0
+"""The same for pairs that are computed one by one (contacts.py)."""
+
+
+class Cost(NamedTuple):
+    """Bytes and operations of one step."""
+
+    bytes: float
+    flops: float
+
+    def __add__(self, other: "Cost") -> "Cost":  # type: ignore[override]
+        return Cost(self.bytes + other.bytes, self.flops + other.flops)
+
+
+class Ends(NamedTuple):
+    """Contact ends of rows of copies: in all copies of a disk, in some, and those computed one by one."""
+
+    whole: int
+    masked: int
+    strays: int
+
+
+def cost_of_step(simulation: Simulation) -> Cost:
+    """The least bytes and the operations of one step under the law in use."""
+    total = Cost(0.0, 0.0)
+    for part, law in zip(simulation.system.parts, simulation.system.laws(), strict=True):
+        total += law_cost(law, len(part.assembly.radii), part)
+    return total
+
+
+@singledispatch
+def law_cost(law: Any, count: int, part: Any) -> Cost:
+    """The step of a part of so many particles under a law, by the type of its bundle."""
+    raise NotImplementedError(f"no count of the bytes of {type(law).__name__}")
+
+
+@law_cost.register
+def _(law: Links, count: int, part: Any) -> Cost:
+    if isinstance(law.rows, LaneRows):
+        return lane_cost(law.rows, count, lane_ends(law.rows, 2 * len(part.assembly.pairs)))
+    return table_cost(law.rows, count)
+
+
+@law_cost.register
+def _(law: Bonded, count: int, part: Any) -> Cost:
+    pairs = len(law.contacts.first)
+    each = UPDATED_STRAY if part.contacts.limits.geometry == 0 else REFERENCE_STRAY
+    # mobilities (16), rows of ends (4 and 8 per end), u and v once more for the pairs; pairs name disks and type
+    return Cost(
+        (MOVED + 20.0 + 48.0) * count + (PAIR_BYTES + 12.0 + 16.0) * pairs, each * pairs + (MOTION + 3.0) * count
+    )
+
+
+@law_cost.register
+def _(law: LaneBonded, count: int, part: Any) -> Cost:
+    places, pairs = LANES * len(law.pairs.exists), int(np.bitwise_count(law.pairs.exists).sum())
+    strays = len(law.bonded.contacts.first) - places
+    updated = law.bonded.limits.geometry == 0
+    flops = (UPDATED_PAIR if updated else REFERENCE_PAIR) * pairs
+    flops += (UPDATED_STRAY if updated else REFERENCE_STRAY) * strays
+    moved = (MOVED + 48.0) * slots(law.rows) + special_bytes(law.rows, len(law.stray) > 0)
+    moved += (PAIR_BYTES + 1.0 / LANES) * places + len(law.pairs.masks) + (PAIR_BYTES + 12.0 + 8.0) * strays
+    return Cost(moved, flops + (MOTION + 3.0) * count)
+
+
+def lane_cost(rows: LaneRows, count: int, ends: Ends) -> Cost:
+    """The elastic law in rows of copies: 20 operations for each contact end, 6 more with a mask, 3 per particle."""
+    moved = MOVED * slots(rows) + special_bytes(rows, len(rows.stray) > 0) + len(rows.masks) + 8.0 * ends.strays
+    return Cost(moved, 20.0 * ends.whole + 26.0 * ends.masked + 29.0 * ends.strays + (MOTION + 3.0) * count)
+
+
+def table_cost(rows: NeighbourTable, count: int) -> Cost:
+    """The elastic law one by one: mobilities (16), start of the row (4), neighbour and type (8) of each end."""
+    ends = len(rows.neighbour)
+    return Cost((MOVED + 20.0) * count + 8.0 * ends, 29.0 * ends + MOTION * count)
+
+
+def slots(rows: LaneRows) -> int:
+    """Slots in the blocks of the rows."""
+    return LANES * int(rows.group_block[-1] - rows.group_block[0])
+
+
+def special_bytes(rows: LaneRows, strays: bool) -> float:
+    """Whether each block is special, and what such blocks read: mobilities, and forces of strays that were written."""
+    special = int(np.count_nonzero(rows.special[rows.group_block[0] :]))
+    return slots(rows) / LANES + LANES * special * (16.0 + (72.0 if strays else 0.0))
+
+
+def lane_ends(rows: LaneRows, ends: int) -> Ends:
+    """How the contact ends of a part, so many in all, are computed."""
+    masked = int(np.bitwise_count(rows.masks).sum())
+    return Ends(ends - masked - len(rows.stray_neighbour), masked, len(rows.stray_neighbour))
