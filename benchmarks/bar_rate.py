@@ -5,9 +5,9 @@
 Sets bars of several lengths in motion under finite differences and peridynamics, compiled first, and takes the CPU time
 of blocks of steps on one core, everything a run does at every step included: ends, one gauge, the watch for breaking
 bonds. A bar of a thousand nodes lives in the processor's first caches, so the same run times the fastest plain array
-copy there; the share of it is what a step reads and writes over what the copy does in the same time. Medians are quoted,
-of the copy the best. The last lines compare the time from the blow to just after the first spall of a bar by all
-methods.
+copy there; the share of it is what a step reads and writes over what the copy does in the same time. Medians are
+quoted, of the copy the best. The last lines compare the time from the blow to just after the first spall of a bar by
+all methods.
 """
 
 import argparse
