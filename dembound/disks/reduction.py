@@ -46,14 +46,21 @@ def reduced(scene: DiskScene) -> DiskScene:
 
 def represents_all(row: OneRow) -> bool:
     """Whether all rows of the whole scene move as this one, in displacements, energies and, if needed, stresses."""
-    whole = row.of
-    moves, accelerations = _motions(row)
-    pairs = [accelerations, *zip(_from_outside(whole), _from_outside(row), strict=True)]
-    if not all(_are_alike(row, of_whole[moves], of_row[moves]) for of_whole, of_row in pairs):
+    if not _are_driven_alike(row, _driven(row.of)):  # most scenes are refused here, at little cost
         return False
-    if np.ptp(np.bincount(row.like, whole.mass) / row.mass) > ROUNDING * row.weight:
-        return False
-    return not row.case.output.stress or _are_alike(row, *_stresses(row, moves))
+    moves, (of_whole, of_row) = _motions(row)
+    return (
+        _are_alike(row, of_whole[moves], of_row[moves])
+        and _are_driven_alike(row, moves)
+        and np.ptp(np.bincount(row.like, row.of.mass) / row.mass) <= ROUNDING * row.weight
+        and (not row.case.output.stress or _are_alike(row, *_stresses(row, moves)))
+    )
+
+
+def _are_driven_alike(row: OneRow, components: np.ndarray) -> bool:
+    """Whether everything from outside acts on components (3,) bool of all rows as on those of this one."""
+    pairs = zip(_from_outside(row.of), _from_outside(row), strict=True)
+    return all(_are_alike(row, of_whole[components], of_row[components]) for of_whole, of_row in pairs)
 
 
 def _are_alike(row: OneRow, of_whole: np.ndarray, of_row: np.ndarray) -> bool:
