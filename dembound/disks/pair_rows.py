@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.disks.lane_rows import RowPlan
+from dembound.disks.row_plan import RowPlan
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import PairRows
 
