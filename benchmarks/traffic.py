@@ -14,18 +14,29 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dembound.kernels.contacts import UPDATED
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import Bonded, LaneBonded, LaneRows, Links, NeighbourTable
 from dembound.motion.simulation import Simulation
 
-MOVED = 120.0
-"""Bytes per slot of a step: u read (24), the next u written (48), v read and written (48)."""
+COMPONENT = 40.0
+"""Bytes per slot and moving component of a step: u read (8), the next u written (16), v read and written (16)."""
 
-MOTION = 12.0
-"""Operations per particle of a step: six for new velocities, six for new displacements."""
+MOVED, MOTION = 3.0 * COMPONENT, 12.0
+"""Bytes per slot, and operations per particle, half of them for new velocities, of a step of all three components."""
 
-PAIR_BYTES = 121.0
-"""Bytes per pair: state (1) and slip (8) read, shear read and written (16), force written (64) and read (32)."""
+LANE_FLOPS = {
+    (1.0, 1.0, 1.0): (20.0, 26.0, 15.0),
+    (1.0, 0.0, 1.0): (9.0, 13.0, 10.0),
+    (0.0, 1.0, 1.0): (9.0, 13.0, 10.0),
+    (1.0, 1.0, 0.0): (10.0, 10.0, 8.0),
+}
+"""Which components move → operations of a contact end without and with a mask, and of a particle (elastic_lanes.py,
+held_lanes.py); all others are stepped as three."""
+
+UPDATED_BYTES, REFERENCE_BYTES = 121.0, 105.0
+"""Bytes per pair: state (1) and slip (8) read, force written (64) and read (32), where the geometry follows the motion
+shear read and written (16)."""
 
 UPDATED_PAIR, REFERENCE_PAIR = 72.0, 54.0
 """Operations per pair in rows, its force added at both disks included (bonded_lanes.py): strain 36 or 18, contact and
@@ -56,50 +67,56 @@ class Ends(NamedTuple):
 def cost_of_step(simulation: Simulation) -> Cost:
     """The least bytes and the operations of one step under the law in use."""
     total = Cost(0.0, 0.0)
+    free = tuple(float(each) for each in simulation.scene.free)
     for part, law in zip(simulation.system.parts, simulation.system.laws(), strict=True):
-        total += law_cost(law, len(part.assembly.radii), part)
+        total += law_cost(law, len(part.assembly.radii), 2 * len(part.assembly.pairs), free)
     return total
 
 
 @singledispatch
-def law_cost(law: Any, count: int, part: Any) -> Cost:
-    """The step of a part of so many particles under a law, by the type of its bundle."""
+def law_cost(law: Any, count: int, ends: int, free: tuple[float, ...]) -> Cost:
+    """The step of a part under a law, by the type of its bundle.
+
+    count, ends : particles of the part and ends of its contacts; free : 1, or 0 for a component held everywhere.
+    """
     raise NotImplementedError(f"no count of the bytes of {type(law).__name__}")
 
 
 @law_cost.register
-def _(law: Links, count: int, part: Any) -> Cost:
+def _(law: Links, count: int, ends: int, free: tuple[float, ...]) -> Cost:
     if isinstance(law.rows, LaneRows):
-        return lane_cost(law.rows, count, lane_ends(law.rows, 2 * len(part.assembly.pairs)))
+        return lane_cost(law.rows, count, lane_ends(law.rows, ends), free)
     return table_cost(law.rows, count)
 
 
 @law_cost.register
-def _(law: Bonded, count: int, part: Any) -> Cost:
+def _(law: Bonded, count: int, ends: int, free: tuple[float, ...]) -> Cost:
     pairs = len(law.contacts.first)
-    each = UPDATED_STRAY if part.contacts.limits.geometry == 0 else REFERENCE_STRAY
     # mobilities (16), rows of ends (4 and 8 per end), u and v once more for the pairs; pairs name disks and type
-    return Cost(
-        (MOVED + 20.0 + 48.0) * count + (PAIR_BYTES + 12.0 + 16.0) * pairs, each * pairs + (MOTION + 3.0) * count
-    )
+    moved = (MOVED + 20.0 + 48.0) * count + (UPDATED_BYTES + 12.0 + 16.0) * pairs
+    each = UPDATED_STRAY if law.limits.geometry == UPDATED else REFERENCE_STRAY
+    return Cost(moved, each * pairs + (MOTION + 3.0) * count)
 
 
 @law_cost.register
-def _(law: LaneBonded, count: int, part: Any) -> Cost:
+def _(law: LaneBonded, count: int, ends: int, free: tuple[float, ...]) -> Cost:
     places, pairs = LANES * len(law.pairs.exists), int(np.bitwise_count(law.pairs.exists).sum())
     strays = len(law.bonded.contacts.first) - places
-    updated = law.bonded.limits.geometry == 0
+    updated = law.bonded.limits.geometry == UPDATED
     flops = (UPDATED_PAIR if updated else REFERENCE_PAIR) * pairs
     flops += (UPDATED_STRAY if updated else REFERENCE_STRAY) * strays
-    moved = (MOVED + 48.0) * slots(law.rows) + special_bytes(law.rows, len(law.stray) > 0)
-    moved += (PAIR_BYTES + 1.0 / LANES) * places + len(law.pairs.masks) + (PAIR_BYTES + 12.0 + 8.0) * strays
+    moved = (MOVED + 48.0) * slots(law.rows) + special_bytes(law.rows, len(law.stray) > 0) + len(law.pairs.masks)
+    moved += ((UPDATED_BYTES if updated else REFERENCE_BYTES) + 1.0 / LANES) * places
+    moved += (UPDATED_BYTES + 12.0 + 8.0) * strays
     return Cost(moved, flops + (MOTION + 3.0) * count)
 
 
-def lane_cost(rows: LaneRows, count: int, ends: Ends) -> Cost:
-    """The elastic law in rows of copies: 20 operations for each contact end, 6 more with a mask, 3 per particle."""
-    moved = MOVED * slots(rows) + special_bytes(rows, len(rows.stray) > 0) + len(rows.masks) + 8.0 * ends.strays
-    return Cost(moved, 20.0 * ends.whole + 26.0 * ends.masked + 29.0 * ends.strays + (MOTION + 3.0) * count)
+def lane_cost(rows: LaneRows, count: int, ends: Ends, free: tuple[float, ...]) -> Cost:
+    """The elastic law in rows of copies, of the moving components alone where two move."""
+    whole, masked, particle = LANE_FLOPS.get(free, LANE_FLOPS[1.0, 1.0, 1.0])
+    moved = COMPONENT * (sum(free) if free in LANE_FLOPS else 3.0) * slots(rows)
+    moved += special_bytes(rows, len(rows.stray) > 0) + len(rows.masks) + 8.0 * ends.strays
+    return Cost(moved, whole * ends.whole + masked * ends.masked + 29.0 * ends.strays + particle * count)
 
 
 def table_cost(rows: NeighbourTable, count: int) -> Cost:

@@ -19,9 +19,9 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
 
 
 def _run_facts(planned: Plan) -> dict[str, str]:
-    """Steps, memory and time."""
-    scene = planned.scene
-    return {
+    """Steps, memory and time, and the reductions of the scene."""
+    scene = planned.stepped
+    facts = {
         "time step": f"{planned.time_step:.4g} s, {planned.time_step / planned.step_limit:.3f} of the limit "
         f"{planned.step_limit:.6g} s",
         "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s",
@@ -29,6 +29,7 @@ def _run_facts(planned: Plan) -> dict[str, str]:
         "estimated time": f"{duration_in_words(_estimate(planned))} {_threads_in_words(scene.threads)}"
         f"{planned.kind.not_estimated(scene.case)}",
     }
+    return facts | ({"reduced": "; ".join(scene.reduced)} if scene.reduced else {})
 
 
 def duration_in_words(seconds: float) -> str:
@@ -49,7 +50,7 @@ def _threads_in_words(count: int) -> str:
 
 def _estimate(planned: Plan) -> float:
     """Seconds the run will take, from the quickest of a few short trials."""
-    simulation = Simulation(planned.scene, planned.time_step)
+    simulation = Simulation(planned.stepped, planned.time_step)
     simulation.advance(TRIAL_STEPS)  # compiles the kernels and starts the threads
     trials = []
     for _ in range(TRIALS):

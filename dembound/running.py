@@ -60,7 +60,8 @@ def plan(case: Case, clock: Clock | None = None) -> Plan:
         if steps > MOST_STEPS:
             asked = f"takes {steps:.3g} steps of {time_step:.3g} s"
             raise CaseError([f"run.duration: {asked}, must take no more than {MOST_STEPS:g}"])
-    return Plan(kind, scene, time_step, limit, max(1, int(np.ceil(steps - 1e-9))))
+        stepped = kind.reduced(scene)
+    return Plan(kind, scene, stepped, time_step, limit, max(1, int(np.ceil(steps - 1e-9))))
 
 
 @contextmanager
@@ -177,7 +178,7 @@ def _gone_if_empty(folder: Path) -> Iterator[None]:
 
 def _simulate(planned: Plan, path: Path, progress: Progress, clock: Clock) -> tuple[Simulation, Beginning]:
     """Start from the state given by the kind of body, then advance to the end while trackers record."""
-    scene, case, steps = planned.scene, planned.scene.case, planned.steps
+    scene, case, steps = planned.stepped, planned.scene.case, planned.steps
     with clock.of("settle"):
         beginning = _begin(planned, path, progress)
     simulation = Simulation(
@@ -217,7 +218,7 @@ class _Reports(Tracker):
 def _begin(planned: Plan, path: Path, progress: Progress) -> Beginning:
     """The state at which the run begins; if a stage before it stalls, its state is written to the record."""
     try:
-        return planned.kind.begin(planned.scene, planned.time_step, progress.settling)
+        return planned.kind.begin(planned.stepped, planned.time_step, progress.settling)
     except StalledError as stalled:
         with Recorder(path, stalled.run, planned.step_limit) as recorder:
             recorder.stalled_snapshot(stalled)

@@ -11,10 +11,10 @@ from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.disks import DiskCase
 from dembound.disks.contacts import ContactList
-from dembound.disks.lane_rows import RowPlan, plan_rows
 from dembound.disks.layout import Rows
 from dembound.disks.loads import steady
 from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.row_plan import RowPlan, plan_rows
 from dembound.kernels.tables import LaneRows
 from dembound.motion.layout import Layout
 from dembound.motion.scene import Scene

@@ -6,10 +6,10 @@ import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.constants import brick_constants, limits_of, shared_constants
-from dembound.disks.lane_rows import RowPlan
 from dembound.disks.neighbours import near_pairs, pair_keys
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.pair_rows import PairPlan
+from dembound.disks.row_plan import RowPlan
 from dembound.kernels import contacts as kernel
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION

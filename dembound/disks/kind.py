@@ -13,6 +13,7 @@ from dembound.casefile.types import LAWS
 from dembound.disks.facts import disk_facts
 from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
 from dembound.disks.outcome import disk_outcome
+from dembound.disks.reduction import reduced
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.disks.static import Settled, settle
@@ -47,6 +48,10 @@ class Disks(Kind[DiskCase, DiskScene]):
     def choose_step(self, scene: DiskScene) -> tuple[float, float]:
         """Time step and stability limit (s)."""
         return choose_step(scene)
+
+    def reduced(self, scene: DiskScene) -> DiskScene:
+        """One of its rows, if all move identically."""
+        return reduced(scene)
 
     def begin(self, scene: DiskScene, time_step: float, on_look: OnLook) -> Beginning:
         """Settle the body if the case has a static stage, else begin with the body as built."""

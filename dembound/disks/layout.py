@@ -4,8 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from dembound.disks.lane_rows import RowPlan, lane_rows, plan_rows
+from dembound.disks.lane_rows import lane_rows
 from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.row_plan import RowPlan, plan_rows
 from dembound.disks.rows import contact_rows
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import LaneRows, NeighbourTable

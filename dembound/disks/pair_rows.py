@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.disks.lane_rows import RowPlan
+from dembound.disks.row_plan import RowPlan
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import PairRows
 
@@ -89,8 +89,8 @@ class PairPlan:
         """The rows for kernels; place (b,) of the pairs that are in them, constants (types, 12) of contacts."""
         exists = np.zeros(int(self.group_block[-1]), dtype=np.uint8)
         np.bitwise_or.at(exists, place // LANES, np.left_shift(1, place % LANES).astype(np.uint8))
-        lines = constants[self._empty.contact_type]
-        return self._empty._replace(exists=exists, normal=lines[:, :2] / lines[:, 2:3])
+        lines = constants[self.key % self.types]
+        return self._empty._replace(exists=exists, constants=np.column_stack([lines, lines[:, :2] / lines[:, 2:3]]))
 
     @cached_property
     def _empty(self) -> PairRows:
@@ -110,10 +110,8 @@ class PairPlan:
             group_block=self.group_block,
             disk_block=self.first_block + plan.group_block[:-1],
             disk_rows=np.diff(plan.group_row),
-            owner=owner - plan.group_row[group],
-            shift=self.shift,
-            contact_type=self.key % self.types,
-            normal=np.zeros((0, 2)),
+            step=np.column_stack([owner - plan.group_row[group], self.shift]),
+            constants=np.zeros((0, 14)),
             exists=np.zeros(0, dtype=np.uint8),
             start=np.concatenate([[0], np.cumsum(counts)]),
             offset=offset[order],

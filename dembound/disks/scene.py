@@ -78,7 +78,7 @@ def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Ma
     if sides := _free_field_sides(case):
         assembly, seam = with_column(ground.brick, assembly, sides)
         edges = edges_beside_column(assembly, seam, edges)
-    assembly, seam = _with_half_contacts(case, ground.brick, assembly, seam, edges)
+    assembly, seam = with_half_contacts(case, ground.brick, assembly, seam, edges)
     count = len(assembly.radii)
     slots, rows = lay_out(assembly, ground, parts_of(count, seam), mass_factor(count, edges, case.boundary))
     return DiskScene(
@@ -149,7 +149,7 @@ def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
     return replace(scene, case=case, supports=_supports(case, scene.ground, scene.assembly, scene.edges))
 
 
-def _with_half_contacts(
+def with_half_contacts(
     case: DiskCase, brick: Brick, assembly: Assembly, seam: Seam | None, edges: Mapping[str, Edge]
 ) -> tuple[Assembly, Seam | None]:
     """Replace contacts along sides of half cells, also across a seam, by types with half the stiffness."""

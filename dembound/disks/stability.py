@@ -78,7 +78,7 @@ def _largest_eigenvalue(scene: DiskScene) -> float:
     size_before = 1.0
     with threads_for(scene.count):
         while size > 0.0 and len(diagonal) < MOST:
-            _fill_forces(scene, u, force)
+            fill_forces(scene, u, force)
             diagonal.append(-work(u, force) / size**2)
             factors = -1.0 / size, diagonal[-1] / size, size / size_before
             size_before = size
@@ -110,7 +110,7 @@ def _start(scene: DiskScene) -> tuple[np.ndarray, float]:
     return scene.layout.spread(start), size
 
 
-def _fill_forces(scene: DiskScene, u: np.ndarray, force: np.ndarray) -> None:
+def fill_forces(scene: DiskScene, u: np.ndarray, force: np.ndarray) -> None:
     """Fill force (3, slots) with the forces at displacements u: of contacts, of supports, none where prescribed."""
     for rows in scene.rows:
         contact_forces(u, rows, force)

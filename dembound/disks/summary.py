@@ -87,7 +87,7 @@ def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
 def _describe_edge(scene: DiskScene, run: Run, side: str) -> dict[str, Any]:
     """A side in numbers, with mean and standard deviation of its particles' largest |velocity| in x and y."""
     described = describe_side(scene, side)
-    largest = np.abs(run.state.peaks[scene.tracked_of(side)][:, :2]).max(axis=2)
+    largest = np.abs(run.edge_peaks(side)[:, :2]).max(axis=2)
     described["peak_velocity"] = largest.mean(axis=0).tolist()
     described["peak_velocity_deviation"] = largest.std(axis=0).tolist()
     return described

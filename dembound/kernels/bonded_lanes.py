@@ -40,7 +40,7 @@ def _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result
     """The pairs of a block in turn."""
     for k in range(LANES):
         if exists & np.uint8(1 << k):
-            rubbed, broken, broke = push_pair(U(LANES * block + k), u, v, step, number, contacts, limits)
+            rubbed, broken, broke = push_pair(U(LANES) * block + U(k), u, v, step, number, contacts, limits)
             result[0] += rubbed
             result[1] += broken
             result[2] += broke
@@ -53,12 +53,20 @@ def _apart(u, i, j):
 
 
 @njit(**INLINED)
-def _contact(k, t, c, stretch, opening, shear, was, step, gives_way, exists, contacts, friction):
+def _slide(normal, arms, i, j, v):
+    """Rate (m/s) of the shear of pairs."""
+    (nx, ny), (arm_i, arm_j) = normal, arms
+    dvx, dvy = _apart(v, i, j)
+    return nx * dvy - ny * dvx - arm_i * load(v[2], i) - arm_j * load(v[2], j)
+
+
+@njit(**INLINED)
+def _contact(k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, friction):
     """Normal and shear force of contacts, their slip, the energy (J) that friction takes, and whether any slides."""
-    overlap = (k[t, U(3)] - k[t, U(2)]) - stretch
+    overlap = (k[q, U(3)] - k[q, U(2)]) - stretch
     slip = load(contacts.slip, c)
-    N = k[t, U(5)] * overlap
-    S = k[t, U(6)] * (shear - slip)
+    N = k[q, U(5)] * overlap
+    S = k[q, U(6)] * (shear - slip)
     rubbed = splat(0.0)
     slides = False
     if gives_way:
@@ -68,23 +76,23 @@ def _contact(k, t, c, stretch, opening, shear, was, step, gives_way, exists, con
         stays = at_most(magnitude(S), most)
         slides = (byte_of(stays) & exists) != exists
         if slides:
-            before = k[t, U(6)] * (was - slip)
+            before = k[q, U(6)] * (shear - step * _slide(normal, arms, i, j, v) - slip)
             S = choose(stays, S, with_sign(most, S))
-            slid = choose(stays, slip, shear - S * (1.0 / k[t, U(6)]))
+            slid = choose(stays, slip, shear - S * (1.0 / k[q, U(6)]))
             rubbed = choose(bits(exists), 0.5 * (before + S) * (slid - slip), 0.0)
             slip = slid
     return N, S, slip, rubbed, slides
 
 
 @njit(**INLINED)
-def _bond(k, t, stretch, shear, bent, whole, limits):
+def _bond(k, q, stretch, shear, bent, whole, limits):
     """Normal and shear force and moment of bonds, and the bits of those that would break."""
-    normal = k[t, U(7)] * stretch
-    sheared = k[t, U(8)] * shear
-    moment = k[t, U(9)] * bent
-    stress = normal * k[t, U(10)]
-    torn = at_most(limits.tension, stress + magnitude(moment) * k[t, U(11)])
-    cut = at_most(limits.cohesion - stress * limits.tan_fa, magnitude(sheared) * k[t, U(10)])
+    normal = k[q, U(7)] * stretch
+    sheared = k[q, U(8)] * shear
+    moment = k[q, U(9)] * bent
+    stress = normal * k[q, U(10)]
+    torn = at_most(limits.tension, stress + magnitude(moment) * k[q, U(11)])
+    cut = at_most(limits.cohesion - stress * limits.tan_fa, magnitude(sheared) * k[q, U(10)])
     breaks = byte_of(torn) | byte_of(cut)
     return choose(whole, normal, 0.0), choose(whole, sheared, 0.0), choose(whole, moment, 0.0), breaks
 
@@ -103,32 +111,36 @@ def _store_forces(force, c, exists, fx, fy, on_i, on_j):
 
 
 @njit(**INLINED)
-def _act(c, t, block, exists, normal, arms, strain, opening, gives_way, u, v, step, number, contacts, limits, result):
+def _act(
+    c, q, i, j, block, exists, normal, arms, strain, opening, gives_way, follows,
+    u, v, step, number, pairs, contacts, limits, result,
+):  # fmt: skip
     """Forces of the eight pairs of a block from their strain: stretch, shear and bending angle.
 
     normal, arms : directions and lever arms, numbers or lanes; opening : speed at which the disks part, where a contact
-    gives way. Returns the energy (J) that friction took; result (3,) is advanced where pairs are computed in turn.
+    gives way; follows : whether the geometry follows the motion. Returns the energy (J) that friction took; result (3,)
+    is advanced where pairs are computed in turn.
     """
-    k = contacts.constants
+    k = pairs.constants
     nothing = splat(0.0)
     (nx, ny), (arm_i, arm_j), (stretch, shear, bent) = normal, arms, strain
     whole = where_equal(contacts.state, c, _INTACT)
     intact = byte_of(whole) & exists
     pull, side, moment, rubbed, slip, slides = nothing, nothing, nothing, nothing, nothing, False
-    if k[t, U(5)] > 0.0 or k[t, U(6)] > 0.0:
-        was = load(contacts.shear, c)
+    if k[q, U(5)] > 0.0 or k[q, U(6)] > 0.0:
         N, side, slip, rubbed, slides = _contact(
-            k, t, c, stretch, opening, shear, was, step, gives_way, exists, contacts, limits.friction
+            k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, limits.friction
         )
         pull = -1.0 * N
     if intact != 0:
-        stretched, sheared, moment, breaks = _bond(k, t, stretch, shear, bent, whole, limits)
+        stretched, sheared, moment, breaks = _bond(k, q, stretch, shear, bent, whole, limits)
         if (breaks & intact) != 0:
             _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
             return nothing
         pull += stretched
         side += sheared
-    store(contacts.shear, c, shear)
+    if follows:
+        store(contacts.shear, c, shear)
     if slides:
         store(contacts.slip, c, slip)
     fx, fy = nx * pull - ny * side, ny * pull + nx * side
@@ -137,51 +149,48 @@ def _act(c, t, block, exists, normal, arms, strain, opening, gives_way, u, v, st
 
 
 @njit(**FAST)
-def _push_reference(pairs, q, block, i, u, v, step, number, contacts, limits, result):
+def _push_reference(pairs, q, block, exists, i, u, v, step, number, contacts, limits, result):
     """Forces of the pairs of a block of row q in the geometry of the start; their first disks are from slot i on."""
-    t, c, j = U(pairs.contact_type[q]), U(LANES * block), U(i + pairs.shift[q])
-    i = U(i)
-    k = contacts.constants
-    nx, ny = pairs.normal[q, U(0)], pairs.normal[q, U(1)]
-    rest = k[t, U(2)]
-    arm_i = 0.5 * rest + k[t, U(4)]
+    c, j = U(LANES) * block, i + U(pairs.step[q, U(1)])
+    k = pairs.constants
+    nx, ny = k[q, U(12)], k[q, U(13)]
+    rest = k[q, U(2)]
+    arm_i = 0.5 * rest + k[q, U(4)]
     arm_j = rest - arm_i
     dx, dy = _apart(u, i, j)
     turn_i, turn_j = load(u[2], i), load(u[2], j)
     strain = nx * dx + ny * dy, nx * dy - ny * dx - arm_i * turn_i - arm_j * turn_j, turn_j - turn_i
-    gives_way = limits.geometry != REFERENCE or k[t, U(3)] < rest
+    gives_way = limits.geometry != REFERENCE or k[q, U(3)] < rest
     opening = splat(0.0)
     if gives_way:
         dvx, dvy = _apart(v, i, j)
         opening = nx * dvx + ny * dvy
     return _act(
-        c, t, block, pairs.exists[block], (nx, ny), (arm_i, arm_j), strain, opening, gives_way,
-        u, v, step, number, contacts, limits, result,
+        c, q, i, j, block, exists, (nx, ny), (arm_i, arm_j), strain, opening, gives_way, False,
+        u, v, step, number, pairs, contacts, limits, result,
     )  # fmt: skip
 
 
 @njit(**FAST)
-def _push_updated(pairs, q, block, i, u, v, step, number, contacts, limits, result):
+def _push_updated(pairs, q, block, exists, i, u, v, step, number, contacts, limits, result):
     """The same where normals and arms follow the motion, see contacts._updated_strain."""
-    t, c, j = U(pairs.contact_type[q]), U(LANES * block), U(i + pairs.shift[q])
-    i = U(i)
-    k = contacts.constants
+    c, j = U(LANES) * block, i + U(pairs.step[q, U(1)])
+    k = pairs.constants
     dx, dy = _apart(u, i, j)
     dvx, dvy = _apart(v, i, j)
-    x = k[t, U(0)] + dx
-    y = k[t, U(1)] + dy
+    x = k[q, U(0)] + dx
+    y = k[q, U(1)] + dy
     distance = root(x * x + y * y)
-    stretch = ((k[t, U(0)] + x) * dx + (k[t, U(1)] + y) * dy) / (distance + k[t, U(2)])
+    stretch = ((k[q, U(0)] + x) * dx + (k[q, U(1)] + y) * dy) / (distance + k[q, U(2)])
     inverse = 1.0 / distance
     nx, ny = x * inverse, y * inverse
-    arm_i = 0.5 * distance + k[t, U(4)]
+    arm_i = 0.5 * distance + k[q, U(4)]
     arm_j = distance - arm_i
-    slide = nx * dvy - ny * dvx
-    shear = load(contacts.shear, c) + step * (slide - arm_i * load(v[2], i) - arm_j * load(v[2], j))
+    shear = load(contacts.shear, c) + step * _slide((nx, ny), (arm_i, arm_j), i, j, v)
     strain = stretch, shear, load(u[2], j) - load(u[2], i)
     return _act(
-        c, t, block, pairs.exists[block], (nx, ny), (arm_i, arm_j), strain, nx * dvx + ny * dvy, True,
-        u, v, step, number, contacts, limits, result,
+        c, q, i, j, block, exists, (nx, ny), (arm_i, arm_j), strain, nx * dvx + ny * dvy, True, True,
+        u, v, step, number, pairs, contacts, limits, result,
     )  # fmt: skip
 
 
@@ -196,16 +205,17 @@ def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, resul
     for block in range(first, last):
         if block > first:
             group, column, q = next_place(pairs, block, group, column, q)
-        if pairs.exists[block] != 0:
-            disks = pairs.disk_block[group] + column * pairs.disk_rows[group] + pairs.owner[q]
-            i, exists = LANES * disks, pairs.exists[block]
-            intact = byte_of(where_equal(contacts.state, U(LANES * block), _INTACT)) & exists
+        here, row, exists = U(block), U(q), pairs.exists[U(block)]
+        if exists != 0:
+            disks = pairs.disk_block[U(group)] + column * pairs.disk_rows[U(group)] + pairs.step[row, U(0)]
+            i = U(LANES * disks)
+            intact = byte_of(where_equal(contacts.state, U(LANES) * here, _INTACT)) & exists
             if limits.geometry == UPDATED or (limits.geometry == BONDED and intact == 0):
-                rubbed += _push_updated(pairs, q, block, i, u, v, step, number, contacts, limits, result)
+                rubbed += _push_updated(pairs, row, here, exists, i, u, v, step, number, contacts, limits, result)
             elif limits.geometry == BONDED and intact != exists:
-                _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
+                _push_one_by_one(here, exists, u, v, step, number, contacts, limits, result)
             else:
-                rubbed += _push_reference(pairs, q, block, i, u, v, step, number, contacts, limits, result)
+                rubbed += _push_reference(pairs, row, here, exists, i, u, v, step, number, contacts, limits, result)
     for k in range(LANES):
         result[0] += lane(rubbed, U(k))
 
@@ -233,21 +243,21 @@ def _row_forces(pairs, force, r, column, first):
     fx = splat(0.0)
     fy = splat(0.0)
     moment = splat(0.0)
-    start = U(3 * r)
+    start = U(3) * r
     for entry in range(pairs.start[start], pairs.start[start + U(1)]):
-        c = U(first + pairs.offset[U(entry)])
+        c = first + U(pairs.offset[U(entry)])
         fx += load(force[0], c)
         fy += load(force[1], c)
         moment += load(force[2], c)
     for entry in range(pairs.start[start + U(1)], pairs.start[start + U(2)]):
-        c = U(first + pairs.offset[U(entry)])
+        c = first + U(pairs.offset[U(entry)])
         fx -= load(force[0], c)
         fy -= load(force[1], c)
         moment += load(force[3], c)
     for entry in range(pairs.start[start + U(2)], pairs.start[start + U(3)]):
         byte = pairs.masks[U(pairs.mask[U(entry)] + column)]
         if byte != 0:
-            c, own = U(first + pairs.offset[U(entry)]), bits(byte)
+            c, own = first + U(pairs.offset[U(entry)]), bits(byte)
             fx -= choose(own, load(force[0], c), 0.0)
             fy -= choose(own, load(force[1], c), 0.0)
             moment += choose(own, load(force[3], c), 0.0)
@@ -276,12 +286,13 @@ def _move_blocks(rows, pairs, first, last, u, v, body, contacts, extra, u_next, 
     for block in range(first, last):
         if block > first:
             group, column, r = next_place(rows, block, group, column, r)
-        i = U(LANES * block)
-        width = pairs.group_row[group + 1] - pairs.group_row[group]
-        fx, fy, moment = _row_forces(pairs, force, r, column, LANES * (pairs.group_block[group] + column * width))
-        b = splat(body.step * rows.inverse_mass[r])
-        b_turn = splat(body.step * rows.inverse_inertia[r])
-        special = rows.special[block]
+        i, row = U(LANES * block), U(r)
+        width = pairs.group_row[U(group + 1)] - pairs.group_row[U(group)]
+        begin = U(LANES * (pairs.group_block[U(group)] + column * width))
+        fx, fy, moment = _row_forces(pairs, force, row, column, begin)
+        b = splat(body.step * rows.inverse_mass[row])
+        b_turn = splat(body.step * rows.inverse_inertia[row])
+        special = rows.special[U(block)]
         if special:
             b = load(body.mobility, i)
             b_turn = load(body.inverse_inertia, i)

@@ -79,13 +79,18 @@ def _updated_stretch(k, dx, dy, constants):
 
 
 @njit(**FAST, inline="always")
+def _slide(i, j, k, nx, ny, distance, v, constants):
+    """Rate (m/s) of the shear of a pair with normal and distance."""
+    arm_i = 0.5 * distance + constants[k, U(4)]
+    across = nx * (v[U(1), j] - v[U(1), i]) - ny * (v[U(0), j] - v[U(0), i])
+    return across - arm_i * v[U(2), i] - (distance - arm_i) * v[U(2), j]
+
+
+@njit(**FAST, inline="always")
 def _updated_strain(i, j, k, dx, dy, was, v, step, constants):
     """The same with normal and arms that follow the motion; was: the shear before the step (s)."""
     nx, ny, distance, stretch = _updated_stretch(k, dx, dy, constants)
-    arm_i = 0.5 * distance + constants[k, U(4)]
-    slide = nx * (v[U(1), j] - v[U(1), i]) - ny * (v[U(0), j] - v[U(0), i])
-    shear = was + step * (slide - arm_i * v[U(2), i] - (distance - arm_i) * v[U(2), j])
-    return nx, ny, distance, stretch, shear
+    return nx, ny, distance, stretch, was + step * _slide(i, j, k, nx, ny, distance, v, constants)
 
 
 @njit(**FAST, inline="always")
@@ -110,16 +115,18 @@ def push_pair(c, u, v, step, number, contacts, limits):
     broken = 0.0
     breaks = 0
     i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
-    was = all_shear[c]
     intact = state[c] == INTACT
-    if geometry == REFERENCE or (geometry == BONDED and intact):
+    keeps_geometry = geometry == REFERENCE or (geometry == BONDED and intact)
+    if keeps_geometry:
         nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, constants)
+        was = shear - step * _slide(i, j, k, nx, ny, distance, v, constants)
     else:
+        was = all_shear[c]
         nx, ny, distance, stretch, shear = _updated_strain(i, j, k, dx, dy, was, v, step, constants)
+        all_shear[c] = shear
     overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
     arm_i = 0.5 * distance + constants[k, U(4)]
     arm_j = distance - arm_i
-    all_shear[c] = shear
     N = constants[k, U(5)] * overlap
     S = constants[k, U(6)] * (shear - all_slip[c])
     opening = nx * (v[U(0), j] - v[U(0), i]) + ny * (v[U(1), j] - v[U(1), i])
@@ -148,6 +155,7 @@ def push_pair(c, u, v, step, number, contacts, limits):
             moment = M
         else:
             cracked[c] = number
+            all_shear[c] = shear
             breaks = 1
             turning = v[U(2), j] - v[U(2), i]
             broken = 0.5 * (Fn * (stretch - step * opening) + Fs * was + M * (turn - step * turning))

@@ -15,8 +15,9 @@ import numpy as np
 from numba import njit, prange
 
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
-from dembound.kernels.elastic import fill_forces, move_rows, row_force
-from dembound.kernels.lane_step import INLINED, first_at, go_on, kick, larger, local_damping, next_place, place_of
+from dembound.kernels.elastic import fill_forces, move_rows
+from dembound.kernels.held_lanes import move_pair, moving_pair
+from dembound.kernels.lane_step import INLINED, go_on, kick, larger, local_damping, next_place, place_of, stray_forces
 from dembound.kernels.lanes import LANES, at_most, bits, choose, lane, load, magnitude, splat, store
 from dembound.kernels.law import answer
 from dembound.kernels.tables import LaneRows
@@ -71,25 +72,11 @@ def _block_force(rows, r, column, i, x, y, turn, ux, uy, ut):
 
 
 @njit(**FAST)
-def _stray_forces(rows, first, last, u):
-    """Forces and moments of strays on the disks in blocks first to last − 1, in rows.extra."""
-    extra = rows.extra
-    for k in range(first_at(rows.stray, LANES * first), first_at(rows.stray, LANES * last)):
-        i = U(rows.stray[k])
-        fx, fy, moment = row_force(
-            U(k), i, u, rows.stray_start, rows.stray_neighbour, rows.stray_type, rows.stray_constants
-        )
-        extra[U(0), i] = fx
-        extra[U(1), i] = fy
-        extra[U(2), i] = moment
-
-
-@njit(**FAST)
 def _force_blocks(rows, first, last, u, force):
     """Fill force (3, slots) for blocks first to last − 1."""
     if first == last:
         return
-    _stray_forces(rows, first, last, u)
+    stray_forces(rows, first, last, u)
     ux, uy, ut = u[0], u[1], u[2]
     group, column, r = place_of(rows, first)
     for block in range(first, last):
@@ -135,7 +122,7 @@ def _move_blocks(rows, first, last, u, v, body, u_next):
     """One step of the disks in blocks first to last − 1 without steady loads and local damping."""
     if first == last:
         return
-    _stray_forces(rows, first, last, u)
+    stray_forces(rows, first, last, u)
     across, up, about = body.free[0], body.free[1], body.free[2]
     group, column, r = place_of(rows, first)
     for block in range(first, last):
@@ -154,7 +141,7 @@ def _move_blocks_and_more(rows, first, last, u, v, body, u_next, arms, result):
     """The same with steady loads and local damping; result (3,) gets surface speed and works, see elastic.move_rows."""
     if first == last:
         return
-    _stray_forces(rows, first, last, u)
+    stray_forces(rows, first, last, u)
     across, up, about = body.free[0], body.free[1], body.free[2]
     nothing = splat(0.0)
     whole, half, speed, spin = nothing, nothing, nothing, nothing
@@ -234,6 +221,10 @@ def _fill_lanes(rows, u, force):
 def _move_lanes(rows, u, v, body, u_next, fastest, arms, damped):
     if body.load.shape[1] > 0 or body.damp > 0.0 or arms.size > 0:
         _move_and_more(rows, u, v, body, u_next, fastest, arms, damped)
+        return
+    p, q = moving_pair(body.free)
+    if p != q:
+        move_pair(rows, p, q, u, v, body, u_next)
     else:
         _move(rows, u, v, body, u_next)
 

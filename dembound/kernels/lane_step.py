@@ -2,8 +2,9 @@
 
 from numba import njit
 
-from dembound.kernels.common import FAST, REST
-from dembound.kernels.lanes import at_most, choose, magnitude, store, with_sign
+from dembound.kernels.common import FAST, REST, U
+from dembound.kernels.elastic import row_force
+from dembound.kernels.lanes import LANES, at_most, choose, magnitude, store, with_sign
 
 INLINED = FAST | {"inline": "always"}
 """Options of small functions, which become part of the loops that call them."""
@@ -40,6 +41,20 @@ def first_at(numbers, least):
         else:
             high = middle
     return low
+
+
+@njit(**FAST)
+def stray_forces(rows, first, last, u):
+    """Forces and moments of strays on the disks in blocks first to last − 1, in rows.extra."""
+    extra = rows.extra
+    for k in range(first_at(rows.stray, LANES * first), first_at(rows.stray, LANES * last)):
+        i = U(rows.stray[k])
+        fx, fy, moment = row_force(
+            U(k), i, u, rows.stray_start, rows.stray_neighbour, rows.stray_type, rows.stray_constants
+        )
+        extra[U(0), i] = fx
+        extra[U(1), i] = fy
+        extra[U(2), i] = moment
 
 
 @njit(**INLINED)

@@ -19,7 +19,7 @@ from dembound.kernels.law import (
     turn,
     turning_work,
 )
-from dembound.kernels.step import copy, move_supported, note_after, note_before, note_top_speeds
+from dembound.kernels.step import copy, copy_component, move_supported, note_after, note_before, note_top_speeds
 
 
 @njit(**MAKES)
@@ -32,6 +32,9 @@ def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
     result. laws, ties : tuples of bundles, a law for every part. turning : tables.Followers, or None. The other bundles
     are explained in tables.py.
     """
+    for c in range(3):
+        if body.free[c] == 0.0:
+            copy_component(u, u_next, c)
     k = supports.nodes.size
     pulled, followed = np.zeros((k, 3)), np.zeros((k, 3))
     done, why = _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed)

@@ -63,11 +63,17 @@ def move_particle(i, fx, fy, moment, u, v, body, u_next):
 
 
 @njit(**FAST)
+def copy_component(source, target, c):
+    """Copy row c of an array (3, n) to another one."""
+    for i in range(source.shape[1]):
+        target[c, i] = source[c, i]
+
+
+@njit(**FAST)
 def copy(source, target):
     """Copy an array (3, n) to another one; with an assignment numba would compile its messages for seconds."""
     for c in range(source.shape[0]):
-        for i in range(source.shape[1]):
-            target[c, i] = source[c, i]
+        copy_component(source, target, c)
 
 
 @njit(**FAST)

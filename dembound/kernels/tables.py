@@ -57,10 +57,11 @@ class Contacts(NamedTuple):
     """Contacts with a history, each listed once; see contacts.py for the columns of constants and force.
 
     first, second, contact_type : (b,) uint32 particles, and the row of the pair in constants (p, 12).
-    state : (b,) uint8, see contacts.py; shear, slip : (b,) m, the tangential displacement since the start and the part
-    of it that slid; cracked : (b,) int64, step in which the bond broke, else −1; place : (b, 2) m, mean displacement of
-    the two disks in that step; force : (4, b). start, end : rows of contact ends, one per particle, those before number
-    `begin` empty, end (e,) uint32 = 2·contact + (0 first, 1 second).
+    state : (b,) uint8, see contacts.py; shear, slip : (b,) m, the tangential displacement since the start, not kept up
+    to date for pairs in the geometry of the start, and the part of it that slid; cracked : (b,) int64, step in which
+    the bond broke, else −1; place : (b, 2) m, mean displacement of the two disks in that step; force : (4, b).
+    start, end : rows of contact ends, one per particle, those before number `begin` empty, end (e,) uint32 = 2·contact
+    + (0 first, 1 second).
     """
 
     begin: int
@@ -250,9 +251,9 @@ class PairRows(NamedTuple):
 
     group_row, group_block : (g + 1,) rows and blocks of pairs of each group; column by column, every row of a group has
     a block there, as disks have (LaneRows). disk_block, disk_rows : (g,) first block and number of rows of the group's
-    disks. owner : (q,) row of the first disk within its group; shift : (q,) slots from the first disk to the second;
-    contact_type : (q,) row of the table of constants; normal : (q, 2) from the first disk to the second at the start;
-    exists : (blocks,) uint8, the bits of the lanes that hold a pair.
+    disks. step : (q, 2) row of the first disk within its group, and slots from the first disk to the second; constants
+    : (q, 14) those of Contacts, and the direction from the first disk to the second at the start; exists : (blocks,)
+    uint8, the bits of the lanes that hold a pair.
     start : (3r + 1,) entries of each row of disks, by pairs of which the disk is the first, of which it is the second,
     and of which it is the second in a part of the copies: offset (e,) places from the first one of the column. mask :
     (e,) where the bits of these copies begin in masks (m,) uint8, one byte a column, else −1.
@@ -262,10 +263,8 @@ class PairRows(NamedTuple):
     group_block: np.ndarray
     disk_block: np.ndarray
     disk_rows: np.ndarray
-    owner: np.ndarray
-    shift: np.ndarray
-    contact_type: np.ndarray
-    normal: np.ndarray
+    step: np.ndarray
+    constants: np.ndarray
     exists: np.ndarray
     start: np.ndarray
     offset: np.ndarray

@@ -63,7 +63,7 @@ class Ledger(Tracker):
 
     Parameters
     ----------
-    run : the run, whose strain energy at the start is subtracted.
+    run : the run, whose strain energy at the start is subtracted; energies are those of its whole scene.
     interval : steps from one entry to the next; the first entry is at the start. last : step of one more entry; by
     default none.
     """
@@ -74,7 +74,7 @@ class Ledger(Tracker):
         self.entries: list[Entry] = []
         self.due = run.state.step
         self._interval, self._last = interval, last
-        self._unit = run.scene.energy_unit
+        self._unit, self._weight = run.scene.energy_unit, run.scene.weight
         self._inertia = np.stack([run.scene.mass, run.scene.mass, run.scene.inertia])
         self._first = run.system.stored(run.state.displacement.copy())
         self._most = 0.0, 0.0  # supplied by boundaries and loads, largest values so far
@@ -109,9 +109,9 @@ class Ledger(Tracker):
         outside, damping, friction, crack, law_switch, turning = (float(work) for work in state.work[1])
         balance = turning + balancing
         error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - law_switch
-        taken = (damping, friction, crack, law_switch)
+        energies = kinetic, contact, bond, load, balance, outside, damping, friction, crack, law_switch, error
         time = (state.step - 1) * run.time_step
-        self.entries.append(Entry(time, kinetic, contact, bond, load, balance, outside, *taken, error))
+        self.entries.append(Entry(time, *(self._weight * energy for energy in energies)))
         self._watch()
 
     def _watch(self) -> None:
@@ -120,7 +120,8 @@ class Ledger(Tracker):
         self._most = max(self._most[0], last.outside), max(self._most[1], last.load)
         came = first.kinetic + sum(self._most)
         gained = last.error - first.error
-        if gained > GAIN * came + ROUNDING * (sum(self._first) + last.kinetic + abs(last.outside)):
+        stored = self._weight * sum(self._first)
+        if gained > GAIN * came + ROUNDING * (stored + last.kinetic + abs(last.outside)):
             raise RunError(
                 f"the run has gained {gained:.3g} {self._unit} without input until t = {last.time:g} s, when loads and "
                 f"boundaries had supplied {came:.3g} {self._unit} at most; take a smaller run.safety or run.time_step"

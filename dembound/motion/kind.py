@@ -32,10 +32,14 @@ OnLook = Callable[[int, float], None]
 
 @dataclass(frozen=True)
 class Plan:
-    """A case before its first step: the scene, the time step and its limit (s), the number of steps."""
+    """A case before its first step: the scene, the time step and its limit (s), the number of steps.
+
+    stepped : the scene whose motion is computed, the scene itself or a smaller one, see `Kind.reduced`.
+    """
 
     kind: Kind[Any, Any]
     scene: Scene
+    stepped: Scene
     time_step: float
     step_limit: float
     steps: int
@@ -112,6 +116,10 @@ class Kind(ABC, Generic[C, S]):
     @abstractmethod
     def choose_step(self, scene: S) -> tuple[float, float]:
         """Time step to run with and the stability limit (s); raises CaseError for a given step above the limit."""
+
+    def reduced(self, scene: S) -> S:
+        """A smaller scene, from whose motion that of a scene follows; by default the scene itself."""
+        return scene
 
     @abstractmethod
     def begin(self, scene: S, time_step: float, on_look: OnLook) -> Beginning:

@@ -33,6 +33,7 @@ class Scene(ABC):
     record_width : columns of a probe's record, see kernels.tables.Log.
     block : steps between two returns of the compiled loop.
     has_history : whether its law is history-dependent.
+    weight : energies of the whole scene over those of this one, see `whole`.
     """
 
     case: Case
@@ -44,6 +45,7 @@ class Scene(ABC):
     record_width: int
     block: int
     has_history: bool = False
+    weight: float = 1.0
 
     @property
     @abstractmethod
@@ -115,6 +117,20 @@ class Scene(ABC):
         """Its parts and ties at rest as built, to be stepped by time_step (s)."""
 
     @property
+    def whole(self) -> "Scene":
+        """The scene of the case, where this one is stepped in place of it; by default itself."""
+        return self
+
+    @property
+    def reduced(self) -> tuple[str, ...]:
+        """In words, how this scene is smaller than the whole one, a line each."""
+        return ()
+
+    def widened(self, values: np.ndarray) -> np.ndarray:
+        """Values (n, …) of its nodes as those of the nodes of the whole scene."""
+        return values
+
+    @property
     def twin(self) -> np.ndarray | None:
         """(n,) node to whose velocity the dashpots of each node are relative, itself for none; None: all for none."""
         return None
@@ -129,8 +145,8 @@ class Scene(ABC):
         """(q,) the nodes of all edges, one edge after the other."""
         return np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in self.edges.values())])
 
-    def tracked_of(self, side: str) -> slice:
-        """The range of a side's nodes in `tracked`."""
+    def tracked_of(self, side: str) -> slice | np.ndarray:
+        """Where the nodes of a side of the whole scene are in `tracked`."""
         sides = list(self.edges)
         first = sum(len(self.edges[name].nodes) for name in sides[: sides.index(side)])
         return slice(first, first + len(self.edges[side].nodes))

@@ -114,7 +114,7 @@ class Simulation:
         return np.concatenate([empty, *kept.records])
 
     def edge_peaks(self, side: str) -> np.ndarray:
-        """Smallest and largest velocity so far of the nodes of one edge, (k, 3, 2)."""
+        """Smallest and largest velocity so far of the nodes of one side of the whole scene, (k, 3, 2)."""
         return self.state.peaks[self.scene.tracked_of(side)]
 
     def _hand_round(self, record: np.ndarray | None) -> None:

@@ -29,6 +29,9 @@ class Run(Protocol):
     def time(self) -> float:
         """Time of the current displacements (s)."""
 
+    def edge_peaks(self, side: str) -> np.ndarray:
+        """Smallest and largest velocity so far of the nodes of one side of the whole scene, (k, 3, 2)."""
+
 
 class Tracker(ABC):
     """Called during a run at chosen steps; the loop runs to the next step at which a tracker is due.

@@ -61,7 +61,7 @@ class Recorder:
     Parameters
     ----------
     path : file to create.
-    run : the run to record; its first probes are the monitors in their order.
+    run : the run to record, of whose whole scene all nodes are written; its first probes are the monitors in order.
     step_limit : stability limit in s, written to the record.
     interval : time between two history samples in s; 0: every step is recorded. ledger : the run's energy ledger,
     written at the end; None: without a ledger. stages : those before the run.
@@ -79,6 +79,7 @@ class Recorder:
         import h5py
 
         self.run = run
+        self.scene = run.scene.whole
         self.ledger = ledger
         self.stride = max(1, round(interval / run.time_step))
         self.file = h5py.File(path, "w")
@@ -143,10 +144,11 @@ class Recorder:
         state = self.run.state
         group = self.file.create_group(f"snapshots/{self._snapshots:04d}")
         group.attrs["time"] = self.run.time
-        _write(group, "displacement", (state.displacement - state.datum).T, DISPLACEMENT_UNIT)
-        _write(group, "velocity", state.velocity.T, VELOCITY_UNIT)
+        widened = self.run.scene.widened
+        _write(group, "displacement", widened((state.displacement - state.datum).T), DISPLACEMENT_UNIT)
+        _write(group, "velocity", widened(state.velocity.T), VELOCITY_UNIT)
         for name, (values, unit) in self.run.system.snapshot(state.displacement).items():
-            _write(group, name, values, unit)
+            _write(group, name, widened(values), unit)
         self._snapshots += 1
         self.file.flush()
 
@@ -157,7 +159,7 @@ class Recorder:
         _write(self.file[f"snapshots/{self._snapshots - 1:04d}"], "unbalanced", stalled.unbalanced, "N")
 
     def _write_header(self, step_limit: float) -> None:
-        scene, case = self.run.scene, self.run.scene.case
+        scene, case = self.scene, self.scene.case
         self.file.attrs.update(
             {
                 "name": case.name,
@@ -175,12 +177,12 @@ class Recorder:
 
     def _write_particles(self) -> None:
         group = self.file.create_group("particles")
-        for name, (values, unit) in self.run.scene.columns.items():
+        for name, (values, unit) in self.scene.columns.items():
             _write(group, name, values, unit)
 
     def _make_histories(self) -> list[dict[str, h5py.Dataset]]:
         """The datasets of each monitor by name; searching one in the file takes as long as extending it."""
-        scene = self.run.scene
+        scene = self.scene
         histories = self.file.create_group("histories", track_order=True)  # in the order of the case, not alphabetical
         kept = []
         for name, node in scene.monitors.items():
@@ -227,7 +229,7 @@ class Recorder:
     def _write_energy(self) -> None:
         if self.ledger is None:
             return
-        unit = self.run.scene.energy_unit
+        unit = self.scene.energy_unit
         group = self.file.create_group("energy")
         for field, column in zip(fields(Entry), self.ledger.columns.T, strict=True):
             _write(group, field.name, column, "s" if field.name == "time" else unit)
@@ -239,7 +241,7 @@ class Recorder:
         _write(group, "time", np.array(steps) * self.run.time_step, "s")
 
     def _write_boundaries(self) -> None:
-        scene = self.run.scene
+        scene = self.scene
         for side, edge in scene.edges.items():
             group = self.file.create_group(f"boundaries/{side}")
             group.attrs["length"] = edge.length
@@ -247,11 +249,11 @@ class Recorder:
             _write(group, "particle", edge.nodes, "1")
             _write(group, "position", scene.positions[edge.nodes], "m")
             _write(group, "diameter", edge.diameters, "m")
-            _write(group, "peak_velocity", self.run.state.peaks[self.run.scene.tracked_of(side)], VELOCITY_UNIT)
+            _write(group, "peak_velocity", self.run.edge_peaks(side), VELOCITY_UNIT)
 
     def _write_peaks(self) -> None:
-        if self.run.scene.case.output.peaks:
-            _write(self.file["particles"], "peak_velocity", self.run.state.top_speed, "m/s")
+        if self.scene.case.output.peaks:
+            _write(self.file["particles"], "peak_velocity", self.run.scene.widened(self.run.state.top_speed), "m/s")
 
 
 class Histories(Tracker):

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float]) -> dict[str, Any]:
     """The run in numbers, for scripts: plain JSON values, SI units; seconds : time spent, by part of the run."""
-    scene, state = planned.scene, run.state
+    scene, state = run.scene, run.state
     return {
         "name": scene.case.name,
         "title": scene.case.title,
@@ -37,7 +37,7 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
         "cracks": _count_cracks(record),
         "energy": _describe_energy(record),
         "monitors": _describe_monitors(record),
-        "reduced": [],
+        "reduced": list(scene.reduced),
     }
 
 

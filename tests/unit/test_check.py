@@ -15,11 +15,13 @@ def test_facts_are_those_of_the_run_and_of_the_scene(bar) -> None:
 
     assert facts["steps"] == "100 for 0.01 s"
     assert facts["time step"] == f"0.0001 s, {1e-4 / planned.step_limit:.3f} of the limit {planned.step_limit:.6g} s"
-    assert facts["memory"] == f"{planned.scene.bytes / 1e6:.3g} MB"
+    assert facts["memory"] == f"{planned.stepped.bytes / 1e6:.3g} MB"
+    assert facts["reduced"] == "rows: 2 identical rows are stepped as one, 20 of 40 disks"
     assert facts["estimated time"] == "less than 1 s with 1 thread"
     own = disk_facts(planned.scene)
     assert {name: fact for name, fact in facts.items() if name in own} == own
-    assert set(facts) - set(own) == {"time step", "steps", "memory", "estimated time"}
+    assert set(facts) - set(own) == {"time step", "steps", "memory", "estimated time", "reduced"}
+    assert "reduced" not in check(bar({"reduce.rows": False}))[0]
     assert len(warnings) > 0
     assert warnings == warnings_before(planned)
 

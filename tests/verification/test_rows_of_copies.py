@@ -55,11 +55,17 @@ def test_a_free_field(lab):
     assert_same_motion(lab.scene("B", (20.0, 20.0), held=(), boundary=FREE_FIELD, wave=lab.pulse(0.02)))
 
 
-@pytest.mark.parametrize("held", [("y", "rotation"), ("x", "rotation")])
-def test_held_components(lab, held):
-    wave = {"y": "wave_p", "x": "wave_s"}[held[0]]
-    boundary = {"left": {"type": "viscous_input", wave: "pulse"}, "right": "viscous"}
-    assert_same_motion(lab.scene("A", (20.0, 5.0), held=held, boundary=boundary, wave=lab.pulse(0.02)))
+@pytest.mark.parametrize("pattern", ["A", "B"])
+@pytest.mark.parametrize("held", [("x",), ("y",), ("rotation",), ("y", "rotation"), ("x", "rotation")])
+def test_held_components(lab, pattern, held):
+    wave = "wave_s" if "x" in held else "wave_p"
+    boundary = {
+        "left": {"type": "viscous_input", wave: "pulse"},
+        "right": {"type": "viscous", "half_mass": pattern == "A"},
+        "top": "viscous",
+    }
+    scene = lab.scene(pattern, (20.0, 20.0), held=held, boundary=boundary, wave=lab.pulse(0.02))
+    assert_same_motion(scene)
 
 
 def test_local_damping_and_its_work(lab):

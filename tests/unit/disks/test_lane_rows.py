@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.disks.lane_rows import matrices, plan_rows
+from dembound.disks.lane_rows import matrices
+from dembound.disks.row_plan import plan_rows
 from dembound.disks.rows import elastic_constants
 from dembound.disks.scene import DiskScene, build
 from dembound.kernels.elastic import contact_forces

@@ -166,18 +166,16 @@ class PlainPairs:
         t = np.array([-n[1], n[0]])
         arms = np.array([length / 2.0 + row[4], length / 2.0 - row[4]])
         stretch = n @ apart if still else length - row[2]
-        if still:
-            shear = t @ apart - arms @ [u_i[2], u_j[2]]
-        else:
-            shear = p.shear[c] + step * (t @ along - arms @ [v_i[2], v_j[2]])
-        return n, t, arms, stretch, shear, n @ along
+        slide = t @ along - arms @ [v_i[2], v_j[2]]
+        shear = t @ apart - arms @ [u_i[2], u_j[2]] if still else p.shear[c] + step * slide
+        return n, t, arms, stretch, shear, n @ along, slide
 
     def _push_one(self, c, u_i, u_j, v_i, v_j, step, number):
         """Force on the first disk, and the moments on both."""
         p, limits = self.arrays, self.limits
         _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend = p.constants[p.contact_type[c]]
-        n, t, arms, stretch, shear, opening = self.strain(c, u_i, u_j, v_i, v_j, step)
-        before, p.shear[c] = p.shear[c], shear
+        n, t, arms, stretch, shear, opening, slide = self.strain(c, u_i, u_j, v_i, v_j, step)
+        before, p.shear[c] = shear - step * slide, shear
         push, rub = k_n * (touch - rest - stretch), k_s * (shear - p.slip[c])
         if limits.geometry != REFERENCE or touch < rest:
             push = max(push, 0.0)

@@ -63,7 +63,8 @@ def test_pairs_push_as_the_law_says_step_by_step(random_pairs, plain, copied, ge
         expected.push(u, v, STEP, number)
 
         close(found.force, expected.arrays.force)
-        close(found.shear, expected.arrays.shear)
+        follows = (geometry == UPDATED) | ((geometry == BONDED) & (found.state != INTACT))  # others have it from u
+        close(np.where(follows, found.shear, 0.0), np.where(follows, expected.arrays.shear, 0.0))
         close(found.slip, expected.arrays.slip)
         assert np.array_equal(found.state, expected.arrays.state)
         assert np.array_equal(found.cracked, expected.arrays.cracked)
@@ -303,7 +304,7 @@ def test_adopted_pairs_start_where_small_motions_brought_them(random_pairs, plai
 
     law = plain(pairs, UNBREAKABLE._replace(geometry=REFERENCE))
     for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
-        _, _, _, stretch, shear, _ = law.strain(c, u[:, i], u[:, j], u[:, i], u[:, j], STEP)
+        _, _, _, stretch, shear, *_ = law.strain(c, u[:, i], u[:, j], u[:, i], u[:, j], STEP)
         closed = pairs.constants[c, 3] >= pairs.constants[c, 2] + stretch
         close(pairs.shear[c], shear)
         close(pairs.slip[c], 0.0 if closed else shear)
@@ -326,7 +327,7 @@ def outside(u: np.ndarray, pairs: Contacts, limits: Limits, law) -> np.ndarray:
     """By how much each pair (b,) breaks the conditions of the elastic law, written out one by one; 0: by none."""
     excess = np.zeros(len(pairs.first))
     for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
-        _, _, _, stretch, shear, _ = law.strain(c, u[:, i], u[:, j], u[:, i], u[:, j], STEP)
+        _, _, _, stretch, shear, *_ = law.strain(c, u[:, i], u[:, j], u[:, i], u[:, j], STEP)
         _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend = pairs.constants[c]
         overlap = touch - rest - stretch
         conditions = [-overlap, k_s * abs(shear) - limits.friction * k_n * overlap] if touch >= rest else [overlap]
@@ -428,7 +429,7 @@ def test_stored_energy_is_that_of_all_springs(random_pairs, plain, geometry: int
         pushed(pairs, limits, u, v)
     law, contact, bond = plain(pairs, limits), 0.0, 0.0
     for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
-        _, _, _, stretch, shear, _ = law.strain(c, u[:, i], u[:, j], v[:, i], v[:, j], 0.0)
+        _, _, _, stretch, shear, *_ = law.strain(c, u[:, i], u[:, j], v[:, i], v[:, j], 0.0)
         _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, _, _ = pairs.constants[c]
         overlap = touch - rest - stretch
         rub = k_s * (shear - (0.0 if geometry == REFERENCE else pairs.slip[c]))

@@ -77,6 +77,16 @@ def test_a_strip_is_as_long_as_an_echo_needs(long_bar) -> None:
     assert "a strip of 17.5 m, the scene has 40 m" in found.shortened
 
 
+@pytest.mark.parametrize("full", [False, True])
+def test_of_identical_rows_one_is_stepped(long_bar, full) -> None:
+    found, expected = (calibrate(long_bar({"reduce.rows": rows}), "right", full=full) for rows in (True, False))
+
+    (saved,) = set(found.shortened) - set(expected.shortened)
+    assert saved.startswith("rows: 2 identical rows are stepped as one")
+    assert (found.beta, found.outgoing) == (expected.beta, expected.outgoing)  # a mean of equal peaks
+    assert (found.particles, found.steps) == (expected.particles, expected.steps)
+
+
 def test_a_strip_may_be_longer_than_the_scene(bar) -> None:
     found = calibrate(bar({"wave.pulse.period": 0.05}), "right", tolerance=1.0)
 

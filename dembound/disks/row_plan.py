@@ -1,0 +1,92 @@
+"""Rows of the copies of each disk of the brick: where they stand in groups, columns of eight copies, and lanes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dembound.kernels.lanes import LANES
+from dembound.packings.tiling import Assembly
+
+WASTE = 1.04
+"""What whole lengths of the shorter side for each lane may cost in blocks; masks are then the same for all lanes."""
+
+
+@dataclass(frozen=True, eq=False)
+class RowPlan:
+    """Where the disks of an assembly stand: r rows of copies in g groups, each with as many columns of eight copies.
+
+    row (n,) row of each disk; column, lane (n,) its place there. group_row (g + 1,) the rows of each group, columns
+    (g,) its columns, group_block (g + 1,) its blocks from 0 on, column by column, in each one block for every row.
+    """
+
+    row: np.ndarray
+    column: np.ndarray
+    lane: np.ndarray
+    group_row: np.ndarray
+    columns: np.ndarray
+    group_block: np.ndarray
+
+    @property
+    def group(self) -> np.ndarray:
+        """(r,) group of each row."""
+        return np.repeat(np.arange(len(self.columns)), np.diff(self.group_row))
+
+    @property
+    def block(self) -> np.ndarray:
+        """(n,) block of each disk."""
+        group = self.group[self.row]
+        rows = np.diff(self.group_row)[group]
+        return self.group_block[group] + self.column * rows + self.row - self.group_row[group]
+
+    @property
+    def row_of_block(self) -> np.ndarray:
+        """(blocks,) row of the disks in each block."""
+        rows = np.split(np.arange(self.group_row[-1]), self.group_row[1:-1])
+        return np.concatenate([np.tile(each, columns) for each, columns in zip(rows, self.columns, strict=True)])
+
+    @property
+    def column_of_block(self) -> np.ndarray:
+        """(blocks,) column of each block in its group."""
+        rows = np.diff(self.group_row)
+        return np.concatenate([np.repeat(np.arange(c), r) for c, r in zip(self.columns, rows, strict=True)])
+
+    @property
+    def slot(self) -> np.ndarray:
+        """(n,) slot of each disk, from 0 on."""
+        return LANES * self.block + self.lane
+
+
+def plan_rows(assembly: Assembly) -> RowPlan:
+    """Rows of the copies of each disk of the brick, those in rows that close the frame in groups of their own.
+
+    Copies are numbered along the shorter side of the scene first, and cut into eight lengths, one for each lane: the
+    neighbour in the next copy is then in the next column, in the same lane.
+    """
+    (across, up), tile = assembly.copies, assembly.tile.astype(np.int64)
+    closing = 2 * (tile[:, 0] >= across) + (tile[:, 1] >= up)
+    along_x = bool(assembly.size[0] < assembly.size[1])
+    regular = tile[:, 1] * across + tile[:, 0] if along_x else tile[:, 0] * up + tile[:, 1]
+    copy = np.choose(closing, [regular, tile[:, 0], tile[:, 1], 0])
+    short, long = (across, up) if along_x else (up, across)
+    columns = np.array([_columns(short, long), -(-across // LANES), -(-up // LANES), 1])
+    kinds, group = np.unique(closing, return_inverse=True)
+    brick_rows, row = np.unique(
+        group * (assembly.brick_particle.max() + 1) + assembly.brick_particle, return_inverse=True
+    )
+    group_row = np.searchsorted(brick_rows // (assembly.brick_particle.max() + 1), np.arange(len(kinds) + 1))
+    columns = columns[kinds]
+    return RowPlan(
+        row=row,
+        column=copy % columns[group],
+        lane=copy // columns[group],
+        group_row=group_row,
+        columns=columns,
+        group_block=np.concatenate([[0], np.cumsum(np.diff(group_row) * columns)]),
+    )
+
+
+def _columns(short: int, long: int) -> int:
+    """Columns for so many copies along the shorter and the longer side."""
+    least = -(-short * long // LANES)
+    even = -(-long // LANES) * short
+    return even if even <= WASTE * least else least
