@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, ParamSpec
 from matplotlib import style
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.font_manager import get_font_names
 
@@ -124,7 +125,7 @@ def save(figure: Figure, path: Path, title: str | None = None) -> None:
     if title is not None:
         figure.suptitle(title, fontsize=11)
     if figure.axes and (layout := figure.get_layout_engine()) is not None:
-        layout.execute(figure)  # here, as savefig would draw everything once more for it
+        layout.execute(figure)
         figure.set_layout_engine("none")
-    with replacing(path) as part:
-        figure.savefig(part, format="png", pil_kwargs={"compress_level": COMPRESSION})
+    with replacing(path) as part:  # by the canvas, as savefig draws everything twice
+        FigureCanvasAgg(figure).print_png(part, pil_kwargs={"compress_level": COMPRESSION})
