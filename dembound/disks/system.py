@@ -157,7 +157,7 @@ class DiskSystem(System):
         return known
 
     def balancing_work(self, u: np.ndarray) -> float:
-        """Work (J) up to displacements (3, slots) of the forces that balance a settled stress, without their rotation."""
+        """Work (J) up to displacements (3, slots) of forces that balance a settled stress, without their rotation."""
         return 0.0 if self.balance is None else self.balance.work(self.scene.layout.gather(u))
 
     def memory(self) -> Arrays:

@@ -35,7 +35,7 @@ class Part(ABC):
 
     @abstractmethod
     def stored(self, u: np.ndarray) -> tuple[float, float]:
-        """Strain energy (J) at displacements (3, slots): in contacts and in bonds, for a bar in springs and in bonds."""
+        """Strain energy (J) at displacements (3, slots): in contacts and in bonds, of a bar in springs and in bonds."""
 
     @abstractmethod
     def take_cracks(self, steps: int) -> Cracks:
@@ -121,7 +121,7 @@ class System:
         return sum(first for first, _ in stored), sum(second for _, second in stored)
 
     def balancing_work(self, u: np.ndarray) -> float:
-        """Work (J) up to displacements (3, slots) of the forces that balance a settled stress, without their rotation."""
+        """Work (J) up to displacements (3, slots) of forces that balance a settled stress, without their rotation."""
         return 0.0
 
     def take_cracks(self, steps: int) -> Cracks:

@@ -30,6 +30,8 @@ UNSIGNED_MAP = "viridis"
 # DejaVu comes with matplotlib; the others, if installed, have Chinese characters for titles
 FONTS = ("DejaVu Sans", "Noto Sans CJK SC", "Microsoft YaHei", "PingFang SC", "SimHei", "WenQuanYi Zen Hei")
 
+DOTS_PER_INCH = 150
+
 COMPRESSION = 2
 """Level of compression of pictures: half the time of the usual one, and a fifth more bytes."""
 
@@ -83,7 +85,7 @@ def styled(draw: Callable[Parameters, Figure]) -> Callable[Parameters, Figure]:
 
 def new_figure(width: float, height: float) -> Figure:
     """An empty figure of this size in inches with automatic layout."""
-    return Figure(figsize=(width, height), dpi=150, layout="constrained")
+    return Figure(figsize=(width, height), dpi=DOTS_PER_INCH, layout="constrained")
 
 
 def line_style(index: int) -> dict[str, str]:

@@ -9,7 +9,6 @@ import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partialmethod
 from pathlib import Path
 from unittest.mock import ANY
 
@@ -18,7 +17,7 @@ import numba
 import numpy as np
 import pytest
 import tomli_w
-from matplotlib.figure import Figure
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from typer.main import get_command
 
 from dembound import cli, starting
@@ -28,6 +27,7 @@ from dembound.cli.app import Side
 from dembound.cli.progress import Lines, progress_of
 from dembound.kinds import load
 from dembound.motion.simulation import Simulation
+from dembound.plot import style
 from dembound.running import plan
 from dembound.version import __version__
 
@@ -52,7 +52,7 @@ def dembound(tmp_path, monkeypatch, capsys, command) -> Callable[..., Answer]:
     """Runs a command in an empty folder as the shell would, with pictures of a few dots per inch, soon packed."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys.modules["dembound.cli.app"], "app", command)
-    monkeypatch.setattr(Figure, "savefig", partialmethod(Figure.savefig, dpi=30))
+    monkeypatch.setattr(style, "DOTS_PER_INCH", 30)
 
     def run(*arguments: object) -> Answer:
         monkeypatch.setattr(sys, "argv", ["dembound", *map(str, arguments)])
@@ -732,11 +732,11 @@ def test_a_picture_may_be_given_a_title(dembound, felt, monkeypatch) -> None:
     np.savetxt("gauge.txt", np.column_stack([time, 1e6 * stress]))
     titles = []
 
-    def savefig(figure: Figure, path: Path, **_: object) -> None:
+    def print_png(canvas: FigureCanvasAgg, path: Path, **_: object) -> None:
         path.touch()
-        titles.append(figure.get_suptitle())
+        titles.append(canvas.figure.get_suptitle())
 
-    monkeypatch.setattr(Figure, "savefig", savefig)
+    monkeypatch.setattr(FigureCanvasAgg, "print_png", print_png)
     for arguments in (["dispersion"], ["gauge", "gauge.txt", "--position", 0.6, "--length", 0.99, "-o", "gauge.png"]):
         assert dembound(*arguments).code == 0
         assert dembound(*arguments, "--title", "figure 1").code == 0
