@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from dembound.kernels.banded import is_positive_definite
-
 ROUNDING = 1e-9
 """Share by which a step may exceed its limit, as rounding may shift the limit to either side of a round number."""
 
@@ -57,6 +55,12 @@ def _row_sums(bands: np.ndarray) -> float:
 
 def _is_above(bands: np.ndarray, value: float) -> bool:
     """Whether a value lies above all eigenvalues of a symmetric banded matrix."""
+    from scipy.linalg import LinAlgError, cholesky_banded
+
     shifted = -bands
     shifted[0] += value
-    return is_positive_definite(shifted)
+    try:
+        cholesky_banded(shifted, lower=True, overwrite_ab=True, check_finite=False)
+    except LinAlgError:
+        return False
+    return True

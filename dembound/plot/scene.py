@@ -132,8 +132,8 @@ def _draw_long(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMa
     return figure, list(panels), colours
 
 
-def _draw_strips(panels: Sequence[Axes], disks: Disks, shown: Field, scale: float) -> None:
-    """The whole scene at each of its times, with one axis at the last; `scale` in pixels per metre."""
+def _draw_strips(panels: np.ndarray, disks: Disks, shown: Field, scale: float) -> None:
+    """The whole scene at each of its times, in panels (k,) with one axis at the last; `scale` in pixels per metre."""
     for index, (panel, caption) in enumerate(zip(panels, shown.captions, strict=True)):
         _draw_panel(panel, disks, shown, index, disks.window, scale)
         beside: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 9}
@@ -141,7 +141,7 @@ def _draw_strips(panels: Sequence[Axes], disks: Disks, shown: Field, scale: floa
     for panel in panels[:-1]:
         panel.set_xlabel("")
         panel.tick_params(labelbottom=False)
-    measured_once(np.reshape(panels, (-1, 1)))
+    measured_once(panels[:, None])
 
 
 def _frame(panel: Axes, part: Window) -> None:

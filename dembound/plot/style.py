@@ -96,15 +96,15 @@ def new_figure(width: float, height: float) -> Figure:
 def measured_once(panels: np.ndarray, *, same_y: bool = True) -> None:
     """Let the layout measure common axes only once, which is most of its time; nothing moves.
 
-    panels (rows, columns): only the last row has numbers on x; same_y : those on y are the same in all rows. Above the
-    last row ticks remain, which belong to the lower spine.
+    panels (rows, columns): only the last row has numbers on x; same_y : those on y are the same in all rows. Ticks
+    without numbers belong to the spines.
     """
     for row, panel in ((row, panel) for row, across in enumerate(panels) for panel in across):
-        is_last = row == len(panels) - 1
-        panel.xaxis.set_in_layout(is_last)
-        panel.yaxis.set_in_layout(row == 0 or not same_y)
+        has_x, has_y = row == len(panels) - 1, row == 0 or not same_y
+        panel.xaxis.set_in_layout(has_x)
+        panel.yaxis.set_in_layout(has_y)
         for side, spine in panel.spines.items():
-            spine.set_in_layout(side == "bottom" and not is_last)
+            spine.set_in_layout((side == "bottom" and not has_x) or (side == "left" and has_y))
 
 
 class Powers(ScalarFormatter):

@@ -17,7 +17,7 @@ import numba
 import numpy as np
 import pytest
 import tomli_w
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from typer.main import get_command
 
 from dembound import cli, starting
@@ -133,13 +133,21 @@ def imported(case: Path, *arguments: str) -> set[str]:
         (("new", "--list"), HEAVY),
         (("new", "made.toml"), HEAVY - {"numpy"}),
         (("schema",), HEAVY - {"numpy"}),
-        (("check", "CASE"), FIGURES | SIGNALS | {"h5py"}),
+        (("check", "CASE"), FIGURES | SIGNALS | {"h5py", "dembound.bar.kind"}),
     ],
 )
 def test_commands_import_only_what_they_use(written, arguments, unused) -> None:
     found = imported(written(), *arguments)
     assert "dembound.cli.app" in found
     assert not found & unused
+
+
+def test_a_bar_does_not_need_disks(tmp_path) -> None:
+    case = tmp_path / "bar.toml"
+    case.write_text(starting.starting_point("rock_bar"))
+    found = imported(case, "check", "CASE")
+    assert "dembound.bar.kind" in found
+    assert not found & (FIGURES | SIGNALS | {"h5py", "dembound.disks.kind"})
 
 
 def test_completion_imports_nothing_large(written, monkeypatch) -> None:
@@ -732,11 +740,17 @@ def test_a_picture_may_be_given_a_title(dembound, felt, monkeypatch) -> None:
     np.savetxt("gauge.txt", np.column_stack([time, 1e6 * stress]))
     titles = []
 
-    def print_png(canvas: FigureCanvasAgg, path: Path, **_: object) -> None:
-        path.touch()
-        titles.append(canvas.figure.get_suptitle())
+    class Canvas:
+        """Writes nothing, but notes the title."""
 
-    monkeypatch.setattr(FigureCanvasAgg, "print_png", print_png)
+        def __init__(self, figure: Figure) -> None:
+            self.figure = figure
+
+        def print_png(self, path: Path, **_: object) -> None:
+            path.touch()
+            titles.append(self.figure.get_suptitle())
+
+    monkeypatch.setattr(style, "FigureCanvasAgg", Canvas)
     for arguments in (["dispersion"], ["gauge", "gauge.txt", "--position", 0.6, "--length", 0.99, "-o", "gauge.png"]):
         assert dembound(*arguments).code == 0
         assert dembound(*arguments, "--title", "figure 1").code == 0
