@@ -6,8 +6,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from dembound.bar.facts import bar_facts
 from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
 from dembound.bar.outcome import bar_outcome
@@ -17,11 +15,11 @@ from dembound.bar.summary import summarise_bar
 from dembound.bar.warnings import bar_warnings, warnings_after_bar
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.motion.kind import Beginning, Kind, OnLook
+from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run
 from dembound.results.reader import has_monitors
 
 if TYPE_CHECKING:
-    import h5py
     import meshio
     from matplotlib.figure import Figure
 
@@ -70,7 +68,7 @@ class Bars(Kind[BarCase, BarScene]):
         """Methods and spalls in words."""
         return bar_outcome(summary)
 
-    def mesh(self, particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+    def mesh(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mesh:
         """One line from each node to the next."""
         return bar_mesh(particles, snapshot, cracks)
 

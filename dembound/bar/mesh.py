@@ -24,8 +24,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from dembound.motion.state import Arrays
+from dembound.results.vtk import in_space, shown
+
 if TYPE_CHECKING:
-    import h5py
     import meshio
 
 VIEW_SCRIPT = '''\
@@ -53,26 +55,28 @@ Render()
 '''
 
 
-def bar_mesh(particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+def bar_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mesh:
     """One snapshot of a bar, and the cracks until then, as lines with the data of this module's table."""
-    displacement = snapshot["displacement"][:]  # a bar moves along x alone, its other columns are zero
-    places = np.pad(particles["position"][:], ((0, 0), (0, 1)))
+    displacement = snapshot["displacement"]  # a bar moves along x alone, its other columns are zero
+    places = in_space(particles["position"])
     count = len(places)
     data = {
         "id": np.arange(count),
-        "volume": particles["volume"][:],
+        "volume": particles["volume"],
         "displacement": displacement,
-        "velocity": snapshot["velocity"][:],
-        "stress": snapshot["stress"][:],
-        "damage": snapshot["damage"][:],
+        "velocity": snapshot["velocity"],
+        "stress": snapshot["stress"],
+        "damage": snapshot["damage"],
     }
     if "peak_velocity" in particles:
-        data["peakVelocity"] = particles["peak_velocity"][:]
-    lines = np.stack([np.arange(count - 1), np.arange(1, count)], axis=1)
-    broken = broken_across(cracks["particles"], count)
+        data["peakVelocity"] = particles["peak_velocity"]
+    nodes = np.arange(count, dtype=np.int32)
+    lines = np.stack([nodes[:-1], nodes[1:]], axis=1)
+    broken = broken_across(cracks["particles"], count).astype(np.int32)
     import meshio  # imported here, as commands that write no files need not wait for it
 
-    return meshio.Mesh(places + displacement, [("line", lines)], point_data=data, cell_data={"brokenBonds": [broken]})
+    cells = [("line", lines)]
+    return meshio.Mesh(places + displacement, cells, point_data=shown(data), cell_data={"brokenBonds": [broken]})
 
 
 def broken_across(pairs: np.ndarray, count: int) -> np.ndarray:

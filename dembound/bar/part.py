@@ -78,9 +78,9 @@ class BarPart(Part):
         """Whether the time step is stable with the present bonds; it remains so while bonds only break."""
         return self.scene.is_stable(self.bonds, self._step * (1.0 - ROUNDING))
 
-    def stored(self, displacement: np.ndarray) -> tuple[float, float]:
+    def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Strain energy (J) in local springs and in peridynamic bonds."""
-        return bar.stored(displacement[0], self._arrays)
+        return bar.stored(u[0], self._arrays)
 
     def _between(self, u: np.ndarray, before: np.ndarray) -> float:
         """Strain energy (J) half a step earlier, ½ uᵀK u⁻, which central differences conserve."""

@@ -14,6 +14,8 @@ It is large enough for every hole of a dense packing, and too small for lines of
 cross the whole scene.
 """
 
+AT_ONCE = 1024
+"""Disks whose lines of sight are computed together, some hundred each."""
 
 LEVEL = 1e-6
 """Largest deviation of the centres of one row from a line, in smallest radii: rounding errors."""
@@ -50,18 +52,29 @@ def exposed(positions: np.ndarray, radii: np.ndarray, side: str, period: float |
         spacing = period / count
     depth = np.full(count, -np.inf)
     owner = np.full(count, -1)
-    for i in near:
-        first = int(np.ceil((along[i] - radii[i] - origin) / spacing))
-        last = int(np.floor((along[i] + radii[i] - origin) / spacing))
-        samples = np.arange(first, last + 1)
-        reach = radii[i] ** 2 - (origin + samples * spacing - along[i]) ** 2
-        face = outward[i] + np.sqrt(np.maximum(reach, 0.0))
-        slots = samples % count if period is not None else samples
-        seen = face > depth[slots]
-        depth[slots[seen]] = face[seen]
-        owner[slots[seen]] = i
+    for some in np.split(near, range(AT_ONCE, len(near), AT_ONCE)):
+        ends = along[some] - radii[some], along[some] + radii[some]
+        number, line = _lines_of_sight(*((end - origin) / spacing for end in ends))
+        disk = some[number]
+        reach = radii[disk] ** 2 - (origin + line * spacing - along[disk]) ** 2
+        face = outward[disk] + np.sqrt(np.maximum(reach, 0.0))
+        if period is not None:
+            line %= count
+        seen = np.flatnonzero(face > depth[line])
+        disk, line, face = disk[seen], line[seen], face[seen]
+        np.maximum.at(depth, line, face)
+        foremost = np.flatnonzero(face == depth[line])[::-1]  # of equal ones the first in `near` is written last
+        owner[line[foremost]] = disk[foremost]
     nodes = np.unique(owner[owner >= 0])
     return nodes[np.argsort(along[nodes], kind="stable")]
+
+
+def _lines_of_sight(begin: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers (k,) of disks and of the lines of sight that meet them; the ends (m,) of each in spacings of lines."""
+    first, last = np.ceil(begin).astype(np.int64), np.floor(end).astype(np.int64)
+    counts = last - first + 1
+    before = np.cumsum(counts) - counts
+    return np.repeat(np.arange(len(counts)), counts), np.arange(counts.sum()) + np.repeat(first - before, counts)
 
 
 def _sign(side: str) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import time
 from pathlib import Path
@@ -77,7 +78,9 @@ def run(
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
     for case in loaded[1:]:  # the first is planned below, before anything is written
         preflight(case)
-    for case in loaded:
+    for number, case in enumerate(loaded):
+        if number > 0:
+            gc.collect()  # the arrays of the run before, whose objects refer to each other
         try:
             with progress_of(case.name) as step:
                 folder = run_case(case, output, step, spent)

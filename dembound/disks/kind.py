@@ -6,8 +6,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-import numpy as np
-
 from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.facts import disk_facts
@@ -21,10 +19,10 @@ from dembound.disks.summary import asked_stress, describe_static, summarise_disk
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
 from dembound.motion.kind import Beginning, Kind, OnLook, Stage
+from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run
 
 if TYPE_CHECKING:
-    import h5py
     import meshio
     from matplotlib.figure import Figure
 
@@ -92,7 +90,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Static stage, laws and cracks in words."""
         return disk_outcome(summary)
 
-    def mesh(self, particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+    def mesh(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mesh:
         """One vertex per disk."""
         return disk_mesh(particles, snapshot, cracks)
 

@@ -32,10 +32,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dembound.results.vtk import in_space, vertices
+from dembound.motion.state import Arrays
+from dembound.results.vtk import in_space, shown, vertices
 
 if TYPE_CHECKING:
-    import h5py
     import meshio
 
 VIEW_SCRIPT = '''\
@@ -67,32 +67,31 @@ Render()
 '''
 
 
-def disk_mesh(particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+def disk_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mesh:
     """One snapshot, and the cracks until then, as vertices with the point data of this module's table."""
-    displacement, velocity = snapshot["displacement"][:], snapshot["velocity"][:]
+    displacement, velocity = snapshot["displacement"], snapshot["velocity"]
     count = len(displacement)
     moved = in_space(displacement[:, :2])
-    bonds = particles["bonds"][:]
     broken = np.bincount(cracks["particles"].ravel(), minlength=count)
     data = {
-        "radii": particles["radius"][:],
+        "radii": particles["radius"],
         "id": np.arange(count),
         "linVelVec": in_space(velocity[:, :2]),
         "angVelVec": np.column_stack([np.zeros((count, 2)), velocity[:, 2]]),
         "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
         "displacement": moved,
         "rotation": displacement[:, 2],
-        "brick_particle": particles["brick_particle"][:],
+        "brick_particle": particles["brick_particle"],
         "nbCracks": broken,
-        "damage": broken / np.maximum(bonds, 1),  # without bonds none can break
+        "damage": broken / np.maximum(particles["bonds"], 1),  # without bonds none can break
     }
     if "coordination" in snapshot:
-        data["coordNumber"] = snapshot["coordination"][:]
+        data["coordNumber"] = snapshot["coordination"]
     if "stress" in snapshot:
-        data["stress"] = _tensors(snapshot["stress"][:])
+        data["stress"] = _tensors(snapshot["stress"])
     if "peak_velocity" in particles:
-        data["peakVelocity"] = particles["peak_velocity"][:]
-    return vertices(in_space(particles["position"][:]) + moved, data)
+        data["peakVelocity"] = particles["peak_velocity"]
+    return vertices(in_space(particles["position"]) + moved, shown(data))
 
 
 def _tensors(stress: np.ndarray) -> np.ndarray:

@@ -94,9 +94,8 @@ class DiskPart(Part):
         elastic.contact_forces(u, self.rows, force)
         total[:, self.nodes] += force[:, self.layout.slot[self.nodes]]
 
-    def stored(self, displacement: np.ndarray) -> tuple[float, float]:
-        """Energy (J) in contacts and in bonds at displacements (3, n)."""
-        u = self.layout.spread(displacement)
+    def stored(self, u: np.ndarray) -> tuple[float, float]:
+        """Energy (J) in contacts and in bonds at displacements (3, slots)."""
         if self.contacts is None:
             return strain_energy(u, self._plain_contacts, REFERENCE)
         geometry = self.contacts.limits.geometry if self.uses_history else REFERENCE

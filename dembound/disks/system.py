@@ -156,9 +156,9 @@ class DiskSystem(System):
             known["stress"] = self.stress(displacement), "Pa"
         return known
 
-    def balancing_work(self, displacement: np.ndarray) -> float:
-        """Work (J) up to displacements (3, n) of the forces that balance a settled stress, without their rotation."""
-        return 0.0 if self.balance is None else self.balance.work(displacement)
+    def balancing_work(self, u: np.ndarray) -> float:
+        """Work (J) up to displacements (3, slots) of forces that balance a settled stress, without their rotation."""
+        return 0.0 if self.balance is None else self.balance.work(self.scene.layout.gather(u))
 
     def memory(self) -> Arrays:
         """All arrays that change during a run except the motion, by name."""
@@ -248,4 +248,4 @@ class DiskSystem(System):
     def _potential(self, state: State) -> float:
         """Energy (J) stored in contacts and bonds less the work of steady and balancing forces since the start."""
         steady = float(np.sum(self.load * (state.displacement - state.datum)))
-        return sum(self.stored(state.displacement)) - steady - self.balancing_work(state.displacement)
+        return sum(self.stored(state.u)) - steady - self.balancing_work(state.u)

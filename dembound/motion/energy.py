@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.errors import RunError
-from dembound.motion.state import Arrays
+from dembound.motion.state import Arrays, State
 from dembound.motion.trackers import NEVER, Run, Tracker
 
 GAIN = 0.5
@@ -48,11 +48,11 @@ class Entry:
 class _Begun(NamedTuple):
     """The state at the beginning of an entry's step.
 
-    place, before : (3, n) displacements, and velocities half a step earlier; balancing : J, work of balancing forces;
+    u, before : (3, slots) displacements, and velocities half a step earlier; balancing : J, work of balancing forces;
     laws : number of laws used so far.
     """
 
-    place: np.ndarray
+    u: np.ndarray
     before: np.ndarray
     balancing: float
     laws: int
@@ -75,8 +75,8 @@ class Ledger(Tracker):
         self.due = run.state.step
         self._interval, self._last = interval, last
         self._unit, self._weight = run.scene.energy_unit, run.scene.weight
-        self._inertia = np.stack([run.scene.mass, run.scene.mass, run.scene.inertia])
-        self._first = run.system.stored(run.state.displacement.copy())
+        self._inertia = run.scene.layout.spread(np.stack([run.scene.mass, run.scene.mass, run.scene.inertia]))
+        self._first = run.system.stored(run.state.u)
         self._most = 0.0, 0.0  # supplied by boundaries and loads, largest values so far
         self._begun: _Begun | None = None
 
@@ -90,22 +90,24 @@ class Ledger(Tracker):
             self.due = min(later, self._last) if step < self._last else later
         if self.due == run.state.step:
             state = run.state
-            balancing = run.system.balancing_work(state.displacement)  # forces may end in the step
-            self._begun = _Begun(state.displacement.copy(), state.velocity.copy(), balancing, len(state.laws))
+            balancing = run.system.balancing_work(state.u)  # forces may end in the step
+            self._begun = _Begun(state.u.copy(), state.v.copy(), balancing, len(state.laws))
             self.due = state.step + 1
 
     def _enter(self, run: Run, begun: _Begun) -> None:
         """Write the energies at the beginning of the last step."""
         state, system = run.state, run.system
-        place, before, balancing, laws = begun
+        u, before, balancing, laws = begun
         if len(state.laws) > laws and state.switch_velocity.size > 0:
             # the law changed before the step, which began in the state of the change, maybe with a rigid rotation
-            place = state.displacement - run.time_step * state.velocity
-            before = state.switch_velocity
-            balancing = system.balancing_work(place)
-        kinetic = 0.5 * float(np.sum(self._inertia * before * state.velocity))
-        contact, bond = (now - first for now, first in zip(system.stored(place), self._first, strict=True))
-        load = float(np.sum(system.load * (place - state.datum)))
+            u = state.u - run.time_step * state.v
+            before = state.layout.spread(state.switch_velocity)
+            balancing = system.balancing_work(u)
+        before *= self._inertia
+        before *= state.v
+        kinetic = 0.5 * float(np.sum(_by_node(before, state)))
+        contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))
+        load = float(np.sum(system.load * (_by_node(u, state) - state.datum))) if system.load.any() else 0.0
         outside, damping, friction, crack, law_switch, turning = (float(work) for work in state.work[1])
         balance = turning + balancing
         error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - law_switch
@@ -141,7 +143,7 @@ class Ledger(Tracker):
             "first": np.array(self._first),
             "most": np.array(self._most),
             "has_begun": np.array(self._begun is not None),
-            "place": begun.place,
+            "u": begun.u,
             "before": begun.before,
             "balancing": np.array(begun.balancing),
             "laws": np.array(begun.laws),
@@ -153,5 +155,10 @@ class Ledger(Tracker):
         self.entries = [Entry(*row) for row in memory["entries"].tolist()]
         self._first = tuple(memory["first"].tolist())
         self._most = tuple(memory["most"].tolist())
-        begun = _Begun(memory["place"].copy(), memory["before"].copy(), float(memory["balancing"]), int(memory["laws"]))
+        begun = _Begun(memory["u"].copy(), memory["before"].copy(), float(memory["balancing"]), int(memory["laws"]))
         self._begun = begun if memory["has_begun"] else None
+
+
+def _by_node(values: np.ndarray, state: State) -> np.ndarray:
+    """Values (3, slots) as those of nodes (3, n), row after row in memory, so that sums have one order of terms."""
+    return np.take(values, state.layout.slot, axis=1)

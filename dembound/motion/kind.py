@@ -16,10 +16,10 @@ from dembound.errors import RunError
 from dembound.motion.cracks import Cracks
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
+from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run
 
 if TYPE_CHECKING:
-    import h5py
     import meshio
     from matplotlib.figure import Figure
 
@@ -153,8 +153,8 @@ class Kind(ABC, Generic[C, S]):
         """The results of a run in words, from its summary."""
 
     @abstractmethod
-    def mesh(self, particles: h5py.Group, snapshot: h5py.Group, cracks: dict[str, np.ndarray]) -> meshio.Mesh:
-        """One snapshot of a record for ParaView, and the cracks until then."""
+    def mesh(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mesh:
+        """One snapshot of a record for ParaView, and the cracks until then; each with its columns by name."""
 
     @abstractmethod
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:

@@ -34,8 +34,8 @@ class Part(ABC):
         """React to a return of the loop; why : the reason, see kernels/common.py; steps : done so far."""
 
     @abstractmethod
-    def stored(self, displacement: np.ndarray) -> tuple[float, float]:
-        """Strain energy (J) at displacements (3, n): in contacts and in bonds, for a bar in springs and in bonds."""
+    def stored(self, u: np.ndarray) -> tuple[float, float]:
+        """Strain energy (J) at displacements (3, slots): in contacts and in bonds, of a bar in springs and in bonds."""
 
     @abstractmethod
     def take_cracks(self, steps: int) -> Cracks:
@@ -115,13 +115,13 @@ class System:
         if self.law_name != state.laws[-1][0]:
             state.laws.append((self.law_name, state.step))
 
-    def stored(self, displacement: np.ndarray) -> tuple[float, float]:
-        """Strain energy (J) at displacements (3, n), see `Part.stored`."""
-        stored = [part.stored(displacement) for part in self.parts]
+    def stored(self, u: np.ndarray) -> tuple[float, float]:
+        """Strain energy (J) at displacements (3, slots), see `Part.stored`."""
+        stored = [part.stored(u) for part in self.parts]
         return sum(first for first, _ in stored), sum(second for _, second in stored)
 
-    def balancing_work(self, displacement: np.ndarray) -> float:
-        """Work (J) up to displacements (3, n) of the forces that balance a settled stress, without their rotation."""
+    def balancing_work(self, u: np.ndarray) -> float:
+        """Work (J) up to displacements (3, slots) of forces that balance a settled stress, without their rotation."""
         return 0.0
 
     def take_cracks(self, steps: int) -> Cracks:

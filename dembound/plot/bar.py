@@ -20,6 +20,7 @@ from dembound.plot.style import (
     SIGNED_MAP,
     TimeUnit,
     line_style,
+    measured_once,
     new_figure,
     outside_legend,
     styled,
@@ -170,6 +171,7 @@ def _draw_maps(course: SpaceTimeField) -> Figure:
         lower.set_ylabel(f"{FIELDS[name].words} ({FIELDS[name].unit})")  # there is no space for more
         lower.set_title(f"at the end, t = {course.moment(course.time[-1])}", loc="left", fontsize=9, pad=3)
         lower.set_xlabel("x (m)")
+    measured_once(panels, same_y=False)
     return figure
 
 
@@ -206,6 +208,7 @@ def _draw_profiles(course: SpaceTimeField) -> Figure:
         for number, time in enumerate(course.time):
             _draw_profile(panel, course, name, number, label=f"t = {course.moment(time)}", **line_style(number))
     panels[-1].set_xlabel("x (m)")
+    measured_once(panels[:, None], same_y=False)
     return figure
 
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
-from dembound.plot.style import line_style, new_figure, outside_legend, styled, time_unit
+from dembound.plot.style import line_style, measured_once, new_figure, outside_legend, styled, time_unit
 from dembound.results.histories import FREE_FIELD, UNITS, History, Quantity, read_histories
 from dembound.results.reader import COMPONENTS, record_names
 
@@ -81,6 +81,7 @@ def plot_histories(
     for panel in panels[-1]:
         panel.set_xlabel(unit.label)
     _name_axes(figure, panels, quantity, columns)
+    measured_once(panels)
     outside_legend(figure, panels.flat, columns=3)
     return figure
 

@@ -9,11 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from matplotlib.ticker import MaxNLocator, NullLocator, ScalarFormatter
+from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.plot.disks import Window, draw_field
 from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
-from dembound.plot.style import new_figure, outside_legend, styled
+from dembound.plot.style import Powers, measured_once, new_figure, outside_legend, styled
 from dembound.results.reader import open_record
 
 LONG = 6.0
@@ -82,9 +82,7 @@ def plot_scene(
         figure, panels, colours = _draw_long(disks, shown)
     else:
         figure, panels, colours = _draw_whole(disks, shown)
-    numbers = ScalarFormatter(useMathText=True)
-    numbers.set_powerlimits((-3, 4))
-    figure.colorbar(colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=numbers)
+    figure.colorbar(colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=Powers())
     title = f"{disks.case}: {shown.name} of {len(disks.radii)} disks"
     figure.suptitle("\n".join(filter(None, [title, disks.laws])), fontsize=11)
     outside_legend(figure, panels, columns=3)
@@ -134,8 +132,8 @@ def _draw_long(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMa
     return figure, list(panels), colours
 
 
-def _draw_strips(panels: Sequence[Axes], disks: Disks, shown: Field, scale: float) -> None:
-    """The whole scene at each of its times, with one axis at the last; `scale` in pixels per metre."""
+def _draw_strips(panels: np.ndarray, disks: Disks, shown: Field, scale: float) -> None:
+    """The whole scene at each of its times, in panels (k,) with one axis at the last; `scale` in pixels per metre."""
     for index, (panel, caption) in enumerate(zip(panels, shown.captions, strict=True)):
         _draw_panel(panel, disks, shown, index, disks.window, scale)
         beside: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 9}
@@ -143,6 +141,7 @@ def _draw_strips(panels: Sequence[Axes], disks: Disks, shown: Field, scale: floa
     for panel in panels[:-1]:
         panel.set_xlabel("")
         panel.tick_params(labelbottom=False)
+    measured_once(panels[:, None])
 
 
 def _frame(panel: Axes, part: Window) -> None:

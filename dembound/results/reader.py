@@ -78,7 +78,11 @@ def cracks_until(file: h5py.File, time: float) -> dict[str, np.ndarray]:
 
     Columns time (k,) s, position (k, 2) m, particles (k, 2), shear (k,) bool, in the order the bonds broke.
     """
-    cracks = {name: dataset[:] for name, dataset in file["cracks"].items()}
+    return until({name: dataset[:] for name, dataset in file["cracks"].items()}, time)
+
+
+def until(cracks: dict[str, np.ndarray], time: float) -> dict[str, np.ndarray]:
+    """Those of the cracks, columns as by `cracks_until`, that have happened at a time in s."""
     broken = cracks["time"] <= time
     return {name: column[broken] for name, column in cracks.items()}
 

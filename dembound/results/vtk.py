@@ -1,6 +1,8 @@
 """Snapshots for ParaView: one VTU file each, a PVD file listing their times, and a script that shows them.
 
-The contents of the files are described in `disks.mesh` and `bar.mesh`.
+The contents of the files are described in `disks.mesh` and `bar.mesh`. Positions are in double precision, fields in
+single precision (`shown`), as the record has all digits. Nothing is compressed: that would halve the files, but take
+longer than the steps of a short run.
 
 Where bonds broke in the run, ``cracks.vtu`` has one vertex per broken bond, in the middle between its two disks at that
 time:
@@ -21,7 +23,8 @@ from xml.etree import ElementTree
 import numpy as np
 
 from dembound.motion.kind import Kind
-from dembound.results.reader import cracks_until, open_record, replacing
+from dembound.motion.state import Arrays
+from dembound.results.reader import cracks_until, open_record, replacing, until
 
 if TYPE_CHECKING:
     import meshio
@@ -49,29 +52,37 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
         if not snapshots:
             return None
         folder.mkdir(parents=True, exist_ok=True)
+        particles = {name: dataset[:] for name, dataset in file["particles"].items()}
+        cracks = cracks_until(file, np.inf)
         times = {}
         for number, snapshot in snapshots.items():
             name = f"{kind.mesh_name}_{number}.vtu"
             times[name] = float(snapshot.attrs["time"])
-            _write(folder / name, kind.mesh(file["particles"], snapshot, cracks_until(file, times[name])))
-        cracks = cracks_until(file, np.inf)
+            fields = {name: dataset[:] for name, dataset in snapshot.items()}
+            _write(folder / name, kind.mesh(particles, fields, until(cracks, times[name])))
         if len(cracks["time"]) > 0:
             _write(folder / "cracks.vtu", _cracks(cracks))
     (folder / "view.py").write_text(kind.view_script, encoding="utf-8")
     return _write_index(folder / f"{kind.mesh_name}.pvd", times)
 
 
-def _cracks(cracks: dict[str, np.ndarray]) -> meshio.Mesh:
+def _cracks(cracks: Arrays) -> meshio.Mesh:
     """Cracks as vertices with the point data of this module's table."""
     data = {"time": cracks["time"], "mode": cracks["shear"].astype(int), "particles": cracks["particles"]}
     return vertices(in_space(cracks["position"]), data)
 
 
-def vertices(points: np.ndarray, data: dict[str, np.ndarray]) -> meshio.Mesh:
+def vertices(points: np.ndarray, data: Arrays) -> meshio.Mesh:
     """One vertex per point (n, 3) m, with arrays (n, …) on them."""
     import meshio  # imported here, as commands that write no files need not wait for it
 
-    return meshio.Mesh(points, [("vertex", np.arange(len(points))[:, None])], point_data=data)
+    return meshio.Mesh(points, [("vertex", np.arange(len(points), dtype=np.int32)[:, None])], point_data=dict(data))
+
+
+def shown(fields: Arrays) -> dict[str, np.ndarray]:
+    """Fields by name in the precision in which they are shown: single, whole numbers in 32 bits."""
+    kinds = {"f": np.float32, "i": np.int32}
+    return {name: values.astype(kinds[values.dtype.kind]) for name, values in fields.items()}
 
 
 def _write(path: Path, mesh: meshio.Mesh) -> None:
@@ -79,7 +90,7 @@ def _write(path: Path, mesh: meshio.Mesh) -> None:
     with replacing(path) as part:
         import meshio
 
-        meshio.write(part, mesh, file_format="vtu")
+        meshio.write(part, mesh, file_format="vtu", compression=None)
 
 
 def in_space(vectors: np.ndarray) -> np.ndarray:

@@ -9,7 +9,6 @@ import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partialmethod
 from pathlib import Path
 from unittest.mock import ANY
 
@@ -28,6 +27,7 @@ from dembound.cli.app import Side
 from dembound.cli.progress import Lines, progress_of
 from dembound.kinds import load
 from dembound.motion.simulation import Simulation
+from dembound.plot import style
 from dembound.running import plan
 from dembound.version import __version__
 
@@ -52,7 +52,7 @@ def dembound(tmp_path, monkeypatch, capsys, command) -> Callable[..., Answer]:
     """Runs a command in an empty folder as the shell would, with pictures of a few dots per inch, soon packed."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys.modules["dembound.cli.app"], "app", command)
-    monkeypatch.setattr(Figure, "savefig", partialmethod(Figure.savefig, dpi=30))
+    monkeypatch.setattr(style, "DOTS_PER_INCH", 30)
 
     def run(*arguments: object) -> Answer:
         monkeypatch.setattr(sys, "argv", ["dembound", *map(str, arguments)])
@@ -133,13 +133,21 @@ def imported(case: Path, *arguments: str) -> set[str]:
         (("new", "--list"), HEAVY),
         (("new", "made.toml"), HEAVY - {"numpy"}),
         (("schema",), HEAVY - {"numpy"}),
-        (("check", "CASE"), FIGURES | SIGNALS | {"h5py"}),
+        (("check", "CASE"), FIGURES | SIGNALS | {"h5py", "dembound.bar.kind"}),
     ],
 )
 def test_commands_import_only_what_they_use(written, arguments, unused) -> None:
     found = imported(written(), *arguments)
     assert "dembound.cli.app" in found
     assert not found & unused
+
+
+def test_a_bar_does_not_need_disks(tmp_path) -> None:
+    case = tmp_path / "bar.toml"
+    case.write_text(starting.starting_point("rock_bar"))
+    found = imported(case, "check", "CASE")
+    assert "dembound.bar.kind" in found
+    assert not found & (FIGURES | SIGNALS | {"h5py", "dembound.disks.kind"})
 
 
 def test_completion_imports_nothing_large(written, monkeypatch) -> None:
@@ -735,11 +743,17 @@ def test_a_picture_may_be_given_a_title(dembound, felt, monkeypatch) -> None:
     np.savetxt("gauge.txt", np.column_stack([time, 1e6 * stress]))
     titles = []
 
-    def savefig(figure: Figure, path: Path, **_: object) -> None:
-        path.touch()
-        titles.append(figure.get_suptitle())
+    class Canvas:
+        """Writes nothing, but notes the title."""
 
-    monkeypatch.setattr(Figure, "savefig", savefig)
+        def __init__(self, figure: Figure) -> None:
+            self.figure = figure
+
+        def print_png(self, path: Path, **_: object) -> None:
+            path.touch()
+            titles.append(self.figure.get_suptitle())
+
+    monkeypatch.setattr(style, "FigureCanvasAgg", Canvas)
     for arguments in (["dispersion"], ["gauge", "gauge.txt", "--position", 0.6, "--length", 0.99, "-o", "gauge.png"]):
         assert dembound(*arguments).code == 0
         assert dembound(*arguments, "--title", "figure 1").code == 0

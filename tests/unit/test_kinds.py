@@ -28,6 +28,6 @@ def test_a_record_that_names_no_kind_is_of_disks(tmp_path) -> None:
 
 
 def test_scenes_have_the_names_of_their_kinds(spalling, bar) -> None:
-    assert [kind.name for kind in KINDS] == ["bar", "disks"]
+    assert [kind().name for kind in KINDS.values()] == list(KINDS) == ["bar", "disks"]
     for case in (spalling(), bar()):
         assert kind_of(case).build(case).kind == kind_of(case).name

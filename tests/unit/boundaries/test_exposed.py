@@ -51,6 +51,25 @@ def test_a_narrow_gap_shows_the_disk_behind_it() -> None:
         assert exposed(positions, np.full(3, 0.5), "left").tolist() == seen
 
 
+@pytest.mark.parametrize("period", [None, 40.0])
+@pytest.mark.parametrize("at_once", [1, 7])
+def test_sides_do_not_depend_on_how_many_disks_are_looked_at_together(monkeypatch, at_once: int, period) -> None:
+    rng = np.random.default_rng(0)
+    positions, radii = rng.uniform(0.0, (5.0, 40.0), (200, 2)), rng.uniform(0.2, 0.6, 200)
+    together = exposed(positions, radii, "left", period).tolist()
+    monkeypatch.setattr("dembound.boundaries.exposed.AT_ONCE", at_once)
+
+    assert exposed(positions, radii, "left", period).tolist() == together
+    assert 10 < len(together) < 100
+
+
+def test_of_two_equal_disks_in_one_place_the_first_is_seen(monkeypatch) -> None:
+    positions, radii = np.zeros((2, 2)), np.ones(2)
+    for at_once in (1, 2):
+        monkeypatch.setattr("dembound.boundaries.exposed.AT_ONCE", at_once)
+        assert exposed(positions, radii, "left").tolist() == [0]
+
+
 def test_a_disk_on_the_shoulder_of_a_larger_one_is_seen() -> None:
     # seen from the left the large disk reaches farther out, to 1, and over all of the small one's height; but there it
     # has rounded off to 0.6 and less, and the small one stands on it, up to 0.73: (0.63, 0.9) is 1.1 from its centre

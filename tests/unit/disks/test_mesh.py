@@ -16,7 +16,7 @@ def exported(small_run, tmp_path_factory):
 
 
 def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Points and point data of a snapshot, written out column by column."""
+    """Points and point data of a snapshot, written out column by column, and rounded to single precision."""
     particles, snapshot = file["particles"], file["snapshots"][number]
     displacement, velocity = snapshot["displacement"][:], snapshot["velocity"][:]
     points, moved, linear, angular = (np.zeros((len(velocity), 3)) for _ in range(4))
@@ -25,7 +25,7 @@ def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.nda
         moved[:, axis] = displacement[:, axis]
         linear[:, axis] = velocity[:, axis]
     angular[:, 2] = velocity[:, 2]
-    return points, {
+    data = {
         "radii": particles["radius"][:],
         "id": np.arange(len(velocity)),
         "linVelVec": linear,
@@ -37,6 +37,15 @@ def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.nda
         "nbCracks": np.zeros(len(velocity)),
         "damage": np.zeros(len(velocity)),
     }
+    return points, {name: values.astype(np.float32) for name, values in data.items()}
+
+
+def test_positions_are_in_double_and_fields_in_single_precision(exported):
+    mesh = meshio.read(exported.parent / "particles_0001.vtu")
+    kinds = {name: values.dtype for name, values in mesh.point_data.items()}
+    whole = {"id", "brick_particle", "nbCracks"}
+    assert mesh.points.dtype == np.float64
+    assert kinds == {name: np.int32 if name in whole else np.float32 for name in kinds}
 
 
 @pytest.mark.parametrize("number", ["0000", "0001"])
@@ -70,8 +79,10 @@ def test_stress_is_a_symmetric_tensor_and_peaks_are_in_every_file(rich_run, tmp_
             xx, yy, xy = snapshot["stress"][:].T
             zero = np.zeros_like(xx)
             # VTK's order: xx, yy, zz, xy, yz, xz
-            np.testing.assert_array_equal(mesh.point_data["stress"].T, [xx, yy, zero, xy, zero, zero])
-            np.testing.assert_array_equal(mesh.point_data["peakVelocity"], file["particles/peak_velocity"][:])
+            tensors = np.array([xx, yy, zero, xy, zero, zero], dtype=np.float32)
+            np.testing.assert_array_equal(mesh.point_data["stress"].T, tensors)
+            peaks = file["particles/peak_velocity"][:].astype(np.float32)
+            np.testing.assert_array_equal(mesh.point_data["peakVelocity"], peaks)
 
 
 def test_circle_glyphs_of_factor_two_have_the_radii(exported):
@@ -94,7 +105,7 @@ def test_cracks_and_damage_are_counted_up_to_each_snapshot(cracked_run, tmp_path
             for time, pair in zip(cracks["time"], cracks["particles"], strict=True):
                 counted[pair] += time <= snapshot.attrs["time"]
             np.testing.assert_array_equal(data["nbCracks"], counted)
-            np.testing.assert_array_equal(data["damage"], counted / bonds)
+            np.testing.assert_array_equal(data["damage"], (counted / bonds).astype(np.float32))
             np.testing.assert_array_equal(data["coordNumber"], snapshot["coordination"][:])
         broken = [np.count_nonzero(cracks["time"] <= each.attrs["time"]) for each in file["snapshots"].values()]
     assert 0 < broken[0] < broken[1] == len(cracks["time"])

@@ -5,7 +5,9 @@ import pytest
 from matplotlib import image
 
 from dembound.plot.style import (
+    Powers,
     line_style,
+    measured_once,
     new_figure,
     open_point_style,
     outside_legend,
@@ -76,3 +78,32 @@ def test_the_style_ends_with_the_drawing_and_does_not_depend_on_the_users():
 @pytest.mark.parametrize(("style", "count"), [(line_style, 28), (point_style, 35), (open_point_style, 35)])
 def test_styles_tell_many_apart(style, count):
     assert len({tuple(style(index).values()) for index in range(count)}) == count
+
+
+@pytest.mark.parametrize("same_y", [True, False])
+def test_panels_stand_where_they_would_if_all_axes_were_measured(same_y):
+    placed = []
+    for once in (False, True):
+        figure = new_figure(6.0, 5.0)
+        panels = figure.subplots(3, 2, sharex=True, sharey=same_y)
+        for number, panel in enumerate(panels.flat):
+            panel.plot([0.0, 1.0], [0.0, 10.0 ** (number if not same_y else 0)])
+            panel.set_title(f"panel {number}", loc="left")
+        for panel in panels[-1]:
+            panel.set_xlabel("x (m)")
+        if once:
+            measured_once(panels, same_y=same_y)
+        figure.draw_without_rendering()
+        placed.append([panel.get_position().bounds for panel in panels.flat])
+    assert placed[0] == placed[1]
+
+
+@pytest.mark.parametrize(("largest", "power"), [(0.5, ""), (3e-5, "×10⁻⁵"), (2e12, "×10¹²")])
+def test_a_common_power_of_ten_stands_at_the_end_of_an_axis(largest, power):
+    figure = new_figure(3.0, 2.0)
+    panel = figure.subplots()
+    panel.set_ylim(-largest, largest)
+    panel.yaxis.set_major_formatter(Powers())
+    figure.draw_without_rendering()
+    assert panel.yaxis.get_offset_text().get_text() == power
+    assert max(float(label.get_text().replace("−", "-")) for label in panel.get_yticklabels()) < 10.0
