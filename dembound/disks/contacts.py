@@ -6,11 +6,12 @@ import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.constants import brick_constants, limits_of, shared_constants
-from dembound.disks.neighbours import near_pairs, pair_keys
+from dembound.disks.neighbours import cells_of, near_pairs, pair_keys
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.pair_rows import PairPlan
 from dembound.disks.row_plan import RowPlan
 from dembound.kernels import contacts as kernel
+from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
 from dembound.kernels.tables import Contacts, PairRows
@@ -61,6 +62,7 @@ class ContactList:
         (3, slots) work space of the kernels.
     limits : strengths and friction.
     origin : (2, m) m, displacements of the part's m slots at which the list was made.
+    cells : of the particles there.
     skin : m, gap up to which it is complete.
     arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
     """
@@ -87,7 +89,7 @@ class ContactList:
         self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
         self.searches = self.limits.geometry != REFERENCE
         self.skin = SKIN * ground.brick.mean_diameter
-        self.origin = np.zeros((2, self._slots.stop - self._slots.start))
+        self._set_origin(np.zeros((2, len(assembly.radii))))
         self.bonds = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
         self._plan: PairPlan | None = None
         self.rows: PairRows | None = None
@@ -137,7 +139,7 @@ class ContactList:
     def is_old(self, displacement: np.ndarray) -> bool:
         """Whether at displacements (3, n) a particle has moved so far that pairs may be missing."""
         u = self.layout.spread(displacement)
-        return self.skin - 2.0 * kernel.moved(u, self._slots.start, self.origin) < 0.0
+        return self.skin - approach(u, self._slots.start, self.origin, self.cells) < 0.0
 
     def search(self, displacement: np.ndarray) -> None:
         """List the pairs anew for displacements (3, n): add near pairs, remove distant ones without bond."""
@@ -292,7 +294,8 @@ class ContactList:
 
     def recall(self, memory: Arrays) -> None:
         """Restore what `memory` has returned in another run of the same case."""
-        self._constants, self.origin = memory["constants"], memory["origin"]
+        self._constants = memory["constants"]
+        self._set_origin(memory["origin"][:, self._slot - self._slots.start])
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[memory[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, memory["image"], memory["contact_type"])
@@ -304,7 +307,9 @@ class ContactList:
     def _set_origin(self, displacement: np.ndarray) -> None:
         """Count from displacements (2, m) m of the part's particles."""
         self.origin = np.zeros((2, self._slots.stop - self._slots.start))
-        self.origin[:, self._slot - self._slots.start] = displacement
+        slot = self._slot - self._slots.start
+        self.origin[:, slot] = displacement
+        self.cells = cells_of(self.assembly.positions + displacement.T, self.assembly.radii, slot, self.periods)
 
     def _list(
         self,

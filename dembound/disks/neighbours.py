@@ -3,6 +3,13 @@
 import numpy as np
 
 from dembound.kernels import near
+from dembound.kernels.tables import Cells
+
+CELL = 4.0
+"""Least side of a cell over the largest diameter.
+
+In wider cells disks move apart more, in narrower ones disks of cells that do not touch may meet sooner.
+"""
 
 
 def pair_keys(first: np.ndarray, second: np.ndarray, image: np.ndarray, count: int) -> np.ndarray:
@@ -28,3 +35,23 @@ def near_pairs(
     pairs[turned] = pairs[turned, ::-1]
     images[turned] *= -1
     return pairs, images
+
+
+def cells_of(
+    positions: np.ndarray, radii: np.ndarray, numbers: np.ndarray, periods: tuple[float | None, float | None]
+) -> Cells:
+    """Cells of disks at positions (n, 2) m with radii (n,) m, which kernels know by their numbers (n,)."""
+    low, diameter = positions.min(axis=0), 2.0 * float(radii.max())
+    wraps = np.array([length is not None for length in periods])
+    extent = np.array([np.ptp(x) if length is None else length for x, length in zip(positions.T, periods, strict=True)])
+    side = max(CELL * diameter, float(np.sqrt(extent.prod() / len(radii))))  # not many more cells than disks
+    count = np.clip(np.floor(extent / side), 1, len(radii)).astype(np.int64)
+    width = np.where(extent > 0.0, extent / count, 1.0)
+    place = np.floor((positions - low) / width).astype(np.int64)
+    place = np.where(wraps, place % count, np.clip(place, 0, count - 1))
+    cell = place[:, 1] * count[0] + place[:, 0]
+    start = np.concatenate([[0], np.cumsum(np.bincount(cell, minlength=count.prod()))])
+    # between cells that do not touch there is at least one cell
+    split = count > np.where(wraps, 3, 2)
+    reach = 0.5 * (float(width[split].min()) - diameter) if split.any() else np.inf
+    return Cells(start, numbers[np.argsort(cell, kind="stable")], count, wraps, reach)

@@ -71,7 +71,7 @@ class DiskPart(Part):
         links, contacts = Links(self.rows, self._fastest, self._damped), self.contacts
         if contacts is None:
             return links
-        listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skin)
+        listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skin, contacts.cells)
         if not self.uses_history:
             return WatchedLinks(links, *listed, contacts.arms, self._way)
         law = Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)

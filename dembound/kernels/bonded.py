@@ -3,8 +3,9 @@
 import numpy as np
 from numba import njit, prange
 
+from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS, DONE, FAST, LIST_ENDS, PARALLEL, U, column_sum, largest
-from dembound.kernels.contacts import ends_force, moved, note_places
+from dembound.kernels.contacts import ends_force, note_places
 from dembound.kernels.contacts import push as push_pairs
 from dembound.kernels.law import is_law, is_tie
 from dembound.kernels.step import move_particle, note_damping
@@ -25,7 +26,7 @@ def check(bonded, u, u_next, v):
     if 2.0 * way[0] < way[1]:
         return DONE
     way[0] = 0.0
-    way[1] = bonded.skin - 2.0 * moved(u, bonded.contacts.begin, bonded.origin)
+    way[1] = bonded.skin - approach(u, bonded.contacts.begin, bonded.origin, bonded.cells)
     return LIST_ENDS if way[1] < 0.0 else DONE
 
 

@@ -16,8 +16,9 @@ so that N = √k_n n·Δu, S = √k_s (t·Δu − l_iθ_i − l_jθ_j), and the 
 import numpy as np
 from numba import njit, prange
 
+from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS, DONE, FAST, LAW_ENDS, LIST_ENDS, PARALLEL, U, largest
-from dembound.kernels.contacts import moved, slack
+from dembound.kernels.contacts import slack
 from dembound.kernels.law import answer, generic, is_law, is_tie
 from dembound.kernels.step import move_particle, note_damping
 from dembound.kernels.tables import Links, NeighbourTable, Seam, WatchedLinks
@@ -159,10 +160,10 @@ def check_watch(watched, u, u_next, v):
 
     The least distance of all pairs from their limits is computed again when surfaces have moved by half of it.
     """
-    _, contacts, limits, origin, skin, _, way = watched
+    _, contacts, limits, origin, skin, cells, _, way = watched
     if 2.0 * way[0] < way[1]:
         return DONE
-    listed = skin - 2.0 * moved(u, contacts.begin, origin)
+    listed = skin - approach(u, contacts.begin, origin, cells)
     way[0] = 0.0
     way[1] = min(slack(u, contacts, limits), listed)
     if way[1] >= 0.0:

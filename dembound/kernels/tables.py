@@ -209,13 +209,28 @@ class Links(NamedTuple):
     damped: np.ndarray
 
 
+class Cells(NamedTuple):
+    """Cells of the n disks at the displacements at which pairs were listed, see approach.py.
+
+    Cell c contains the disks member[start[c]:start[c + 1]], of those from `begin` on; count : (2,) columns and rows of
+    cells, which are numbered row by row; wraps : (2,) whether the first touches the last along x and y. reach : m, no
+    two disks of cells that do not touch can meet before one has moved so far.
+    """
+
+    start: np.ndarray
+    member: np.ndarray
+    count: np.ndarray
+    wraps: np.ndarray
+    reach: float
+
+
 class WatchedLinks(NamedTuple):
     """The elastic law with a check for contacts that would leave it.
 
     contacts, limits : the pairs and their limits; origin : (2, n) displacements at which the list of pairs was made, of
-    the n particles of the rows; skin : m, largest gap of listed pairs; arms : (begin + n,) m, longest arm of a
-    particle's contacts; way : (2,) m, distance surfaces have moved since the contacts were checked, and the distance
-    they may move.
+    the n particles of the rows; skin : m, largest gap of listed pairs; cells : of the particles then; arms : (begin +
+    n,) m, longest arm of a particle's contacts; way : (2,) m, distance surfaces have moved since the contacts were
+    checked, and the distance they may move.
     """
 
     links: Links
@@ -223,6 +238,7 @@ class WatchedLinks(NamedTuple):
     limits: Limits
     origin: np.ndarray
     skin: float
+    cells: Cells
     arms: np.ndarray
     way: np.ndarray
 
@@ -231,14 +247,16 @@ class Bonded(NamedTuple):
     """The history-dependent law on the n particles of the contacts.
 
     limits : friction and strengths; origin : (2, n) displacements at which all pairs with gaps up to skin (m) were
-    listed; stops : return after a step in which a bond broke; way : (2,) m, distance particles have moved since this
-    was checked, and the distance they may move; fastest (chunks,), damped, lost (chunks, 2) : work space.
+    listed; cells : of the particles then; stops : return after a step in which a bond broke; way : (2,) m, distance
+    particles have moved since this was checked, and the distance they may move; fastest (chunks,), damped, lost
+    (chunks, 2) : work space.
     """
 
     contacts: Contacts
     limits: Limits
     origin: np.ndarray
     skin: float
+    cells: Cells
     stops: bool
     way: np.ndarray
     fastest: np.ndarray

@@ -366,9 +366,9 @@ def test_what_is_left_of_a_body_remembers_all_it_went_through(scene, sides: str)
 
 def test_a_list_is_old_once_two_disks_may_have_closed_its_skin(contacts: ContactList) -> None:
     count = len(contacts.assembly.radii)
-    for share, old in ((0.499, False), (0.501, True)):
-        moved = still(contacts)
-        moved[0, count // 2] = -share * contacts.skin  # another one may have come as far towards it
+    for share, old in ((0.999, False), (1.001, True)):
+        moved = still(contacts) + 0.3  # all are carried along
+        moved[0, count // 2] -= share * contacts.skin  # towards any other one nearby
         assert contacts.is_old(moved) == old
 
     # counted from where it was made

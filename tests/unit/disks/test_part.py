@@ -112,6 +112,7 @@ def test_an_old_list_is_made_anew_and_time_goes_on(scene, law: str) -> None:
     contacts = listed(part)
     u, v = np.zeros((3, body.count)), np.zeros((3, body.count))
     v[0] = 10.0  # all together, so that nothing happens between them: 1 mm a step, the skin is 5 cm
+    contacts.cells = contacts.cells._replace(reach=0.0)  # as if the scene were so small that any two might meet
     rest = -forces_of(part, u) if law == BONDED else np.zeros_like(u)
     half = 0.5 * contacts.skin / (10.0 * STEP)
     done, why = advance(part, body, 60, u, v, rest)
@@ -135,9 +136,12 @@ def test_a_list_that_is_not_old_stays(scene) -> None:
         return listed(part).arrays is not arrays
 
     # that of another part may be
-    moved[0] = 0.49 * listed(part).skin
+    moved[0, ::2] = 0.99 * listed(part).skin
     assert not react(LIST_ENDS)
-    moved[0] = 0.51 * listed(part).skin
+    moved[0, 1::2] = 100.0  # all are carried along
+    moved[0, ::2] = 100.0 + 0.99 * listed(part).skin
+    assert not react(LIST_ENDS)
+    moved[0, ::2] = 100.0 + 1.01 * listed(part).skin
     assert not any(react(why) for why in (DONE, LAW_ENDS, BROKE))
     assert react(LIST_ENDS)
 

@@ -9,12 +9,13 @@ from dembound.kernels import bonded, follower  # noqa: F401  (they make the law 
 from dembound.kernels.common import BROKE, CHUNKS, DONE, LIST_ENDS
 from dembound.kernels.contacts import BONDED, INTACT, SHEAR, TENSION, UPDATED, moved
 from dembound.kernels.loop import advance
-from dembound.kernels.tables import Bonded, Contacts, Followers, Limits, Log
+from dembound.kernels.tables import Bonded, Cells, Contacts, Followers, Limits, Log
 
 PARTICLES, PAIRS = 25, 60
 STEP = 0.1
 WEAK = Limits(friction=0.5, tension=0.3, cohesion=0.25, tan_fa=0.6, geometry=UPDATED)
 FAR = 1e3
+NO_CELLS = Cells(*np.zeros((2, 1), dtype=np.int64), *np.ones((2, 2), dtype=np.int64), reach=0.0)
 
 
 def start() -> tuple[np.ndarray, np.ndarray]:
@@ -25,7 +26,7 @@ def start() -> tuple[np.ndarray, np.ndarray]:
 def bonded_law(pairs: Contacts, limits: Limits, *, skin: float = FAR, stop: bool = False) -> Bonded:
     """The law on these pairs, which are listed where particles are at the start."""
     origin, chunks = np.zeros((2, PARTICLES)), np.zeros((CHUNKS, 2))
-    return Bonded(pairs, limits, origin, skin, stop, np.zeros(2), np.zeros(CHUNKS), chunks, chunks.copy())
+    return Bonded(pairs, limits, origin, skin, NO_CELLS, stop, np.zeros(2), np.zeros(CHUNKS), chunks, chunks.copy())
 
 
 def run_kernel(

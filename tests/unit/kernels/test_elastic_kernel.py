@@ -235,13 +235,16 @@ def test_any_number_of_threads_gives_the_same_bits(bodies: Bodies, stepped) -> N
     assert np.array_equal(*results)
 
 
+NO_CELLS = tables.Cells(*np.zeros((2, 1), dtype=np.int64), *np.ones((2, 2), dtype=np.int64), reach=0.0)
+
+
 def watched(bodies: Bodies, random_pairs, **changes: object) -> tables.WatchedLinks:
     """The law on watch over random pairs of strong bonds that start within it."""
     pairs = random_pairs(PARTICLES, CONTACTS, gap=0.3)
     limits = tables.Limits(friction=5.0, tension=1e3, cohesion=1e3, tan_fa=0.0, geometry=BONDED)
     arms = np.full(PARTICLES, 1.1)  # half of the longest distance, and the largest difference of radii
     links, origin = bodies.links(), np.zeros((2, PARTICLES))
-    return tables.WatchedLinks(links, pairs, limits, origin, 1e3, arms, np.zeros(2))._replace(**changes)
+    return tables.WatchedLinks(links, pairs, limits, origin, 1e3, NO_CELLS, arms, np.zeros(2))._replace(**changes)
 
 
 def calm() -> tuple[np.ndarray, np.ndarray]:

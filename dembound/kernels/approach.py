@@ -1,0 +1,77 @@
+"""How far two disks may have moved relative to each other since the pairs were listed.
+
+Waves carry neighbours along together, often by many times the gap up to which pairs are listed. The disks are therefore
+sorted into cells, and only disks in the same cell or in two that touch are compared, by the boxes that contain
+the displacements of each cell. Disks in other cells are so far apart that they cannot meet before one has moved by
+`cells.reach`.
+"""
+
+import numpy as np
+from numba import njit, prange
+
+from dembound.kernels.common import CHUNKS, FAST, PARALLEL, largest
+from dembound.kernels.contacts import moved
+
+ACROSS = ((0, 0), (1, 0), (-1, 1), (0, 1), (1, 1))
+"""Steps to a cell itself and to half of those that touch it."""
+
+
+@njit(**FAST)
+def _span(a, b):
+    """Largest distance between a point in box a and one in box b; boxes are (4,) smallest and largest x and y."""
+    return np.hypot(max(a[1] - b[0], b[1] - a[0]), max(a[3] - b[2], b[3] - a[2]))
+
+
+@njit(**PARALLEL)
+def _boxes(u, begin, origin, cells, boxes):
+    """Fill boxes (c, 4) with smallest and largest displacement along x and y in every cell since the origin (2, n)."""
+    for c in prange(len(boxes)):
+        box = boxes[c]
+        box[0] = box[2] = np.inf
+        box[1] = box[3] = -np.inf
+        for m in range(cells.start[c], cells.start[c + 1]):
+            i = cells.member[m]
+            x, y = u[0, begin + i] - origin[0, i], u[1, begin + i] - origin[1, i]
+            box[0], box[1] = min(box[0], x), max(box[1], x)
+            box[2], box[3] = min(box[2], y), max(box[3], y)
+
+
+@njit(**FAST)
+def _farthest_of(c, cells, boxes):
+    """Largest relative displacement of a disk in cell c and one in a cell that touches it."""
+    columns, rows = cells.count[0], cells.count[1]
+    column, row = c % columns, c // columns
+    far = 0.0
+    for right, up in ACROSS:
+        x, y = column + right, row + up
+        if cells.wraps[0]:
+            x %= columns
+        if cells.wraps[1]:
+            y %= rows
+        if 0 <= x < columns and 0 <= y < rows:
+            other = y * columns + x
+            if cells.start[other + 1] > cells.start[other]:
+                far = max(far, _span(boxes[c], boxes[other]))
+    return far
+
+
+@njit(**PARALLEL)
+def approach(u, begin, origin, cells):
+    """Upper bound (m) of the relative displacement since the origin (2, n) of two disks that may meet.
+
+    u : (3, …) displacements; the n disks are those from `begin` on; cells : tables.Cells.
+    """
+    alone = moved(u, begin, origin)
+    if alone > cells.reach:
+        return 2.0 * alone
+    count = cells.start.size - 1
+    boxes = np.empty((count, 4))
+    _boxes(u, begin, origin, cells, boxes)
+    far = np.empty(CHUNKS)
+    for chunk in prange(CHUNKS):
+        most = 0.0
+        for c in range(chunk * count // CHUNKS, (chunk + 1) * count // CHUNKS):
+            if cells.start[c + 1] > cells.start[c]:
+                most = max(most, _farthest_of(c, cells, boxes))
+        far[chunk] = most
+    return min(2.0 * alone, largest(far))
