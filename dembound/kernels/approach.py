@@ -39,7 +39,7 @@ def _boxes(u, begin, origin, cells, boxes):
 @njit(**FAST)
 def _farthest_of(c, cells, boxes):
     """Largest relative displacement of a disk in cell c and one in a cell that touches it."""
-    columns, rows = cells.count[0], cells.count[1]
+    columns, rows = cells.divisions[0], cells.divisions[1]
     column, row = c % columns, c // columns
     far = 0.0
     for right, up in ACROSS:

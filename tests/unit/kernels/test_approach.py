@@ -75,7 +75,7 @@ def test_cells_of_a_few_disks(places) -> None:
     places = np.array(places)
     cells = cells_of(places, np.full(len(places), RADIUS), np.arange(len(places)), (None, None))
     assert sorted(cells.member) == list(range(len(places)))
-    assert len(cells.start) - 1 == cells.count.prod() <= len(places) ** 2
+    assert len(cells.start) - 1 == cells.divisions.prod() <= len(places) ** 2
     u = np.zeros((3, len(places)))
     u[0, 0] = 0.1
     least = 0.1 if len(places) == 2 else 0.0  # a disk alone, or far from all others, meets none
