@@ -71,15 +71,16 @@ def disk_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mes
     """One snapshot, and the cracks until then, as vertices with the point data of this module's table."""
     displacement, velocity = snapshot["displacement"], snapshot["velocity"]
     count = len(displacement)
-    moved = in_space(displacement[:, :2])
-    broken = np.bincount(cracks["particles"].ravel(), minlength=count)
+    broken = np.bincount(cracks["particles"].ravel(), minlength=count).astype(np.int32)
+    spin = np.zeros((count, 3), np.float32)
+    spin[:, 2] = velocity[:, 2]
     data = {
         "radii": particles["radius"],
-        "id": np.arange(count),
-        "linVelVec": in_space(velocity[:, :2]),
-        "angVelVec": np.column_stack([np.zeros((count, 2)), velocity[:, 2]]),
+        "id": np.arange(count, dtype=np.int32),
+        "linVelVec": in_space(velocity[:, :2], np.float32),
+        "angVelVec": spin,
         "speed": np.hypot(velocity[:, 0], velocity[:, 1]),
-        "displacement": moved,
+        "displacement": in_space(displacement[:, :2], np.float32),
         "rotation": displacement[:, 2],
         "brick_particle": particles["brick_particle"],
         "nbCracks": broken,
@@ -91,7 +92,9 @@ def disk_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mes
         data["stress"] = _tensors(snapshot["stress"])
     if "peak_velocity" in particles:
         data["peakVelocity"] = particles["peak_velocity"]
-    return vertices(in_space(particles["position"]) + moved, shown(data))
+    places = in_space(particles["position"])
+    places[:, :2] += displacement[:, :2]
+    return vertices(places, shown(data))
 
 
 def _tensors(stress: np.ndarray) -> np.ndarray:

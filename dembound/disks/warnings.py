@@ -254,7 +254,9 @@ def _pieces(scene: DiskScene, broken: np.ndarray) -> np.ndarray:
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
-    pairs = np.sort(scene.assembly.pairs.astype(np.int64), axis=1)
-    left = pairs[~np.isin(pairs @ [scene.count, 1], np.sort(broken, axis=1) @ [scene.count, 1])]
-    joined = coo_matrix((np.ones(len(left)), left.T), shape=(scene.count, scene.count))
+    pairs = scene.assembly.pairs
+    if len(broken) > 0:
+        listed, gone = (np.sort(each.astype(np.int64), axis=1) @ [scene.count, 1] for each in (pairs, broken))
+        pairs = pairs[~np.isin(listed, gone)]
+    joined = coo_matrix((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(scene.count, scene.count))
     return connected_components(joined, directed=False)[1]

@@ -212,9 +212,9 @@ class Links(NamedTuple):
 class Cells(NamedTuple):
     """Cells of the n disks at the displacements at which pairs were listed, see approach.py.
 
-    Cell c contains the disks member[start[c]:start[c + 1]], of those from `begin` on; divisions : (2,) columns and rows of
-    cells, which are numbered row by row; wraps : (2,) whether the first touches the last along x and y. reach : m, no
-    two disks of cells that do not touch can meet before one has moved so far.
+    Cell c contains the disks member[start[c]:start[c + 1]], of those from `begin` on; divisions : (2,) columns and rows
+    of cells, which are numbered row by row; wraps : (2,) whether the first touches the last along x and y. reach : m,
+    no two disks of cells that do not touch can meet before one has moved so far.
     """
 
     start: np.ndarray

@@ -82,7 +82,7 @@ def vertices(points: np.ndarray, data: Arrays) -> meshio.Mesh:
 def shown(fields: Arrays) -> dict[str, np.ndarray]:
     """Fields by name in the precision in which they are shown: single, whole numbers in 32 bits."""
     kinds = {"f": np.float32, "i": np.int32}
-    return {name: values.astype(kinds[values.dtype.kind]) for name, values in fields.items()}
+    return {name: values.astype(kinds[values.dtype.kind], copy=False) for name, values in fields.items()}
 
 
 def _write(path: Path, mesh: meshio.Mesh) -> None:
@@ -93,9 +93,11 @@ def _write(path: Path, mesh: meshio.Mesh) -> None:
         meshio.write(part, mesh, file_format="vtu", compression=None)
 
 
-def in_space(vectors: np.ndarray) -> np.ndarray:
+def in_space(vectors: np.ndarray, precision: type = np.float64) -> np.ndarray:
     """Vectors (n, 2) as (n, 3) with z = 0."""
-    return np.column_stack([vectors, np.zeros(len(vectors))])
+    whole: np.ndarray = np.zeros((len(vectors), 3), precision)
+    whole[:, :2] = vectors
+    return whole
 
 
 def _write_index(path: Path, times: dict[str, float]) -> Path:

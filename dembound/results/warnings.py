@@ -40,7 +40,7 @@ def still_moving(scene: Scene, duration: float, file: h5py.File, pieces: np.ndar
     histories = {
         name: _largest_component(group["velocity"][:, :2])
         for name, group in file["histories"].items()
-        if scene.monitors[name] in braked and name in scene.places
+        if braked[scene.monitors[name]] and name in scene.places
     }
     peaks = {name: float(np.abs(velocity).max()) for name, velocity in histories.items()}
     period = max((scene.case.wave[name].dominant_period() for name in waves_used(scene.case)), default=0.0)
@@ -60,16 +60,16 @@ def still_moving(scene: Scene, duration: float, file: h5py.File, pieces: np.ndar
         )
 
 
-def _braked(scene: Scene, pieces: np.ndarray) -> set[int]:
-    """Nodes whose motion is damped: all with local damping, else those connected to dashpots.
+def _braked(scene: Scene, pieces: np.ndarray) -> np.ndarray:
+    """The nodes (n,) bool whose motion is damped: all with local damping, else those connected to dashpots.
 
     Pieces that have broken off continue to move and vibrate.
     """
     if scene.damp > 0.0:
-        return set(range(scene.count))
+        return np.ones(scene.count, dtype=np.bool_)
     sides = [edge for side, edge in scene.edges.items() if scene.case.side(side).factors]
     ends = np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in sides)])
-    return set(np.flatnonzero(np.isin(pieces, pieces[ends])).tolist())
+    return np.isin(pieces, pieces[ends])
 
 
 def _largest_component(velocity: np.ndarray) -> np.ndarray:
