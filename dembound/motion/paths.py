@@ -73,26 +73,21 @@ class Source:
         return Source((box[0], box[1], box[2], box[3]), self.start, self.over, self.slowest).distance(image)
 
 
-def plane_needed(
-    side: str, plane: float, sources: Sequence[Source], places: np.ndarray, front: Front, duration: float
-) -> float:
+def plane_needed(side: str, sources: Sequence[Source], places: np.ndarray, front: Front, duration: float) -> float:
     """Where along its normal (m) a side has to be that nothing comes back from it to places (k, 2) m within `duration`.
 
-    plane : m, where it is now; the answer may be on either side of it, minus infinity (left, bottom: plus) without
-    sources.
+    duration : s. Infinitely far inwards where nothing comes at all.
     """
     axis, sign = normal_axis(side), 1.0 if side in ("right", "top") else -1.0
     needed = -np.inf
     for source in sources:
         reach = front.reach(duration - source.start)
-        if reach == 0.0:
-            continue
         across = _gap(source.box[1 - axis], source.box[3 - axis], places[:, 1 - axis])
-        along = np.sqrt(np.maximum(reach**2 - across**2, 0.0))
+        there = np.sqrt(np.maximum(reach**2 - across**2, 0.0)) + sign * places[:, axis]
         nearest = sign * source.box[2 + axis if sign > 0.0 else axis]
-        there = along + sign * places[:, axis]
-        # over the plane the way is twice its distance, or once from a source that extends up to it
-        needed = max(needed, float(np.minimum(there, 0.5 * (there + nearest))[along > 0.0].max(initial=-np.inf)))
+        # the way over the plane is the one there and back, or only back from a source that extends beyond it
+        planes = np.minimum(there, 0.5 * (there + nearest))[reach > across]
+        needed = max(needed, float(planes.max(initial=-np.inf)))
     return sign * needed
 
 

@@ -16,8 +16,9 @@ from typing import TypeVar
 import numpy as np
 
 from dembound.bar.scene import build_bar
+from dembound.bar.sources import sources_of_bar
 from dembound.bar.stability import choose_step as choose_bar_step
-from dembound.bar.wave_front import front_of_bar, sources_of_bar
+from dembound.bar.wave_front import front_of_bar
 from dembound.boundaries import SIDES, normal_axis
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
@@ -33,7 +34,7 @@ from dembound.disks.wave_front import front_of
 from dembound.errors import CaseError
 from dembound.motion.paths import Front, Source, plane_needed
 from dembound.packings.tiling import count_disks
-from dembound.table import shifted_place
+from dembound.table import shifted_box, shifted_place
 
 MOST = 8_000_000
 """Particles of the largest scene that is made unless another limit is given; its run takes some 2 GB."""
@@ -101,7 +102,7 @@ def _extended_disks(case: DiskCase, most: int) -> Extended:
     by = added[0][0] * wide, added[1][0] * high
     _holes_must_end(case, bricks)
     larger = replace(
-        _at_places(case, scene, by),
+        _at_places(case, scene, by, packing.extent),
         packing=packing,
         boundary={side: table.shifted(by) for side, table in case.boundary.items()},
         run=_same_step(case.run, choose_step(scene)[0]),
@@ -133,7 +134,7 @@ def _bricks_beyond(scene: DiskScene, side: str, sources: list[Source], front: Fr
         sources = [source for source in sources if source.is_local]
     low, high = 0.0, float(scene.size[axis])
     plane = high if side in ("right", "top") else low
-    needed = plane_needed(side, plane, sources, _targets(scene), front, case.run.duration)
+    needed = plane_needed(side, sources, _targets(scene), front, case.run.duration)
     beyond = needed - plane if plane == high else plane - needed
     return max(0, int(np.ceil(beyond / case.packing.brick_size[axis] - 1e-9))) if np.isfinite(beyond) else 0
 
@@ -206,34 +207,33 @@ def _reaches(box: tuple[float, float, float, float], side: str, plane: float) ->
     return box[2 + axis] >= plane if side in ("right", "top") else box[axis] <= plane
 
 
-def _at_places(case: DiskCase, scene: DiskScene, by: tuple[float, float]) -> DiskCase:
-    """The case with holes, loads and monitors shifted by (x, y) m, each exactly to its particle's place."""
-    monitors = tuple(
-        monitor.model_copy(update={"position": _shifted(scene.positions[scene.monitors[monitor.name]], by)})
-        for monitor in case.monitor
-    )
+def _at_places(case: DiskCase, scene: DiskScene, by: tuple[float, float], size: tuple[float, float]) -> DiskCase:
+    """The case with holes, loads and monitors shifted by (x, y) m, each exactly to its particle's place.
+
+    size : m, of the enlarged scene, beyond which rounding must not bring them.
+    """
+
+    def shifted(node: int) -> tuple[float, float]:
+        x, y = shifted_place((float(scene.positions[node, 0]), float(scene.positions[node, 1])), by)
+        return min(x, size[0]), min(y, size[1])
+
+    def shifted_load(load: Load) -> Load:
+        if load.position is not None:
+            (node,), _ = forces_of(load, scene.assembly, scene.mass)
+            return load.model_copy(update={"position": shifted(node)})
+        if load.region is None:
+            return load
+        x0, y0, x1, y1 = shifted_box(load.region, by)
+        return load.model_copy(update={"region": (x0, y0, min(x1, size[0]), min(y1, size[1]))})
+
     return replace(
         case,
         hole=tuple(hole.shifted(by) for hole in case.hole),
-        load=tuple(_shifted_load(load, scene, by) for load in case.load),
-        monitor=monitors,
+        load=tuple(shifted_load(load) for load in case.load),
+        monitor=tuple(
+            monitor.model_copy(update={"position": shifted(scene.monitors[monitor.name])}) for monitor in case.monitor
+        ),
     )
-
-
-def _shifted_load(load: Load, scene: DiskScene, by: tuple[float, float]) -> Load:
-    """A load on the same particles; a region that reached beyond the scene ends at its sides."""
-    if load.position is not None:
-        (node,), _ = forces_of(load, scene.assembly, scene.mass)
-        return load.model_copy(update={"position": _shifted(scene.positions[node], by)})
-    if load.region is None:
-        return load
-    low, high = np.maximum(load.region[:2], 0.0), np.minimum(load.region[2:], scene.assembly.extent)
-    return load.model_copy(update={"region": (*_shifted(low, by), *_shifted(high, by))})
-
-
-def _shifted(place: np.ndarray, by: tuple[float, float]) -> tuple[float, float]:
-    """A place (2,) m shifted by (x, y) m."""
-    return shifted_place((float(place[0]), float(place[1])), by)
 
 
 def _same_step(run: R, step: float) -> R:
@@ -253,7 +253,7 @@ def _extended_bar(case: BarCase, most: int) -> Extended:
     cells = {"left": 0, "right": 0}
     for side in moving:
         plane = bar.length if side == "right" else 0.0
-        needed = plane_needed(side, plane, sources_of_bar(case), targets, front, case.run.duration)
+        needed = plane_needed(side, sources_of_bar(case), targets, front, case.run.duration)
         beyond = needed - plane if side == "right" else plane - needed
         cells[side] = max(0, int(np.ceil(beyond / spacing - 1e-9))) if np.isfinite(beyond) else 0
     count = bar.cells + sum(cells.values())

@@ -13,6 +13,7 @@ from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.disks.scene import build
 from dembound.kinds import with_changes
+from dembound.motion.proposals import proposals
 from dembound.motion.simulation import Simulation
 from dembound.running import plan
 from dembound.studies.extended import extended
@@ -72,6 +73,31 @@ def test_a_blow_on_a_half_space(lamb, far):
 
 def test_a_blow_on_random_bricks(lamb):
     assert_nothing_returns(lamb("B", (10.0, 10.0), "viscous"), too_soon=0.4)  # sides move by bricks of 10 m
+
+
+def test_waves_of_rotation_that_outrun_p_waves(lab):
+    # contacts twice as stiff in shear, y held: long waves run at 1000 m/s, the fastest short ones at 1395 m/s; in a
+    # scene for 1000 m/s the difference is 4e-4
+    stiff = {"fric": 0.5, "kratio": 0.5, "pb_kratio": 0.5}
+    load = {"force": [1e5, 0.0], "position": [5.25, 0.25], "wave": "pulse"}
+    far = {"top": "fixed", "right": "fixed"}
+    wave = {**SPLINE, "period": 0.002}
+    case = lab.case("A", (10.0, 10.0), material=stiff, wave=wave, load=[load], boundary=far, duration=0.04)
+    assert_nothing_returns(monitored(case, [5.25, 4.0]))
+
+
+def test_the_smaller_scene_that_is_proposed_has_no_echo(lamb):
+    case = with_step(monitored(lamb("A", (40.0, 40.0), "viscous"), [3.0, 40.0], [5.0, 34.0]))
+    found = proposals(plan(case))["smaller scene"]
+    wide, high = (float(text.split(" m instead of")[0]) for text in found.split("; "))
+    assert wide < 36.0
+    assert high < 36.0
+    places = [[x, y - 40.0 + high] for x, y in (monitor.position for monitor in case.monitor)]
+    changes = {"packing.size": [wide, high], "load.1.position": [0.25, high]}
+    small = monitored(with_changes(case, changes), *places)
+    own, full = (velocities(each, 0.05) for each in (small, for_run_of(case, 0.075)))
+
+    assert np.abs(own - full).max() < ALIKE * np.abs(full).max()
 
 
 def test_the_scene_itself_moves_alike_until_the_first_echo(lamb):
