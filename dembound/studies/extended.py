@@ -181,9 +181,10 @@ def _sentence(case: Case, what: str, moving: list[str]) -> str:
     until = f"nothing returns before {case.run.duration:g} s"
     if not staying:
         return f"reference: {what}, from which {until}"
+    stay, reflect = ("stay", "reflect") if len(staying) > 1 else ("stays", "reflects")
     return (
-        f"reference: {what}, from whose {' and '.join(moving)} {until}; {' and '.join(staying)} stays, as waves enter "
-        "there, and reflects as in the case"
+        f"reference: {what}, from whose {' and '.join(moving)} {until}; {' and '.join(staying)} {stay}, as waves enter "
+        f"there, and {reflect} as in the case"
     )
 
 

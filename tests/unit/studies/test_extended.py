@@ -72,8 +72,8 @@ def test_sides_that_are_physical_stay(bar) -> None:
 
     wide, high = found.case.packing.extent
     assert high == 1.0
-    # to the middle at 5.25 m and back within 0.05 s, over the side at X: 2X − 5.25 = 50 m and the precursor,
-    # 10 (50 · 0.5²/8)^(1/3) = 11.6 m: X = 33.4 m, whole disks of 0.5 m
+    # to the middle at 4.75 m and back within 0.05 s, over the side at X: 2X − 4.75 = 50 m and the precursor,
+    # 10 (50 · 0.5²/8)^(1/3) = 11.6 m: X = 33.2 m, whole disks of 0.5 m
     middle = build(found.case).positions[build(found.case).monitors["middle"], 0]
     needed = 0.5 * (50.0 + 10.0 * np.cbrt(50.0 * 0.25 / 8.0) + middle)
     assert wide == pytest.approx(0.5 * np.ceil(2.0 * needed), rel=1e-12)
@@ -125,7 +125,7 @@ def test_without_monitors_nothing_returns_to_any_place(bar) -> None:
     changes = {"boundary.left": GRIP, "run.duration": 0.05}
     watched, unwatched = (extended(bar({**changes, **each})).case.packing.extent[0] for each in ({}, {"monitor": []}))
     # the farthest place is the right side, 10 m, in place of the middle
-    assert unwatched == pytest.approx(watched + 0.5 * (10.0 - 5.25), abs=0.5)
+    assert unwatched == pytest.approx(watched + 0.5 * (10.0 - 4.75), abs=0.5)
 
 
 def test_too_many_particles_are_refused_with_the_size_needed(bar) -> None:
