@@ -5,6 +5,8 @@ import time
 from dembound.casefile import Case
 from dembound.casefile.messages import counted
 from dembound.motion.kind import Plan
+from dembound.motion.proposals import proposals
+from dembound.motion.silence import silent_rule
 from dembound.motion.simulation import Simulation
 from dembound.running import plan, warnings_before
 
@@ -15,7 +17,7 @@ def check(case: Case) -> tuple[dict[str, str], list[str]]:
     """Facts about the run a case describes, ready to print, and warnings. Runs a few steps to estimate the time."""
     planned = plan(case)
     own = planned.kind.facts(planned.scene, planned.time_step)
-    return _run_facts(planned) | own, warnings_before(planned)
+    return _run_facts(planned) | own | proposals(planned), warnings_before(planned)
 
 
 def _run_facts(planned: Plan) -> dict[str, str]:
@@ -24,12 +26,23 @@ def _run_facts(planned: Plan) -> dict[str, str]:
     facts = {
         "time step": f"{planned.time_step:.4g} s, {planned.time_step / planned.step_limit:.3f} of the limit "
         f"{planned.step_limit:.6g} s",
-        "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s",
+        "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s{_until_silent(planned)}",
         "memory": f"{scene.bytes / 1e6:.3g} MB",
         "estimated time": f"{duration_in_words(_estimate(planned))} {_threads_in_words(scene.threads)}"
         f"{planned.kind.not_estimated(scene.case)}",
     }
     return facts | ({"reduced": "; ".join(scene.reduced)} if scene.reduced else {})
+
+
+def _until_silent(planned: Plan) -> str:
+    """When a run may end before its duration."""
+    if planned.scene.case.run.until != "silent":
+        return ""
+    rule = silent_rule(planned.scene, planned.kind.sources(planned.scene))
+    return (
+        f", or until all monitors are below {100.0 * rule.level:.3g} % of their peaks for {rule.hold:.3g} s, after "
+        f"{rule.earliest:.3g} s"
+    )
 
 
 def duration_in_words(seconds: float) -> str:

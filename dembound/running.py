@@ -14,6 +14,7 @@ from dembound.kinds import checked, kind_of
 from dembound.motion.clock import Clock
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Beginning, Plan, StalledError
+from dembound.motion.silence import Silence, silent_rule
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import Run, Tracker
 from dembound.results.recorder import Histories, Recorder, Snapshots
@@ -195,7 +196,12 @@ def _simulate(planned: Plan, path: Path, progress: Progress, clock: Clock) -> tu
     with Recorder(path, simulation, planned.step_limit, interval, ledger, beginning.stages) as recorder:
         snapshots = Snapshots(recorder, [steps * number // shots for number in range(1, shots + 1)])
         simulation.track(Histories(recorder), ledger, snapshots, _Reports(progress, steps))
+        if case.run.until == "silent":
+            rule = silent_rule(planned.scene, planned.kind.sources(planned.scene))
+            simulation.track(Silence(rule, planned.time_step))
         simulation.run(steps)
+        if simulation.stopped:
+            snapshots.take_last(simulation)
     return simulation, beginning
 
 

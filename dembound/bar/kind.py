@@ -10,11 +10,14 @@ from dembound.bar.facts import bar_facts
 from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
 from dembound.bar.outcome import bar_outcome
 from dembound.bar.scene import BarScene, build_bar
+from dembound.bar.sources import sources_of_bar
 from dembound.bar.stability import choose_step
 from dembound.bar.summary import summarise_bar
 from dembound.bar.warnings import bar_warnings, warnings_after_bar
+from dembound.bar.wave_front import front_of_bar
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.motion.kind import Beginning, Kind, OnLook
+from dembound.motion.paths import Front, Source
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run
 from dembound.results.reader import has_monitors
@@ -47,6 +50,22 @@ class Bars(Kind[BarCase, BarScene]):
     def begin(self, scene: BarScene, time_step: float, on_look: OnLook) -> Beginning:
         """The bar at rest."""
         return Beginning(scene.system(time_step))
+
+    def sources(self, scene: BarScene) -> list[Source]:
+        """Driven and loaded ends."""
+        return sources_of_bar(scene.case)
+
+    def front(self, scene: BarScene, time_step: float) -> Front:
+        """The fastest waves at any stage of its method."""
+        return front_of_bar(scene, time_step)
+
+    def has_coda(self, scene: BarScene) -> bool:
+        """Whether it may break."""
+        return bool(np.isfinite(scene.case.bar.breaking_stretch))
+
+    def unit(self, scene: BarScene) -> tuple[float, float]:
+        """The spacing of its nodes."""
+        return scene.rod.spacing, scene.rod.spacing
 
     def facts(self, scene: BarScene, time_step: float) -> dict[str, str]:
         """The bar, its method and what acts on it."""

@@ -32,6 +32,14 @@ def repeated_names(key: str, tables: Sequence[Any]) -> Iterator[str]:
             yield f"{key}[{number}].name: {show(table.name)} is taken by {key}[{first[table.name]}]"
 
 
+def never_silent(run: Run, monitors: Sequence[Any]) -> Iterator[str]:
+    """A run that ends with the silence of monitors, but has none, or is shorter than the silence."""
+    if run.until == "silent" and not monitors:
+        yield f'run.until: is "{run.until}", but the case has no monitor; give a [[monitor]]'
+    if run.silent_for is not None and run.silent_for > run.duration:
+        yield f"run.silent_for: is {run.silent_for:g}, must be at most run.duration, {run.duration:g} (s)"
+
+
 def steps_too_long(run: Run, output: Output | None) -> Iterator[str]:
     """Time step and intervals that are longer than the run."""
     if run.time_step != "auto" and run.time_step > run.duration:

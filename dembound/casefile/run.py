@@ -2,13 +2,15 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from dembound.table import Table, quantity
 
+SILENT_KEYS = ("silent_level", "silent_for")
+
 
 class Run(Table):
-    """The simulated time and the time step."""
+    """The simulated time, the time step, and whether the run ends once nothing moves any more."""
 
     duration: float = quantity(..., unit="s", help="simulated time", gt=0.0)
     time_step: Annotated[float, Field(gt=0.0)] | Literal["auto"] = quantity(
@@ -17,3 +19,19 @@ class Run(Table):
     safety: float = quantity(
         0.9, unit="1", help="share of the stability limit that an automatic step uses", gt=0.0, le=1.0
     )
+    until: Literal["duration", "silent"] = quantity(
+        "duration", unit="1", help='when it ends; "silent": before its duration if all monitors are silent'
+    )
+    silent_level: float = quantity(
+        1e-3, unit="1", help="share of its own peak so far below which a monitor's velocity is silent", gt=0.0, lt=1.0
+    )
+    silent_for: float | None = quantity(
+        None, unit="s", help="time over which all monitors must be silent; absent: see below", gt=0.0
+    )
+
+    @model_validator(mode="after")
+    def _silent_keys_have_effect(self) -> "Run":
+        stray = [key for key in SILENT_KEYS if self.until != "silent" and key in self.model_fields_set]
+        if stray:
+            raise ValueError("\n".join(f'{key}: is only allowed with until = "silent"' for key in stray))
+        return self

@@ -66,6 +66,7 @@ def run(
     """
     from dembound.cli.progress import progress_of
     from dembound.kinds import kind_of
+    from dembound.results.summary import end_in_words
     from dembound.running import preflight, run_case
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
@@ -90,7 +91,8 @@ def run(
             err.print(f"{case.name}: stopped; {kept}")
             raise
         spent = {}  # counted for the first case only
-        facts = kind_of(case).outcome(json.loads((folder / "summary.json").read_text()))
+        summary = json.loads((folder / "summary.json").read_text())
+        facts = [*end_in_words(summary), *kind_of(case).outcome(summary)]
         if facts:
             out.print(f"{case.name}: {'; '.join(facts)}")
         out.print(f"{case.name}: results in {folder}")

@@ -13,12 +13,15 @@ from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
 from dembound.disks.outcome import disk_outcome
 from dembound.disks.reduction import reduced
 from dembound.disks.scene import DiskScene, build
+from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
 from dembound.disks.static import Settled, settle
 from dembound.disks.summary import asked_stress, describe_static, summarise_disks
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
+from dembound.disks.wave_front import front_of
 from dembound.motion.kind import Beginning, Kind, OnLook, Stage
+from dembound.motion.paths import Front, Source
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run
 
@@ -62,6 +65,26 @@ class Disks(Kind[DiskCase, DiskScene]):
             stages=tuple(_stages(scene, settled)),
             summary=describe_static(settled, asked_stress(scene)),
         )
+
+    def sources(self, scene: DiskScene) -> list[Source]:
+        """Driven sides, loads, and holes."""
+        return sources_of(scene.case, scene.ground)
+
+    def front(self, scene: DiskScene, time_step: float) -> Front:
+        """The fastest waves of its packing."""
+        return front_of(scene.ground, scene.case.run.safety)
+
+    def has_coda(self, scene: DiskScene) -> bool:
+        """Whether its bricks are random, or contacts may open."""
+        return scene.has_history or len(scene.ground.brick.radii) > 1
+
+    def has_static_stage(self, scene: DiskScene) -> bool:
+        """Whether the case has one."""
+        return scene.case.static is not None
+
+    def unit(self, scene: DiskScene) -> tuple[float, float]:
+        """A brick."""
+        return scene.case.packing.brick_size
 
     def facts(self, scene: DiskScene, time_step: float) -> dict[str, str]:
         """Packing, law, loads and boundaries."""

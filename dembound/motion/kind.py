@@ -15,6 +15,7 @@ from dembound.casefile.schema import Schema
 from dembound.errors import RunError
 from dembound.motion.cracks import Cracks
 from dembound.motion.part import System
+from dembound.motion.paths import Front, Source
 from dembound.motion.scene import Scene
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run
@@ -127,6 +128,26 @@ class Kind(ABC, Generic[C, S]):
 
         Raises StalledError when a stage before does not come to rest.
         """
+
+    @abstractmethod
+    def sources(self, scene: S) -> list[Source]:
+        """Where the motion of a scene starts."""
+
+    @abstractmethod
+    def front(self, scene: S, time_step: float) -> Front:
+        """The fastest waves of a scene that is stepped by time_step (s)."""
+
+    @abstractmethod
+    def has_coda(self, scene: S) -> bool:
+        """Whether motion lasts longer than its waves take: scattered by the packing, or of what breaks or opens."""
+
+    def has_static_stage(self, scene: S) -> bool:
+        """Whether a stage before the run loads the scene, by default not."""
+        return False
+
+    @abstractmethod
+    def unit(self, scene: S) -> tuple[float, float]:
+        """Lengths (m) along x and y by which a scene can be longer or shorter."""
 
     @abstractmethod
     def facts(self, scene: S, time_step: float) -> dict[str, str]:

@@ -286,6 +286,7 @@ class Snapshots(Tracker):
     def __init__(self, recorder: Recorder, steps: Sequence[int]) -> None:
         self.recorder = recorder
         self._steps = sorted(steps)
+        self._last = -1
         self._after(-1)
 
     def _after(self, step: int) -> None:
@@ -294,7 +295,13 @@ class Snapshots(Tracker):
     def handle(self, run: Run) -> None:
         """Write the scene."""
         self.recorder.snapshot()
+        self._last = run.state.step
         self._after(run.state.step)
+
+    def take_last(self, run: Run) -> None:
+        """Write the scene at the end of a run that was ended early, unless it has just been written."""
+        if self._last < run.state.step:
+            self.handle(run)
 
 
 def _make(group: h5py.Group, columns: Iterable[tuple[str, tuple[int, ...], str, str]]) -> dict[str, h5py.Dataset]:

@@ -28,6 +28,7 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
         "step_limit": planned.step_limit if np.isfinite(planned.step_limit) else None,
         "steps": state.step,
         "duration": run.time,
+        "ended": _describe_end(planned, run),
         "wall_time": sum(seconds.values()),
         "seconds": dict(seconds),
         "threads": scene.threads,
@@ -39,6 +40,22 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
         "monitors": _describe_monitors(record),
         "reduced": list(scene.reduced),
     }
+
+
+def _describe_end(planned: Plan, run: Run) -> dict[str, Any] | None:
+    """Why and when a run ended before its duration, and the share of its steps that was saved; None for a whole run."""
+    step = run.state.step
+    if step == planned.steps:
+        return None
+    saved = 1.0 - step / planned.steps
+    return {"why": "silent", "time": run.time, "planned_steps": planned.steps, "saved": saved}
+
+
+def end_in_words(summary: Mapping[str, Any]) -> list[str]:
+    """That a run ended early, as one sentence; none for a whole run."""
+    if (ended := summary["ended"]) is None:
+        return []
+    return [f"ended at {ended['time']:.4g} s, all monitors silent: {100.0 * ended['saved']:.0f} % of the steps saved"]
 
 
 def _count_cracks(record: Path) -> dict[str, int]:

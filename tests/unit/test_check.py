@@ -26,6 +26,14 @@ def test_facts_are_those_of_the_run_and_of_the_scene(bar) -> None:
     assert warnings == warnings_before(planned)
 
 
+def test_a_run_until_silence_is_announced_with_its_times(bar) -> None:
+    silent = {"run.until": "silent", "run.time_step": 1e-4, "run.silent_level": 0.02, "run.silent_for": 0.005}
+    steps = check(bar(silent))[0]["steps"]
+
+    # a pulse of 0.01 s, and 4.75 m at 1000 m/s
+    assert steps == "100 for 0.01 s, or until all monitors are below 2 % of their peaks for 0.005 s, after 0.0147 s"
+
+
 def test_a_bar_is_told_of_as_a_bar(spalling) -> None:
     facts, warnings = check(spalling())
     planned = plan(spalling())

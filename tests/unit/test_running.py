@@ -11,6 +11,7 @@ from dembound.casefile import Case
 from dembound.errors import CaseError, RunError
 from dembound.motion.trackers import Run
 from dembound.plot.scene import plot_scene
+from dembound.results.summary import end_in_words
 from dembound.running import SECTIONS, Progress, plan, preflight, run_case
 
 GRIP = {"type": "velocity", "wave_p": "pulse"}
@@ -100,6 +101,7 @@ def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> Non
             "step_limit",
             "steps",
             "duration",
+            "ended",
         ),
         *(
             "wall_time",
@@ -425,3 +427,88 @@ def test_preflight_finds_a_run_that_would_never_end(request, kind: str) -> None:
     case = request.getfixturevalue(kind)({"run.duration": 1e9, **step})
     with pytest.raises(CaseError, match=r"run\.duration: takes .* must take no more than"):
         preflight(case)
+
+
+QUIET = {"run.duration": 0.2, "run.time_step": 2.5e-4, "output.snapshots": 40}
+"""The pulse is over at 0.01 s, and has left the bar of 10 m at 0.02 s but for what the coarse lattice leaves behind."""
+
+SILENT = {"run.until": "silent", "run.silent_level": 0.05}
+
+
+def data_of(folder) -> dict[str, np.ndarray]:
+    with h5py.File(folder / "run.h5") as file:
+        names: list[str] = []
+        file.visit(names.append)
+        assert file.attrs["complete"]
+        return {name: file[name][()] for name in names if isinstance(file[name], h5py.Dataset)} | {
+            f"{name}/at": np.array(group.attrs["time"]) for name, group in file["snapshots"].items()
+        }
+
+
+@pytest.mark.parametrize("rows", [True, False])
+def test_a_run_ends_when_all_is_silent_with_the_same_bits_until_then(bar, tmp_path, rows) -> None:
+    whole = run_case(bar({**QUIET, "reduce.rows": rows}, "whole"), tmp_path)
+    short = run_case(bar({**QUIET, **SILENT, "reduce.rows": rows}, "short"), tmp_path)
+    ended, steps = summary(short)["ended"], summary(short)["steps"]
+
+    assert summary(whole)["ended"] is None
+    assert summary(whole)["steps"] == 800 == ended["planned_steps"]
+    assert steps < 400
+    assert ended["why"] == "silent"
+    assert ended["time"] == summary(short)["duration"] == pytest.approx(steps * 2.5e-4, rel=1e-14)
+    assert ended["saved"] == 1.0 - steps / 800
+    assert end_in_words(summary(short)) == [
+        f"ended at {ended['time']:.4g} s, all monitors silent: {100.0 * (1.0 - steps / 800):.0f} % of the steps saved"
+    ]
+    assert end_in_words(summary(whole)) == []
+    kept, expected = data_of(short), data_of(whole)
+    for name in expected:
+        if name.startswith("histories"):
+            assert len(kept[name]) == steps
+            np.testing.assert_array_equal(kept[name], expected[name][:steps], err_msg=name)
+    assert np.abs(expected["histories/middle/velocity"][steps:, 0]).max() < 0.05 * 0.5
+    assert kept["0000/at"] == expected["0000/at"] == 20 * 2.5e-4
+    assert kept[f"{len([name for name in kept if name.endswith('/at')]) - 1:04d}/at"] == ended["time"]
+
+
+def test_a_bar_of_nodes_ends_when_it_is_silent(spalling, tmp_path) -> None:
+    changes = {"boundary.right": {"type": "viscous"}, "bar.strength": 1e12, "run.duration": 0.02}
+    changes |= {"method": {"type": "finite_difference"}, "load.hit.nodes": 1}
+    whole = run_case(spalling(changes, "whole"), tmp_path)
+    short = run_case(spalling({**changes, "run.until": "silent"}, "short"), tmp_path)
+    kept, expected = data_of(short), data_of(whole)
+    steps = summary(short)["steps"]
+
+    assert steps < summary(whole)["steps"] == summary(short)["ended"]["planned_steps"]
+    for name in ("velocity", "displacement", "stress"):
+        np.testing.assert_array_equal(
+            kept[f"histories/gauge/{name}"], expected[f"histories/gauge/{name}"][:steps], err_msg=name
+        )
+
+
+def test_a_load_that_starts_later_is_waited_for(bar, tmp_path) -> None:
+    blow = {"name": "blow", "force": [1e6, 0.0], "region": [0.0, 0.0, 0.5, 1.0], "wave": "late"}
+    late = {"type": "cosine", "amplitude": 1.0, "period": 0.01, "start": 0.1}
+    folder = run_case(bar({**QUIET, **SILENT, "run.duration": 0.5, "load": [blow], "wave.late": late}), tmp_path)
+    histories = data_of(folder)
+
+    assert 0.11 < summary(folder)["ended"]["time"] < 0.3
+    late_part = histories["histories/middle/time"] > 0.1
+    assert np.abs(histories["histories/middle/velocity"][late_part]).max() > 0.1
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"run.silent_level": 0.1}, 'run.silent_level: is only allowed with until = "silent"'),
+        ({"run.silent_for": 0.1}, 'run.silent_for: is only allowed with until = "silent"'),
+        ({"run.until": "silent", "monitor": []}, 'run.until: is "silent", but the case has no monitor'),
+        ({"run.until": "silent", "run.silent_for": 0.1}, "run.silent_for: is 0.1, must be at most run.duration, 0.01"),
+    ],
+)
+@pytest.mark.parametrize("kind", ["bar", "spalling"])
+def test_keys_of_silence_without_effect_are_refused(request, kind, changes, said) -> None:
+    with pytest.raises(CaseError) as caught:
+        request.getfixturevalue(kind)(changes | {"run.duration": 0.01})
+
+    assert any(problem.startswith(said) for problem in caught.value.problems)

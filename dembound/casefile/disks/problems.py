@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
-from dembound.casefile.cross_checks import driving_waves, repeated_names, steps_too_long, unknown_waves
+from dembound.casefile.cross_checks import driving_waves, never_silent, repeated_names, steps_too_long, unknown_waves
 from dembound.casefile.disks.hole_problems import hole_problems
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
@@ -43,6 +43,7 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         yield from static_problems(*(tables[key] for key in ("static", "boundary", "load", "material", "motion")))
     if tables["run"]:
         yield from steps_too_long(tables["run"], tables["output"])
+        yield from never_silent(tables["run"], tables["monitor"])
 
 
 def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:

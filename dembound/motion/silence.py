@@ -1,0 +1,106 @@
+"""Ends a run once all its monitors are silent."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dembound.boundaries import normal_axis
+from dembound.motion.paths import Source
+from dembound.motion.scene import Scene
+from dembound.motion.state import Arrays
+from dembound.motion.trackers import Run, Tracker
+
+
+@dataclass(frozen=True)
+class Silent:
+    """When a run is over: all monitors silent for so long, and not before the waves of all sources have passed them.
+
+    level : share of its own largest velocity so far below which a monitor is silent.
+    hold : s, for which all must be silent.
+    earliest : s, before which the run does not end.
+    """
+
+    level: float
+    hold: float
+    earliest: float
+
+
+def silent_rule(scene: Scene, sources: Sequence[Source]) -> Silent:
+    """The rule for a case with ``until = "silent"``; scene : the whole one, with its sources.
+
+    The run goes on until the waves of every source have ended and have come to every monitor, at the speed of the
+    slowest; of a source that never ends, until they have begun. By default all monitors must be silent for the length
+    of the longest wave, and long enough for a slow wave to get from any monitor to any side and back: then no echo is
+    on its way that has left a monitor and has not come back.
+    """
+    run, places = scene.case.run, monitored(scene)
+    earliest = max((_passed(source, places) for source in sources), default=0.0)
+    return Silent(run.silent_level, run.silent_for or _longest(scene, sources, places), earliest)
+
+
+def monitored(scene: Scene) -> np.ndarray:
+    """Places (k, 2) m of the nodes of the case's monitors, without those of a free-field column."""
+    return scene.positions[[scene.monitors[monitor.name] for monitor in scene.case.monitor]].reshape(-1, 2)
+
+
+def _passed(source: Source, places: np.ndarray) -> float:
+    """Time (s) at which the waves of a source have come to all places (k, 2) m."""
+    ends = source.over if np.isfinite(source.over) else source.start
+    return ends + float(source.distance(places).max(initial=0.0)) / source.slowest
+
+
+def _longest(scene: Scene, sources: Sequence[Source], places: np.ndarray) -> float:
+    """The default of `silent_for` (s)."""
+    waves = max((source.over - source.start for source in sources if np.isfinite(source.over)), default=0.0)
+    slowest = min((source.slowest for source in sources), default=np.inf)
+    ways = [
+        np.abs((scene.size[normal_axis(side)] if side in ("right", "top") else 0.0) - places[:, normal_axis(side)])
+        for side in scene.edges
+    ]
+    return max(waves, 2.0 * float(np.max(ways, initial=0.0)) / slowest)
+
+
+class Silence(Tracker):
+    """Ends a run when all probes have been silent for long enough; a probe that has not moved yet is silent, too.
+
+    It looks after every return of the loop, which it neither makes nor changes, so histories have the same bits.
+
+    Parameters
+    ----------
+    rule : when it ends.
+    time_step : s.
+    """
+
+    name = "silence"
+
+    def __init__(self, rule: Silent, time_step: float) -> None:
+        self._level = rule.level
+        self._hold, self._earliest = (int(np.ceil(time / time_step)) for time in (rule.hold, rule.earliest))
+        self._peaks = np.zeros(0)
+        self._loud = -1
+
+    def handle(self, run: Run) -> None:
+        """Does nothing, as it is never due."""
+
+    def observe(self, run: Run, record: np.ndarray) -> None:
+        """Find the last step at which any probe was loud, and end the run if that is long ago."""
+        speeds = np.abs(record[:, :, 3:5]).max(axis=2)
+        peaks = self._peaks if self._peaks.size else np.zeros(speeds.shape[1])
+        so_far = np.maximum(np.maximum.accumulate(speeds, axis=0), peaks)
+        loud = np.flatnonzero((speeds > self._level * so_far).any(axis=1))
+        if len(loud) > 0:
+            self._loud = run.state.step - len(record) + int(loud[-1])
+        self._peaks = np.maximum(peaks, speeds.max(axis=0, initial=0.0))
+        since = run.state.step - max(self._loud, self._earliest)
+        if since > self._hold:
+            run.stopped = True
+
+    def memory(self) -> Arrays:
+        """The largest speed of every probe so far, and the last step at which one was loud."""
+        return {**super().memory(), "peaks": self._peaks, "loud": np.array(self._loud)}
+
+    def recall(self, memory: Arrays) -> None:
+        """Restore what `memory` has returned."""
+        super().recall(memory)
+        self._peaks, self._loud = memory["peaks"].copy(), int(memory["loud"])

@@ -1,0 +1,120 @@
+"""When a run is over."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from dembound.kinds import kind_of
+from dembound.motion.silence import Silence, Silent, silent_rule
+
+STEP = 0.5
+"""Time step (s) of synthetic runs; exact in binary."""
+
+
+def ended_at(speeds: np.ndarray, rule: Silent, block: int) -> int | None:
+    """Step after which a run with these speeds (k, p) of its probes ends, looked at after blocks of steps."""
+    tracker, run = Silence(rule, STEP), SimpleNamespace(state=SimpleNamespace(step=0), stopped=False)
+    record = np.zeros((*speeds.shape, 6))
+    record[:, :, 4] = -speeds  # of either sign and component
+    for first in range(0, len(speeds), block):
+        piece = record[first : first + block]
+        run.state.step += len(piece)
+        tracker.observe(run, piece)
+        tracker_copy = Silence(rule, STEP)
+        tracker_copy.recall(tracker.memory())
+        tracker = tracker_copy  # a run continued from its state ends at the same step
+        if run.stopped:
+            return run.state.step
+    return None
+
+
+def pulse(length: int, first: int, last: int, height: float = 1.0) -> np.ndarray:
+    """Zero but for steps first … last."""
+    speed = np.zeros(length)
+    speed[first : last + 1] = height
+    return speed
+
+
+@pytest.mark.parametrize("block", [1, 7, 100])
+def test_a_run_ends_once_all_have_been_silent_for_long_enough(block: int) -> None:
+    speeds = np.column_stack([pulse(100, 5, 20), pulse(100, 10, 30)])
+    # the last loud step is 30; four seconds are eight steps, and 31 … 38 are the eight silent ones: 39 steps done
+    whole = ended_at(speeds, Silent(1e-3, 4.0, 0.0), block)
+
+    assert whole == -(-39 // block) * block
+
+
+def test_the_level_is_each_monitors_own() -> None:
+    weak = pulse(100, 10, 20, 1e-6) + pulse(100, 21, 60, 2e-8)
+    strong = pulse(100, 0, 5)
+
+    assert ended_at(np.column_stack([strong, weak]), Silent(0.01, 4.0, 0.0), 1) == 60 + 9
+    assert ended_at(np.column_stack([strong, weak]), Silent(0.03, 4.0, 0.0), 1) == 20 + 9
+
+
+def test_the_level_is_that_of_the_peak_so_far() -> None:
+    # loud when it came, however small beside what came later
+    speeds = (pulse(100, 3, 6, 1e-4) + pulse(100, 12, 15))[:, None]
+
+    assert ended_at(speeds, Silent(1e-2, 4.0, 0.0), 1) == 15 + 9
+    assert ended_at(speeds, Silent(1e-2, 2.0, 0.0), 1) == 6 + 5
+
+
+def test_a_monitor_that_has_not_moved_waits_for_its_waves() -> None:
+    speeds = np.column_stack([pulse(100, 5, 10), pulse(100, 40, 45)])
+
+    assert ended_at(speeds, Silent(1e-3, 4.0, 0.0), 1) == 10 + 9  # without waiting the second is missed
+    assert ended_at(speeds, Silent(1e-3, 4.0, 18.0), 1) == 45 + 9  # 36 steps, eight before it would end
+    assert ended_at(np.zeros((100, 2)), Silent(1e-3, 4.0, 18.0), 1) == 36 + 9
+
+
+def test_what_never_rests_never_ends() -> None:
+    steady = np.full((100, 1), 0.3)
+    assert ended_at(steady, Silent(1e-3, 4.0, 0.0), 10) is None
+
+
+def rule_of(case):
+    kind = kind_of(case)
+    scene = kind.build(case)
+    return silent_rule(scene, kind.sources(scene)), scene
+
+
+LATER = {"type": "cosine", "amplitude": 1.0, "period": 0.02, "start": 0.5}
+
+
+def test_a_run_waits_for_the_last_wave_at_the_farthest_monitor(bar) -> None:
+    changes = {"monitor": [{"name": "near", "position": [2.0, 0.5]}, {"name": "far", "position": [8.0, 0.5]}]}
+    changes |= {"run.until": "silent", "run.duration": 1.0}
+    rule, scene = rule_of(bar(changes))
+    far = scene.positions[scene.monitors["far"], 0]
+    near = scene.positions[scene.monitors["near"], 0]
+    assert rule.level == 1e-3
+    # P waves from the left at 1000 m/s; from the far one to the left and back, or from the near one to the right
+    assert rule.earliest == pytest.approx(0.01 + far / 1000.0, rel=1e-12)
+    assert rule.hold == pytest.approx(2.0 * max(far, 10.0 - near) / 1000.0, rel=1e-12)
+
+    load = {"name": "blow", "force": [1.0, 0.0], "position": [9.75, 0.75], "wave": "late"}
+    later, scene = rule_of(bar({**changes, "load": [load], "wave.late": LATER}))
+    # y is held: P waves only along x, and S waves of 500 m/s across, half of the stiffness being without shear
+    near = scene.positions[scene.monitors["near"]]
+    slow = 500.0
+    assert later.earliest == pytest.approx(0.52 + np.hypot(9.75 - near[0], 0.75 - near[1]) / slow, rel=1e-12)
+    assert rule_of(bar({**changes, "wave.pulse.period": 0.9}))[0].hold == pytest.approx(0.9, rel=1e-12)
+    assert rule_of(bar({**changes, "run.silent_for": 0.07, "run.silent_level": 0.2}))[0].hold == 0.07
+
+
+def test_a_wave_that_never_ends_is_waited_for_until_it_comes(bar) -> None:
+    constant = {"type": "constant", "amplitude": 0.1, "start": 0.2}
+    rule, scene = rule_of(bar({"run.until": "silent", "wave.pulse": constant}))
+
+    there = scene.positions[scene.monitors["middle"], 0]
+    assert rule.earliest == pytest.approx(0.2 + there / 1000.0, rel=1e-12)
+
+
+def test_a_rock_bar_waits_for_its_load(spalling) -> None:
+    rule, _ = rule_of(spalling({"run.until": "silent"}))
+
+    # 0.525 m from the left end, whose load covers three nodes, 0.05 m; 1000 m/s, pulse of 0.4 ms
+    assert rule.earliest == pytest.approx(4e-4 + 0.475e-3, rel=1e-12)
+    assert rule.hold == pytest.approx(2.0 * 0.525e-3, rel=1e-12)
