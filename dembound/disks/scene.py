@@ -36,6 +36,11 @@ class DiskScene(DiskBody):
     before: "DiskScene | None" = None
     kept: np.ndarray | None = None
 
+    @property
+    def places_in_whole(self) -> np.ndarray:
+        """(n,) the disk of the scene of the case that each disk is or moves as."""
+        return np.arange(self.count)
+
     def system(self, time_step: float) -> DiskSystem:
         """Its parts and ties at rest as built, to be stepped by time_step (s)."""
         return DiskSystem(self, time_step)

@@ -107,6 +107,7 @@ class Ledger(Tracker):
         contact, bond = (now - first for now, first in zip(system.stored(place), self._first, strict=True))
         load = float(np.sum(system.load * (place - state.datum)))
         outside, damping, friction, crack, law_switch, turning = (float(work) for work in state.work[1])
+        outside += system.counted_outside(place)
         balance = turning + balancing
         error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - law_switch
         energies = kinetic, contact, bond, load, balance, outside, damping, friction, crack, law_switch, error

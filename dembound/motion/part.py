@@ -120,6 +120,10 @@ class System:
         stored = [part.stored(displacement) for part in self.parts]
         return sum(first for first, _ in stored), sum(second for _, second in stored)
 
+    def counted_outside(self, displacement: np.ndarray) -> float:
+        """Strain energy (J) at displacements (3, n) of springs whose work the kernels count as that of the outside."""
+        return 0.0
+
     def balancing_work(self, displacement: np.ndarray) -> float:
         """Work (J) up to displacements (3, n) of the forces that balance a settled stress, without their rotation."""
         return 0.0
