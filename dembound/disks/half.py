@@ -18,7 +18,7 @@ from dembound.disks.body import parts_of
 from dembound.disks.contacts import plain_contacts
 from dembound.disks.layout import lay_out
 from dembound.disks.scene import DiskScene
-from dembound.disks.smaller import SmallerScene, elastic_stress, supports_at
+from dembound.disks.smaller import SmallerScene, supports_at
 from dembound.disks.system import DiskSystem
 from dembound.kernels.contacts import REFERENCE, strain_energy
 from dembound.kernels.tables import Contacts
@@ -92,10 +92,10 @@ class HalfScene(SmallerScene):
         turned = self.image[self.of.tracked][:, None] & (self.signs < 0.0)
         return np.where(turned[..., None], -wide[..., ::-1], wide)
 
-    def stress(self, displacement: np.ndarray) -> np.ndarray:
+    def elastic_stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (m, 3) Pa at displacements (3, m), computed on all disks, as half of the contacts are not its own."""
         wide = self.widened("displacement", displacement.T)
-        return elastic_stress(self.whole, wide.T)[self.places_in_whole]
+        return self.whole.elastic_stress(wide.T)[self.places_in_whole]
 
     @cached_property
     def _pairs_across(self) -> tuple[np.ndarray, np.ndarray, Contacts]:
@@ -109,10 +109,13 @@ class HalfScene(SmallerScene):
 
     def energy_across(self, displacement: np.ndarray) -> tuple[float, float]:
         """Its half of the energy (J) in the contacts and bonds with images at displacements (3, m)."""
-        if len(self.across) == 0:
-            return 0.0, 0.0
-        disks, signs, contacts = self._pairs_across
-        contact, bond = strain_energy(signs * displacement[:, disks], contacts, REFERENCE)
+        contact, bond = 0.0, 0.0
+        if isinstance(self.of, HalfScene):
+            contact, bond = self.of.energy_across(self.of_all("displacement", displacement.T).T)
+        if len(self.across) > 0:
+            disks, signs, contacts = self._pairs_across
+            own = strain_energy(signs * displacement[:, disks], contacts, REFERENCE)
+            contact, bond = contact + own[0], bond + own[1]
         return 0.5 * contact, 0.5 * bond
 
 
@@ -133,7 +136,7 @@ class HalfSystem(DiskSystem):
 
     def stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (m, 3) xx, yy, xy in Pa of all disks at displacements (3, m), tension positive."""
-        return self.scene.stress(displacement)
+        return self.scene.elastic_stress(displacement)
 
 
 def halves(scene: DiskScene, axis: int) -> Iterator[HalfScene]:

@@ -13,14 +13,13 @@ identical rows under P waves, which exert no force across or moment, but not und
 """
 
 from collections.abc import Iterator
-from itertools import chain
 
 import numpy as np
 
 from dembound.disks.half import halves
 from dembound.disks.one_row import one_row
 from dembound.disks.scene import DiskScene
-from dembound.disks.smaller import SmallerScene, elastic_stress
+from dembound.disks.smaller import SmallerScene
 from dembound.disks.stability import fill_forces
 from dembound.motion.layout import aligned_zeros
 
@@ -64,7 +63,7 @@ def rows_of(scene: DiskScene) -> Iterator[SmallerScene]:
 
 def _first_of(smaller: Iterator[SmallerScene], scene: DiskScene) -> DiskScene:
     """The first of some smaller scenes from whose motion that of a scene follows, otherwise the scene itself."""
-    return next(chain(filter(represents_all, smaller), [scene]))
+    return next((small for small in smaller if represents_all(small)), scene)
 
 
 def represents_all(small: SmallerScene) -> bool:
@@ -170,5 +169,5 @@ def _from_outside(scene: DiskScene) -> Iterator[tuple[str, np.ndarray]]:
 def _stresses(small: SmallerScene, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Stresses (3, n) and (3, m) by a random motion, of the larger scene and of the small one."""
     displacement = _random(small, moves)
-    of_whole = elastic_stress(small.of, small.of_all(MOTION, displacement.T).T)
-    return of_whole.T, small.stress(displacement).T
+    of_whole = small.of.elastic_stress(small.of_all(MOTION, displacement.T).T)
+    return of_whole.T, small.elastic_stress(displacement).T

@@ -6,9 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from dembound.boundaries.support import Supports
-from dembound.disks.contacts import plain_contacts
 from dembound.disks.scene import DiskScene
-from dembound.disks.stress import particle_stress
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,10 +35,6 @@ class SmallerScene(DiskScene):
     def tracked_peaks(self, peaks: np.ndarray) -> np.ndarray:
         """Smallest and largest velocities (p, 3, 2) of its `tracked` disks as those of the larger scene's."""
         return peaks[np.searchsorted(self.tracked, self.like[self.of.tracked])]
-
-    def stress(self, displacement: np.ndarray) -> np.ndarray:
-        """Stress (m, 3) Pa of its disks at displacements (3, m) under the elastic law, see `particle_stress`."""
-        return elastic_stress(self, displacement)
 
     @property
     def whole(self) -> DiskScene:
@@ -91,12 +85,6 @@ class SmallerScene(DiskScene):
     def bytes(self) -> int:
         """Memory of its arrays and of the larger scene, whose stability limit is that of the step."""
         return super().bytes + self.of.bytes
-
-
-def elastic_stress(scene: DiskScene, displacement: np.ndarray) -> np.ndarray:
-    """Stress (n, 3) Pa of the disks of a scene at displacements (3, n) under the elastic law."""
-    contacts = plain_contacts(scene.ground, scene.assembly, scene.layout.slot)
-    return particle_stress(scene, contacts, displacement, elastic=True)
 
 
 def supports_at(place: np.ndarray, table: Supports, share: np.ndarray) -> Supports:

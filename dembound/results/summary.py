@@ -37,7 +37,7 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
         "cracks": _count_cracks(record),
         "energy": _describe_energy(record),
         "monitors": _describe_monitors(record),
-        "reduced": list(scene.reduced),
+        "reduced": [*scene.reduced, *run.system.saved(state)],
     }
 
 
