@@ -145,13 +145,14 @@ def _passed_on(warnings: list[str], progress: Progress) -> list[str]:
 
 
 def _draw(planned: Plan, folder: Path) -> None:
-    """Draw the pictures of a run into its folder: the monitors' velocities, and those of its kind of body."""
+    """Draw the pictures of a run into its folder: the monitors' velocities, and from snapshots those of its kind."""
     from dembound.plot.histories import plot_histories
     from dembound.plot.style import save
 
     record = folder / "run.h5"
-    for name, figure in planned.kind.pictures(record):
-        save(figure, folder / f"{name}.png")
+    if planned.scene.case.output.snapshots:
+        for name, figure in planned.kind.pictures(record):
+            save(figure, folder / f"{name}.png")
     if planned.scene.case.monitor:
         save(plot_histories([record]), folder / "histories.png")
 
@@ -191,7 +192,7 @@ def _simulate(planned: Plan, path: Path, progress: Progress, clock: Clock) -> tu
         clock=clock,
     )
     ledger = Ledger(simulation, _steps_between_entries(planned), last=steps - 1)
-    shots = min(max(1, case.output.snapshots), steps)
+    shots = min(case.output.snapshots, steps)
     interval = case.output.history_interval
     with Recorder(path, simulation, planned.step_limit, interval, ledger, beginning.stages) as recorder:
         snapshots = Snapshots(recorder, [steps * number // shots for number in range(1, shots + 1)])

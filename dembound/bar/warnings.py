@@ -161,7 +161,9 @@ def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
     foreseen = [*stress_beside_strength(case), *ends_too_soon(case)]
     if np.isinf(strength) or len(file["cracks/time"]) > 0 or foreseen:
         return
-    groups = [*file["histories"].values(), *file["snapshots"].values()]
+    groups = [*file["histories"].values(), *file.get("snapshots", {}).values()]
+    if not groups:
+        return
     tension = max(0.0, *(float(np.max(group["stress"][:])) for group in groups))
     if tension < NOTHING * strength:
         yield (

@@ -4,7 +4,7 @@ from dembound.table import Table, quantity
 
 
 class Output(Table):
-    """The data that is written in addition to the last state."""
+    """The data that is written."""
 
     history_interval: float = quantity(
         0.0, unit="s", help="time between two samples of the histories; 0: every step", ge=0.0
@@ -13,7 +13,7 @@ class Output(Table):
         0.0, unit="s", help="time between two entries of the energy ledger; 0: a hundred over the run", ge=0.0
     )
     snapshots: int = quantity(
-        0, unit="1", help="number of whole-scene snapshots, evenly spaced, the last at the end", ge=0
+        1, unit="1", help="number of whole-scene snapshots, evenly spaced, the last at the end; 0: none", ge=0
     )
     stress: bool = quantity(False, unit="1", help="whether snapshots hold the stress of every particle")
     peaks: bool = quantity(False, unit="1", help="whether the largest speed of every particle in the run is kept")

@@ -13,7 +13,7 @@ from dembound.disks.row_plan import RowPlan
 from dembound.kernels import contacts as kernel
 from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS
-from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
+from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED
 from dembound.kernels.tables import Contacts, PairRows
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.layout import Layout
@@ -64,6 +64,7 @@ class ContactList:
     origin : (2, m) m, displacements of the part's m slots at which the list was made.
     cells : of the particles there.
     skin : m, gap up to which it is complete.
+    keeps_slip : whether the elastic law is used again after contacts have slid, which keep their slip.
     arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
     """
 
@@ -90,6 +91,7 @@ class ContactList:
         self.searches = self.limits.geometry != REFERENCE
         self.skin = SKIN * ground.brick.mean_diameter
         self._set_origin(np.zeros((2, len(assembly.radii))))
+        self.keeps_slip = False
         self.bonds = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
         self._plan: PairPlan | None = None
         self.rows: PairRows | None = None
@@ -115,8 +117,31 @@ class ContactList:
             self._list(pairs, *(self.of(name) for name in ("state", "shear", "slip", "cracked")))
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
-        """Set the pairs to the state of the elastic law at displacements (3, n), without any slip."""
-        kernel.start_from_displacements(self.layout.spread(displacement), self.arrays)
+        """Set the pairs to the state of the elastic law at displacements (3, n), without any slip or with that kept."""
+        kernel.start_from_displacements(self.layout.spread(displacement), self.arrays, self.keeps_slip)
+
+    def settled_slip(self, displacement: np.ndarray) -> np.ndarray | None:
+        """The slip, in the places of `arrays`, with which the elastic law holds again at displacements (3, n).
+
+        None where it does not: a contact that was closed at the start is open or slides, one that was open is closed,
+        or a bond is broken. Where shear is counted along the path, its difference from that of small displacements
+        becomes slip.
+        """
+        state, own = self.of("state"), self.of("contact_type") < 2 * len(self.ground.brick.pairs)
+        if np.count_nonzero(own) < len(self.assembly.pairs) or ((state == TENSION) | (state == SHEAR)).any():
+            return None
+        now, u = self.arrays, self.layout.spread(displacement)
+        small = now._replace(shear=now.shear.copy(), slip=now.slip.copy())
+        kernel.start_from_displacements(u, small, True)
+        along_path = (self.limits.geometry == UPDATED) | (now.state != INTACT)
+        touch, rest = now.constants[now.contact_type][:, [3, 2]].T
+        small.slip[:] += np.where(along_path & (touch >= rest), small.shear - now.shear, 0.0)
+        return small.slip if kernel.slack(u, small, self.limits, True) > 0.0 else None
+
+    def use_elastic_law_with(self, slip: np.ndarray) -> None:
+        """Keep a slip, see `settled_slip`, under the elastic law."""
+        self.arrays.slip[:] = slip
+        self.keeps_slip = True
 
     def push(self, displacement: np.ndarray, *, reference: bool = False) -> None:
         """Compute the forces of the pairs at displacements (3, n) at rest, and store them in `arrays`.
@@ -289,6 +314,7 @@ class ContactList:
         self.note_cracks()
         memory = {name: self.of(name) for name in _KEPT} | {"force": self.force}
         memory |= {"image": self.image, "constants": self._constants, "origin": self.origin}
+        memory["keeps_slip"] = np.array(self.keeps_slip)
         cracks = joined(self._cracks)
         return memory | {f"crack_{field.name}": getattr(cracks, field.name) for field in fields(Cracks)}
 
@@ -296,6 +322,7 @@ class ContactList:
         """Restore what `memory` has returned in another run of the same case."""
         self._constants = memory["constants"]
         self._set_origin(memory["origin"][:, self._slot - self._slots.start])
+        self.keeps_slip = bool(memory["keeps_slip"])
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[memory[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, memory["image"], memory["contact_type"])

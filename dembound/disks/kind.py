@@ -51,13 +51,13 @@ class Disks(Kind[DiskCase, DiskScene]):
         return choose_step(scene)
 
     def reduced(self, scene: DiskScene) -> DiskScene:
-        """One of its rows, if all move identically."""
+        """One of its rows or one half, from whose motion that of all disks follows."""
         return reduced(scene)
 
     def begin(self, scene: DiskScene, time_step: float, on_look: OnLook) -> Beginning:
         """Settle the body if the case has a static stage, else begin with the body as built."""
         if scene.case.static is None:
-            return Beginning(DiskSystem(scene, time_step))
+            return Beginning(scene.system(time_step))
         settled = settle(scene, on_look)
         return Beginning(
             system=DiskSystem(scene, time_step, settled.start),

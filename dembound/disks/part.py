@@ -11,7 +11,7 @@ from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.rows import elastic_constants
 from dembound.kernels import bonded, bonded_lanes, elastic, elastic_lanes  # noqa: F401  # they register their laws
 from dembound.kernels.common import CHUNKS, LIST_ENDS
-from dembound.kernels.contacts import REFERENCE, strain_energy
+from dembound.kernels.contacts import REFERENCE, SLID, strain_energy
 from dembound.kernels.tables import Bonded, Contacts, LaneBonded, LaneRows, Links, Seam, SeamEnds, WatchedLinks
 from dembound.motion.cracks import NO_CRACKS, Cracks
 from dembound.motion.layout import Layout
@@ -73,7 +73,7 @@ class DiskPart(Part):
             return links
         listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skin, contacts.cells)
         if not self.uses_history:
-            return WatchedLinks(links, *listed, contacts.arms, self._way)
+            return WatchedLinks(links, *listed, contacts.arms, self._way, contacts.keeps_slip)
         law = Bonded(*listed, self.stops_at_breaks, self._way, self._fastest, self._damped, self._lost)
         if contacts.rows is None:
             return law
@@ -98,7 +98,8 @@ class DiskPart(Part):
         """Energy (J) in contacts and in bonds at displacements (3, slots)."""
         if self.contacts is None:
             return strain_energy(u, self._plain_contacts, REFERENCE)
-        geometry = self.contacts.limits.geometry if self.uses_history else REFERENCE
+        elastic = SLID if self.contacts.keeps_slip else REFERENCE
+        geometry = self.contacts.limits.geometry if self.uses_history else elastic
         return strain_energy(u, self.contacts.arrays, geometry)
 
     def take_cracks(self, steps: int) -> Cracks:

@@ -1,10 +1,11 @@
-"""Scenes of which only a part has to be stepped, since the rest moves in the same way.
+"""Scenes of which only a part has to be stepped, since the rest moves in the same way or as its mirror image.
 
 The rows of a scene move identically if two conditions hold. From rest, with identical rows, everything that acts from
 outside accelerates all rows equally; and a motion that is the same in all rows leads to accelerations that are the
 same in all rows. Both are linear in drives, velocities and displacements, and are checked on the assembled scene: a
 random motion of one row, repeated in all of them, must cause the accelerations that the row alone has. An error of any
-contact or support would change them, as no motion of random numbers is orthogonal to it.
+contact or support would change them, as no motion of random numbers is orthogonal to it. The two halves of a scene move
+as mirror images on the same conditions, with mirrored in place of repeated.
 
 Only components that move count. They are found in the same way: those that are driven, and those on which motions of
 these exert forces. In the others there is exactly no motion. So a bar of a square lattice with free long sides has
@@ -15,11 +16,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.disks.contacts import plain_contacts
-from dembound.disks.one_row import OneRow, one_row
+from dembound.disks.half import halves
+from dembound.disks.one_row import one_row
 from dembound.disks.scene import DiskScene
+from dembound.disks.smaller import SmallerScene
 from dembound.disks.stability import fill_forces
-from dembound.disks.stress import particle_stress
 from dembound.motion.layout import aligned_zeros
 
 ROUNDING = 1e-12
@@ -30,62 +31,94 @@ contact or support that differs changes it by more than a hundredth.
 """
 
 
-def reduced(scene: DiskScene) -> DiskScene:
-    """One of the rows of a scene if all move identically, otherwise the scene itself.
+MOTION, SUPPORT = "displacement", "support"
+"""Names of quantities: those with the signs of a motion, and those without."""
 
-    Only under the elastic law, without a static stage, and without a free-field column.
+ALL = slice(None)
+
+
+def reduced(scene: DiskScene) -> DiskScene:
+    """The smallest scene from whose motion that of a scene follows, itself if there is no smaller one.
+
+    One of its rows if all move identically, one half of a symmetric one, a quarter of one with two mirror lines. Only
+    under the elastic law, without a static stage, and without a free-field column.
     """
-    if not scene.case.reduce.rows or scene.has_history or scene.case.static is not None or scene.seam is not None:
+    if scene.has_history or scene.case.static is not None or scene.seam is not None:
         return scene
-    copies = scene.assembly.copies
-    for axis in np.argsort(copies, kind="stable").tolist():
-        if copies[axis] > 1 and (row := one_row(scene, axis)) is not None and represents_all(row):
-            return row
+    if scene.case.reduce.rows:
+        scene = _first_of(rows_of(scene), scene)
+    if scene.case.reduce.symmetry:
+        for axis in range(2):
+            scene = _first_of(halves(scene, axis), scene)
     return scene
 
 
-def represents_all(row: OneRow) -> bool:
-    """Whether all rows of the whole scene move as this one, in displacements, energies and, if needed, stresses."""
-    if not _are_driven_alike(row, _driven(row.of)):  # most scenes are refused here, at little cost
+def rows_of(scene: DiskScene) -> Iterator[SmallerScene]:
+    """The middle rows of bricks of a scene along each axis, first the axis with fewer rows."""
+    copies = scene.assembly.copies
+    for axis in np.argsort(copies, kind="stable").tolist():
+        if copies[axis] > 1 and (row := one_row(scene, axis)) is not None:
+            yield row
+
+
+def _first_of(smaller: Iterator[SmallerScene], scene: DiskScene) -> DiskScene:
+    """The first of some smaller scenes from whose motion that of a scene follows, otherwise the scene itself."""
+    return next((small for small in smaller if represents_all(small)), scene)
+
+
+def represents_all(small: SmallerScene) -> bool:
+    """Whether the larger scene moves as this one, in displacements, energies and, if needed, stresses."""
+    if not _are_driven_alike(small, _driven(small.of)):  # most scenes are refused here, at little cost
         return False
-    moves, (of_whole, of_row) = _motions(row)
+    moves, (of_whole, of_small) = _motions(small)
+    masses = np.bincount(small.like, small.of.mass) / small.mass
     return (
-        _are_alike(row, of_whole[moves], of_row[moves])
-        and _are_driven_alike(row, moves)
-        and np.ptp(np.bincount(row.like, row.of.mass) / row.mass) <= ROUNDING * row.weight
-        and (not row.case.output.stress or _are_alike(row, *_stresses(row, moves)))
+        _are_alike(small, MOTION, of_whole, of_small, moves)
+        and _are_driven_alike(small, moves)
+        and np.ptp(masses) <= ROUNDING * masses.max()
+        and (not small.case.output.stress or _are_alike(small, "stress", *_stresses(small, moves)))
     )
 
 
-def _are_driven_alike(row: OneRow, components: np.ndarray) -> bool:
-    """Whether everything from outside acts on components (3,) bool of all rows as on those of this one."""
-    pairs = zip(_from_outside(row.of), _from_outside(row), strict=True)
-    return all(_are_alike(row, of_whole[components], of_row[components]) for of_whole, of_row in pairs)
+def _are_driven_alike(small: SmallerScene, components: np.ndarray) -> bool:
+    """Whether everything from outside acts on components (3,) bool of all disks as on those that represent them."""
+    pairs = zip(_from_outside(small.of), _from_outside(small), strict=True)
+    return all(_are_alike(small, name, whole, own, components) for (name, whole), (_, own) in pairs)
 
 
-def _are_alike(row: OneRow, of_whole: np.ndarray, of_row: np.ndarray) -> bool:
-    """Whether values (c, n) of the whole scene are those (c, m) of the row in all of its rows."""
-    largest = np.abs(of_whole).max(initial=0.0)
-    return bool((np.abs(of_whole - of_row[:, row.like]) <= ROUNDING * largest).all())
+def _are_alike(
+    small: SmallerScene, name: str, of_whole: np.ndarray, of_small: np.ndarray, components: np.ndarray | slice = ALL
+) -> bool:
+    """Whether values (3, n) of the larger scene are those (3, m) of the small one, in some components (3,) bool.
+
+    name : of the quantity, see `SmallerScene.of_all`. Supports of components without motion do not count.
+    """
+    still = small.still
+    if name == SUPPORT:
+        of_whole = np.where(small.of_all(SUPPORT, still.T).T, 0.0, of_whole)
+        of_small = np.where(still, 0.0, of_small)
+    expected = small.of_all(name, of_small.T).T[components]
+    largest = np.abs(of_whole[components]).max(initial=0.0)
+    return bool((np.abs(of_whole[components] - expected) <= ROUNDING * largest).all())
 
 
-def _motions(row: OneRow) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
-    """The components that move (3,), and the accelerations by a random motion of these, of the whole and of the row."""
-    moves = _driven(row.of)
+def _motions(small: SmallerScene) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
+    """The components that move (3,), and accelerations by a random motion of these, of the larger scene and of both."""
+    moves = _driven(small.of)
     while True:
-        displacement = _random(row, moves)
-        found = _accelerations(row.of, displacement[:, row.like]), _accelerations(row, displacement)
+        displacement = _random(small, moves)
+        found = _accelerations(small.of, small.of_all(MOTION, displacement.T).T), _accelerations(small, displacement)
         pushed = moves | np.logical_or(*((acceleration != 0.0).any(axis=1) for acceleration in found))
         if (pushed == moves).all():
             return moves, found
         moves = pushed
 
 
-def _random(row: OneRow, moves: np.ndarray) -> np.ndarray:
+def _random(small: SmallerScene, moves: np.ndarray) -> np.ndarray:
     """Random displacements (3, m) in the components that move, of surfaces for rotations: m and rad."""
-    displacement = np.random.default_rng(0).standard_normal((3, row.count)) * moves[:, None]
-    displacement[2] /= row.assembly.radii
-    return displacement
+    displacement = np.random.default_rng(0).standard_normal((3, small.count)) * moves[:, None]
+    displacement[2] /= small.assembly.radii
+    return np.where(small.still, 0.0, displacement)
 
 
 def _driven(scene: DiskScene) -> np.ndarray:
@@ -110,34 +143,31 @@ def _inertia(scene: DiskScene) -> np.ndarray:
     return np.stack([scene.mass, scene.mass, scene.inertia])
 
 
-def _from_outside(scene: DiskScene) -> Iterator[np.ndarray]:
-    """Everything that acts on each component, (3, n) each, per unit of mass: loads, dashpots, drives of each signal.
+def _from_outside(scene: DiskScene) -> Iterator[tuple[str, np.ndarray]]:
+    """Everything that acts on each component, name and (3, n), per unit of mass: loads, dashpots, drives by signal.
 
-    Also where velocities are prescribed, and drives that are velocities.
+    Also where velocities are prescribed, and drives that are velocities. Equal signals count as one.
     """
     table, inertia = scene.supports, _inertia(scene)
-    yield scene.steady_load / inertia
+    yield MOTION, scene.steady_load / inertia
 
     def of_all(rows: np.ndarray | slice, values: np.ndarray) -> np.ndarray:
         spread = np.zeros((3, scene.count))
-        spread[table.component[rows], table.node[rows]] = values
+        np.add.at(spread, (table.component[rows], table.node[rows]), values)
         return spread
 
     every, mass = slice(None), inertia[table.component, table.node]
-    yield of_all(every, table.prescribed)
-    yield of_all(every, table.damping / mass)
+    yield SUPPORT, of_all(every, table.prescribed)
+    yield SUPPORT, of_all(every, table.damping / mass)
     drive = table.drive / np.where(table.prescribed, 1.0, mass)[table.drive_row]
+    number = np.array([table.signals.index(signal) for signal in table.signals], dtype=np.int64)[table.drive_signal]
     for signal in range(len(table.signals)):
-        chosen = table.drive_signal == signal
-        yield of_all(table.drive_row[chosen], drive[chosen])
+        chosen = number == signal
+        yield MOTION, of_all(table.drive_row[chosen], drive[chosen])
 
 
-def _stresses(row: OneRow, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Stresses (3, n) and (3, m) by a random motion, of the whole and of the row."""
-    displacement = _random(row, moves)
-    both = (row.of, displacement[:, row.like]), (row, displacement)
-    of_whole, of_row = (
-        particle_stress(scene, plain_contacts(scene.ground, scene.assembly, scene.layout.slot), u, elastic=True).T
-        for scene, u in both
-    )
-    return of_whole, of_row
+def _stresses(small: SmallerScene, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Stresses (3, n) and (3, m) by a random motion, of the larger scene and of the small one."""
+    displacement = _random(small, moves)
+    of_whole = small.of.elastic_stress(small.of_all(MOTION, displacement.T).T)
+    return of_whole.T, small.elastic_stress(displacement).T

@@ -11,10 +11,12 @@ from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Su
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.body import DiskBody, parts_of
+from dembound.disks.contacts import plain_contacts
 from dembound.disks.edges import edge_without, edges_beside_column, find_edges
 from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
+from dembound.disks.stress import particle_stress
 from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.holes import Hole
@@ -35,6 +37,16 @@ class DiskScene(DiskBody):
 
     before: "DiskScene | None" = None
     kept: np.ndarray | None = None
+
+    def elastic_stress(self, displacement: np.ndarray) -> np.ndarray:
+        """Stress (n, 3) xx, yy, xy in Pa at displacements (3, n) under the elastic law, see `particle_stress`."""
+        contacts = plain_contacts(self.ground, self.assembly, self.layout.slot)
+        return particle_stress(self, contacts, displacement, elastic=True)
+
+    @property
+    def places_in_whole(self) -> np.ndarray:
+        """(n,) the disk of the scene of the case that each disk is or moves as."""
+        return np.arange(self.count)
 
     def system(self, time_step: float) -> DiskSystem:
         """Its parts and ties at rest as built, to be stepped by time_step (s)."""

@@ -23,11 +23,14 @@ def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np
     displacement (3, n) m and rad. Under the history-dependent law its forces are those at the beginning of the last
     step.
     """
-    stress = particle_stress(scene, part.pairs, displacement, elastic=not part.uses_history)
+    slid = part.contacts is not None and part.contacts.keeps_slip
+    stress = particle_stress(scene, part.pairs, displacement, elastic=not part.uses_history, slid=slid)
     return stress[part.nodes]
 
 
-def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarray, *, elastic: bool) -> np.ndarray:
+def particle_stress(
+    scene: DiskBody, contacts: Contacts, displacement: np.ndarray, *, elastic: bool, slid: bool = False
+) -> np.ndarray:
     """Stress (n, 3) xx, yy, xy in Pa of all particles, tension positive; xy is the mean of both shear stresses.
 
     A particle's stress is Σ f_a l n_b over its area, πR² plus its share of the pores, half of that for half cells, with
@@ -39,11 +42,12 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
     scene : the scene of the particles.
     contacts : its pairs.
     displacement : (3, n) m and rad.
-    elastic : use the forces of the elastic law, and the vectors of the start; else the pairs' last forces.
+    elastic : use the forces of the elastic law, and the vectors of the start; else the pairs' last forces. slid :
+    whether contacts have slid before the elastic law.
     """
     moments, node = np.zeros((3, scene.count)), scene.layout.node
     u = scene.layout.spread(displacement)
-    for piece, force in _pieces(contacts, u, elastic=elastic):
+    for piece, force in _pieces(contacts, u, elastic=elastic, slid=slid):
         first, second = node[contacts.first[piece]], node[contacts.second[piece]]
         rows = contacts.constants[contacts.contact_type[piece]]
         x, y = rows[:, :2].T if elastic else rows[:, :2].T + displacement[:2, second] - displacement[:2, first]
@@ -56,7 +60,7 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
     return (moments / area).T
 
 
-def _pieces(contacts: Contacts, u: np.ndarray, *, elastic: bool) -> Iterator[tuple[slice, np.ndarray]]:
+def _pieces(contacts: Contacts, u: np.ndarray, *, elastic: bool, slid: bool) -> Iterator[tuple[slice, np.ndarray]]:
     """Pieces of the list of pairs and their forces (4, k) at displacements u (3, slots); no pair is changed."""
     for begin in range(0, len(contacts.first), PIECE):
         piece = slice(begin, begin + PIECE)
@@ -70,7 +74,7 @@ def _pieces(contacts: Contacts, u: np.ndarray, *, elastic: bool) -> Iterator[tup
             contact_type=contacts.contact_type[piece],
             state=contacts.state[piece],
             shear=np.zeros(count),
-            slip=np.zeros(count),
+            slip=contacts.slip[piece] if slid else np.zeros(count),
             cracked=np.full(count, -1),
             force=np.empty((4, count)),
         )

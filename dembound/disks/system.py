@@ -47,7 +47,8 @@ class DiskSystem(System):
 
     Attributes
     ----------
-    balance : the forces that balance those in a settled body; None for a body as built or settling.
+    balance : the forces that balance those in a settled body; None for a body as built or settling. is_elastic_again :
+    whether the elastic law is used again after a static stage that left it.
     """
 
     parts: tuple[DiskPart, ...]
@@ -77,6 +78,7 @@ class DiskSystem(System):
         ties = [] if scene.seam is None else [FreeFieldSeam(scene.seam, parts[0])]
         super().__init__(parts, ties, scene.steady_load if load is None else load)
         self.balance: Balance | None = None
+        self.is_elastic_again = False
         self.scene, self._time_step = scene, time_step
         self._start, self._settling = start, settling
 
@@ -90,7 +92,12 @@ class DiskSystem(System):
     def begin(self, state: State) -> None:
         """Choose the first law, and the steady forces that belong to it."""
         scene, start = self.scene, self._start
+        # a locked-in stress also acts through the seam of a free field, but not under the elastic law
+        through = bool(self.ties) and scene.case.material.locked_in is not None and not self._settling
         has_history = start is not None and start.has_history
+        if has_history and not through and not self._settling and scene.case.reduce.settled:
+            self.is_elastic_again = self._returns_to_elastic(state.datum)
+            has_history = not self.is_elastic_again
         if start is not None and not self._settling:
             springs = scene.supports.springs_at(state.datum)
             resting = self._resting_force(state.datum, has_history=has_history)
@@ -104,8 +111,6 @@ class DiskSystem(System):
             steady = self.load
         if steady.any():
             self.steady = steady.copy()
-        # a locked-in stress also acts through the seam of a free field, but not under the elastic law
-        through = bool(self.ties) and scene.case.material.locked_in is not None and not self._settling
         if has_history or (scene.has_history and (through or not scene.case.material.elastic_start)):
             self._switch(state, fresh=not has_history)
         else:
@@ -127,6 +132,13 @@ class DiskSystem(System):
         for tie in self.ties:
             force[:, tie.nodes] += tie.elastic_forces(displacement)
         return force
+
+    def saved(self, state: State) -> tuple[str, ...]:
+        """The steps under the elastic law after a static stage that left it."""
+        if not self.is_elastic_again:
+            return ()
+        steps = state.laws[1][1] if len(state.laws) > 1 else state.step
+        return (f"law: elastic after settling, as nothing is open or slides, for {steps:,} of {state.step:,} steps",)
 
     @property
     def uses_history(self) -> bool:
@@ -172,6 +184,18 @@ class DiskSystem(System):
         self.balance = Balance.recalled(self.scene, kept) if kept else None
         self._watch_breaks()
         self._follow()
+
+    def _returns_to_elastic(self, datum: np.ndarray) -> bool:
+        """Whether nothing is open or slides in the body at rest at the datum (3, n), which is then elastic again."""
+        if not self.scene.case.material.elastic_start:
+            return False
+        found = [(pairs, pairs.settled_slip(datum)) for pairs in self.contacts.values()]
+        slips = [(pairs, slip) for pairs, slip in found if slip is not None]
+        if len(slips) < len(found):
+            return False
+        for pairs, slip in slips:
+            pairs.use_elastic_law_with(slip)
+        return True
 
     def _resting_force(self, datum: np.ndarray, *, has_history: bool) -> np.ndarray:
         """Contact forces (3, n) of the body at rest at the datum."""

@@ -21,11 +21,12 @@ from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum, large
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
 """States of a pair: without bond, bonded, bond broken in tension, bond broken in shear."""
 
-UPDATED, BONDED, REFERENCE = 0, 1, 2
+UPDATED, BONDED, REFERENCE, SLID = 0, 1, 2, 3
 """Geometries of normals and arms.
 
 UPDATED: they follow the motion. BONDED, for ``geometry = "reference"``: those of intact bonds keep their initial
-values. REFERENCE: all keep them, and contacts that are closed at the start neither open nor slide.
+values. REFERENCE: all keep them, and contacts that are closed at the start neither open nor slide. SLID, of energies:
+the same, of contacts that slid earlier.
 """
 
 CLOSING = 1.05
@@ -227,14 +228,19 @@ def sum_forces(contacts, total):
 
 
 @njit(**PARALLEL)
-def start_from_displacements(u, contacts):
-    """Set the pairs' tangential displacements to those of small displacements u (3, n), without slip."""
+def start_from_displacements(u, contacts, keeps_slip=False):
+    """Set the pairs' tangential displacements to those of small displacements u (3, n), without slip.
+
+    keeps_slip : contacts that are closed at the start keep theirs.
+    """
     _, first, second, contact_type, constants, _, shear, slip, _, _, _, _, _ = contacts
     for p in prange(first.size):
         c = U(p)
         i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
         _, _, _, stretch, sheared = _reference_strain(i, j, k, dx, dy, u, constants)
         shear[c] = sheared
+        if keeps_slip and constants[k, U(3)] >= constants[k, U(2)]:
+            continue
         slip[c] = sheared if constants[k, U(3)] - constants[k, U(2)] < stretch else 0.0
 
 
@@ -253,14 +259,14 @@ def moved(u, begin, origin):
 
 
 @njit(**PARALLEL)
-def slack(u, contacts, limits):
+def slack(u, contacts, limits, keeps_slip=False):
     """Least relative motion (m) of two surfaces after which a pair leaves the elastic law; negative: it has left it.
 
     A pair leaves it where a contact opens, closes or slides, a bond reaches its strength, or, if geometry follows the
     motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation change by no more than the relative
-    motion of the surfaces, which gives a lower bound for each condition.
+    motion of the surfaces, which gives a lower bound for each condition. keeps_slip : contacts have slid earlier.
     """
-    _, first, second, contact_type, constants, state, _, _, _, _, _, _, _ = contacts
+    _, first, second, contact_type, constants, state, _, slip, _, _, _, _, _ = contacts
     friction, tension, cohesion, tan_fa, geometry = limits
     b = first.size
     least = np.empty(CHUNKS)
@@ -278,7 +284,8 @@ def slack(u, contacts, limits):
             if constants[k, U(3)] >= distance:
                 room = min(room, overlap)
                 if ks > 0.0:
-                    room = min(room, (friction * kn * overlap - ks * abs(shear)) / (ks + friction * kn))
+                    stuck = shear - slip[c] if keeps_slip else shear
+                    room = min(room, (friction * kn * overlap - ks * abs(stuck)) / (ks + friction * kn))
             else:
                 room = min(room, -overlap)
             if state[c] == INTACT:
@@ -312,7 +319,7 @@ def strain_energy(u, contacts, geometry):
             c = U(p)
             i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
             intact = state[c] == INTACT
-            if geometry == REFERENCE or (geometry == BONDED and intact):
+            if geometry >= REFERENCE or (geometry == BONDED and intact):
                 _, _, _, stretch, shear = _reference_strain(i, j, k, dx, dy, u, constants)
             else:
                 _, _, _, stretch = _updated_stretch(k, dx, dy, constants)

@@ -160,12 +160,12 @@ def check_watch(watched, u, u_next, v):
 
     The least distance of all pairs from their limits is computed again when surfaces have moved by half of it.
     """
-    _, contacts, limits, origin, skin, cells, _, way = watched
+    _, contacts, limits, origin, skin, cells, _, way, keeps_slip = watched
     if 2.0 * way[0] < way[1]:
         return DONE
     listed = skin - approach(u, contacts.begin, origin, cells)
     way[0] = 0.0
-    way[1] = min(slack(u, contacts, limits), listed)
+    way[1] = min(slack(u, contacts, limits, keeps_slip), listed)
     if way[1] >= 0.0:
         return DONE
     return LIST_ENDS if listed < 0.0 else LAW_ENDS

@@ -230,7 +230,7 @@ class WatchedLinks(NamedTuple):
     contacts, limits : the pairs and their limits; origin : (2, n) displacements at which the list of pairs was made, of
     the n particles of the rows; skin : m, largest gap of listed pairs; cells : of the particles then; arms : (begin +
     n,) m, longest arm of a particle's contacts; way : (2,) m, distance surfaces have moved since the contacts were
-    checked, and the distance they may move.
+    checked, and the distance they may move; keeps_slip : whether contacts have slid earlier.
     """
 
     links: Links
@@ -241,6 +241,7 @@ class WatchedLinks(NamedTuple):
     cells: Cells
     arms: np.ndarray
     way: np.ndarray
+    keeps_slip: bool = False
 
 
 class Bonded(NamedTuple):

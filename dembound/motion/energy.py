@@ -109,6 +109,7 @@ class Ledger(Tracker):
         contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))
         load = float(np.sum(system.load * (_by_node(u, state) - state.datum))) if system.load.any() else 0.0
         outside, damping, friction, crack, law_switch, turning = (float(work) for work in state.work[1])
+        outside += system.counted_outside(u)
         balance = turning + balancing
         error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - law_switch
         energies = kinetic, contact, bond, load, balance, outside, damping, friction, crack, law_switch, error

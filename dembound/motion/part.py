@@ -120,9 +120,17 @@ class System:
         stored = [part.stored(u) for part in self.parts]
         return sum(first for first, _ in stored), sum(second for _, second in stored)
 
+    def counted_outside(self, u: np.ndarray) -> float:
+        """Strain energy (J) of springs whose work kernels count as that of the outside, at displacements (3, slots)."""
+        return 0.0
+
     def balancing_work(self, u: np.ndarray) -> float:
         """Work (J) up to displacements (3, slots) of forces that balance a settled stress, without their rotation."""
         return 0.0
+
+    def saved(self, state: State) -> tuple[str, ...]:
+        """In words, what was saved by a law that takes less computing, a line each."""
+        return ()
 
     def take_cracks(self, steps: int) -> Cracks:
         """The bonds that broke since this was last called; steps : number of steps done."""

@@ -126,9 +126,13 @@ class Scene(ABC):
         """In words, how this scene is smaller than the whole one, a line each."""
         return ()
 
-    def widened(self, values: np.ndarray) -> np.ndarray:
-        """Values (n, …) of its nodes as those of the nodes of the whole scene."""
+    def widened(self, name: str, values: np.ndarray) -> np.ndarray:
+        """Values (n, …) of its nodes as those of the nodes of the whole scene; name : of the quantity in records."""
         return values
+
+    def observed(self, record: np.ndarray) -> np.ndarray:
+        """The record (k, p, 6 or 7) of the p monitors of the whole scene, from that of the nodes in `monitors`."""
+        return record
 
     @property
     def twin(self) -> np.ndarray | None:
@@ -145,11 +149,14 @@ class Scene(ABC):
         """(q,) the nodes of all edges, one edge after the other."""
         return np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in self.edges.values())])
 
-    def tracked_of(self, side: str) -> slice | np.ndarray:
-        """Where the nodes of a side of the whole scene are in `tracked`."""
+    def side_peaks(self, side: str, peaks: np.ndarray) -> np.ndarray:
+        """Smallest and largest velocity (k, 3, 2) of the nodes of a side of the whole scene.
+
+        peaks : (q, 3, 2) those of `tracked`.
+        """
         sides = list(self.edges)
         first = sum(len(self.edges[name].nodes) for name in sides[: sides.index(side)])
-        return slice(first, first + len(self.edges[side].nodes))
+        return peaks[first : first + len(self.edges[side].nodes)]
 
     @property
     def fastest(self) -> float:

@@ -115,7 +115,7 @@ class Simulation:
 
     def edge_peaks(self, side: str) -> np.ndarray:
         """Smallest and largest velocity so far of the nodes of one side of the whole scene, (k, 3, 2)."""
-        return self.state.peaks[self.scene.tracked_of(side)]
+        return self.scene.side_peaks(side, self.state.peaks)
 
     def _hand_round(self, record: np.ndarray | None) -> None:
         """Pass the last record of the probes, if any, to all trackers, and call those that are due."""

@@ -61,9 +61,14 @@ class Assembly:
             raise PackingError("no disk is left of the body")
         if kept.all():
             return self, np.arange(len(kept))
+        loose = self.loose + int(np.count_nonzero(~removed & ~kept))
+        return replace(self.only(kept), loose=loose), np.flatnonzero(kept)
+
+    def only(self, kept: np.ndarray) -> "Assembly":
+        """Some of its disks, kept (n,) bool, with the contacts between them."""
         number = np.cumsum(kept, dtype=np.int32) - 1
         contacts = kept[self.pairs].all(axis=1)
-        left = replace(
+        return replace(
             self,
             positions=self.positions[kept],
             radii=self.radii[kept],
@@ -71,9 +76,7 @@ class Assembly:
             tile=self.tile[kept],
             pairs=number[self.pairs[contacts]],
             contact_type=self.contact_type[contacts],
-            loose=self.loose + int(np.count_nonzero(~removed & ~kept)),
         )
-        return left, np.flatnonzero(kept)
 
 
 def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> Assembly:

@@ -54,14 +54,11 @@ def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
     Raises CaseError when there is no such snapshot.
     """
     snapshots = list(file.get("snapshots", {}).values())
+    if not snapshots:
+        raise CaseError([f"{file.filename}: has no snapshots, run with output.snapshots above 0"])
     if not -len(snapshots) <= number < len(snapshots):
-        raise CaseError([f"{file.filename}: has no snapshot {number}, they are {_numbers(len(snapshots))}"])
+        raise CaseError([f"{file.filename}: has no snapshot {number}, they are 0 to {len(snapshots) - 1}"])
     return snapshots[number]
-
-
-def _numbers(count: int) -> str:
-    """The numbers of the snapshots, as text."""
-    return f"0 to {count - 1}" if count else "none"
 
 
 def snapshot_of_largest_motion(file: h5py.File, field: str) -> h5py.Group:

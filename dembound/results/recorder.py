@@ -117,7 +117,7 @@ class Recorder:
         begun = state.step - len(record)
         rows = np.arange(-begun % self.stride, len(record), self.stride)
         self._times.append((begun + rows) * step)
-        self._samples.append(record[rows])
+        self._samples.append(self.run.scene.observed(record[rows]))
         self._broken.append(self.run.system.take_cracks(state.step))
         kept = sum(samples.nbytes for samples in self._samples)
         if kept >= KEPT_BYTES or time.monotonic() - self._written >= KEPT_SECONDS:
@@ -145,10 +145,10 @@ class Recorder:
         group = self.file.create_group(f"snapshots/{self._snapshots:04d}")
         group.attrs["time"] = self.run.time
         widened = self.run.scene.widened
-        _write(group, "displacement", widened((state.displacement - state.datum).T), DISPLACEMENT_UNIT)
-        _write(group, "velocity", widened(state.velocity.T), VELOCITY_UNIT)
+        _write(group, "displacement", widened("displacement", (state.displacement - state.datum).T), DISPLACEMENT_UNIT)
+        _write(group, "velocity", widened("velocity", state.velocity.T), VELOCITY_UNIT)
         for name, (values, unit) in self.run.system.snapshot(state.displacement).items():
-            _write(group, name, widened(values), unit)
+            _write(group, name, widened(name, values), unit)
         self._snapshots += 1
         self.file.flush()
 
@@ -253,7 +253,8 @@ class Recorder:
 
     def _write_peaks(self) -> None:
         if self.scene.case.output.peaks:
-            _write(self.file["particles"], "peak_velocity", self.run.scene.widened(self.run.state.top_speed), "m/s")
+            speed = self.run.scene.widened("peak_velocity", self.run.state.top_speed)
+            _write(self.file["particles"], "peak_velocity", speed, "m/s")
 
 
 class Histories(Tracker):

@@ -17,6 +17,13 @@ if TYPE_CHECKING:
     import h5py
 
 
+FIELD_BYTES = 48
+"""Bytes of displacement and velocity of a node in a snapshot."""
+
+WORTH_SAYING = 1e6
+"""Bytes of a snapshot below which leaving it out saves nothing."""
+
+
 def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float]) -> dict[str, Any]:
     """The run in numbers, for scripts: plain JSON values, SI units; seconds : time spent, by part of the run."""
     scene, state = run.scene, run.state
@@ -38,7 +45,7 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
         "cracks": _count_cracks(record),
         "energy": _describe_energy(record),
         "monitors": _describe_monitors(record),
-        "reduced": list(scene.reduced),
+        "reduced": [*scene.reduced, *run.system.saved(state), *_fields_left_out(planned)],
     }
 
 
@@ -56,6 +63,14 @@ def end_in_words(summary: Mapping[str, Any]) -> list[str]:
     if (ended := summary["ended"]) is None:
         return []
     return [f"ended at {ended['time']:.4g} s, all monitors silent: {100.0 * ended['saved']:.0f} % of the steps saved"]
+
+
+def _fields_left_out(planned: Plan) -> list[str]:
+    """In words, the size of the snapshot that a large scene would have, in a run that keeps none."""
+    size = FIELD_BYTES * planned.scene.count
+    if planned.scene.case.output.snapshots > 0 or size < WORTH_SAYING:
+        return []
+    return [f"fields: no snapshot is kept, {size / 1e6:.3g} MB each"]
 
 
 def _count_cracks(record: Path) -> dict[str, int]:

@@ -173,7 +173,7 @@ BAR = {
     "wave.pulse.period": 0.01,
     "monitor": [{"name": "middle", "position": [5.0, 0.5]}],
     "run.duration": 0.01,
-    "output.snapshots": 0,
+    "output.snapshots": 1,
     "output.pictures": False,
 }
 

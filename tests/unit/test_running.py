@@ -9,6 +9,7 @@ import pytest
 
 from dembound.casefile import Case
 from dembound.errors import CaseError, RunError
+from dembound.kinds import with_changes
 from dembound.motion.trackers import Run
 from dembound.plot.scene import plot_scene
 from dembound.results.summary import end_in_words
@@ -78,12 +79,23 @@ def test_snapshots_are_evenly_spaced_and_the_last_is_at_the_end(bar, tmp_path) -
     np.testing.assert_allclose(times, [0.0025, 0.005, 0.0075, 0.01], rtol=1e-12)
 
 
-def test_the_last_state_is_kept_even_without_snapshots(bar, tmp_path) -> None:
-    folder = run_case(bar({"output.snapshots": 0}), tmp_path)
-
-    with h5py.File(folder / "run.h5") as file:
-        (last,) = file["snapshots"].values()
-        assert last.attrs["time"] == pytest.approx(summary(folder)["duration"], rel=1e-15)
+def test_histories_alone_are_written_without_snapshots(bar, spalling, tmp_path) -> None:
+    for case in (bar(), spalling({"output.pictures": True})):
+        full, alone = (
+            run_case(with_changes(case, {"output.snapshots": number}), tmp_path / str(number)) for number in (1, 0)
+        )
+        with h5py.File(full / "run.h5") as file, h5py.File(alone / "run.h5") as without:
+            assert list(file["snapshots"]) == ["0000"]
+            assert "snapshots" not in without
+            for name, group in file["histories"].items():
+                for quantity, values in group.items():
+                    assert np.array_equal(values, without["histories"][name][quantity])
+            for name, values in file["energy"].items():
+                assert np.array_equal(values, without["energy"][name])
+        assert (full / "paraview").is_dir()
+        assert not (alone / "paraview").exists()
+        assert not (alone / "scene.png").exists()
+        assert summary(alone)["warnings"] == summary(full)["warnings"]
 
 
 def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> None:

@@ -26,7 +26,7 @@ def test_each_disk_stands_for_those_above_and_below(whole) -> None:
     assert set(row.positions[:, 1].round(9)) == {1.25}  # the middle row, where the scene has it
     assert row.assembly.pairs[row.assembly.contact_type == 1].tolist() == [[k, k] for k in range(20)]
     values = np.arange(40.0).reshape(20, 2)
-    assert np.array_equal(row.widened(values), values[row.like])
+    assert np.array_equal(row.widened("speed", values), values[row.like])
 
 
 def test_loads_and_supports_are_those_of_its_disks(whole) -> None:
@@ -60,8 +60,8 @@ def test_sides_and_monitors_are_found_in_it(whole) -> None:
     for name, node in row.monitors.items():
         assert row.positions[node, 0] == whole.positions[whole.monitors[name], 0]
     for side, edge in whole.edges.items():
-        nodes = row.tracked[row.tracked_of(side)]
-        assert np.array_equal(row.positions[nodes, 0], edge.positions[:, 0])
+        places = np.broadcast_to(row.positions[row.tracked, 0][:, None, None], (len(row.tracked), 3, 2))
+        assert np.array_equal(row.side_peaks(side, places)[:, 0, 0], edge.positions[:, 0])
     assert set(row.edges) == {"left", "right"}
 
 
@@ -69,7 +69,7 @@ def test_columns_are_rows_of_an_upright_scene(whole) -> None:
     column = one_row(whole, 0)
 
     assert column.count == 5
-    assert np.array_equal(column.widened(column.positions[:, 1]), whole.positions[:, 1])
+    assert np.array_equal(column.widened("height", column.positions[:, 1]), whole.positions[:, 1])
     assert set(column.edges) == {"bottom", "top"}
 
 

@@ -140,4 +140,4 @@ def test_energies_are_those_of_all_masses(scene) -> None:
 
     assert row.weight == pytest.approx(3.0, rel=1e-15)
     assert row.mass[-1] == 0.5 * row.mass[0]
-    assert np.array_equal(row.widened(row.positions[:, 0]), whole.positions[:, 0])
+    assert np.array_equal(row.widened("place", row.positions[:, 0]), whole.positions[:, 0])

@@ -11,7 +11,7 @@ from dembound.casefile import Case
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.results.recorder import Histories, Recorder
-from dembound.results.summary import arrival, summarise
+from dembound.results.summary import _fields_left_out, arrival, summarise
 from dembound.running import plan
 
 SECONDS = {"build": 0.25, "step": 2.0, "record": 0.5}
@@ -113,4 +113,20 @@ def test_nothing_arrives_at_rest() -> None:
         "peak_velocity": 0.0,
         "peak_time": None,
         "arrival": None,
+    }
+
+
+def test_fields_that_are_not_kept_are_named_where_they_are_large(bar) -> None:
+    few, many = {"packing.size": [10.0, 1.0]}, {"packing.size": [500.0, 12.0], "run.time_step": 1e-4}
+    left_out = {
+        (number, name): _fields_left_out(plan(bar({**size, "output.snapshots": number})))
+        for number in (0, 1)
+        for name, size in (("few", few), ("many", many))
+    }
+
+    assert left_out == {
+        (0, "few"): [],
+        (0, "many"): ["fields: no snapshot is kept, 1.15 MB each"],
+        (1, "few"): [],
+        (1, "many"): [],
     }

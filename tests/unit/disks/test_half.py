@@ -1,0 +1,174 @@
+"""One half of a symmetric scene: which scenes have one, and what acts on its disks."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dembound.disks.half import HalfScene, halves
+from dembound.disks.reduction import reduced, represents_all
+from dembound.disks.scene import build
+
+EVEN, ODD = 10.0, 10.5
+"""Widths (m) of 20 and of 21 columns of disks, 6 rows high."""
+
+
+@pytest.fixture
+def scene(bar):
+    """Makes scenes that are pushed down in the middle of their upper side, with keys of the case changed."""
+
+    def make(width, changes=None):
+        middle = 0.5 * width
+        push = {"name": "push", "region": [middle - 0.4, 2.5, middle + 0.4, 3.0], "force": [0.0, -1e6]}
+        sides = {f"boundary.{side}": {"type": "viscous"} for side in ("left", "right", "bottom")}
+        base = {"packing.size": [width, 3.0], "motion.held": [], "material.fric": 0.5, "reduce.symmetry": True}
+        return build(bar(base | sides | {"load": [push | {"wave": "pulse"}], "monitor": []} | (changes or {})))
+
+    return make
+
+
+def load(x, force, **keys):
+    return {"name": "more", "region": [x - 0.1, 1.0, x + 0.1, 1.6], "force": force, **keys}
+
+
+@pytest.mark.parametrize(("width", "disks"), [(EVEN, 60), (ODD, 66)])
+def test_one_half_is_stepped(scene, width, disks) -> None:
+    whole = scene(width)
+    half = reduced(whole)
+
+    assert isinstance(half, HalfScene)
+    assert half.whole is whole
+    assert (half.count, half.axis, half.antisymmetric) == (disks, 0, False)
+    assert half.weight == pytest.approx(2.0, rel=1e-15)
+    assert np.array_equal(half.places_in_whole, np.flatnonzero(whole.positions[:, 0] < 0.5 * width + 0.1))
+    assert whole.bytes < half.bytes < 2 * whole.bytes
+
+
+def test_it_is_off_by_default(scene) -> None:
+    whole = scene(EVEN, {"reduce.symmetry": False})
+
+    assert reduced(whole) is whole
+
+
+@pytest.mark.parametrize("width", [EVEN, ODD])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"boundary.left": {"type": "viscous", "beta_s": 1.0 + 1e-9}},
+        {"boundary.left": {"type": "viscoelastic", "distance": 20.0}},
+        {"boundary.left": {"type": "fixed"}},
+        {"boundary.left": {"type": "viscous_input", "wave_p": "pulse"}},
+        {"load": [load(3.25, [0.0, 1e3])]},
+        {"load": [load(3.25, [0.0, 1e3], wave="pulse")]},
+        {"load": [{"name": "one", "position": [4.75, 2.75], "force": [0.0, 1e3]}]},
+        {"load": [{"name": "tilted", "acceleration": [1e-9, -9.81]}]},
+        {"hole": [{"name": "gap", "type": "circle", "centre": [4.25, 1.25], "radius": 0.1}]},
+        {"boundary.left": {"type": "periodic"}, "boundary.right": {"type": "periodic"}},
+        {"material.law": "linearpbond"},
+        {"static.stress": [-1e6, -1e6, 0.0], "load": []},
+        {"boundary.left": {"type": "free_field"}, "boundary.right": {"type": "free_field"}},
+    ],
+)
+def test_near_misses_are_stepped_whole(scene, width, changes) -> None:
+    whole = scene(width, changes)
+
+    assert reduced(whole) is whole
+
+
+def test_random_bricks_have_no_half(scene) -> None:
+    brick = {"pattern": "B", "size": [10.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0]}
+
+    assert list(halves(scene(EVEN, {"packing": brick}), 0)) == []
+
+
+@pytest.mark.parametrize("width", [EVEN, ODD])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda half: {"load": half.load + 1.0},
+        lambda half: {"fraction": 1.001 * half.fraction},
+        lambda half: {"supports": replace(half.supports, stiffness=1.001 * half.supports.stiffness + 1.0)},
+        lambda half: {"supports": replace(half.supports, damping=half.supports.damping * (1.0 + 1e-9))},
+        lambda half: {"supports": replace(half.supports, drive=-half.supports.drive)},
+        lambda half: {"antisymmetric": True},
+        lambda half: {"axis": 1},
+        lambda half: {"image": ~half.image},
+        lambda half: {"supports": replace(half.supports, prescribed=~half.supports.prescribed)},
+    ],
+)
+def test_a_half_that_is_not_one_of_the_scene_is_refused(scene, width, change) -> None:
+    half = reduced(scene(width))
+
+    assert represents_all(half)
+    assert not represents_all(replace(half, **change(half)))
+
+
+def test_disks_on_the_line_are_halves_that_cannot_leave_it(scene) -> None:
+    whole = scene(ODD)
+    half = reduced(whole)
+    on_line = half.positions[:, 0] == 5.25
+
+    assert on_line.sum() == 6
+    assert np.array_equal(half.mass[on_line], 0.5 * whole.mass[half.place][on_line])
+    assert np.array_equal(half.mass[~on_line], whole.mass[half.place][~on_line])
+    table = half.supports
+    held = table.prescribed & np.isin(table.component, [0, 2])
+    assert np.array_equal(np.unique(table.node[held]), np.flatnonzero(on_line))
+    assert np.count_nonzero(table.prescribed) == 12
+    upright = on_line[half.assembly.pairs].all(axis=1)
+    assert (half.assembly.contact_type[upright] == 3).all()  # half of type 1, the brick has two
+    assert (half.assembly.contact_type[~upright] < 2).all()
+
+
+def test_contacts_with_images_are_springs(scene) -> None:
+    whole = scene(EVEN)
+    half = reduced(whole)
+    stiffness = whole.ground.stiffness
+    table = half.supports
+    sprung = table.stiffness > 0.0
+    next_to = np.flatnonzero(half.positions[:, 0] == 4.75)
+
+    assert np.array_equal(np.unique(table.node[sprung]), next_to)
+    assert set(table.stiffness[sprung & (table.component == 0)]) == {2.0 * stiffness.normal[0]}
+    assert set(table.stiffness[sprung & (table.component == 2)]) == {2.0 * stiffness.bending[0]}
+    assert not (sprung & (table.component == 1)).any()
+
+
+@pytest.mark.parametrize("width", [EVEN, ODD])
+def test_fields_of_images_have_their_signs(scene, width) -> None:
+    whole = scene(width)
+    half = reduced(whole)
+    values = np.random.default_rng(0).standard_normal((half.count, 3))
+    mirrored = whole.positions.copy()
+    mirrored[:, 0] = width - mirrored[:, 0]
+    other = np.argmin(np.hypot(*(whole.positions[:, None] - mirrored[None]).T), axis=1)
+    right = whole.positions[:, 0] > 0.5 * width + 0.1
+
+    for name, signs in (("velocity", [-1, 1, -1]), ("displacement", [-1, 1, -1]), ("stress", [1, 1, -1])):
+        wide = half.widened(name, values)
+        assert np.array_equal(wide[half.places_in_whole], values)
+        assert np.array_equal(wide[right], wide[other[right]] * signs)
+    assert np.array_equal(
+        half.widened("coordination", values[:, 0])[right], half.widened("x", values[:, 0])[other[right]]
+    )
+
+
+def test_peaks_of_images_change_sign_and_place(scene) -> None:
+    whole = scene(EVEN)
+    half = reduced(whole)
+    peaks = np.zeros((len(half.tracked), 3, 2))
+    peaks[..., 0], peaks[..., 1] = -1.0, 3.0
+
+    assert np.array_equal(half.side_peaks("left", peaks)[0], [[-1.0, 3.0]] * 3)
+    assert np.array_equal(half.side_peaks("right", peaks)[0], [[-3.0, 1.0], [-1.0, 3.0], [-3.0, 1.0]])
+    assert len(half.side_peaks("top", peaks)) == 20
+
+
+def test_monitors_of_the_other_side_are_shown_with_their_signs(scene) -> None:
+    places = [{"name": "l", "position": [0.25, 0.25]}, {"name": "r", "position": [9.75, 0.25]}]
+    half = reduced(scene(EVEN, {"monitor": places}))
+    record = np.ones((4, 2, 6))
+
+    assert half.monitors["l"] == half.monitors["r"]
+    assert half.observed(record)[0, 0].tolist() == [1.0] * 6
+    assert half.observed(record)[0, 1].tolist() == [-1.0, 1.0, -1.0] * 2

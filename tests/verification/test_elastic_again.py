@@ -1,0 +1,155 @@
+"""After a static stage in which contacts slid, the elastic law computes the motion of the history-dependent law.
+
+A square lattice under a target stress with shear: contacts slide on the way to rest and stick when it is reached, some
+with a slip that remains.
+"""
+
+import numpy as np
+import pytest
+
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
+from dembound.disks.static import settle
+from dembound.disks.system import DiskSystem
+from dembound.kernels.contacts import SHEAR
+from dembound.kinds import with_changes
+from dembound.motion.energy import Ledger
+from dembound.motion.simulation import Simulation
+
+EPS = np.finfo(float).eps
+STRESS = 1e6
+WEAK, STRONG = 0.01, 0.3
+"""m/s: nothing slides, and sliding begins before the end."""
+
+STEPS = 250
+
+
+def sheared(lab, geometry, amplitude=WEAK, stress=(-STRESS, -STRESS, 0.2 * STRESS), **material):
+    material = {"law": "linearpbond", "geometry": geometry, "fric": 0.5, "pb_ten": 5e7, "pb_coh": 5e7} | material
+    return lab.case(
+        "A",
+        (20.0, 10.0),
+        held=(),
+        material=material,
+        boundary={"left": {"type": "viscous_input", "wave_p": "pulse"}},
+        wave=lab.pulse(0.02) | {"amplitude": amplitude},
+        static={"damp": 0.3, "stress": list(stress)},
+    )
+
+
+def run(case, *, elastic):
+    """The simulation of a case after its static stage, and the motion (k, n, 6) of all particles."""
+    scene = build(with_changes(case, {"reduce.settled": elastic}))
+    start, step = settle(scene).start, choose_step(scene)[0]
+    system = DiskSystem(scene, step, start)
+    simulation = Simulation(scene, step, np.arange(scene.count), system=system, datum=start.displacement)
+    ledger = Ledger(simulation, 10)
+    simulation.track(ledger)
+    return simulation, simulation.advance(STEPS), ledger
+
+
+def largest(motion, columns):
+    return np.abs(motion[..., columns]).max()
+
+
+MOVED, FAST = slice(0, 2), slice(3, 5)
+
+
+@pytest.mark.parametrize("amplitude", [WEAK, STRONG])
+def test_small_displacements_agree_to_rounding(lab, amplitude):
+    case = sheared(lab, "reference", amplitude)
+    full, expected, _ = run(case, elastic=False)
+    again, motion, ledger = run(case, elastic=True)
+
+    assert full.state.laws == [("linearpbond", 0)]
+    names = [name for name, _ in again.state.laws]
+    assert names == (["elastic"] if amplitude == WEAK else ["elastic", "linearpbond"])
+    slid = again.system.parts[0].contacts.of("slip")
+    assert np.abs(slid).max() > 1e-3 * np.abs(again.state.datum).max()  # what a start without history would forget
+    # the settled forces, against which the wave's are rounded, are this much larger than those of ρcv
+    ratio = STRESS / (lab.density * lab.speed * amplitude)
+    assert largest(motion - expected, FAST) < ratio * EPS * STEPS * largest(expected, FAST)
+    kinetic = ledger.columns[:, 1].max()
+    assert np.abs(ledger.columns[:, -1]).max() < ratio**2 * EPS * STEPS * kinetic
+
+
+def test_fields_of_stress_are_those_of_contacts_that_slid(lab):
+    """They are those of the other law but for its vectors of contacts, which follow the motion, as areas do not.
+
+    Without their slip, contacts would have a thousandth of the largest displacement more shear: 8 kPa.
+    """
+    stresses = []
+    for elastic in (False, True):
+        scene = build(with_changes(sheared(lab, "reference"), {"reduce.settled": elastic}))
+        start, step = settle(scene).start, choose_step(scene)[0]
+        system = DiskSystem(scene, step, start)
+        Simulation(scene, step, system=system, datum=start.displacement).advance(1)
+        stresses.append(system.stress(start.displacement))
+    strain = STRESS / (lab.density * lab.speed**2)
+    np.testing.assert_allclose(*stresses, rtol=0.0, atol=2.0 * strain * STRESS)
+
+
+def test_updated_geometry_differs_by_the_settled_strain(lab):
+    """What turns with the contacts is the settled force, at most the settled strain of the stiffness."""
+    case = sheared(lab, "updated")
+    _, expected, _ = run(case, elastic=False)
+    again, motion, _ = run(case, elastic=True)
+    strain = STRESS / (lab.density * lab.speed**2)
+
+    assert again.state.laws == [("elastic", 0)]
+    assert largest(motion - expected, MOVED) < strain * largest(expected, MOVED)
+    assert largest(motion - expected, FAST) < strain * largest(expected, FAST)
+
+
+def test_the_state_is_restored_to_the_same_bits(lab):
+    first, _, _ = run(sheared(lab, "reference", STRONG), elastic=True)
+    second = build(with_changes(sheared(lab, "reference", STRONG), {"reduce.settled": True}))
+    start = settle(second).start
+    system = DiskSystem(second, first.time_step, start)
+    other = Simulation(second, first.time_step, system=system, datum=start.displacement)
+    other.track(Ledger(other, 10))
+    other.advance(100)
+    other.state.take(first.state.arrays())
+
+    first.advance(40)
+    other.advance(40)
+    assert np.array_equal(first.state.displacement, other.state.displacement)
+
+
+NOT_AGAIN = {
+    "off by default": ({}, {}),
+    "contacts are open": ({"stress": (0.2 * STRESS, -STRESS, 0.3 * STRESS)}, {"reduce.settled": True}),
+    "no elastic start": ({"elastic_start": False}, {"reduce.settled": True}),
+}
+
+
+@pytest.mark.parametrize("why", NOT_AGAIN)
+def test_other_bodies_keep_the_law_with_history(lab, why):
+    words, changes = NOT_AGAIN[why]
+    scene = build(with_changes(sheared(lab, "reference", **words), changes))
+    start = settle(scene).start
+    assert start.has_history
+    step = choose_step(scene)[0]
+    system = DiskSystem(scene, step, start)
+    simulation = Simulation(scene, step, system=system, datum=start.displacement)
+    assert simulation.state.laws == [("linearpbond", 0)]
+    assert system.saved(simulation.state) == ()
+
+
+@pytest.mark.parametrize("spoil", ["a broken bond", "a contact missing", "a contact about to slide", "an open contact"])
+def test_a_single_pair_keeps_the_law_with_history(lab, spoil):
+    scene = build(with_changes(sheared(lab, "reference"), {"reduce.settled": True}))
+    start = settle(scene).start
+    pairs = start.contacts["body"]
+    assert pairs.settled_slip(start.displacement) is not None
+
+    k, moved = pairs.live[700], start.displacement.copy()
+    if spoil == "a broken bond":
+        pairs.arrays.state[k] = SHEAR
+    elif spoil == "a contact missing":
+        pairs.live = np.delete(pairs.live, 700)
+    elif spoil == "a contact about to slide":
+        pairs.arrays.slip[k] += 1e-3
+    else:
+        moved[:, 300] += 1e-3
+    assert pairs.settled_slip(moved) is None
