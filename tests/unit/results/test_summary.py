@@ -11,7 +11,7 @@ from dembound.casefile import Case
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.results.recorder import Histories, Recorder
-from dembound.results.summary import _fields_left_out, arrival
+from dembound.results.summary import _fields_left_out, arrival, summarise
 from dembound.running import plan
 
 SECONDS = {"build": 0.25, "step": 2.0, "record": 0.5}
