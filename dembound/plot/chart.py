@@ -25,12 +25,12 @@ ELSEWHERE = "others: see chart.csv"
 
 DARK = "#404040"
 
-REFERENCE_HEAD = "reference"
+REFERENCE_HEAD, OTHERS = "reference", "others"
 
 LINE = 0.033
 """Height of a line of the list over that of the panel."""
 
-WIDTH = 52
+WIDTH = 68
 """Characters in a line of the list."""
 
 PLACES = [
@@ -180,7 +180,7 @@ def _list(panel: Axes, dots: Sequence[Dot], own: int) -> None:
     entries = [
         *_entries("Pareto front, the cheapest first", [dot for dot in dots if dot.on_front], COLOURS[1]),
         *_entries(REFERENCE_HEAD, [dot for dot in dots if dot.number == own + 1], DARK),
-        *(_entries("others", rest, COLOURS[0]) if len(dots) <= MOST_LISTED else [(ELSEWHERE, COLOURS[0], True)]),
+        *(_entries(OTHERS, rest, COLOURS[0]) if len(dots) <= MOST_LISTED else [(ELSEWHERE, COLOURS[0], True)]),
         *_entries("failed", [dot for dot in dots if dot.failure], DARK),
     ]
     lines = sum(text.count("\n") + 1 for text, _, _ in entries)
@@ -209,7 +209,7 @@ def _entries(head: str, dots: Sequence[Dot], colour: str) -> list[tuple[str, str
     for dot in sorted(dots, key=lambda dot: dot.cost if len(dot.cpu) else 0.0):
         error = f"{dot.error:.2g} %, " if dot.error >= LEAST else "0 %, "
         numbers = dot.failure or f"{'' if head == REFERENCE_HEAD else error}{dot.cost:.2g} s"
-        numbers += f", {dot.found}" if dot.found else ""
+        numbers += f", {dot.found}" if dot.found and head != OTHERS else ""
         found.append((_wrapped(f"{dot.number}  {dot.name}: {numbers}", WIDTH), colour, False))
     return found
 

@@ -19,7 +19,7 @@ from dembound.studies.chart.choices import Choice, choices_of, digest, from_tabl
 from dembound.studies.chart.defaults import defaults
 from dembound.studies.chart.errors import MonitorError, Reference, Wanted, errors
 from dembound.studies.chart.exact import exact_of
-from dembound.studies.chart.front import Point, cheapest_within, front
+from dembound.studies.chart.front import ROUNDING, Point, cheapest_within, front
 from dembound.studies.chart.measure import Outcome, measure
 from dembound.studies.chart.record import Record, record_in
 from dembound.studies.chart.reference import reference_of
@@ -109,19 +109,21 @@ class Charted:
     @property
     def sentence(self) -> str:
         """The cheapest choices within the `LEVELS`, in words."""
-        parts = []
+        within: dict[str, list[str]] = {}
         for level in LEVELS:
             found = self.cheapest(level)
-            within = f"within {100.0 * level:g} %"
-            parts.append(f"{within} none" if found is None else f"{within} {self._described(self.lines[found])}")
+            name = "none" if found is None else self._described(self.lines[found])
+            within.setdefault(name, []).append(f"within {100.0 * level:g} %")
+        parts = [f"cheapest {' and '.join(levels)}: {name}" for name, levels in within.items()]
         best = min((self.lines[k] for k in self.judged), key=lambda line: line.errors[0].rms, default=None)
         if best is not None and best.errors[0].rms > LEVELS[-1]:
-            parts.append(f"the most accurate is {self._described(best)}")
-        return f"cheapest: {'; '.join(parts)}"
+            parts.append(f"most accurate: {self._described(best)}")
+        return "; ".join(parts)
 
     def _described(self, line: Line) -> str:
         """A choice with its error and cost."""
-        return f"{line.choice.name} ({100.0 * line.errors[0].rms:.2g} %, {line.cpu:.3g} s)"
+        error = line.errors[0].rms
+        return f"{line.choice.name} ({100.0 * error if error > ROUNDING else 0:.2g} %, {line.cpu:.2g} s)"
 
 
 def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown) -> Charted:
