@@ -102,6 +102,16 @@ def one_of(key: str, types: Iterable[type[Any]]) -> Any:
     return Annotated[Union[tuple(types)], Field(discriminator=key)]  # noqa: UP007  # types known at run time
 
 
+def shifted_place(place: tuple[float, float], by: tuple[float, float]) -> tuple[float, float]:
+    """A place (x, y) shifted by (x, y), m."""
+    return place[0] + by[0], place[1] + by[1]
+
+
+def shifted_box(box: tuple[float, float, float, float], by: tuple[float, float]) -> tuple[float, float, float, float]:
+    """A rectangle x0, y0, x1, y1 shifted by (x, y), m."""
+    return *shifted_place((box[0], box[1]), by), *shifted_place((box[2], box[3]), by)
+
+
 def _serves_as_file_name(name: str) -> str:
     if not re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9_.-]*", name):
         raise ValueError(f'is "{name}", must be made of the letters A-Z and a-z, digits, "_", "-" and "." (not first)')

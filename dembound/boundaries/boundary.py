@@ -21,6 +21,7 @@ class Boundary(Table):
     is_free : whether no forces act on the side.
     is_periodic : whether the side is connected to the opposite side.
     is_mirror : whether the side is a mirror plane.
+    is_artificial : whether it stands in for ground or rock beyond it, so that it may be farther away.
     needs_column : whether the side needs a free-field column, which moves with the waves of the ground.
     beyond_dashpots : text for reports, naming what `dashpots_alone` leaves out.
     """
@@ -30,6 +31,7 @@ class Boundary(Table):
     is_free: ClassVar[bool] = False
     is_periodic: ClassVar[bool] = False
     is_mirror: ClassVar[bool] = False
+    is_artificial: ClassVar[bool] = False
     needs_column: ClassVar[bool] = False
     beyond_dashpots: ClassVar[str] = ""
 
@@ -74,6 +76,10 @@ class Boundary(Table):
         """The side with other waves: kind -> name."""
         keys = {f"wave_{motion}": waves.get(motion) for motion in ("p", "s")}
         return self.model_copy(update=keys)
+
+    def shifted(self, by: tuple[float, float]) -> Self:
+        """The side in coordinates whose origin has moved by minus (x, y) m; by default it has no places."""
+        return self
 
     def at_rest(self) -> "Boundary":
         """The side without its waves."""

@@ -11,6 +11,7 @@ class Fixed(Boundary):
 
     for_bars: ClassVar[bool] = True
     for_static: ClassVar[bool] = True
+    is_artificial: ClassVar[bool] = True
 
     type: Literal["fixed"]
 

@@ -10,6 +10,7 @@ class Roller(Boundary):
     """A smooth rigid wall: no motion along the side's normal; sliding and turning are free."""
 
     for_static: ClassVar[bool] = True
+    is_artificial: ClassVar[bool] = True
 
     type: Literal["roller"]
 

@@ -5,7 +5,7 @@ springs of α_n G/L along the normal and α_s G/L across it. G follows from a gi
 """
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import model_validator
@@ -16,7 +16,7 @@ from dembound.boundaries.sides import normal_axis
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.boundaries.viscous import Dashpots, Viscous, ViscousInput
 from dembound.errors import CaseError
-from dembound.table import quantity
+from dembound.table import quantity, shifted_place
 
 
 class Springs(Boundary):
@@ -44,6 +44,12 @@ class Springs(Boundary):
         if (self.distance is None) == (self.source is None):
             raise ValueError("must have exactly one of distance and source, which give the distance L")
         return self
+
+    def shifted(self, by: tuple[float, float]) -> Self:
+        """With its source shifted by (x, y) m."""
+        if self.source is None:
+            return self
+        return self.model_copy(update={"source": shifted_place(self.source, by)})
 
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
         """Adds the factors α, the modulus G (Pa) and the distances L (m) of the springs."""

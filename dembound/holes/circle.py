@@ -1,11 +1,11 @@
 """A circular hole."""
 
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 
 from dembound.holes.hole import Box, Hole
-from dembound.table import quantity
+from dembound.table import quantity, shifted_place
 
 
 class Circle(Hole):
@@ -18,6 +18,10 @@ class Circle(Hole):
     def contains(self, positions: np.ndarray) -> np.ndarray:
         """Which positions (k, 2) m lie in it, (k,) bool; those on its rim do not."""
         return np.hypot(*(positions - self.centre).T) < self.radius
+
+    def shifted(self, by: tuple[float, float]) -> Self:
+        """The hole shifted by (x, y) m."""
+        return self.model_copy(update={"centre": shifted_place(self.centre, by)})
 
     @property
     def box(self) -> Box:

@@ -1,12 +1,12 @@
 """An elliptic hole."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 import numpy as np
 from pydantic import Field
 
 from dembound.holes.hole import Box, Hole
-from dembound.table import quantity
+from dembound.table import quantity, shifted_place
 
 Length = Annotated[float, Field(gt=0.0)]
 
@@ -29,6 +29,10 @@ class Ellipse(Hole):
         c, s = self._direction
         along_axes = (positions - self.centre) @ np.array([[c, -s], [s, c]])
         return np.hypot(*(along_axes / self.semi_axes).T) < 1.0
+
+    def shifted(self, by: tuple[float, float]) -> Self:
+        """The hole shifted by (x, y) m."""
+        return self.model_copy(update={"centre": shifted_place(self.centre, by)})
 
     @property
     def box(self) -> Box:

@@ -1,7 +1,7 @@
 """The base of all holes: a name, a stage, and the particles to remove."""
 
 from abc import ABC, abstractmethod
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 
@@ -24,6 +24,10 @@ class Hole(Table, ABC):
     @abstractmethod
     def contains(self, positions: np.ndarray) -> np.ndarray:
         """Which positions (k, 2) m lie in it, (k,) bool."""
+
+    @abstractmethod
+    def shifted(self, by: tuple[float, float]) -> Self:
+        """The hole shifted by (x, y) m."""
 
     @property
     @abstractmethod

@@ -1,12 +1,12 @@
 """A hole of any shape with straight edges."""
 
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import field_validator
 
 from dembound.holes.hole import Box, Hole
-from dembound.table import quantity
+from dembound.table import quantity, shifted_place
 
 Points = tuple[tuple[float, float], ...]
 
@@ -32,6 +32,10 @@ class Polygon(Hole):
             if y0 != y1:
                 inside ^= ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) / (y1 - y0) * (x1 - x0))
         return inside
+
+    def shifted(self, by: tuple[float, float]) -> Self:
+        """The hole shifted by (x, y) m."""
+        return self.model_copy(update={"points": tuple(shifted_place(point, by) for point in self.points)})
 
     @property
     def box(self) -> Box:

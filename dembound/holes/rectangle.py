@@ -1,12 +1,12 @@
 """A rectangular hole."""
 
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import field_validator
 
 from dembound.holes.hole import Box, Hole
-from dembound.table import quantity
+from dembound.table import quantity, shifted_box
 
 
 class Rectangle(Hole):
@@ -27,6 +27,10 @@ class Rectangle(Hole):
         """Which positions (k, 2) m lie in it, (k,) bool; those on its rim do not."""
         (x, y), (x0, y0, x1, y1) = positions.T, self.corners
         return (x0 < x) & (x < x1) & (y0 < y) & (y < y1)
+
+    def shifted(self, by: tuple[float, float]) -> Self:
+        """The hole shifted by (x, y) m."""
+        return self.model_copy(update={"corners": shifted_box(self.corners, by)})
 
     @property
     def box(self) -> Box:

@@ -112,6 +112,19 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
     return whole.without(np.zeros(len(twin), dtype=bool))[0]
 
 
+def count_disks(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> int:
+    """Number of disks of `tile` with these parameters, before disks without connection are left out."""
+    across, up = (
+        count + (not wraps and bool(row.any()))
+        for count, wraps, row in zip(copies, periodic, brick.edge_rows.T, strict=True)
+    )
+    closing = brick.edge_rows
+    corner = int(np.count_nonzero(closing.all(axis=1)))
+    right, top = (int(np.count_nonzero(row)) for row in closing.T)
+    extra = (across - copies[0]) * copies[1] * right + (up - copies[1]) * copies[0] * top
+    return copies[0] * copies[1] * len(brick.radii) + extra + (across - copies[0]) * (up - copies[1]) * corner
+
+
 def _body(assembly: Assembly, present: np.ndarray) -> np.ndarray:
     """The largest connected body (n,) bool of the disks present (n,) bool; isolated groups transmit no waves."""
     from scipy.sparse import coo_matrix

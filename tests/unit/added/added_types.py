@@ -124,6 +124,10 @@ class Diamond(Hole):
         """Which positions lie in it."""
         return np.abs(positions - self.centre).sum(axis=1) < self.half
 
+    def shifted(self, by):
+        """With its middle somewhere else."""
+        return self.model_copy(update={"centre": (self.centre[0] + by[0], self.centre[1] + by[1])})
+
     @property
     def box(self):
         """The square around it."""

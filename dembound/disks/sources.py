@@ -1,0 +1,64 @@
+"""Where the motion of a scene of disks starts: driven sides, loads, and the holes that scatter waves."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dembound.boundaries import axis_of_motion, normal_axis
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.load import Load
+from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.wave_front import front_of, slowest_speed
+from dembound.motion.paths import FULL, Source
+
+
+def sources_of(case: DiskCase, ground: PackedMaterial) -> list[Source]:
+    """All sources of a scene of this size; holes are local sources from the first arrival of a driven side's waves on.
+
+    Steady loads are none if a static stage balances them, else they start at once and never end.
+    """
+    driven = list(_sides(case, ground))
+    speed = front_of(ground, case.run.safety).speed
+    return [*driven, *_loads(case, ground), *_holes(case, driven, speed, slowest_speed(ground))]
+
+
+def _sides(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
+    """Driven sides, each with its waves."""
+    for side, waves in case.driving.items():
+        axis, box = normal_axis(side), list(FULL)
+        box[axis] = box[2 + axis] = case.packing.extent[axis] if side in ("right", "top") else 0.0
+        for motion, name in waves.items():
+            if axis_of_motion(side, motion) not in ground.held:
+                wave, speed = case.wave[name], ground.wave_speeds(axis)[0 if motion == "p" else 1]
+                yield Source((box[0], box[1], box[2], box[3]), wave.start, wave.duration(), speed)
+
+
+def _loads(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
+    """Loads, by their places."""
+    slowest = slowest_speed(ground)
+    for load in case.load:
+        place = _place_of(load)
+        if load.wave is not None:
+            wave = case.wave[load.wave]
+            yield Source(place, wave.start, wave.duration(), slowest, is_local=place != FULL)
+        elif case.static is None:
+            yield Source(place, 0.0, np.inf, slowest, is_local=place != FULL)
+
+
+def _place_of(load: Load) -> tuple[float, float, float, float]:
+    """The rectangle that a load acts on."""
+    if load.position is not None:
+        return *load.position, *load.position
+    return FULL if load.region is None else load.region
+
+
+def _holes(case: DiskCase, driven: list[Source], fastest: float, slowest: float) -> Iterator[Source]:
+    """Holes, for the waves of driven sides; other waves reach a column over its side anyway."""
+    if not driven:
+        return
+    for hole in case.hole:
+        x0, y0, x1, y1 = hole.box
+        corners = np.array([[x0, y0], [x0, y1], [x1, y0], [x1, y1]])
+        first = min(source.start + float(source.distance(corners).min()) / fastest for source in driven)
+        last = max(source.over + float(source.distance(corners).max()) / source.slowest for source in driven)
+        yield Source(hole.box, first, last, slowest, is_local=True)

@@ -1,0 +1,276 @@
+"""A scene enlarged until nothing returns from its artificial sides: the reference for what they reflect.
+
+Sides that stand in for the ground or rock beyond them (`Boundary.is_artificial`) move outwards by whole bricks, until
+no wave can have been there and back at any monitor within the run. The disks of the case keep their places in bricks,
+as all bricks are alike, and move like those of an endless scene. Free and driven sides, mirror planes and periodic
+sides stay where they are.
+
+Where waves enter through an artificial side it stays, too: farther away it would send another wave, as packings
+disperse, or the same too late. What it reflects is then in the reference as in the case, and the sentence gives it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from dembound.bar.scene import build_bar
+from dembound.bar.stability import choose_step as choose_bar_step
+from dembound.bar.wave_front import front_of_bar, sources_of_bar
+from dembound.boundaries import SIDES, normal_axis
+from dembound.casefile import Case
+from dembound.casefile.bar import BarCase
+from dembound.casefile.bar.bar import MOST_CELLS
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.load import Load
+from dembound.casefile.run import Run
+from dembound.disks.loads import forces_of
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.sources import sources_of
+from dembound.disks.stability import choose_step
+from dembound.disks.wave_front import front_of
+from dembound.errors import CaseError
+from dembound.motion.paths import Front, Source, plane_needed
+from dembound.packings.tiling import count_disks
+from dembound.table import shifted_place
+
+MOST = 8_000_000
+"""Particles of the largest scene that is made unless another limit is given; its run takes some 2 GB."""
+
+LESS = 0.95
+"""Largest `run.safety` with which the step of the case is also stable in the larger scene.
+
+There the disks of a moved side have more neighbours, and the limit of the step may be some per cent smaller. With a
+larger safety the step remains "auto".
+"""
+
+AROUND = 65
+"""Places along each side of a scene without monitors."""
+
+R = TypeVar("R", bound=Run)
+
+
+@dataclass(frozen=True)
+class Extended:
+    """An enlarged case.
+
+    case : the enlarged case, called as the case with "_extended"; the case itself if no side has to move.
+    sentence : its size, the number of its particles, and what does not return from where.
+    """
+
+    case: Case
+    sentence: str
+
+
+def extended(case: Case, most: int = MOST) -> Extended:
+    """The scene of a case enlarged so that nothing returns from artificial sides to its monitors within run.duration.
+
+    Without monitors nothing returns to any place of the scene. Its time step is that of the case. Bars are extended
+    beyond ends that are neither loaded nor driven.
+
+    most : largest number of particles or nodes.
+
+    Raises CaseError where no artificial side can move, where a hole reaches beyond a side that has to, and where more
+    than `most` particles are needed; also the errors of building the scene.
+    """
+    if isinstance(case, BarCase):
+        return _extended_bar(case, most)
+    assert isinstance(case, DiskCase)
+    return _extended_disks(case, most)
+
+
+def _extended_disks(case: DiskCase, most: int) -> Extended:
+    """A scene of disks with more bricks."""
+    moving = _moving(case, set(case.driving))
+    scene = build(case)
+    front = front_of(scene.ground, case.run.safety)
+    sources = sources_of(case, scene.ground)
+    bricks = {side: _bricks_beyond(scene, side, sources, front) for side in moving}
+    added = [[bricks.get(side, 0) for side in pair] for pair in (("left", "right"), ("bottom", "top"))]
+    copies = tuple(count + sum(more) for count, more in zip(case.packing.copies, added, strict=True))
+    count = _particles(scene, (copies[0], copies[1]))
+    packing = case.packing.with_copies(copies[0], copies[1])
+    size = "{:g} m × {:g} m".format(*packing.extent)
+    _must_not_exceed(count, most, size, case)
+    what = f"the same scene {size}, {count:,} particles"
+    sentence = _sentence(case, what, moving)
+    if not any(bricks.values()):
+        return Extended(case, sentence)
+    wide, high = case.packing.brick_size
+    by = added[0][0] * wide, added[1][0] * high
+    _holes_must_end(case, bricks)
+    larger = replace(
+        _at_places(case, scene, by),
+        packing=packing,
+        boundary={side: table.shifted(by) for side, table in case.boundary.items()},
+        run=_same_step(case.run, choose_step(scene)[0]),
+        name=f"{case.name}_extended",
+    )
+    return Extended(larger, sentence)
+
+
+def _moving(case: Case, staying: set[str]) -> list[str]:
+    """The artificial sides that can move; staying : sides where motion enters."""
+    artificial = [side for side in SIDES if case.side(side).is_artificial]
+    moving = [side for side in artificial if side not in staying]
+    if artificial and not moving:
+        raise CaseError(
+            [
+                f"boundary.{side}: lets motion in, so it cannot move away without changing that; no other side is "
+                "artificial, and the scene cannot be extended"
+                for side in artificial[:1]
+            ],
+            case.name,
+        )
+    return moving
+
+
+def _bricks_beyond(scene: DiskScene, side: str, sources: list[Source], front: Front) -> int:
+    """Number of bricks by which a side has to move outwards."""
+    case, axis = scene.case, normal_axis(side)
+    if case.side(side).needs_column:  # it moves like the ground under everything that is not local
+        sources = [source for source in sources if source.is_local]
+    low, high = 0.0, float(scene.size[axis])
+    plane = high if side in ("right", "top") else low
+    needed = plane_needed(side, plane, sources, _targets(scene), front, case.run.duration)
+    beyond = needed - plane if plane == high else plane - needed
+    return max(0, int(np.ceil(beyond / case.packing.brick_size[axis] - 1e-9))) if np.isfinite(beyond) else 0
+
+
+def _targets(scene: DiskScene) -> np.ndarray:
+    """Places (k, 2) m to which nothing may return: monitors' particles, or without monitors all around the scene."""
+    if scene.case.monitor:
+        return scene.positions[[scene.monitors[monitor.name] for monitor in scene.case.monitor]]
+    wide, high = scene.size
+    along, zero = np.linspace(0.0, 1.0, AROUND), np.zeros(AROUND)
+    square = np.concatenate([np.column_stack([a, b]) for a, b in ((along, zero), (zero, along))])
+    return np.concatenate([square, 1.0 - square]) * [wide, high]
+
+
+def _particles(scene: DiskScene, copies: tuple[int, int]) -> int:
+    """Number of particles with other numbers of bricks, with the same holes and a column of the new height."""
+    case, brick = scene.case, scene.ground.brick
+    periodic = (case.side("left").is_periodic, case.side("bottom").is_periodic)
+    count = scene.count + count_disks(brick, copies, periodic) - count_disks(brick, case.packing.copies, periodic)
+    if scene.seam is None:
+        return count
+    new, old = (count_disks(brick, (1, up), (True, False)) for up in (copies[1], case.packing.copies[1]))
+    return count + new - old
+
+
+def _must_not_exceed(count: int, most: int, size: str, case: Case) -> None:
+    """Raise CaseError for a scene that is too large."""
+    if count > most:
+        raise CaseError(
+            [
+                f"run.duration: is {case.run.duration:g} s, for which nothing returns only in a scene of {size} with "
+                f"{count:,} particles, more than {most:,}; take a shorter run, or coarser particles"
+            ],
+            case.name,
+        )
+
+
+def _sentence(case: Case, what: str, moving: list[str]) -> str:
+    """The size of the scene, and what does not return."""
+    artificial = [side for side in SIDES if case.side(side).is_artificial]
+    if not artificial:
+        return f"reference: {what}, none of whose sides is artificial"
+    staying = [side for side in artificial if side not in moving]
+    until = f"nothing returns before {case.run.duration:g} s"
+    if not staying:
+        return f"reference: {what}, from which {until}"
+    return (
+        f"reference: {what}, from whose {' and '.join(moving)} {until}; {' and '.join(staying)} stays, as waves enter "
+        "there, and reflects as in the case"
+    )
+
+
+def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
+    """Raise CaseError for holes that reach beyond a side that moves."""
+    planes = dict(zip(SIDES, (0.0, case.packing.extent[0], 0.0, case.packing.extent[1]), strict=True))
+    problems = [
+        f"hole.{hole.name}: reaches the {side} side, beyond which the case does not say how it goes on, so that the "
+        "scene cannot be extended there"
+        for hole in case.hole
+        for side, plane in planes.items()
+        if bricks.get(side, 0) and _reaches(hole.box, side, plane)
+    ]
+    if problems:
+        raise CaseError(problems, case.name)
+
+
+def _reaches(box: tuple[float, float, float, float], side: str, plane: float) -> bool:
+    """Whether a rectangle reaches a plane (m along its normal), or beyond."""
+    axis = normal_axis(side)
+    return box[2 + axis] >= plane if side in ("right", "top") else box[axis] <= plane
+
+
+def _at_places(case: DiskCase, scene: DiskScene, by: tuple[float, float]) -> DiskCase:
+    """The case with holes, loads and monitors shifted by (x, y) m, each exactly to its particle's place."""
+    monitors = tuple(
+        monitor.model_copy(update={"position": _shifted(scene.positions[scene.monitors[monitor.name]], by)})
+        for monitor in case.monitor
+    )
+    return replace(
+        case,
+        hole=tuple(hole.shifted(by) for hole in case.hole),
+        load=tuple(_shifted_load(load, scene, by) for load in case.load),
+        monitor=monitors,
+    )
+
+
+def _shifted_load(load: Load, scene: DiskScene, by: tuple[float, float]) -> Load:
+    """A load on the same particles; a region that reached beyond the scene ends at its sides."""
+    if load.position is not None:
+        (node,), _ = forces_of(load, scene.assembly, scene.mass)
+        return load.model_copy(update={"position": _shifted(scene.positions[node], by)})
+    if load.region is None:
+        return load
+    low, high = np.maximum(load.region[:2], 0.0), np.minimum(load.region[2:], scene.assembly.extent)
+    return load.model_copy(update={"region": (*_shifted(low, by), *_shifted(high, by))})
+
+
+def _shifted(place: np.ndarray, by: tuple[float, float]) -> tuple[float, float]:
+    """A place (2,) m shifted by (x, y) m."""
+    return shifted_place((float(place[0]), float(place[1])), by)
+
+
+def _same_step(run: R, step: float) -> R:
+    """The ``[run]`` table with the time step (s) of the case."""
+    if run.time_step != "auto" or run.safety > LESS or getattr(run, "courant", None) is not None:
+        return run
+    return run.model_copy(update={"time_step": step})
+
+
+def _extended_bar(case: BarCase, most: int) -> Extended:
+    """A bar with more spacings."""
+    scene = build_bar(case)
+    bar, step = case.bar, choose_bar_step(scene)[0]
+    moving = _moving(case, {*case.driving, *(load.side for load in case.load)})
+    front, spacing = front_of_bar(scene, step), bar.length / bar.cells
+    targets = scene.positions[list(scene.monitors.values())] if case.monitor else scene.positions[[0, -1]]
+    cells = {"left": 0, "right": 0}
+    for side in moving:
+        plane = bar.length if side == "right" else 0.0
+        needed = plane_needed(side, plane, sources_of_bar(case), targets, front, case.run.duration)
+        beyond = needed - plane if side == "right" else plane - needed
+        cells[side] = max(0, int(np.ceil(beyond / spacing - 1e-9))) if np.isfinite(beyond) else 0
+    count = bar.cells + sum(cells.values())
+    length = count * spacing
+    _must_not_exceed(count + 1, min(most, MOST_CELLS), f"{length:g} m", case)
+    sentence = _sentence(case, f"the same bar {length:g} m long, {count + 1:,} nodes", moving)
+    if not any(cells.values()):
+        return Extended(case, sentence)
+    shift = cells["left"] * spacing
+    monitors = tuple(
+        monitor.model_copy(update={"position": min(monitor.position + shift, length)}) for monitor in case.monitor
+    )
+    larger = replace(
+        case,
+        bar=bar.model_copy(update={"length": length}),
+        monitor=monitors,
+        run=_same_step(case.run, step),
+        name=f"{case.name}_extended",
+    )
+    return Extended(larger, sentence)

@@ -1,0 +1,122 @@
+"""From the sides of an extended scene nothing returns to a monitor within the run, and the scene is not much too large.
+
+The scene is compared with the one extended for a run half as long again. Up to its own duration both must move alike
+but for the precursors of the fastest waves, 1e-9 of an impulse, and less of a smooth pulse (`motion.paths.Front`).
+A scene extended for 0.7 of the duration must differ from it: within 30 % of the run the first echo, which is a small
+part of the wave at first, grows far above that.
+"""
+
+import numpy as np
+import pytest
+
+from dembound.bar.scene import build_bar
+from dembound.casefile.bar import BarCase
+from dembound.disks.scene import build
+from dembound.kinds import with_changes
+from dembound.motion.simulation import Simulation
+from dembound.running import plan
+from dembound.studies.extended import extended
+
+ALIKE = 1e-9
+"""Largest difference over the largest velocity."""
+
+SPLINE = {"type": "cubic_spline", "amplitude": 1.0, "period": 0.01}
+
+
+def velocities(case, duration):
+    """(k, p, 2) m/s of the monitors up to a time, at the steps of the case."""
+    scene = build_bar(case) if isinstance(case, BarCase) else build(case)
+    nodes = [scene.monitors[monitor.name] for monitor in case.monitor]
+    simulation = Simulation(scene, case.run.time_step, nodes)
+    return simulation.advance(round(duration / case.run.time_step))[:, :, 3:5]
+
+
+def with_step(case):
+    """The case with the step that it has anyway, so that runs of any duration share it."""
+    return with_changes(case, {"run.time_step": plan(case).time_step})
+
+
+def for_run_of(case, duration):
+    return extended(with_changes(case, {"run.duration": duration})).case
+
+
+def assert_nothing_returns(case, too_soon=0.7):
+    case, duration = with_step(case), case.run.duration
+    own, later, sooner = (velocities(for_run_of(case, share * duration), duration) for share in (1.0, 1.5, too_soon))
+    largest = np.abs(later).max()
+    assert largest > 0.0
+    assert np.abs(own - later).max() < ALIKE * largest
+    assert np.abs(sooner - later).max() > 1e3 * ALIKE * largest
+    return own, later, largest
+
+
+def monitored(case, *places):
+    return with_changes(case, {"monitor": [{"name": f"m{k}", "position": place} for k, place in enumerate(places)]})
+
+
+@pytest.fixture
+def lamb(lab):
+    def make(pattern, size, far, **words):
+        load = {"force": [0.0, -1e5], "position": [0.25, size[1]], "wave": "pulse"}
+        boundary = {"left": "symmetry", "right": far, "bottom": far}
+        case = lab.case(pattern, size, held=(), wave=SPLINE, load=[load], boundary=boundary, duration=0.05, **words)
+        return monitored(case, [3.0, size[1]], [5.0, 4.0])
+
+    return make
+
+
+@pytest.mark.parametrize("far", ["viscous", "fixed", "roller"])
+def test_a_blow_on_a_half_space(lamb, far):
+    assert_nothing_returns(lamb("A", (10.0, 10.0), far))
+
+
+def test_a_blow_on_random_bricks(lamb):
+    assert_nothing_returns(lamb("B", (10.0, 10.0), "viscous"), too_soon=0.4)  # sides move by bricks of 10 m
+
+
+def test_the_scene_itself_moves_alike_until_the_first_echo(lamb):
+    # from the blow at the surface to the nearest moved side, 10 m away, and back to the monitor at (5, 4): over the
+    # bottom 10 + 4 m down and up and 5 m across, over the right side 10 + 5 m along and 6 m across; at 1000 m/s the
+    # first echo comes after 14.9 ms. Precursors need a path some 10 (s a²/8)^(1/3) = 7.7 m longer, so half of that time
+    case = with_step(lamb("A", (10.0, 10.0), "viscous"))
+    small, large = (velocities(each, 0.05) for each in (case, for_run_of(case, 0.05)))
+    before = int(0.5 * 14.9e-3 / case.run.time_step)
+    difference = np.abs(small - large)
+
+    assert np.abs(large[:before]).max() > 0.0
+    assert difference[:before].max() < ALIKE * np.abs(large).max()
+    assert difference.max() > 0.02 * np.abs(large).max()
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("motion", ["p", "s"])
+def test_a_wave_along_a_bar(lab, side, motion):
+    other = "right" if side == "left" else "left"
+    boundary = {side: {"type": "velocity", f"wave_{motion}": "pulse"}, other: "viscous"}
+    boundary |= {"bottom": "periodic", "top": "periodic"}
+    case = lab.case("A", (20.0, 2.0), held=(), wave=lab.pulse(0.01), boundary=boundary, duration=0.08)
+    too_soon = {"p": 0.7, "s": 0.3}[motion]  # the speed of P waves is taken, S waves have half of it
+    assert_nothing_returns(monitored(case, [2.0, 1.0], [18.0, 1.0]), too_soon)
+
+
+def test_waves_scattered_by_a_hole_beside_a_free_field(lab):
+    boundary = {"left": "free_field", "right": "free_field", "bottom": {"type": "viscous_input", "wave_s": "pulse"}}
+    case = lab.case("A", (12.0, 10.0), held=(), wave=lab.pulse(0.01), boundary=boundary, duration=0.04)
+    hole = {"name": "tunnel", "type": "circle", "centre": [4.0, 5.0], "radius": 1.6}
+    case = monitored(with_changes(case, {"hole": [hole]}), [6.0, 5.0], [4.0, 10.0])
+    own, _, largest = assert_nothing_returns(case)
+
+    assert np.abs(own).max() == pytest.approx(largest, rel=1e-6)
+    wider = for_run_of(with_step(case), 0.04)
+    assert wider.packing.extent[0] > 12.0
+    assert wider.packing.extent[1] == 10.0  # a deeper base would send another wave
+
+
+@pytest.mark.parametrize("method", [{"type": "finite_difference"}, {"type": "peridynamics", "horizon": 3}])
+def test_a_rock_bar(rock, method):
+    table = {"right": {"type": "viscous"}}
+    load = {"pressure": 1e6, "side": "left"}
+    wave = rock.triangle(5e-5)
+    case = rock.scene(method, spacing=5e-3, load=load, wave=wave, boundary=table).case
+    case = with_changes(case, {"run.duration": 1e-3, "monitor": [{"name": "end", "position": 0.9}]})
+    assert_nothing_returns(case)
