@@ -107,9 +107,10 @@ class PulseInBar(Exact):
         crest = abs(self.pressure) * self.wave.peak()
         if strength > crest:
             return self
-        wave, rising = self.wave, isinstance(self.wave, Triangle)
-        long_enough = rising and self.speed * (wave.rise + wave.fall) <= self.bar_length
-        if not isinstance(wave, Triangle) or not long_enough or self.far_end != "free" or self.pressure < 0.0:
+        wave = self.wave
+        if not isinstance(wave, Triangle) or self.far_end != "free" or self.pressure * wave.amplitude < 0.0:
+            return None
+        if self.speed * (wave.rise + wave.fall) > self.bar_length:
             return None
         place, at = triangle_spall(self.bar_length, self.speed, wave.rise, wave.fall, crest, strength)
         at += wave.start

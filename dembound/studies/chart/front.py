@@ -1,7 +1,8 @@
 """The Pareto front: choices for which no other is both cheaper and more accurate, the same in every run of a chart.
 
 Errors and work are the same to the bit in every run of a choice; its CPU time varies, on a busy machine by a quarter
-and more. Two choices are therefore compared by their CPU times only if these differ clearly, else by their work:
+and more, and laws, which cost more for the same work, differ by a factor of two and more. Two choices are therefore
+compared by their CPU times only if these differ clearly, else by their work:
 
 - In every round all choices run one after the other, and so under nearly the same load. The ratio of their costs is the
   median over the rounds of the ratios within a round.
@@ -18,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-NOISE = 0.25
+NOISE = 0.5
 """Relative difference of two CPU times up to which work decides."""
 
 EQUAL = 0.01

@@ -116,4 +116,5 @@ def _gauges(planned: Plan, records: Records) -> dict[str, Gauge]:
             stress=motion[:, index, 6] if motion.shape[2] > 6 else None,
         )
         for index, (name, node) in enumerate(scene.monitors.items())
+        if name in scene.places  # without the twins in a free-field column
     }
