@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from dembound.plot.style import COLOURS, REFERENCE, new_figure, styled
 from dembound.results.reader import open_record
@@ -17,6 +18,12 @@ LEVELS = (1.0, 0.1)
 
 LEAST = 1e-4
 """Smallest error shown, in per cent; smaller ones are drawn there."""
+
+SPANS = (8.0, 20.0)
+"""Least ratio of the ends of the axis of costs, and of that of errors."""
+
+MARGIN, DECADES = 0.6, 300.0
+"""Ends of the axes over the extreme values; ratio of the ends up to which 2 and 5 have numbers, too."""
 
 MOST_LISTED = 28
 """Number of choices that are listed; of more only those on the front and those that failed are."""
@@ -134,11 +141,24 @@ def _draw(panel: Axes, dots: Sequence[Dot]) -> None:
         panel.plot(dot.cost, dot.shown, marker, color=colour, markersize=size, zorder=3, gid=dot.name)
     line = sorted((dot for dot in dots if dot.on_front), key=lambda dot: dot.shown)
     panel.plot([d.cost for d in line], [d.shown for d in line], color=COLOURS[1], linewidth=1.6, label="Pareto front")
+    _widen(panel, dots)
     low, high = panel.get_ylim()
     for level in LEVELS:
-        if 0.3 * low < level < 3.0 * high:
+        if low < level < high:
             panel.axhline(level, color=REFERENCE, linewidth=0.9, linestyle="--", zorder=1)
-    panel.margins(0.12)
+
+
+def _widen(panel: Axes, dots: Sequence[Dot]) -> None:
+    """Axes that are at least as wide as `SPANS`, so that small differences are not magnified, with plain numbers."""
+    costs = np.concatenate([dot.cpu for dot in dots])
+    errors = np.array([dot.shown for dot in dots])
+    for axis, values, span in zip((panel.xaxis, panel.yaxis), (costs, errors), SPANS, strict=True):
+        low, high = MARGIN * values.min(), values.max() / MARGIN
+        wider = max(1.0, np.sqrt(span * low / high))
+        axis.set_view_interval(low / wider, high * wider, ignore=True)
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high / low < DECADES else (1.0,), numticks=12))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def _number(figure: Figure, panel: Axes, dots: Sequence[Dot]) -> None:
@@ -207,7 +227,7 @@ def _entries(head: str, dots: Sequence[Dot], colour: str) -> list[tuple[str, str
         return []
     found = [(head, colour, True)]
     for dot in sorted(dots, key=lambda dot: dot.cost if len(dot.cpu) else 0.0):
-        error = f"{dot.error:.2g} %, " if dot.error >= LEAST else "0 %, "
+        error = f"{dot.error:.{2 if dot.error < 99.5 else 3}g} %, " if dot.error >= LEAST else "0 %, "
         numbers = dot.failure or f"{'' if head == REFERENCE_HEAD else error}{dot.cost:.2g} s"
         numbers += f", {dot.found}" if dot.found and head != OTHERS else ""
         found.append((_wrapped(f"{dot.number}  {dot.name}: {numbers}", WIDTH), colour, False))
