@@ -56,7 +56,7 @@ def chart(
         typer.Option(
             metavar="REFERENCE",
             help="Errors are those against: exact, an exact solution; extended, the same scene so large that nothing "
-            "returns; finest, the choice with the most work. By default the first that the case allows.",
+            "returns; finest, the choice with the most nodes times steps. By default the first that the case allows.",
         ),
     ] = None,
     quantity: Annotated[

@@ -33,7 +33,7 @@ def reference_of(
     """The reference of this name for choices with these outcomes.
 
     By default the exact solution if the case has one. Else, if choices differ in their sides, the extended scene, if it
-    is affordable. Else the choice with the most work.
+    is affordable. Else the choice with the most nodes times steps.
 
     Raises CaseError if a reference that is asked for by name is not possible, RunError if its run fails.
     """
@@ -95,11 +95,14 @@ def _exact(solution: Exact) -> Reference:
 
 
 def _finest(choices: Sequence[Choice], outcomes: Sequence[Outcome]) -> Reference:
-    """The choice that does the most work, the first of several."""
+    """The choice with the most nodes times steps, the first of several.
+
+    Work would be no measure of accuracy for bars: wider horizons have more bonds and larger errors.
+    """
     done = [k for k, outcome in enumerate(outcomes) if not outcome.failure]
     if not done:
         raise RunError("no choice could be run")
-    own = max(done, key=lambda k: outcomes[k].work)
+    own = max(done, key=lambda k: outcomes[k].count * outcomes[k].steps)
     return Reference(
         name="finest",
         sentence=f"the finest run, {choices[own].name}",
