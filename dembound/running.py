@@ -180,9 +180,27 @@ def _gone_if_empty(folder: Path) -> Iterator[None]:
 
 def _simulate(planned: Plan, path: Path, progress: Progress, clock: Clock) -> tuple[Simulation, Beginning]:
     """Start from the state given by the kind of body, then advance to the end while trackers record."""
-    scene, case, steps = planned.stepped, planned.scene.case, planned.steps
+    case, steps = planned.scene.case, planned.steps
     with clock.of("settle"):
         beginning = _begin(planned, path, progress)
+    simulation, ledger = simulation_of(planned, beginning, clock)
+    shots = min(case.output.snapshots, steps)
+    interval = case.output.history_interval
+    with Recorder(path, simulation, planned.step_limit, interval, ledger, beginning.stages) as recorder:
+        snapshots = Snapshots(recorder, [steps * number // shots for number in range(1, shots + 1)])
+        simulation.track(Histories(recorder), ledger, snapshots, Reports(progress, steps))
+        simulation.run(steps)
+        if simulation.stopped:
+            snapshots.take_last(simulation)
+    return simulation, beginning
+
+
+def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Simulation, Ledger]:
+    """The simulation of a planned run in its first state, with the monitors as probes, and its energy ledger.
+
+    The ledger still has to be tracked.
+    """
+    scene = planned.stepped
     simulation = Simulation(
         scene,
         planned.time_step,
@@ -191,23 +209,13 @@ def _simulate(planned: Plan, path: Path, progress: Progress, clock: Clock) -> tu
         datum=beginning.datum,
         clock=clock,
     )
-    ledger = Ledger(simulation, _steps_between_entries(planned), last=steps - 1)
-    shots = min(case.output.snapshots, steps)
-    interval = case.output.history_interval
-    with Recorder(path, simulation, planned.step_limit, interval, ledger, beginning.stages) as recorder:
-        snapshots = Snapshots(recorder, [steps * number // shots for number in range(1, shots + 1)])
-        simulation.track(Histories(recorder), ledger, snapshots, _Reports(progress, steps))
-        if case.run.until == "silent":
-            rule = silent_rule(planned.scene, planned.kind.sources(planned.scene))
-            simulation.track(Silence(rule, planned.time_step))
-        simulation.run(steps)
-        if simulation.stopped:
-            snapshots.take_last(simulation)
-    return simulation, beginning
+    if scene.case.run.until == "silent":
+        simulation.track(Silence(silent_rule(planned.scene, planned.kind.sources(planned.scene)), planned.time_step))
+    return simulation, Ledger(simulation, _steps_between_entries(planned), last=planned.steps - 1)
 
 
-class _Reports(Tracker):
-    """Reports to the progress after every block of steps."""
+class Reports(Tracker):
+    """Reports to the progress after every block of steps; steps : the number in the whole run."""
 
     name = "reports"
 

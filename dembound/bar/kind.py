@@ -14,11 +14,11 @@ from dembound.bar.outcome import bar_outcome
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.sources import sources_of_bar
 from dembound.bar.stability import choose_step
-from dembound.bar.summary import summarise_bar
+from dembound.bar.summary import part_of, spalls_of, summarise_bar
 from dembound.bar.warnings import bar_warnings, warnings_after_bar
 from dembound.bar.wave_front import front_of_bar
 from dembound.casefile.bar import SCHEMA, BarCase
-from dembound.motion.kind import Beginning, Kind, OnLook
+from dembound.motion.kind import Beginning, Finding, Kind, OnLook
 from dembound.motion.paths import Front, Source
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run
@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+SPALL_PLACE, SPALL_TIME = "spall place", "spall time"
+"""Names of what is found about the first spall."""
+
+
 class Bars(Kind[BarCase, BarScene]):
     """Bars of nodes."""
 
@@ -36,6 +40,7 @@ class Bars(Kind[BarCase, BarScene]):
     schema = SCHEMA
     mesh_name = "bar"
     view_script = VIEW_SCRIPT
+    work_unit = "bond updates"
 
     def build(self, case: BarCase) -> BarScene:
         """Its nodes and what supports them."""
@@ -84,6 +89,20 @@ class Bars(Kind[BarCase, BarScene]):
     def summarise(self, scene: BarScene, run: Run, beginning: Beginning, record: Path) -> dict[str, Any]:
         """The bar and its spalls in numbers."""
         return summarise_bar(scene, run, record)
+
+    def work(self, run: Run) -> int:
+        """Forces of springs and bonds computed; without horizons one for every node, less one, and step."""
+        return part_of(run).bond_updates
+
+    def findings(self, scene: BarScene, run: Run) -> dict[str, Finding]:
+        """Middle (m) and time (s) of the first spall, if there is one."""
+        found, _ = spalls_of(scene, run)
+        if not found:
+            return {}
+        return {
+            SPALL_PLACE: Finding(0.5 * sum(found[0].start), "m"),
+            SPALL_TIME: Finding(found[0].time, "s"),
+        }
 
     def outcome(self, summary: Mapping[str, Any]) -> list[str]:
         """Methods and spalls in words."""

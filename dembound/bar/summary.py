@@ -5,7 +5,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from dembound.bar.fracture import breaks_at_ends, spalls
+from dembound.bar.fracture import Spall, breaks_at_ends, spalls
 from dembound.bar.part import BarPart
 from dembound.bar.scene import BarScene, bar_medium
 from dembound.gauge.estimates import pull_back_strength
@@ -23,9 +23,7 @@ OF_DISKS = {"beta_s", "half_mass"}
 def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
     """Entries of a bar's summary in addition to those of every run: plain JSON values, SI units."""
     bar = part_of(run)
-    places = spalls(bar.bonds, scene.positions[:, 0], run.time_step)
-    at_ends = breaks_at_ends(places, _held_ends(scene))
-    found = [place for place in places if place not in at_ends.values()]
+    found, at_ends = spalls_of(scene, run)
     return {
         "nodes": scene.count,
         "method": scene.case.method.model_dump(),
@@ -39,6 +37,13 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
         "stress": _largest_stresses(record),
         "pull_back_strength": _pull_backs(scene, record) if found else {},
     }
+
+
+def spalls_of(scene: BarScene, run: Run) -> tuple[list[Spall], dict[str, Spall]]:
+    """The spalls of a run in order of time, and the breaks at held ends: side -> break."""
+    places = spalls(part_of(run).bonds, scene.positions[:, 0], run.time_step)
+    at_ends = breaks_at_ends(places, _held_ends(scene))
+    return [place for place in places if place not in at_ends.values()], at_ends
 
 
 def part_of(run: Run) -> BarPart:

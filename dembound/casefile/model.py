@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 import tomli_w
 
 from dembound.boundaries import Boundary, Free, Motion
+from dembound.casefile.chart import Chart
 from dembound.casefile.output import Output
 from dembound.casefile.run import Run
 from dembound.errors import CaseError
@@ -25,7 +26,7 @@ class Case:
     boundary : side -> table, in the order left, right, bottom, top; an absent side is free.
     wave : name -> table.
     load, monitor : in the order of the file.
-    run, output : the tables of these names.
+    run, output, chart : the tables of these names.
     name : the file's name without folder and ending.
     folder : where relative paths in the case start.
     text : the TOML text the case was read from; for a case made in another way, an equivalent text. checked : the
@@ -41,6 +42,7 @@ class Case:
     monitor: tuple[Any, ...] = ()
     run: Run
     output: Output = field(default_factory=Output)
+    chart: Chart = field(default_factory=Chart)
     name: str = field(default="case", compare=False)
     folder: Path = field(default=Path(), compare=False)
     text: str = field(default="", compare=False, repr=False)

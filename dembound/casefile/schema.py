@@ -47,6 +47,6 @@ class Schema:
     @property
     def keys(self) -> list[str]:
         """All keys allowed at the top level of a file, in the order of messages."""
-        last = ("run", "output")
+        last = ("run", "output", "chart")
         first = [key for key in self.tables if key not in last]
         return ["title", *first, "boundary", *self.staged, "wave", *self.lists, *last]

@@ -6,6 +6,7 @@ Each command imports what it calls when it is called, so that help and completio
 from dembound.cli import (  # each registers its commands with the application
     calibration,
     cases,
+    chart,
     dispersion,
     gauge,
     results,
@@ -13,4 +14,4 @@ from dembound.cli import (  # each registers its commands with the application
 )
 from dembound.cli.app import app, main
 
-__all__ = ["app", "calibration", "cases", "dispersion", "gauge", "main", "results", "starting"]
+__all__ = ["app", "calibration", "cases", "chart", "dispersion", "gauge", "main", "results", "starting"]

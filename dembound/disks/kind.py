@@ -39,6 +39,7 @@ class Disks(Kind[DiskCase, DiskScene]):
     schema = SCHEMA
     mesh_name = "particles"
     view_script = VIEW_SCRIPT
+    work_unit = "particle-steps"
 
     def build(self, case: DiskCase) -> DiskScene:
         """Its scene; raises the errors for loads without particles and for a singular material."""
@@ -108,6 +109,10 @@ class Disks(Kind[DiskCase, DiskScene]):
     def summarise(self, scene: DiskScene, run: Run, beginning: Beginning, record: Path) -> dict[str, Any]:
         """Packing, sides and the static stage in numbers."""
         return summarise_disks(scene, run) | {"static": beginning.summary}
+
+    def work(self, run: Run) -> int:
+        """Steps times the particles that are stepped."""
+        return run.state.step * run.scene.count
 
     def outcome(self, summary: Mapping[str, Any]) -> list[str]:
         """Static stage, laws and cracks in words."""

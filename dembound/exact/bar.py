@@ -1,9 +1,9 @@
 """A pressure pulse in a bar, and where the bar spalls at its far end: d'Alembert's solution (L section 3.2).
 
 Both ends reflect a wave, so the effect at x of a pulse p(t) on the end x = 0 is a sum over its passages there, the k-th
-after a path of length w_k = kL + x or kL + L − x for even and odd k. A wave to the right has the stress −p and the
-velocity p/(ρc), one to the left −p and −p/(ρc). A free end reflects pressure as tension, a fixed one as pressure. Apart
-from its load the end x = 0 is free.
+after a path of length w_k = kL + x or kL + L − x for even and odd k, of which only the first remains if the far end
+absorbs. A wave to the right has the stress −p and the velocity p/(ρc), one to the left −p and −p/(ρc). A free end
+reflects pressure as tension, a fixed one as pressure. Apart from its load the end x = 0 is free.
 
 The place where a triangular pulse first reaches the strength σ_t = s p_m: behind the reflected crest, at a distance d
 from the free end, the incident pulse has fallen by p_m·2d/(c t_f), which is the tension there. So a pulse whose fall is
@@ -23,7 +23,7 @@ from typing import Literal
 
 import numpy as np
 
-End = Literal["free", "fixed"]
+End = Literal["free", "fixed", "absorbing"]
 Pulse = Callable[[np.ndarray], np.ndarray]
 
 
@@ -33,9 +33,9 @@ def bar_stress(
     """Stress (k,) Pa, tension positive, at a place (m) of a bar and at times (k,) s.
 
     pressure: Pa on the end x = 0 at times in s, nothing before 0; length m of the bar; speed m/s of its waves. The end
-    x = length is free or fixed.
+    x = length is free, fixed or absorbs all.
     """
-    far = -1.0 if far_end == "free" else 1.0
+    far = {"free": -1.0, "fixed": 1.0, "absorbing": 0.0}[far_end]
     stress = np.zeros_like(time)
     for turn, way in _passages(place, length, time.max() * speed):
         stress -= far ** ((turn + 1) // 2) * (-1.0) ** (turn // 2) * pressure(time - way / speed)
@@ -52,7 +52,7 @@ def bar_velocity(
     far_end: End = "free",
 ) -> np.ndarray:
     """Velocity (k,) m/s, positive away from the loaded end, for an impedance ρc in Pa·s/m; the rest as `bar_stress`."""
-    far = 1.0 if far_end == "free" else -1.0
+    far = {"free": 1.0, "fixed": -1.0, "absorbing": 0.0}[far_end]
     velocity = np.zeros_like(time)
     for turn, way in _passages(place, length, time.max() * speed):
         velocity += far ** ((turn + 1) // 2) * pressure(time - way / speed) / impedance

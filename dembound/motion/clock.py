@@ -2,7 +2,7 @@
 
 import time
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from numba.core import event
@@ -11,12 +11,17 @@ from numba.core import event
 class Clock:
     """Adds up the seconds spent in sections; time in a nested section is not counted for the outer one.
 
+    Parameters
+    ----------
+    now : the clock in s, by default that of the wall; `time.process_time` counts the CPU time of all threads.
+
     Attributes
     ----------
     seconds : by section.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, now: Callable[[], float] | None = None) -> None:
+        self._now = now or time.perf_counter
         self.seconds: defaultdict[str, float] = defaultdict(float)
         self._open: list[str] = []
         self._since = 0.0
@@ -46,7 +51,7 @@ class Clock:
 
     def _count(self) -> None:
         """Add the time since the last change to the current section."""
-        now = time.perf_counter()
+        now = self._now()
         if self._open:
             self.seconds[self._open[-1]] += now - self._since
         self._since = now

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -44,6 +44,13 @@ class Plan:
     time_step: float
     step_limit: float
     steps: int
+
+
+class Finding(NamedTuple):
+    """A number found by a run, and its unit."""
+
+    value: float
+    unit: str
 
 
 @dataclass(frozen=True)
@@ -95,6 +102,7 @@ class Kind(ABC, Generic[C, S]):
     name : in records; plural : in messages.
     schema : the tables of its case files.
     mesh_name : name of its files for ParaView; view_script : a script that shows them.
+    work_unit : unit of the `work` of a run, in the plural.
     """
 
     name: str
@@ -102,6 +110,7 @@ class Kind(ABC, Generic[C, S]):
     schema: Schema
     mesh_name: str
     view_script: str
+    work_unit: str
 
     @abstractmethod
     def build(self, case: C) -> S:
@@ -168,6 +177,14 @@ class Kind(ABC, Generic[C, S]):
     @abstractmethod
     def summarise(self, scene: S, run: Run, beginning: Beginning, record: Path) -> dict[str, Any]:
         """Entries of a summary in addition to those of every run: plain JSON values, SI units."""
+
+    @abstractmethod
+    def work(self, run: Run) -> int:
+        """The work of a run so far, in `work_unit`; the same in every run of a case."""
+
+    def findings(self, scene: S, run: Run) -> dict[str, Finding]:
+        """Numbers by name that are compared between runs in addition to histories; by default none."""
+        return {}
 
     @abstractmethod
     def outcome(self, summary: Mapping[str, Any]) -> list[str]:

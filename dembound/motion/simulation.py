@@ -12,7 +12,7 @@ from dembound.motion.scene import Scene
 from dembound.motion.state import State
 from dembound.motion.supports import NodeSupports
 from dembound.motion.threads import threads_for
-from dembound.motion.trackers import Run, Tracker, Watch
+from dembound.motion.trackers import Records, Tracker, Watch
 
 DRIVEN_BYTES = 64e6
 """Largest memory for the drives of a block; with many driven nodes blocks are shorter."""
@@ -104,7 +104,7 @@ class Simulation:
         Displacements are measured from the start. For a bar, stress (Pa) is a seventh column. Trackers are called as in
         `run`.
         """
-        kept = _Records()
+        kept = Records()
         self.trackers.append(kept)
         try:
             self.run(self.state.step + steps)
@@ -171,19 +171,3 @@ class Simulation:
         state.step += int(done)
         system.react(int(why), int(done), state)
         return int(done)
-
-
-class _Records(Tracker):
-    """Keeps the records of the probes."""
-
-    name = "records"
-
-    def __init__(self) -> None:
-        self.records: list[np.ndarray] = []
-
-    def handle(self, run: Run) -> None:
-        """Does nothing, as it is never due."""
-
-    def observe(self, run: Run, record: np.ndarray) -> None:
-        """Keep the record."""
-        self.records.append(record)

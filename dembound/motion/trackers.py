@@ -108,3 +108,24 @@ class Watch(Every):
                 f"the motion grew without bound: at t = {run.time:g} s near ({place[0]:g}, {place[1]:g}) m; "
                 "take a smaller run.time_step, run.safety or, of a bar, run.courant, or smaller waves and loads"
             )
+
+
+class Records(Tracker):
+    """Keeps the records of the probes.
+
+    Attributes
+    ----------
+    records : those received, (steps, p, columns) each, see `Simulation.advance`.
+    """
+
+    name = "records"
+
+    def __init__(self) -> None:
+        self.records: list[np.ndarray] = []
+
+    def handle(self, run: Run) -> None:
+        """Does nothing, as it is never due."""
+
+    def observe(self, run: Run, record: np.ndarray) -> None:
+        """Keep the record."""
+        self.records.append(record)

@@ -51,22 +51,39 @@ def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Diffe
 def _difference(run: str, monitor: str, history: History, reference: History, quantity: Quantity) -> Difference:
     """One monitor's difference."""
     column = int(np.argmax(np.abs(reference.values[:, :2]).max(axis=0)))
-    end = min(history.time[-1], reference.time[-1])
-    time = reference.time[reference.time <= end]
-    expected = reference.values[: len(time), column]
+    values, expected = on_common_clock(
+        history.time, history.values[:, column], reference.time, reference.values[:, column]
+    )
     if not expected.any():
         raise CaseError([f"monitor {monitor}: its {quantity} is zero in the reference"])
-    values = np.interp(time, history.time, history.values[:, column])
-    error = values - expected
+    rms, peak = relative_errors(values, expected)
     return Difference(
         run=run,
         monitor=monitor,
         component=COMPONENTS[column],
-        rms=float(np.sqrt(np.sum(error**2) / np.sum(expected**2))),
-        peak=float(np.abs(error).max() / np.abs(expected).max()),
+        rms=rms,
+        peak=peak,
         last=float(values[-1]),
         reference_last=float(expected[-1]),
         unit=UNITS[quantity][column],
         place=history.wanted,
         reference_place=reference.wanted,
     )
+
+
+def on_common_clock(
+    time: np.ndarray, values: np.ndarray, wanted_time: np.ndarray, wanted: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Two histories at the same times (m,): those of the second one, up to the end of the shorter one.
+
+    time (k,) s and values (k,) of the first one, which is interpolated; wanted_time (l,) and wanted (l,) of the second.
+    """
+    shared = wanted_time <= min(time[-1], wanted_time[-1])
+    return np.interp(wanted_time[shared], time, values), wanted[shared]
+
+
+def relative_errors(values: np.ndarray, wanted: np.ndarray) -> tuple[float, float]:
+    """RMS of the difference over that of the wanted values (m,), and largest difference over their peak."""
+    error = values - wanted
+    rms = float(np.sqrt(np.sum(error**2) / np.sum(wanted**2)))
+    return rms, float(np.abs(error).max() / np.abs(wanted).max())

@@ -59,11 +59,7 @@ def write_exact(case: DiskCase, path: Path) -> None:
     away from sides that do not mirror it, an isotropic and linear medium, monitors on the top and not under the load.
     """
     scene = build(case)
-    load, speeds = _line_load(scene), _wave_speeds(scene)
-    if problems := [*_yielding(case), *_ends_of_the_surface(scene, load)]:
-        raise CaseError(problems)
-    times = np.linspace(0.0, case.run.duration, SAMPLES)
-    motions = {monitor.name: _motion(scene, load, speeds, monitor.name, times) for monitor in case.monitor}
+    times, motions = surface_motions(scene)
     path.parent.mkdir(parents=True, exist_ok=True)
     with replacing(path) as part, h5py.File(part, "w") as file:
         file.attrs.update(
@@ -78,6 +74,16 @@ def write_exact(case: DiskCase, path: Path) -> None:
             _write(group, "time", times, "s")
             _write(group, "displacement", moved, "m, m, rad")
             _write(group, "velocity", np.gradient(moved, times, axis=0), "m/s, m/s, rad/s")
+
+
+def surface_motions(scene: DiskScene, samples: int = SAMPLES) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Exact times (k,) s and displacements (k, 3) m of a scene's monitors by name; errors as `write_exact`."""
+    case = scene.case
+    load, speeds = _line_load(scene), _wave_speeds(scene)
+    if problems := [*_yielding(case), *_ends_of_the_surface(scene, load)]:
+        raise CaseError(problems)
+    times = np.linspace(0.0, case.run.duration, samples)
+    return times, {monitor.name: _motion(scene, load, speeds, monitor.name, times) for monitor in case.monitor}
 
 
 def _wave_speeds(scene: DiskScene) -> tuple[float, float]:

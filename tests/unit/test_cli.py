@@ -930,3 +930,52 @@ def test_commands_for_one_kind_of_body_name_the_file_of_another(dembound, spalli
 
     assert dembound("exact", "rod.toml").err == "rod.toml: is the case of a bar, this command is for disks\n"
     assert dembound("dispersion", written()).err == "bar: is the case of disks, this command is for bars\n"
+
+
+def test_a_chart_is_printed_drawn_and_resumed(dembound, spalling, tmp_path) -> None:
+    (tmp_path / "rod.toml").write_text(spalling().text, encoding="utf-8")
+    vary = ["--vary", "bar.spacing=0.05,0.025,0.03", "--vary", "run.courant=0.9,3.0", "--repeats", 1]
+    done = dembound("chart", "rod.toml", *vary)
+    assert done.code == 0
+    assert "rod: spacing 0.03 m, courant 0.9: left out, bar.spacing: is 0.03, must divide" in done.err
+    assert "rod: spacing 0.05 m, courant 3: failed, run.courant: is 3" in done.err
+    assert "rod: velocity beside exact (d'Alembert), up to the first spall at 1.267 ms" in done.out
+    assert "cheapest within 1 % and within 0.1 %: none; most accurate: spacing 0.025 m, courant 0.9 (" in done.out
+    folder = tmp_path / "results" / "rod_chart"
+    assert {path.name for path in folder.iterdir()} == {"chart.h5", "chart.csv", "chart.png"}
+
+    before = (folder / "chart.csv").read_text(encoding="utf-8")
+    again = dembound("chart", "rod.toml", *vary, "--resume")
+    assert again.code == 0
+    assert (folder / "chart.csv").read_text(encoding="utf-8") == before  # with the costs measured before
+
+
+def test_a_case_may_have_its_chart(dembound, spalling, tmp_path) -> None:
+    table = {"vary": {"bar.spacing": [0.05, 0.025]}, "repeats": 1, "reference": "finest"}
+    (tmp_path / "rod.toml").write_text(spalling({"chart": table}).text, encoding="utf-8")
+    assert "velocity beside the finest run, spacing 0.025 m" in dembound("chart", "rod.toml").out
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--vary", "run.courant"], "--vary: is run.courant, must be KEY=VALUE"),
+        (["--vary", "run.curant=1.0"], "run.curant: unknown key"),
+        (["--monitor", "nowhere"], "--monitor: is nowhere, must be one of gauge"),
+        (["--quantity", "stress", "--component", "x"], "--quantity: stress is that along a bar"),
+        (["--reference", "extended", "--vary", "bar.spacing=0.05", "--repeats", "1"], "--reference: no side"),
+    ],
+)
+def test_charts_of_nothing_are_bad_input(dembound, spalling, tmp_path, options, said) -> None:
+    (tmp_path / "rod.toml").write_text(spalling().text, encoding="utf-8")
+    done = dembound("chart", "rod.toml", *options)
+    assert done.code == 2
+    assert said in done.err
+
+
+def test_charts_leave_nothing_after_bad_input_and_fail_with_3(dembound, spalling, tmp_path) -> None:
+    (tmp_path / "rod.toml").write_text(spalling().text, encoding="utf-8")
+    assert dembound("chart", "rod.toml", "--vary", "bar.spacing=0.3").code == 2
+    assert not (tmp_path / "results").exists()
+    done = dembound("chart", "rod.toml", "--vary", "run.courant=3.0")
+    assert (done.code, "courant 3: run.courant: is 3" in done.err) == (3, True)

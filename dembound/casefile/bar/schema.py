@@ -8,6 +8,7 @@ from dembound.casefile.bar.model import BarCase
 from dembound.casefile.bar.monitor import BarMonitor
 from dembound.casefile.bar.problems import bar_problems
 from dembound.casefile.bar.run import BarRun
+from dembound.casefile.chart import Chart
 from dembound.casefile.output import Output
 from dembound.casefile.schema import Schema
 from dembound.casefile.types import BarEndTable, MethodTable
@@ -22,6 +23,7 @@ SCHEMA = Schema(
         "method": TypeAdapter(MethodTable),
         "run": TypeAdapter(BarRun),
         "output": TypeAdapter(Output),
+        "chart": TypeAdapter(Chart),
     },
     side=TypeAdapter(BarEndTable),
     sides=("left", "right"),

@@ -2,6 +2,7 @@
 
 from pydantic import TypeAdapter
 
+from dembound.casefile.chart import Chart
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.model import DiskCase
@@ -27,6 +28,7 @@ SCHEMA = Schema(
         "reduce": TypeAdapter(Reduce),
         "run": TypeAdapter(Run),
         "output": TypeAdapter(Output),
+        "chart": TypeAdapter(Chart),
     },
     side=TypeAdapter(BoundaryTable),
     staged={"static": (TypeAdapter(Static), TypeAdapter(StaticSide))},

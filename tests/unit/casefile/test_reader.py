@@ -199,7 +199,7 @@ def test_optional_tables_may_be_absent() -> None:
             "[output]",
             "[outputs]",
             "outputs: unknown table; allowed: title, packing, material, motion, reduce, boundary, static, wave, "
-            "hole, load, monitor, run, output (did you mean output?)",
+            "hole, load, monitor, run, output, chart (did you mean output?)",
         ),
         (
             "[output]\nsnapshots = 3",

@@ -1,0 +1,159 @@
+"""The command chart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.table import Column
+
+from dembound.cli.app import Name, Output, PictureTitle, Settings, app, compact_table, err, load_case, out, use_threads
+
+if TYPE_CHECKING:
+    from dembound.running import Progress
+    from dembound.studies.chart.study import Charted, Line
+
+
+class ChartQuantity(StrEnum):
+    """Quantities of the monitors that are compared."""
+
+    velocity = "velocity"
+    displacement = "displacement"
+    stress = "stress"
+
+
+class ChartComponent(StrEnum):
+    """Components of the monitors' motion that are compared."""
+
+    x = "x"
+    y = "y"
+
+
+class ChartReference(StrEnum):
+    """What errors are measured against."""
+
+    exact = "exact"
+    extended = "extended"
+    finest = "finest"
+
+
+@app.command("chart", rich_help_panel="Cases")
+def chart(
+    case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=A,B,…",
+            help="Values of a key, e.g. packing.radius=0.25,0.5. May be repeated: all combinations are run.",
+        ),
+    ] = None,
+    reference: Annotated[
+        ChartReference | None,
+        typer.Option(
+            metavar="REFERENCE",
+            help="Errors are those against: exact, an exact solution; extended, the same scene so large that nothing "
+            "returns; finest, the choice with the most nodes times steps. By default the first that the case allows.",
+        ),
+    ] = None,
+    quantity: Annotated[
+        ChartQuantity, typer.Option(metavar="QUANTITY", help=f"Quantity compared: {', '.join(ChartQuantity)} (bars).")
+    ] = ChartQuantity.velocity,
+    component: Annotated[
+        ChartComponent | None, typer.Option(help="Component compared; by default the largest in the reference.")
+    ] = None,
+    monitor: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Monitor compared; by default the one with the largest error.")
+    ] = None,
+    repeats: Annotated[
+        int | None, typer.Option(min=1, help="Timed runs of every choice; by default 3, or the case's.")
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Run only what the chart of before does not have.")] = False,
+    output: Output = Path("results"),
+    title: PictureTitle = None,
+    changes: Settings = None,
+    name: Name = None,
+    threads: Annotated[int, typer.Option(min=1, help="Cores to use; CPU times vary least with one.")] = 1,
+) -> None:
+    """Run a case over many choices of its keys, and draw the error of each against its cost.
+
+    Choices are given by --vary, by the table chart of the case, or else chosen: radii, steps, sides, methods.
+
+    Writes chart.png, chart.csv and chart.h5, and prints the cheapest choice within 1 % and within 0.1 %.
+    """
+    from dembound.studies.chart.choices import combinations, parsed
+    from dembound.studies.chart.errors import Wanted
+    from dembound.studies.chart.study import Options
+    from dembound.studies.chart.study import chart as make
+
+    use_threads(threads)
+    loaded = load_case(case, changes, name)
+    options = Options(
+        named=combinations(loaded, parsed(vary)) if vary else None,
+        repeats=repeats,
+        reference=reference.value if reference else None,
+        wanted=Wanted(quantity.value, component.value if component else None, monitor),
+    )
+    folder = output / f"{loaded.name}_chart"
+
+    @contextmanager
+    def shown(run: str) -> Iterator[Progress]:
+        from dembound.cli.progress import progress_of
+
+        with progress_of(f"{loaded.name}, {run}") as progress:
+            yield progress
+
+    try:
+        charted = make(loaded, options, folder, resume, shown)
+    except KeyboardInterrupt:
+        err.print(f"{loaded.name}: stopped; `dembound chart --resume` with the same options continues")
+        raise
+    _print(charted)
+    for path in _leave(charted, folder, title):
+        out.print(f"wrote {path}", markup=False)
+
+
+def _print(charted: Charted) -> None:
+    """Print a line for every choice, what was left out, and the cheapest ones."""
+    failures = [f"{line.choice.name}: failed, {line.outcome.failure}" for line in charted.lines if line.outcome.failure]
+    for text in (*charted.left_out, *failures):
+        err.print(f"{charted.case.name}: {text}", markup=False)
+    heads = ("choice", "RMS (%)", "peak (%)", "CPU (s)", "run (s)", charted.work_unit, "")
+    table = compact_table(
+        Column(heads[0], overflow="fold"),
+        *(Column(head, no_wrap=True, justify="right") for head in heads[1:]),
+        title=f"{charted.case.name}: {charted.quantity} beside {charted.reference.sentence}",
+    )
+    for number, line in enumerate(charted.lines):
+        found = charted.found(line)
+        table.add_row(f"{line.choice.name}: {found}" if found else line.choice.name, *_cells(charted, number, line))
+    out.print(table)
+    out.print("* on the Pareto front; CPU: time of stepping, run: of the whole run without files, medians")
+    out.print(f"{charted.case.name}: {charted.sentence}", markup=False)
+
+
+def _cells(charted: Charted, number: int, line: Line) -> list[str]:
+    """Numbers of a choice as text."""
+    if line.outcome.failure:
+        return ["failed"]
+    worst = line.errors[0]
+    mark = "reference" if number == charted.reference.own else "*" if number in charted.front else ""
+    numbers = f"{100.0 * worst.rms:.3g}", f"{100.0 * worst.peak:.3g}", f"{line.cpu:.3g}", f"{line.wall:.3g}"
+    return [*numbers, f"{line.outcome.work:.3g}", mark]
+
+
+def _leave(charted: Charted, folder: Path, title: str | None) -> Iterator[Path]:
+    """Write the results of a chart, yielding each file."""
+    from dembound.plot.chart import plot_chart
+    from dembound.plot.style import save
+    from dembound.studies.chart.tables import write_results, write_table
+
+    write_results(charted, folder / "chart.h5")
+    yield folder / "chart.h5"
+    write_table(charted, folder / "chart.csv")
+    yield folder / "chart.csv"
+    save(plot_chart(folder / "chart.h5"), folder / "chart.png", title)
+    yield folder / "chart.png"

@@ -1,0 +1,241 @@
+"""A chart: the error of every choice against its cost, with the Pareto front and the names of all choices."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.text import Annotation
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from dembound.plot.style import COLOURS, REFERENCE, new_figure, styled
+from dembound.results.reader import open_record
+
+LEVELS = (1.0, 0.1)
+"""Errors (%) marked by horizontal lines."""
+
+LEAST = 1e-4
+"""Smallest error shown, in per cent; smaller ones are drawn there."""
+
+SPANS = (8.0, 20.0)
+"""Least ratio of the ends of the axis of costs, and of that of errors."""
+
+MARGIN, DECADES = 0.6, 300.0
+"""Ends of the axes over the extreme values; ratio of the ends up to which 2 and 5 have numbers, too."""
+
+MOST_LISTED = 28
+"""Number of choices that are listed; of more only those on the front and those that failed are."""
+
+ELSEWHERE = "others: see chart.csv"
+
+DARK = "#404040"
+
+REFERENCE_HEAD, OTHERS = "reference", "others"
+
+LINE = 0.033
+"""Height of a line of the list over that of the panel."""
+
+WIDTH = 68
+"""Characters in a line of the list."""
+
+PLACES = [
+    (radius * np.cos(angle), radius * np.sin(angle))
+    for radius in (11.0, 17.0, 25.0)
+    for angle in np.radians([45, 225, 135, 315, 0, 90, 180, 270])
+]
+"""Places of a number beside its point, in points, in the order in which they are tried."""
+
+
+@dataclass(frozen=True)
+class Dot:
+    """A choice of a chart.
+
+    number : from 1. error : RMS of the worst monitor, %; cpu (r,) s of each run; both empty after a failure. monitor :
+    the worst, with its component. found : other numbers beside those of the reference, in words.
+    """
+
+    number: int
+    name: str
+    on_front: bool
+    failure: str
+    error: float
+    cpu: np.ndarray
+    monitor: str
+    found: str = ""
+
+    @property
+    def cost(self) -> float:
+        """Median CPU time, s."""
+        return float(np.median(self.cpu))
+
+    @property
+    def shown(self) -> float:
+        """The error as drawn, %."""
+        return max(self.error, LEAST)
+
+
+@styled
+def plot_chart(path: Path) -> Figure:
+    """RMS error against CPU time of stepping, both logarithmic, and a list of the choices.
+
+    Points have the numbers of the list; horizontal bars show the range of the timed runs, horizontal lines 1 % and
+    0.1 %, a vertical line the cost of the reference if it is one of the choices.
+
+    Parameters
+    ----------
+    path
+        ``chart.h5`` of a chart.
+
+    Raises CaseError when the file cannot be read.
+    """
+    with open_record(path) as file:
+        dots = [_read(number, group) for number, group in enumerate(file["choices"].values(), start=1)]
+        reference, own = str(file["reference"].attrs["sentence"]), int(file["reference"].attrs["choice"])
+        quantity, title = str(file.attrs["quantity"]), str(file.attrs["title"] or file.attrs["name"])
+        sentence, threads = str(file.attrs["sentence"]), _threads(file)
+    figure = new_figure(12.0, 6.4)
+    panel, side = figure.subplots(1, 2, width_ratios=(1.45, 1.0))
+    good = [dot for dot in dots if not dot.failure and dot.number != own + 1]
+    _draw(panel, good)
+    if own >= 0:
+        cost = dots[own].cost
+        panel.axvline(cost, color=REFERENCE, linestyle=":", linewidth=1.2, label=f"cost of the reference, {own + 1}")
+    monitors = ", ".join(dict.fromkeys(dot.monitor for dot in good))
+    panel.set_xlabel(f"CPU time of stepping (s), {threads} thread{'s' if threads > 1 else ''}")
+    panel.set_ylabel(f"RMS error of the {quantity}, worst monitor (%)")
+    panel.set_title(_wrapped(f"errors are those against {reference}; {monitors}", 88), loc="left", fontsize=8.5)
+    panel.legend(loc="best", fontsize=8.5)
+    _list(side, dots, own)
+    figure.suptitle(f"{title}\n{_wrapped(sentence, 150)}", fontsize=10)
+    figure.draw_without_rendering()
+    _number(figure, panel, good)
+    return figure
+
+
+def _read(number, group) -> Dot:  # type: ignore[no-untyped-def]
+    """A choice of an open record."""
+    failure = str(group.attrs["failure"])
+    if failure:
+        return Dot(number, str(group.attrs["name"]), False, failure, np.nan, np.zeros(0), "")
+    monitor = f"{group['monitor'].asstr()[0]} ({group['component'].asstr()[0]})"
+    on_front, error = bool(group.attrs["on_front"]), 100.0 * float(group["rms"][0])
+    return Dot(
+        number, str(group.attrs["name"]), on_front, "", error, group["run/cpu"][:], monitor, str(group.attrs["found"])
+    )
+
+
+def _threads(file) -> int:  # type: ignore[no-untyped-def]
+    """The largest number of threads of any run."""
+    return max(int(run.attrs["threads"]) for run in file["runs"].values())
+
+
+def _draw(panel: Axes, dots: Sequence[Dot]) -> None:
+    """All points with the ranges of their costs, the front as a line, and the levels."""
+    panel.set(xscale="log", yscale="log")
+    for dot in dots:
+        colour = COLOURS[1] if dot.on_front else COLOURS[0]
+        panel.plot([dot.cpu.min(), dot.cpu.max()], [dot.shown] * 2, color=colour, linewidth=1.0, alpha=0.5)
+        size, marker = (7.0, "o") if dot.on_front else (5.0, "o" if dot.error > LEAST else "v")
+        panel.plot(dot.cost, dot.shown, marker, color=colour, markersize=size, zorder=3, gid=dot.name)
+    line = sorted((dot for dot in dots if dot.on_front), key=lambda dot: dot.shown)
+    panel.plot([d.cost for d in line], [d.shown for d in line], color=COLOURS[1], linewidth=1.6, label="Pareto front")
+    _widen(panel, dots)
+    low, high = panel.get_ylim()
+    for level in LEVELS:
+        if low < level < high:
+            panel.axhline(level, color=REFERENCE, linewidth=0.9, linestyle="--", zorder=1)
+
+
+def _widen(panel: Axes, dots: Sequence[Dot]) -> None:
+    """Axes that are at least as wide as `SPANS`, so that small differences are not magnified, with plain numbers."""
+    costs = np.concatenate([dot.cpu for dot in dots])
+    errors = np.array([dot.shown for dot in dots])
+    for axis, values, span in zip((panel.xaxis, panel.yaxis), (costs, errors), SPANS, strict=True):
+        low, high = MARGIN * values.min(), values.max() / MARGIN
+        wider = max(1.0, np.sqrt(span * low / high))
+        axis.set_view_interval(low / wider, high * wider, ignore=True)
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high / low < DECADES else (1.0,), numticks=12))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def _number(figure: Figure, panel: Axes, dots: Sequence[Dot]) -> None:
+    """Write the number of every point beside it, where it covers no other number or point; the front comes first."""
+    centres = panel.transData.transform([(dot.cost, dot.shown) for dot in dots])
+    taken: list[tuple[float, float]] = []
+    point = figure.dpi / 72.0
+    for dot, centre in sorted(zip(dots, centres, strict=True), key=lambda pair: not pair[0].on_front):
+        others = [*taken, *(tuple(other) for other in centres if other is not centre)]
+        for place in PLACES:
+            there = centre + point * np.array(place)
+            if all(abs(there[0] - x) > 15.0 * point or abs(there[1] - y) > 11.0 * point for x, y in others):
+                break
+        else:
+            continue
+        taken.append((float(there[0]), float(there[1])))
+        _annotate(panel, dot, place)
+
+
+def _annotate(panel: Axes, dot: Dot, place: tuple[float, float]) -> Annotation:
+    """The number of a point, at a place in points beside it."""
+    return panel.annotate(
+        str(dot.number),
+        (dot.cost, dot.shown),
+        place,
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        fontsize=9.5 if dot.on_front else 8.0,
+        fontweight="bold" if dot.on_front else "normal",
+        color=COLOURS[1] if dot.on_front else COLOURS[0],
+    )
+
+
+def _list(panel: Axes, dots: Sequence[Dot], own: int) -> None:
+    """The names, errors and costs of the choices, the front first, then the others, then failures."""
+    panel.set_axis_off()
+    rest = [dot for dot in dots if not (dot.on_front or dot.failure or dot.number == own + 1)]
+    entries = [
+        *_entries("Pareto front, the cheapest first", [dot for dot in dots if dot.on_front], COLOURS[1]),
+        *_entries(REFERENCE_HEAD, [dot for dot in dots if dot.number == own + 1], DARK),
+        *(_entries(OTHERS, rest, COLOURS[0]) if len(dots) <= MOST_LISTED else [(ELSEWHERE, COLOURS[0], True)]),
+        *_entries("failed", [dot for dot in dots if dot.failure], DARK),
+    ]
+    lines = sum(text.count("\n") + 1 for text, _, _ in entries)
+    height = min(LINE, 1.0 / lines)
+    y = 1.0
+    for text, colour, bold in entries:
+        panel.text(
+            0.0,
+            y,
+            text,
+            transform=panel.transAxes,
+            va="top",
+            fontsize=8.5 * height / LINE,
+            color=colour,
+            fontweight="bold" if bold else "normal",
+            linespacing=1.0,
+        )
+        y -= height * (text.count("\n") + 1)
+
+
+def _entries(head: str, dots: Sequence[Dot], colour: str) -> list[tuple[str, str, bool]]:
+    """Text, colour and weight of every line of a part of the list; none for an empty part."""
+    if not dots:
+        return []
+    found = [(head, colour, True)]
+    for dot in sorted(dots, key=lambda dot: dot.cost if len(dot.cpu) else 0.0):
+        error = f"{dot.error:.{2 if dot.error < 99.5 else 3}g} %, " if dot.error >= LEAST else "0 %, "
+        numbers = dot.failure or f"{'' if head == REFERENCE_HEAD else error}{dot.cost:.2g} s"
+        numbers += f", {dot.found}" if dot.found and head != OTHERS else ""
+        found.append((_wrapped(f"{dot.number}  {dot.name}: {numbers}", WIDTH), colour, False))
+    return found
+
+
+def _wrapped(text: str, width: int) -> str:
+    """A text in lines of at most `width` characters."""
+    import textwrap
+
+    return "\n".join(textwrap.wrap(text, width, subsequent_indent="     " if width == WIDTH else ""))

@@ -1,0 +1,112 @@
+"""The choices of a chart where neither the command nor the case gives any."""
+
+import math
+from collections.abc import Iterator, Mapping
+from itertools import islice
+from typing import Any
+
+from dembound.casefile import Case
+from dembound.casefile.bar import BarCase
+from dembound.casefile.disks import DiskCase
+from dembound.errors import CaseError
+from dembound.kinds import with_changes
+from dembound.studies.chart.words import label
+
+COARSER = (1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 10.0)
+"""Factors tried for radii and spacings; those that do not divide the scene into whole bricks or cells are left out."""
+
+FEW = 2
+"""Number of coarser radii or spacings."""
+
+FRACTION = 0.5
+"""Factor of the second step fraction."""
+
+HORIZON = 3
+"""Horizon of bars' methods where the case has none."""
+
+OWN = "as in the case"
+
+
+Named = Iterator[tuple[str, dict[str, Any]]]
+"""Names of choices, and the keys they change."""
+
+
+def defaults(case: Case) -> dict[str, dict[str, Any]]:
+    """Changes of keys by the name of the choice.
+
+    Of disks: the case itself; coarser radii; half the step; and for its absorbing sides each other type, one change at
+    a time. Of a bar: every method with every spacing, each at its automatic step, and finite differences at ν = 1.
+    """
+    return dict(_of_bar(case) if isinstance(case, BarCase) else _of_disks(case))
+
+
+def _of_disks(case: Case) -> Named:
+    """Choices of a case of disks."""
+    assert isinstance(case, DiskCase)
+    yield OWN, {}
+    radii = {f"packing.{key}": size for key, size in case.packing.given().items() if key.endswith("radius")}
+    for changes in _valid(case, ({key: factor * size for key, size in radii.items()} for factor in COARSER)):
+        yield label(case, changes), changes
+    step = "run.safety" if case.run.time_step == "auto" else "run.time_step"
+    changes = {step: FRACTION * (case.run.safety if case.run.time_step == "auto" else case.run.time_step)}
+    yield label(case, changes), changes
+    yield from _other_sides(case)
+
+
+def _other_sides(case: DiskCase) -> Named:
+    """Other types for all sides that absorb without a wave; they keep their factors β."""
+    absorbing = {side: table for side, table in case.boundary.items() if table.factors and not table.waves}
+    tables: dict[str, dict[str, Any]] = {
+        "viscous": {},
+        "viscoelastic": {"distance": 0.5 * max(case.packing.extent)},
+        "free": {},
+    }
+    for name, extra in tables.items() if absorbing else ():
+        if {table.type for table in absorbing.values()} != {name}:
+            yield (
+                f"{' and '.join(absorbing)} {name}",
+                {
+                    f"boundary.{side}": {"type": name, **extra} | ({} if name == "free" else _factors(table.given()))
+                    for side, table in absorbing.items()
+                },
+            )
+
+
+def _factors(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The factors β among the keys of a side."""
+    return {key: value for key, value in given.items() if key.startswith("beta_")}
+
+
+def _of_bar(case: BarCase) -> Named:
+    """Choices of the case of a bar; a given time step, which would suit one of them only, becomes automatic."""
+    spacing, step = case.bar.spacing, case.run.time_step
+    coarser = [change["bar.spacing"] for change in _valid(case, ({"bar.spacing": k * spacing} for k in COARSER))]
+    automatic = {} if step == "auto" else {"run.time_step": "auto"}
+    for size in (spacing, *coarser):
+        for changes in ({"method": {"type": "finite_difference"}, "run.courant": 1.0}, *_methods(case)):
+            changes = {"bar.spacing": size, **changes}
+            yield label(case, changes), changes | automatic
+
+
+def _methods(case: BarCase) -> Iterator[dict[str, Any]]:
+    """Changes of the method; those that change when something is about to break only for bars that can break."""
+    horizon = max(case.method.largest_horizon, HORIZON)
+    yield {"method": {"type": "finite_difference"}}
+    yield {"method": {"type": "peridynamics", "horizon": horizon}}
+    if case.bar.breaking_stretch < math.inf:
+        yield {"method": {"type": "switch", "horizon": horizon}}
+        yield {"method": {"type": "patch", "horizon": horizon}}
+
+
+def _valid(case: Case, changes: Iterator[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """The first few of these changes that make valid cases."""
+    return islice((change for change in changes if _is_valid(case, change)), FEW)
+
+
+def _is_valid(case: Case, changes: Mapping[str, Any]) -> bool:
+    """Whether the changed case has no mistake."""
+    try:
+        with_changes(case, changes)
+    except CaseError:
+        return False
+    return True

@@ -1,0 +1,118 @@
+"""Errors of choices: the histories of their monitors beside those of a reference."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.results.compare import on_common_clock, relative_errors
+from dembound.results.histories import Quantity
+from dembound.results.reader import COMPONENTS
+from dembound.studies.chart.choices import Choice
+from dembound.studies.chart.measure import Gauge, Gauges, Outcome
+
+QUIET = 0.01
+"""Monitors whose peak in the reference is below this share of the largest one are left out.
+
+Relative errors there are those of a small residual motion.
+"""
+
+Component = Literal["x", "y"]
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is compared: a quantity, its component (None: the largest in the reference), a monitor (None: all)."""
+
+    quantity: Quantity = "velocity"
+    component: Component | None = None
+    monitor: str | None = None
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What errors are measured against.
+
+    name : "exact", "extended" or "finest"; sentence : it in words. gauges : its histories for a choice and its outcome.
+    until : s, time up to which histories are compared. findings : its numbers by name. own : number of the choice that
+    is the reference itself, None for another one.
+    """
+
+    name: str
+    sentence: str
+    gauges: Callable[[Choice, Outcome], Gauges]
+    until: float = math.inf
+    findings: Mapping[str, float] = field(default_factory=dict)
+    own: int | None = None
+
+
+@dataclass(frozen=True)
+class MonitorError:
+    """The error at one monitor.
+
+    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : m, distance of the two particles compared.
+    """
+
+    monitor: str
+    component: str
+    rms: float
+    peak: float
+    apart: float
+
+
+def errors(choice: Choice, outcome: Outcome, reference: Reference, wanted: Wanted) -> list[MonitorError]:
+    """The errors of a choice at all monitors that are not quiet in the reference, the largest RMS first.
+
+    Raises CaseError for a monitor that does not exist and if the reference does not move.
+    """
+    expected = reference.gauges(choice, outcome)
+    names = _monitors(outcome.gauges, expected, wanted)
+    series = {name: expected[name].of(wanted.quantity) for name in names}
+    columns = {name: _column(values, wanted) for name, values in series.items()}
+    peaks = {name: float(np.abs(values[:, columns[name]]).max()) for name, values in series.items()}
+    if not max(peaks.values()) > 0.0:
+        raise CaseError([f"monitor: the {wanted.quantity} is zero in the reference ({reference.sentence})"])
+    loud = [name for name in names if peaks[name] >= QUIET * max(peaks.values())]
+    found = [_error(name, outcome.gauges, expected, columns[name], reference, wanted) for name in loud]
+    return sorted(found, key=lambda error: -error.rms)
+
+
+def _monitors(found: Gauges, expected: Gauges, wanted: Wanted) -> list[str]:
+    """The names of the monitors to compare."""
+    names = [name for name in found if name in expected]
+    if wanted.monitor is not None and wanted.monitor not in names:
+        raise CaseError([f"--monitor: is {wanted.monitor}, must be one of {', '.join(names)}"])
+    return names if wanted.monitor is None else [wanted.monitor]
+
+
+def _column(values: np.ndarray, wanted: Wanted) -> int:
+    """The column to compare of values (k, c)."""
+    if values.shape[1] == 1:
+        return 0
+    if wanted.component is not None:
+        return COMPONENTS.index(wanted.component)
+    return int(np.argmax(np.abs(values[:, :2]).max(axis=0)))
+
+
+def _error(
+    name: str, found: Gauges, expected: Gauges, column: int, reference: Reference, wanted: Wanted
+) -> MonitorError:
+    """The error at a monitor, at the times of the history with fewer samples, so that the finer one is interpolated."""
+    mine, theirs = (_until(gauges[name], wanted.quantity, column, reference.until) for gauges in (found, expected))
+    if len(theirs[0]) > len(mine[0]):
+        right, left = on_common_clock(*theirs, *mine)
+    else:
+        left, right = on_common_clock(*mine, *theirs)
+    rms, peak = relative_errors(left, right)
+    apart = float(np.hypot(*(found[name].position - expected[name].position)))
+    component = "stress" if wanted.quantity == "stress" else COMPONENTS[column]
+    return MonitorError(name, component, rms, peak, apart)
+
+
+def _until(gauge: Gauge, quantity: Quantity, column: int, end: float) -> tuple[np.ndarray, np.ndarray]:
+    """Times (k,) and one column (k,) of a quantity, up to a time (s)."""
+    kept = gauge.time <= end
+    return gauge.time[kept], gauge.of(quantity)[kept, column]

@@ -1,0 +1,118 @@
+"""The reference of a chart: an exact solution, an extended run, or the run of the finest choice."""
+
+import math
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+
+from dembound.bar.kind import SPALL_TIME
+from dembound.casefile import Case
+from dembound.casefile.chart import ReferenceName
+from dembound.errors import CaseError, RunError
+from dembound.kinds import with_changes
+from dembound.studies.chart.choices import Choice
+from dembound.studies.chart.errors import Reference
+from dembound.studies.chart.exact import Exact, exact_of
+from dembound.studies.chart.measure import Outcome
+from dembound.studies.extended import MOST, extended
+
+SIDES = "boundary."
+"""Beginning of all keys of sides."""
+
+RunOf = Callable[[str, Case], Outcome]
+"""Returns the outcome of a case that is no choice, given its name."""
+
+AFFORDABLE = 16
+"""Size of an extended scene over that of the choice with most particles, up to which it is run without being asked for.
+"""
+
+
+def reference_of(
+    case: Case, choices: Sequence[Choice], outcomes: Sequence[Outcome], wanted: ReferenceName | None, run: RunOf
+) -> Reference:
+    """The reference of this name for choices with these outcomes.
+
+    By default the exact solution if the case has one. Else, if choices differ in their sides, the extended scene, if it
+    is affordable. Else the choice with the most nodes times steps.
+
+    Raises CaseError if a reference that is asked for by name is not possible, RunError if its run fails.
+    """
+    finest = _finest(choices, outcomes)
+    if wanted == "exact":
+        return _exact(exact_of(case))
+    if wanted == "extended":
+        return _extended(case, choices, outcomes, finest, run, MOST)
+    if wanted is None:
+        with suppress(CaseError):
+            return _exact(exact_of(case))
+        if any(key.startswith(SIDES) for choice in choices for key in choice.changes):
+            most = AFFORDABLE * max(outcome.count for outcome in outcomes)
+            with suppress(CaseError):
+                return _extended(case, choices, outcomes, finest, run, most)
+    return finest
+
+
+def _extended(
+    case: Case, choices: Sequence[Choice], outcomes: Sequence[Outcome], finest: Reference, run: RunOf, most: int
+) -> Reference:
+    """The scene of the case with all keys of the finest choice but those of its sides, extended.
+
+    most : largest number of particles.
+    """
+    assert finest.own is not None
+    inner = {key: value for key, value in choices[finest.own].changes.items() if not key.startswith(SIDES)}
+    plain = with_changes(case, inner)
+    larger = extended(plain, most)
+    if larger.case is plain:
+        raise CaseError(["--reference: no side has to be moved, the extended scene is that of the case"], case.name)
+    outcome = run("extended scene", larger.case)
+    if outcome.failure:
+        raise RunError(f"extended scene: {outcome.failure}")
+    moved = {  # the same particles, which are elsewhere in the extended scene
+        name: replace(outcome.gauges[name], position=gauge.position)
+        for name, gauge in outcomes[finest.own].gauges.items()
+    }
+    return replace(
+        finest,
+        name="extended",
+        sentence=larger.sentence.removeprefix("reference: "),
+        gauges=lambda choice, _: moved,
+        until=_first_spall(outcome),
+        findings={name: found.value for name, found in outcome.findings.items()},
+        own=None,
+    )
+
+
+def _exact(solution: Exact) -> Reference:
+    """The reference that an exact solution is."""
+    return Reference(
+        name="exact",
+        sentence=solution.sentence,
+        gauges=lambda choice, outcome: solution.gauges(choice.case, outcome.gauges),
+        until=solution.until,
+        findings=solution.findings,
+    )
+
+
+def _finest(choices: Sequence[Choice], outcomes: Sequence[Outcome]) -> Reference:
+    """The choice with the most nodes times steps, the first of several.
+
+    Work would be no measure of accuracy for bars: wider horizons have more bonds and larger errors.
+    """
+    done = [k for k, outcome in enumerate(outcomes) if not outcome.failure]
+    if not done:
+        raise RunError("no choice could be run")
+    own = max(done, key=lambda k: outcomes[k].count * outcomes[k].steps)
+    return Reference(
+        name="finest",
+        sentence=f"the finest run, {choices[own].name}",
+        gauges=lambda choice, outcome: outcomes[own].gauges,
+        until=_first_spall(outcomes[own]),
+        findings={name: found.value for name, found in outcomes[own].findings.items()},
+        own=own,
+    )
+
+
+def _first_spall(outcome: Outcome) -> float:
+    """Time (s) of the first spall, from which on histories do not converge; infinite without one."""
+    return outcome.findings[SPALL_TIME].value if SPALL_TIME in outcome.findings else math.inf

@@ -1,0 +1,63 @@
+"""Names of choices: keys and values of a case in words."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel
+
+from dembound.casefile import Case
+from dembound.table import DISCRIMINATORS
+
+
+def label(case: Case, changes: Mapping[str, Any]) -> str:
+    """Changed keys of a case in words, such as "radius 0.5 m, boundary.right viscous".
+
+    A table of the case that is replaced as a whole is named by its type.
+    """
+    last = [key.rpartition(".")[2] for key in changes]
+    names = [
+        short if key.count(".") == 1 and last.count(short) == 1 and not isinstance(value, Mapping) else key
+        for short, (key, value) in zip(last, changes.items(), strict=True)
+    ]
+    parts = [
+        ("" if "." not in key else name, _value(value) + _unit(case, key, value))
+        for name, (key, value) in zip(names, changes.items(), strict=True)
+    ]
+    return ", ".join(" ".join(part).strip() for part in parts)
+
+
+def _value(value: Any) -> str:
+    """A value without quotes; of a table its type, and its other keys in brackets."""
+    if isinstance(value, Mapping):
+        kind = [_value(inner) for key, inner in value.items() if key in DISCRIMINATORS]
+        rest = ", ".join(f"{key} {_value(inner)}" for key, inner in value.items() if key not in DISCRIMINATORS)
+        return " ".join([*kind, f"({rest})"] if rest else kind)
+    if isinstance(value, list):
+        return f"[{', '.join(_value(inner) for inner in value)}]"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _unit(case: Case, key: str, value: Any) -> str:
+    """The unit of a number at a key of the case, after a blank; empty for pure numbers and unknown keys."""
+    if isinstance(value, bool | str | Mapping):
+        return ""
+    table: Any = case
+    *path, last = key.split(".")
+    for name in path:
+        table = _inner(table, name)
+    if not isinstance(table, BaseModel) or last not in type(table).model_fields:
+        return ""
+    extra = type(table).model_fields[last].json_schema_extra
+    unit = extra.get("unit", "1") if isinstance(extra, Mapping) else "1"
+    return "" if unit == "1" else f" {unit}"
+
+
+def _inner(table: Any, name: str) -> Any:
+    """The table with this name in a table, a mapping, or a list of named tables; None if there is none."""
+    if isinstance(table, Mapping):
+        return table.get(name)
+    if isinstance(table, tuple):
+        return next((each for each in table if getattr(each, "name", None) == name), None)
+    return getattr(table, name, None)

@@ -1,0 +1,170 @@
+"""A whole chart: choices run, compared, recorded and resumed."""
+
+import csv
+from contextlib import contextmanager
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.errors import CaseError, RunError
+from dembound.running import Progress
+from dembound.studies.chart import study
+from dembound.studies.chart.choices import combinations
+from dembound.studies.chart.errors import Wanted
+from dembound.studies.chart.study import Options, chart
+from dembound.studies.chart.tables import COLUMNS, write_results, write_table
+
+SPACINGS = {"bar.spacing": [0.05, 0.025]}
+
+
+class Log:
+    """Names of the runs of a chart."""
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+
+    @contextmanager
+    def __call__(self, name: str):
+        self.names.append(name)
+        yield Progress()
+
+
+@pytest.fixture(autouse=True)
+def at_once(monkeypatch) -> None:
+    """Short runs are timed once."""
+    monkeypatch.setattr(study, "AT_ONCE", 1)
+
+
+@pytest.fixture
+def charted(tmp_path):
+    """Charts a case in a folder, and logs the runs."""
+
+    def make(case, vary=SPACINGS, resume=False, repeats=2, **options):
+        log = Log()
+        options = Options(named=combinations(case, vary) if vary else None, repeats=repeats, **options)
+        return chart(case, options, tmp_path / "chart", resume, log), log.names
+
+    return make
+
+
+def test_runs_compile_first_and_are_timed_in_turn(charted, spalling) -> None:
+    found, runs = charted(spalling())
+    assert runs == [
+        "1 of 2 choices, spacing 0.05 m",
+        "2 of 2 choices, spacing 0.025 m",
+        *(f"{k} of 2 choices, timed run {n} of 2" for n in (1, 2) for k in (1, 2)),
+    ]
+    assert [len(line.outcome.cpu) for line in found.lines] == [2, 2]
+    assert all(0.0 < line.cpu < line.wall for line in found.lines)
+    assert found.lines[1].outcome.work > 3.9 * found.lines[0].outcome.work  # twice the bonds in twice the steps
+    assert found.lines[1].errors[0].rms < found.lines[0].errors[0].rms
+    assert found.reference.name == "exact"
+
+
+def test_a_chart_is_resumed_where_it_ended(charted, spalling, tmp_path) -> None:
+    first, _ = charted(spalling(), {"bar.spacing": [0.05]}, repeats=1)
+    second, runs = charted(spalling(), resume=True)
+    assert runs == [
+        "2 of 2 choices, spacing 0.025 m",
+        "2 of 2 choices, timed run 1 of 2",
+        "1 of 2 choices, timed run 2 of 2",
+        "2 of 2 choices, timed run 2 of 2",
+    ]
+    assert second.lines[0].errors == first.lines[0].errors
+    assert second.lines[0].outcome.cpu[0] == first.lines[0].outcome.cpu[0]
+    assert charted(spalling(), resume=True)[1] == []
+    assert len(charted(spalling({"run.duration": 1.4e-3}), resume=True)[1]) == 6  # other results
+    assert len(charted(spalling())[1]) == 6  # anew
+
+
+def test_a_choice_that_fails_is_kept_with_its_reason(charted, spalling) -> None:
+    found, _ = charted(spalling(), {"run.courant": [0.5, 3.0]}, repeats=1)
+    good, bad = found.lines
+    assert (good.outcome.failure, bad.errors) == ("", ())
+    assert bad.outcome.failure.startswith("run.courant: is 3, must not be above")
+    assert found.front == [0]
+
+
+def test_nothing_but_failures_is_a_failure(charted, spalling) -> None:
+    with pytest.raises(RunError, match=r"courant 3: run\.courant"):
+        charted(spalling(), {"run.courant": [3.0]})
+
+
+def test_the_finest_choice_is_the_reference_where_there_is_no_solution(charted, spalling) -> None:
+    found, _ = charted(spalling({"bar.attenuation": 0.1, "bar.strength": 1e9}), repeats=1)
+    assert (found.reference.name, found.reference.own) == ("finest", 1)
+    assert found.reference.sentence == "the finest run, spacing 0.025 m"
+    assert found.judged == found.front == [0]
+    assert found.lines[1].errors[0].rms == 0.0
+
+
+def test_spalls_are_compared_with_the_closed_form(charted, spalling) -> None:
+    found, _ = charted(spalling(), repeats=1)
+    place, time = (found.lines[1].outcome.findings[name].value for name in ("spall place", "spall time"))
+    assert found.found(found.lines[1]) == (
+        f"spall place {place - (1.0 - 0.2 / 3.0):+.2g} m, spall time {time - found.reference.until:+.2g} s"
+    )
+    assert found.found(charted(spalling({"load.1.pressure": 9e6}), repeats=1)[0].lines[0]).startswith("spall place")
+
+
+def test_an_extended_scene_is_the_reference_of_sides(charted, bar) -> None:
+    # the pulse of 10 m meets the end while it is still driven: nothing returns from an end far away
+    sides = {"boundary.right": [{"type": "viscous"}, {"type": "free"}], "packing.radius": [0.25, 0.5]}
+    case = bar({"run.duration": 0.02, "motion.held": []})  # so that there is no exact solution
+    found, runs = charted(case, sides, repeats=1)
+    assert found.reference.name == "extended"
+    assert "extended scene" in runs
+    errors = {line.choice.name: line.errors[0] for line in found.lines}
+    assert errors["boundary.right viscous, radius 0.25 m"].rms < 0.5 * errors["boundary.right free, radius 0.25 m"].rms
+    assert errors["boundary.right free, radius 0.25 m"].apart == 0.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "options", "said"),
+    [
+        ({"monitor": []}, {}, "monitor: is missing"),
+        ({}, {"wanted": Wanted(monitor="nowhere")}, "--monitor: is nowhere, must be one of gauge"),
+        ({"bar.attenuation": 0.1}, {"reference": "exact"}, "no exact solution"),
+        ({}, {"reference": "extended"}, "--reference: no side has to be moved"),
+    ],
+)
+def test_what_cannot_be_compared_is_bad_input(charted, spalling, changes, options, said) -> None:
+    with pytest.raises(CaseError, match=said):
+        charted(spalling(changes), repeats=1, **options)
+
+
+def test_stress_is_of_bars(charted, bar) -> None:
+    with pytest.raises(CaseError, match="stress is that along a bar"):
+        charted(bar(), {"run.safety": [0.5]}, wanted=Wanted("stress"))
+
+
+def test_folders_of_something_else_are_not_deleted(charted, spalling, tmp_path) -> None:
+    (tmp_path / "chart").mkdir()
+    (tmp_path / "chart" / "thesis.tex").touch()
+    with pytest.raises(CaseError, match="holds no chart"):
+        charted(spalling())
+    assert (tmp_path / "chart" / "thesis.tex").exists()
+
+
+def test_the_record_and_the_table_have_all(charted, spalling, tmp_path) -> None:
+    found, _ = charted(spalling(), {"bar.spacing": [0.05, 0.025], "run.courant": [0.9, 3.0]}, repeats=1)
+    path = tmp_path / "chart" / "chart.h5"
+    write_results(found, path)
+    write_results(found, path)  # again, as of a chart that is resumed
+    write_table(found, tmp_path / "chart.csv")
+
+    with (tmp_path / "chart.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["choice"] for row in rows] == [line.choice.name for line in found.lines]
+    assert float(rows[0]["rms"]) == found.lines[0].errors[0].rms
+    assert rows[1]["failure"].startswith("run.courant: is 3")
+    assert [row["bar.spacing"] for row in rows] == ["0.05", "0.05", "0.025", "0.025"]
+    assert float(rows[0]["spall place error"]) == pytest.approx(float(rows[0]["spall place"]) - 1.0 + 0.2 / 3.0)
+    assert set(COLUMNS) < set(rows[0])
+    with h5py.File(path) as file:
+        assert [group.attrs["name"] for group in file["choices"].values()] == [row["choice"] for row in rows]
+        gauge, motion = file["choices/0000/run/gauges/gauge"], found.lines[0].outcome.gauges["gauge"]
+        np.testing.assert_array_equal(gauge["velocity"][:], motion.velocity)
+        assert file["reference"].attrs["spall place"] == pytest.approx(1.0 - 0.2 / 3.0)
+        assert file.attrs["sentence"] == found.sentence

@@ -1,0 +1,78 @@
+"""The errors of a chart are those of the method: nothing for an exact one, second order for central differences.
+
+A wrong clock, by half a step between velocities and displacements, or a monitor taken for another place would add an
+error of first order in the spacing.
+"""
+
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+import tomli_w
+
+from dembound.kinds import loads
+from dembound.running import Progress
+from dembound.studies.chart.choices import combinations
+from dembound.studies.chart.errors import Wanted
+from dembound.studies.chart.study import Options, chart
+
+
+@contextmanager
+def quiet(name: str):
+    yield Progress()
+
+
+def errors_of(case, vary, folder, quantity="velocity", until=None) -> list[float]:
+    """RMS errors of all choices."""
+    options = Options(named=combinations(case, vary), repeats=1, wanted=Wanted(quantity))
+    found = chart(case, options, folder, False, quiet)
+    assert found.reference.name == "exact"
+    return [line.errors[0].rms for line in found.lines]
+
+
+@pytest.fixture
+def rod():
+    """A bar under a smooth pulse of 0.25 of its length, which returns from the free end and leaves again."""
+    tables = {
+        "bar": {"length": 1.0, "spacing": 0.01, "density": 2500.0, "wave_speed": 1000.0},
+        "method": {"type": "finite_difference"},
+        "load": [{"name": "hit", "pressure": 1e6, "wave": "hit"}],
+        "wave": {"hit": {"type": "cubic_spline", "amplitude": 1.0, "period": 4e-4}},
+        "monitor": [{"name": "third", "position": 0.3}, {"name": "end", "position": 1.0}],
+        "run": {"duration": 1.9e-3},
+    }
+    return loads(tomli_w.dumps(tables))
+
+
+@pytest.mark.parametrize("quantity", ["velocity", "displacement", "stress"])
+def test_finite_differences_are_of_second_order(rod, tmp_path, quantity: str) -> None:
+    # the leading error is Δx² times a constant; the next, of fourth order, is (2π/25)² = 6 % of it at the coarse one
+    coarse, fine = errors_of(rod, {"bar.spacing": [0.01, 0.005], "run.courant": [0.5]}, tmp_path, quantity)
+    assert coarse / fine == pytest.approx(4.0, rel=0.15)
+
+
+def test_steps_that_differ_have_the_same_clock(rod, tmp_path) -> None:
+    # the error of central differences is proportional to 1 − ν²: at ν = 1 nothing is left but rounding
+    half, most, one = errors_of(rod, {"run.courant": [0.5, 0.9, 1.0]}, tmp_path)
+    assert most / half == pytest.approx((1.0 - 0.81) / (1.0 - 0.25), rel=0.15)
+    assert one < 1e-10
+
+
+def test_a_plane_wave_in_a_lattice_is_of_second_order(lab, tmp_path) -> None:
+    """Disks of 0.5 m and 1 m; the wave enters through the grip of the left side, and leaves on the right.
+
+    Of first order is only the reflection of the end, tan(qD/4)/… ≈ πD/(4cT) = 0.8 % here, half cells have none.
+    """
+    case = lab.case(
+        "A",
+        (40.0, 2.0),
+        boundary={"left": {"type": "velocity", "wave_p": "pulse"}, "right": {"type": "viscous", "half_mass": True}},
+        wave={"type": "cubic_spline", "amplitude": 0.5, "period": 0.05},
+        duration=0.08,
+    )
+    tables = {"name": "middle", "position": [20.25, 0.25]}
+    from dembound.kinds import with_changes
+
+    case = with_changes(case, {"monitor": [tables]})
+    coarse, fine = errors_of(case, {"packing.radius": [0.5, 0.25]}, tmp_path)
+    assert np.log2(coarse / fine) == pytest.approx(2.0, abs=0.2)
