@@ -9,8 +9,9 @@ from dembound.cli import (  # each registers its commands with the application
     dispersion,
     gauge,
     results,
+    stability,
     starting,
 )
 from dembound.cli.app import app, main
 
-__all__ = ["app", "calibration", "cases", "dispersion", "gauge", "main", "results", "starting"]
+__all__ = ["app", "calibration", "cases", "dispersion", "gauge", "main", "results", "stability", "starting"]
