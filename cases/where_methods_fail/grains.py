@@ -75,7 +75,7 @@ def speed_of_tension(contact_share: float = 0.5) -> tuple[float, float]:
 
 
 def locked_in_breaks(strength: float, seed: int = 1, pressure: float = 1e6) -> bool:
-    """Whether bonds of this strength, over a locked-in pressure (Pa), break as it relaxes at the cut faces of a brick."""
+    """Whether bonds of this strength, over a locked-in pressure (Pa), break as it relaxes at cut faces."""
     material = {"law": "linearpbond", "locked_in": pressure, "pb_ten": strength * pressure}
     scene = disks("B", (10.0, 10.0), material=material, static={}, packing={"seed": seed})
     try:

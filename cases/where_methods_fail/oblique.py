@@ -54,7 +54,7 @@ def waves(inner: Mapping[int, np.ndarray], mass: np.ndarray, frequency: float) -
     total = inner[-1] + inner[0] + ahead + frequency**2 * np.diag(mass)
     slope = ahead - inner[-1] + total
     zero, one = np.zeros((3, 3)), np.eye(3)
-    # long waves have factors 1 + ε close to each other: the equation for ε/κ, κ the phase of a P wave, has no small ones
+    # factors 1 + ε of long waves are close to each other; those of the equation for ε/κ, κ the phase of P, are not
     unit = frequency * DIAMETER / SPEED
     size = np.abs(ahead).max()
     left = np.block([[zero, one], [-total / (size * unit**2), -slope / (size * unit)]])

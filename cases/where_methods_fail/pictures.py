@@ -1,4 +1,4 @@
-"""The pictures of where methods fail: oblique waves on dashpots, short waves in packings, springs and lagged dampers."""
+"""The pictures of where methods fail: oblique waves, short waves in packings, springs and lagged dampers."""
 
 import numpy as np
 from grains import coda, pulse_along_bar
@@ -24,7 +24,9 @@ def oblique_waves() -> Figure:
         formula = [dashpot_formula(motion, angle) for angle in ANGLES]
         for index, kind in enumerate(("p", "s")):
             colour = COLOURS[index]
-            panel.plot(ANGLES, [each[kind] for each in formula], color=colour, label=f"reflected {kind.upper()}, formula")
+            panel.plot(
+                ANGLES, [each[kind] for each in formula], color=colour, label=f"reflected {kind.upper()}, formula"
+            )
             points = [each[kind] for each in measured]
             panel.plot(ANGLES, points, "o", color=colour, label=f"reflected {kind.upper()}, lattice")
         panel.set_title(f"incident {motion.upper()} wave")

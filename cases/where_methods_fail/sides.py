@@ -18,7 +18,7 @@ ALL = ("left", "right", "bottom", "top")
 def lagged_limit(beta: float, end_mass: float = 0.5, disks: int = 40, centred: bool = False) -> float:
     """Largest stable step of a chain with dashpots at its ends over that without; they act on the velocity before.
 
-    Unit masses and stiffnesses, so that ρcD is 1. centred : dashpots act on the mean of both velocities, as in dembound.
+    Masses and stiffnesses are 1, and so is ρcD. centred : dashpots act on the mean of both velocities, as in dembound.
     """
     mass = np.ones(disks)
     mass[[0, -1]] = end_mass
@@ -77,7 +77,9 @@ def drift(acceleration: float = 1.0, duration: float = 0.6) -> tuple[float, floa
     simulation = Simulation(scene, step)
     simulation.run(int(duration / step))
     velocity = float(scene.mass @ simulation.state.velocity[0] / scene.mass.sum())
-    return velocity, float(scene.mass.sum() * acceleration / scene.supports.damping[scene.supports.component == 0].sum())
+    return velocity, float(
+        scene.mass.sum() * acceleration / scene.supports.damping[scene.supports.component == 0].sum()
+    )
 
 
 def on_springs(per_distance: float) -> tuple[float, float]:
@@ -92,7 +94,7 @@ def on_springs(per_distance: float) -> tuple[float, float]:
 
 
 def corner(distance: float) -> bool:
-    """Whether noise grows at 0.9995 of the limit of a lattice with springs at four sides from a source this close (m)."""
+    """Whether noise grows at 0.9995 of the limit of a lattice with springs of sources this close (m) at four sides."""
     side = {"type": "viscoelastic", "distance": distance}
     scene = disks("A", (5.0, 5.0), material={"fric": 0.5}, boundary=dict.fromkeys(ALL, side))
     trial = trials(scene.case, full=True)[0][0]

@@ -45,8 +45,7 @@ def stability(
 ) -> None:
     """Measure the largest stable time step of a scene with noise, and whether energy grows at its own step.
 
-    Loads and waves are left out; dampers, springs, columns, held components and local damping are not. Ends with exit
-    code 3 if the case's own step is not stable.
+    Loads and waves are left out. Ends with exit code 3 if the case's own step is not stable.
     """
     from dembound.plot.stability import plot_stability
     from dembound.plot.style import save
@@ -82,9 +81,9 @@ def _overview(found: Sequence[Stability], title: str) -> Table:
             state = "stable" if each.is_stable else "UNSTABLE"
             overview.add_row(name, f"{limit:.5g}", measured, own, last, f"{run.rise:.1e}", state)
     overview.caption = (
-        "measured: largest stable step over the limit; own step: the case's, over the limit;\n"
-        "energy: at the end of the long run over the start (of an unstable one: kinetic energy);\n"
-        "rise: its largest rise above the start"
+        "measured: largest stable step over the limit; own step: the case's over the limit;\n"
+        "energy: at the end over the start, with what boundaries took where contacts may\n"
+        "open (if unstable: kinetic energy); rise: largest energy over the start, less 1"
     )
     overview.caption_justify = "left"
     return overview

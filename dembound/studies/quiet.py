@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
 from dembound.bar import stability as of_bars
 from dembound.bar.part import BarPart
-from dembound.bar.scene import BarScene, build_bar
+from dembound.bar.scene import build_bar
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.model import as_kind
 from dembound.casefile.types import LAWS
 from dembound.disks import stability as of_disks
 from dembound.disks.scene import DiskScene, build, ground_of
 from dembound.disks.system import DiskSystem, Start
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
+
+AnyCase = TypeVar("AnyCase", bound=Case)
 
 PARTICLES = 2500
 """Particles of a reduced copy, about; one brick may have more. 100,000 steps of them take some ten seconds."""
@@ -73,7 +77,9 @@ def trials(case: Case, *, full: bool = False) -> tuple[list[Trial], list[str]]:
 
     Raises the errors of building a scene.
     """
-    return of_bar(case) if isinstance(case, BarCase) else of_disk_case(case, full=full)
+    if isinstance(case, BarCase):
+        return of_bar(case)
+    return of_disk_case(as_kind(case, DiskCase, "is a case of an unknown kind of body"), full=full)
 
 
 def of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
@@ -126,7 +132,7 @@ def _under(scene: DiskScene, name: str) -> Trial:
     return Trial(name, scene, limit, of_disks.own_step(scene, limit), system, is_linear=not scene.has_history)
 
 
-def _at_rest(case: Case) -> Case:
+def _at_rest(case: AnyCase) -> AnyCase:
     """The case without loads and waves; its sides keep their dashpots and springs."""
     boundary = {side: table.at_rest() for side, table in case.boundary.items()}
     return replace(case, boundary=boundary, wave={}, load=())

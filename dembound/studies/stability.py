@@ -80,7 +80,8 @@ def _measured(trial: Trial, steps: int, say: Report) -> Stability:
         run = long_run(trial, part, steps)
         found.long_runs.append(run)
         seen = "does not grow" if run.is_stable else "grows"
-        say(f"{trial.name}: energy of noise in the {part} {seen} in {run.course.steps[-1]:,} steps of {trial.step:.4g} s")
+        done = f"{run.course.steps[-1]:,} steps of {trial.step:.4g} s"
+        say(f"{trial.name}: energy of noise in the {part} {seen} in {done}")
     return found
 
 

@@ -83,4 +83,3 @@ def test_a_rise_beyond_what_is_allowed_is_not_stable() -> None:
     assert LongRun("body", course, 3e-9, 10.0).is_stable
     assert not LongRun("body", Course([0, 1], [1.0, 11.0], [1.0, 1.0]), 1e-9, 10.0).is_stable
     assert LongRun("body", Course([0], [1.0]), 1e-9, 10.0).rise == np.inf
-
