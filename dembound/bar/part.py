@@ -8,6 +8,7 @@ from dembound.errors import RunError
 from dembound.kernels import bar
 from dembound.kernels.common import TRIGGERED
 from dembound.kernels.tables import BarBonds
+from dembound.methods.bonds import Bonds
 from dembound.motion.cracks import Cracks
 from dembound.motion.part import Part
 from dembound.motion.state import Arrays, State
@@ -19,6 +20,11 @@ SWING = 1e-6
 class BarPart(Part):
     """A bar under its method.
 
+    Parameters
+    ----------
+    scene : the bar; time_step : Δt in s.
+    first : bonds to begin with; by default those with which the method begins.
+
     Attributes
     ----------
     bonds : springs and bonds as they are now.
@@ -27,11 +33,11 @@ class BarPart(Part):
 
     name = "bar"
 
-    def __init__(self, scene: BarBody, time_step: float) -> None:
+    def __init__(self, scene: BarBody, time_step: float, first: Bonds | None = None) -> None:
         self.scene = scene
         self.nodes = slice(0, scene.count)
         self.law_name = scene.case.method.name
-        self.bonds = scene.case.method.begin(scene.rod)
+        self.bonds = scene.case.method.begin(scene.rod) if first is None else first
         self.bond_updates = 0
         self._step = time_step
         self._supported = np.unique(scene.supports.node)

@@ -5,21 +5,30 @@ from dembound.bar.scene import BarScene
 from dembound.errors import CaseError
 
 
+def own_step(scene: BarScene, limit: float) -> float:
+    """The time step (s) of the case at a stability limit (s): a share of it, or the one given, even above it."""
+    run = scene.case.run
+    if run.courant is not None:
+        return run.courant * _unit(scene)
+    return float(run.time_step) if isinstance(run.time_step, float | int) else run.safety * limit
+
+
 def choose_step(scene: BarScene) -> tuple[float, float]:
     """Time step to run with and its stability limit (s) at every stage of the bar's method, exact to rounding.
 
     The step may be given by its Courant number. Raises CaseError when the case gives a step above the limit.
     """
-    limit, run = scene.step_limit(), scene.case.run
-    unit = scene.rod.spacing / scene.case.bar.speed
-    if run.courant is not None:
-        step = run.courant * unit
-        wrong = f"run.courant: is {run.courant:g}, must not be above {limit / unit:.6g}, the stability limit"
-    elif isinstance(run.time_step, float | int):
-        step = float(run.time_step)
-        wrong = f"run.time_step: is {step:g} s, must not be above the stability limit {limit:.6g} s"
-    else:
-        return run.safety * limit, limit
+    limit = scene.step_limit()
+    step = own_step(scene, limit)
     if step > limit * (1.0 + ROUNDING):
-        raise CaseError([wrong])
+        courant = scene.case.run.courant
+        if courant is None:
+            raise CaseError([f"run.time_step: is {step:g} s, must not be above the stability limit {limit:.6g} s"])
+        most = limit / _unit(scene)
+        raise CaseError([f"run.courant: is {courant:g}, must not be above {most:.6g}, the stability limit"])
     return step, limit
+
+
+def _unit(scene: BarScene) -> float:
+    """The time step (s) at a Courant number of 1."""
+    return scene.rod.spacing / scene.case.bar.speed

@@ -10,8 +10,9 @@ from dembound.cli import (  # each registers its commands with the application
     dispersion,
     gauge,
     results,
+    stability,
     starting,
 )
 from dembound.cli.app import app, main
 
-__all__ = ["app", "calibration", "cases", "chart", "dispersion", "gauge", "main", "results", "starting"]
+__all__ = ["app", "calibration", "cases", "chart", "dispersion", "gauge", "main", "results", "stability", "starting"]

@@ -148,19 +148,27 @@ def _rounded_down(step: float) -> float:
     return float(np.floor(step / unit) * unit)
 
 
+def own_step(scene: DiskScene, limit: float) -> float:
+    """The time step (s) of the case at a stability limit (s): a share of it, or the one given, even above it.
+
+    Raises CaseError when the step is automatic and nothing can vibrate.
+    """
+    wanted = scene.case.run.time_step
+    if wanted != "auto":
+        return float(wanted)
+    step = scene.case.run.safety * limit
+    if not np.isfinite(step):
+        raise CaseError(["run.time_step: is auto but nothing in the scene can vibrate, give a step in s"])
+    return _rounded_down(step)
+
+
 def choose_step(scene: DiskScene) -> tuple[float, float]:
     """Time step to run with and the stability limit (s).
 
     Raises CaseError when the case gives a step above the limit.
     """
     limit = step_limit(scene)
-    wanted = scene.case.run.time_step
-    if wanted == "auto":
-        step = scene.case.run.safety * limit
-        if not np.isfinite(step):
-            raise CaseError(["run.time_step: is auto but nothing in the scene can vibrate, give a step in s"])
-        return _rounded_down(step), limit
-    assert isinstance(wanted, float | int)
-    if wanted > limit:
-        raise CaseError([f"run.time_step: is {wanted:g} s, must not be above the stability limit {limit:.6g} s"])
-    return float(wanted), limit
+    step = own_step(scene, limit)
+    if step > limit:
+        raise CaseError([f"run.time_step: is {step:g} s, must not be above the stability limit {limit:.6g} s"])
+    return step, limit

@@ -102,7 +102,7 @@ def test_version_and_help_end_well(dembound) -> None:
     assert dembound("--version") == Answer(0, f"dembound {__version__}\n", "")
     told = dembound("--help")
     assert told.code == 0
-    for command in ("new", "cases", "schema", "check", "run", "calibrate", "plot", "dispersion", "gauge"):
+    for command in ("new", "cases", "schema", "check", "run", "calibrate", "plot", "dispersion", "stability", "gauge"):
         assert command in told.out
 
 
@@ -736,6 +736,31 @@ def test_dispersion_is_told_drawn_and_written(dembound, tmp_path) -> None:
     assert "24.9" in second  # spacings per wavelength, below the 28.6 of short steps
     assert answer.out.splitlines()[-2:] == ["wrote dispersion.png", "wrote table.csv"]
     assert files(tmp_path) == {"dispersion.png", "table.csv"}
+
+
+def test_stability_is_told_drawn_and_written(dembound, written, tmp_path) -> None:
+    answer = dembound("stability", written(), "--steps", 500, "--table", "table.csv", "-o", "noise.png")
+
+    assert answer.code == 0
+    (row,) = (cells(line) for line in answer.out.splitlines() if line.strip().startswith("elastic"))
+    name, limit, measured, own, *_, verdict = " ".join(row).split()
+    assert (name, verdict) == ("elastic", "stable")
+    assert float(limit) > 0.0
+    assert float(measured) == pytest.approx(1.0, abs=1e-3)
+    assert float(own) == pytest.approx(0.9, abs=1e-3)
+    assert "no loads and waves" in answer.out
+    assert answer.out.splitlines()[-2:] == ["wrote noise.png", "wrote table.csv"]
+    assert files(tmp_path) == {"bar.toml", "noise.png", "table.csv"}
+    assert "elastic: noise grows at 1.0005" in answer.err
+
+
+def test_a_step_that_is_not_stable_ends_with_3(dembound, written, tmp_path) -> None:
+    answer = dembound("stability", written("bar", {"run.time_step": 1e-3}), "--steps", 500)
+
+    assert answer.code == 3
+    assert "UNSTABLE" in answer.out
+    assert answer.err.splitlines()[-1].startswith("elastic: not stable at the case's own step of 0.001 s; the largest")
+    assert "stability.png" in files(tmp_path)
 
 
 def test_a_picture_may_be_given_a_title(dembound, felt, monkeypatch) -> None:

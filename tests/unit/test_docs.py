@@ -1,5 +1,7 @@
 """The references name every key of a case file there is, and all that a run spends time on."""
 
+import importlib
+import re
 from pathlib import Path
 from typing import get_args
 
@@ -103,3 +105,33 @@ def test_all_that_a_run_spends_time_on_stands_in_the_reference():
     text = (ROOT / "docs" / "results.md").read_text()
     (line,) = (line for line in text.splitlines() if line.startswith("| `seconds` |"))
     assert not [section for section in SECTIONS if f"`{section}`" not in line]
+
+
+FAILURES = [
+    [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+    for line in (ROOT / "docs" / "where_methods_fail.md").read_text().splitlines()
+    if re.match(r"\| \d+ \|", line)
+]
+"""The rows of the page: number, what fails, threshold, how it shows, guard, measured by, tests."""
+
+
+def test_failures_are_numbered() -> None:
+    assert [row[0] for row in FAILURES] == [str(number) for number in range(1, len(FAILURES) + 1)]
+    assert len(FAILURES) >= 22
+
+
+@pytest.mark.parametrize("row", FAILURES, ids=lambda row: row[1])
+def test_every_failure_is_measured_and_has_a_test(row: list[str]) -> None:
+    assert len(row) == 7
+    assert all(row)
+    for measured_by in re.findall(r"`([^`]+)`", row[5]):
+        module, _, function = measured_by.partition(".")
+        if measured_by.endswith(".py"):
+            assert (ROOT / "tests" / "verification" / measured_by).is_file()
+        else:
+            assert callable(getattr(importlib.import_module(module), function))
+    tests = re.findall(r"`([^`]+)::([^`]+)`", row[6])
+    assert tests
+    for file, name in tests:
+        path = ROOT / file if "/" in file else ROOT / "tests" / "verification" / file
+        assert f"\ndef {name}(" in path.read_text()

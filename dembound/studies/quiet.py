@@ -1,0 +1,170 @@
+"""Scenes without loads and waves, in which noise is stepped to measure how large a time step is stable."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from dembound.bar import stability as of_bars
+from dembound.bar.part import BarPart
+from dembound.bar.scene import build_bar
+from dembound.casefile import Case
+from dembound.casefile.bar import BarCase
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.model import as_kind
+from dembound.casefile.types import LAWS
+from dembound.disks import stability as of_disks
+from dembound.disks.scene import DiskScene, build, ground_of
+from dembound.disks.system import DiskSystem, Start
+from dembound.motion.part import System
+from dembound.motion.scene import Scene
+
+AnyCase = TypeVar("AnyCase", bound=Case)
+
+PARTICLES = 2500
+"""Particles of a reduced copy, about; one brick may have more. 100,000 steps of them take some ten seconds."""
+
+NOISE = 1e-5
+"""Root mean square velocity (m/s) of the noise: strains of 1e-8, at which no bond breaks."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A scene under one law, or a bar at one stage of its method, at rest and without loads and waves.
+
+    Attributes
+    ----------
+    name : of the law or stage.
+    scene : its arrays.
+    limit : s, the stability limit computed from the largest eigenvalue; step : s, that of the case.
+    system : its parts and ties for a time step (s); anew for every run.
+    is_linear : whether forces are linear, so that central differences conserve an energy exactly.
+    """
+
+    name: str
+    scene: Scene
+    limit: float
+    step: float
+    system: Callable[[float], System]
+    is_linear: bool
+
+    def noise(self, part: str | None = None) -> np.ndarray:
+        """Random velocities (3, n), m/s and rad/s, of all nodes or of those of one part; the same in every call.
+
+        Times the root of the mass, all directions are equally likely: every mode of vibration has the same expected
+        energy.
+        """
+        scene = self.scene
+        mass = np.stack([scene.mass, scene.mass, scene.inertia])
+        velocity = np.random.default_rng(0).standard_normal(mass.shape) * scene.free[:, None]
+        velocity *= NOISE * np.sqrt(scene.mass.mean() / mass)
+        held = scene.supports.prescribed
+        velocity[scene.supports.component[held], scene.supports.node[held]] = 0.0
+        if part is not None:
+            chosen = np.zeros(scene.count, dtype=bool)
+            chosen[next(each.nodes for each in self.system(self.step).parts if each.name == part)] = True
+            velocity[:, ~chosen] = 0.0
+        return velocity
+
+
+def trials(case: Case, *, full: bool = False) -> tuple[list[Trial], list[str]]:
+    """The scenes to measure for a case, and how they differ from it, one sentence each.
+
+    full : the whole scene, instead of fewer copies of the brick.
+
+    Raises the errors of building a scene.
+    """
+    if isinstance(case, BarCase):
+        return of_bar(case)
+    return of_disk_case(as_kind(case, DiskCase, "is a case of an unknown kind of body"), full=full)
+
+
+def of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
+    """A bar with the bonds of every stage of its method."""
+    scene = build_bar(_at_rest(case))
+    step = of_bars.own_step(scene, scene.step_limit())
+    stages = case.method.stages(scene.rod)
+    found = []
+    for index, bonds in enumerate(stages):
+
+        def system(time_step: float, index: int = index) -> System:
+            bonds = case.method.stages(scene.rod)[index]
+            return System([BarPart(scene, time_step, bonds)], [], np.zeros((3, scene.count)))
+
+        name = case.method.name if len(stages) == 1 else f"{case.method.type}, stage {index + 1}"
+        found.append(Trial(name, scene, scene.stable_step(bonds), step, system, is_linear=True))
+    left_out = ["the method stays at each stage"] if len(stages) > 1 else []
+    return found, [f"{scene.count:,} nodes, the whole bar", *_left_out(case), *left_out]
+
+
+def of_disk_case(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[str]]:
+    """A body of disks under the linear law, and under the case's own if that has a history."""
+    plain = replace(_at_rest(case), static=None, monitor=())
+    words = _left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
+    if not full:
+        plain, about = _reduced(plain)
+        words = [*about, *words]
+    own = LAWS[case.material.law]
+    linear = plain.material.model_copy(update={"law": own.linear})
+    scene = build(replace(plain, material=linear))
+    size = f"{scene.size[0]:.4g} m × {scene.size[1]:.4g} m, {scene.count:,} disks"
+    found = [_under(scene, own.linear)]
+    if own.has_history:
+        found.append(_under(build(plain), own.name))
+        words.append(f"noise of {NOISE:g} m/s, in which no bond breaks; contacts open and close where they just touch")
+    return found, [size, *words]
+
+
+def _under(scene: DiskScene, name: str) -> Trial:
+    """A body under its law."""
+    limit = of_disks.step_limit(scene)
+
+    def system(time_step: float) -> System:
+        nothing = np.zeros((3, scene.count))
+        start = None
+        if scene.has_history and scene.case.material.locked_in is not None:
+            start = Start(nothing, scene.contact_lists())  # what is locked in is balanced, also at cut faces
+        return DiskSystem(scene, time_step, start, load=nothing)
+
+    return Trial(name, scene, limit, of_disks.own_step(scene, limit), system, is_linear=not scene.has_history)
+
+
+def _at_rest(case: AnyCase) -> AnyCase:
+    """The case without loads and waves; its sides keep their dashpots and springs."""
+    boundary = {side: table.at_rest() for side, table in case.boundary.items()}
+    return replace(case, boundary=boundary, wave={}, load=())
+
+
+def _left_out(case: Case) -> list[str]:
+    """What `_at_rest` leaves out, in words."""
+    return ["no loads and waves"] * bool(case.load or case.wave)
+
+
+def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
+    """The case with fewer copies of its brick under the same sides, if it has more than `PARTICLES`, and how in words.
+
+    Holes are left out: removing particles and contacts takes rows and stiffness from K, which cannot increase its
+    largest eigenvalue.
+    """
+    across, up = case.packing.copies
+    disks = len(ground_of(case).brick.radii)
+    most = max(1, PARTICLES // disks)
+    if across * up <= most:
+        return case, ["the whole scene"]
+    fewer_up = int(np.clip(round(up * np.sqrt(most / (across * up))), 1, up))
+    fewer = int(np.clip(most // fewer_up, 1, across)), fewer_up
+    words = [f"{fewer[0]} × {fewer[1]} of its {across} × {up} bricks, the same sides"]
+    words += ["no holes, whose free walls do not lower the limit"] * bool(case.hole)
+    return replace(case, packing=case.packing.with_copies(*fewer), hole=()), words
+
+
+def parts_of(trial: Trial) -> Iterator[str]:
+    """Names of the parts to put noise in: all of them, each of which moves independently of those after it.
+
+    Under a law with a history only the last one, the body, as the energies of a ledger are those of all parts.
+    """
+    names = [part.name for part in trial.system(trial.step).parts]
+    yield from names if trial.is_linear else names[-1:]

@@ -1,0 +1,111 @@
+"""How large a time step is stable, measured: with dampers, springs, columns and all else of a scene.
+
+The limit from the largest eigenvalue (disks/stability.py, bar/stability.py) assumes that centred dampers, held
+components and one-sided seams do not lower it. Here noise is stepped (noise.py) in the scene without loads and waves
+(quiet.py): short runs around the limit, and a long one at the case's own step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from dembound.casefile import Case
+from dembound.errors import CaseError
+from dembound.studies.noise import RESOLUTION, Course, LongRun, long_run, short_run
+from dembound.studies.quiet import Trial, parts_of, trials
+
+FACTORS = 1.0 + 0.5 * RESOLUTION, 1.01, 1.1, 1.3, 2.0
+"""Steps over the computed limit, or below it, that are tried to bracket the largest stable one."""
+
+Report = Callable[[str], None]
+"""Called with a line about each run that is done."""
+
+
+@dataclass
+class Stability:
+    """What was measured of one trial.
+
+    Attributes
+    ----------
+    trial : the scene and its computed limit.
+    below, above : steps (s) between which the largest stable one lies; above is infinite if noise grew at none.
+    calm, growing : the short runs at these steps.
+    long_runs : at the case's own step, one for each part.
+    """
+
+    trial: Trial
+    below: float = 0.0
+    above: float = np.inf
+    calm: Course = field(default_factory=Course)
+    growing: Course = field(default_factory=Course)
+    long_runs: list[LongRun] = field(default_factory=list)
+
+    @property
+    def measured(self) -> float:
+        """The largest stable step (s): the middle of its bracket, infinite if noise grew at no step."""
+        return 0.5 * (self.below + self.above)
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether the case's own step is stable: it is below those at which noise grew, and so were the long runs."""
+        return self.trial.step < self.above and all(run.is_stable for run in self.long_runs)
+
+
+def measure(
+    case: Case, *, steps: int = 100_000, full: bool = False, report: Report | None = None
+) -> tuple[list[Stability], list[str]]:
+    """Largest stable steps of a case under all its laws or stages, and long runs of noise at its own step.
+
+    steps : of a long run; full : the whole scene instead of fewer copies of its brick. Returns the measurements, and
+    how the scenes differ from that of the case, one sentence each.
+
+    Raises the errors of building a scene, and CaseError if nothing in it can vibrate.
+    """
+    if steps < 1:
+        raise CaseError([f"--steps: is {steps}, must be at least 1"])
+    chosen, words = trials(case, full=full)
+    say = report or (lambda line: None)
+    return [_measured(trial, steps, say) for trial in chosen], words
+
+
+def _measured(trial: Trial, steps: int, say: Report) -> Stability:
+    """The measurements of one trial."""
+    if not np.isfinite(trial.limit):
+        raise CaseError(["run.time_step: any step is stable, as nothing in the scene can vibrate"])
+    found = _bracketed(trial, say)
+    for part in parts_of(trial):
+        run = long_run(trial, part, steps)
+        found.long_runs.append(run)
+        seen = "does not grow" if run.is_stable else "grows"
+        done = f"{run.course.steps[-1]:,} steps of {trial.step:.4g} s"
+        say(f"{trial.name}: energy of noise in the {part} {seen} in {done}")
+    return found
+
+
+def _bracketed(trial: Trial, say: Report) -> Stability:
+    """The largest stable step to `RESOLUTION`: a bracket around the computed limit, then bisection."""
+    found = Stability(trial)
+
+    def grows_at(step: float) -> bool:
+        course = short_run(trial, step)
+        if course.is_growing:
+            found.above, found.growing = step, course
+        else:
+            found.below, found.calm = step, course
+        seen = "grows" if course.is_growing else "does not grow"
+        say(f"{trial.name}: noise {seen} at {step / trial.limit:.5f} of the computed limit")
+        return course.is_growing
+
+    for factor in FACTORS:
+        if grows_at(trial.limit * factor):
+            break
+    if found.below == 0.0:
+        for factor in FACTORS:
+            if not grows_at(trial.limit / factor):
+                break
+    while np.isfinite(found.above) and found.above - found.below > RESOLUTION * trial.limit * (1.0 + 1e-9):
+        grows_at(0.5 * (found.below + found.above))
+    return found

@@ -1,0 +1,64 @@
+"""Where bars of nodes fail: the thresholds of docs/where_methods_fail.md, measured again."""
+
+import bars
+import numpy as np
+import pytest
+
+
+@pytest.mark.parametrize(("horizon", "cells"), [(1, 5.9), (3, 17.7), (8, 53.2)])
+def test_cells_for_one_per_cent(horizon, cells):
+    needed, error = bars.cells_for_one_per_cent(horizon)
+    assert needed == pytest.approx(cells, abs=0.1)
+    assert error == pytest.approx(0.01, rel=1e-6)
+
+
+def test_a_wide_horizon_smears_a_short_pulse():
+    """55 cells: with m = 8, 7 % of the peak are lost within half a metre, with m ≤ 3 0.1 %."""
+    assert bars.smeared(8) == pytest.approx(0.073, rel=0.05)
+    assert bars.smeared(3) < 0.002
+
+
+@pytest.mark.parametrize("cells", [20.0, 60.0])
+def test_a_seam_returns_a_part_of_short_waves(cells):
+    theta = 2.0 * np.pi / cells
+    assert bars.seam_echo(cells) == pytest.approx(8.0 * theta**2 / 96.0, rel=theta**2)
+    assert bars.seam_echo(cells, complement=False) > 15.0 * bars.seam_echo(cells)
+
+
+def test_methods_agree_on_the_first_spall_only():
+    """The first is within 2 mm; the number of the others differs."""
+    found = {method: bars.pieces(method) for method in bars.METHODS}
+    first = [places[0] for places in found.values()]
+    assert max(first) - min(first) <= 0.002 + 1e-9
+    assert len({len(places) for places in found.values()}) > 1
+
+
+@pytest.mark.parametrize(("horizon", "strengths", "spread"), [(3, 7.68, 53.6), (8, 0.812, 5.44)])
+def test_a_load_on_one_node_tears_the_end(horizon, strengths, spread):
+    assert bars.tearing_load(horizon) == pytest.approx(strengths, rel=0.02)
+    assert bars.tearing_load(horizon, horizon) == pytest.approx(spread, rel=0.02)
+
+
+def test_springs_swing_under_a_sudden_load():
+    """To twice the load at ν = 1, exactly; at 0.9 by the overshoot of any dispersive chain."""
+    assert bars.odd_even_swing(0.0, 1.0) == pytest.approx(2.0, rel=1e-9)
+    assert bars.odd_even_swing(0.0, 0.9) == pytest.approx(1.287, abs=0.01)
+
+
+@pytest.mark.parametrize("strength", [None, 10e6])
+def test_steps_just_above_the_limit_stop_a_run(strength):
+    """At 1.0001 of the limit noise grows by e^0.028 a step: 1e24 in 2000 steps."""
+    assert not bars.stops(1.0, strength)
+    assert bars.stops(1.0001, strength)
+
+
+def test_soft_ends_reflect():
+    """A tenth of a pulse of 60 cells; corrected ends a thousandth."""
+    assert bars.soft_end(False) == pytest.approx(0.098, abs=0.003)
+    assert bars.soft_end(True) < 1e-3
+
+
+@pytest.mark.parametrize("horizon", [1, 3])
+def test_families_and_volumes(horizon):
+    assert bars.families_by_distance(horizon) > 0.1
+    assert bars.too_stiff(horizon) == pytest.approx(1.0 + 1.0 / horizon, rel=1e-12)
