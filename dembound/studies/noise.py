@@ -179,7 +179,8 @@ def conserved(run: Run, parts: Sequence[Part]) -> float:
     """The energy (J) of parts under a linear law that central differences conserve: ½v⁻ᵀMv⁻ + ½uᵀKu⁻."""
     u = run.state.displacement.copy()
     before = u - run.time_step * run.state.velocity
-    strain = sum(sum(part.stored(u + before)) - sum(part.stored(u - before)) for part in parts)
+    twice, change = (run.scene.layout.spread(values) for values in (u + before, u - before))
+    strain = sum(sum(part.stored(twice)) - sum(part.stored(change)) for part in parts)
     rows = run.scene.supports
     place = rows.component, rows.node
     work = rows.stiffness * u[place] * before[place]
