@@ -50,14 +50,17 @@ def smeared(horizon: int, length: float = 20e-6) -> float:
 
 
 def seam_echo(cells: float, horizon: int = 3, complement: bool = True) -> float:
-    """Reflected part of a burst at the border of a zone of peridynamics, for so many spacings in a wavelength."""
+    """Reflected part of a burst at the border of a zone of peridynamics, for so many spacings in a wavelength.
+
+    complement : whether local springs carry what the zone's bonds do not, as those of the method `patch` do.
+    """
     count, seam, gauge, courant = 1600, 900, 450, 0.5
     spacing = 1.0 / count
     frequency = np.arcsin(courant * np.sin(np.pi / cells)) / (np.pi * courant * spacing / ROCK_SPEED)
     burst = {"type": "sine_burst", "amplitude": 1.0, "frequency": frequency, "cycles": 6}
     load = [{"name": "blow", "pressure": 1e6, "wave": "pulse"}]
     scene = build_bar(bar({"type": "patch", "horizon": horizon}, spacing, load=load, wave={"pulse": burst}))
-    bonds = Bonds(scene.rod, horizon, complement=complement)
+    bonds = scene.case.method.begin(scene.rod) if complement else Bonds(scene.rod, horizon, complement=False)
     bonds.add_zone(seam, count + 1)
     step = courant * spacing / ROCK_SPEED
     system = System([BarPart(scene, step, bonds)], [], np.zeros((3, scene.count)))

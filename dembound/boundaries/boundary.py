@@ -89,6 +89,13 @@ class Boundary(Table):
         """The side used to calibrate β for plane waves at normal incidence: without springs and columns."""
         return self
 
+    def stiffest(self, side: str, extent: tuple[float, float]) -> "Boundary":
+        """The side with its largest stiffness everywhere, independent of its position.
+
+        side : its name; extent : width and height of the scene, m.
+        """
+        return self
+
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
         """The side in numbers for reports: key -> value, SI units."""
         return {f"beta_{motion}": factor for motion, factor in self.factors.items()}

@@ -4,6 +4,7 @@ Z eqs 13-18. For waves that spread from a source at distance L, the medium beyon
 springs of α_n G/L along the normal and α_s G/L across it. G follows from a given modulus, or is that of the medium.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal, Self
 
@@ -70,6 +71,16 @@ class Springs(Boundary):
         along_normal, across = self.alpha_n, self.alpha_s
         factors = [along_normal, across] if edge.axis == 0 else [across, along_normal]
         return np.outer(factors, self.shear_modulus(medium) * edge.diameters / self.distances(edge))
+
+    def stiffest(self, side: str, extent: tuple[float, float]) -> Boundary:
+        """The same side with the distance of the source from the nearest point of the side."""
+        if self.source is None:
+            return self
+        axis, far = normal_axis(side), side in ("right", "top")
+        nearest = [min(max(place, 0.0), length) for place, length in zip(self.source, extent, strict=True)]
+        nearest[axis] = extent[axis] if far else 0.0
+        distance = math.dist(self.source, nearest)
+        return self.model_copy(update={"source": None, "distance": distance}) if distance > 0.0 else self
 
     def shear_modulus(self, medium: BoundaryMedium) -> float:
         """G in Pa."""

@@ -157,8 +157,11 @@ def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
     fewer_up = int(np.clip(round(up * np.sqrt(most / (across * up))), 1, up))
     fewer = int(np.clip(most // fewer_up, 1, across)), fewer_up
     words = [f"{fewer[0]} × {fewer[1]} of its {across} × {up} bricks, the same sides"]
+    stiffest = {side: table.stiffest(side, case.packing.extent) for side, table in case.boundary.items()}
+    if stiffest != case.boundary:
+        words.append("springs that depend on the distance of a source are those nearest to it")
     words += ["no holes, whose free walls do not lower the limit"] * bool(case.hole)
-    return replace(case, packing=case.packing.with_copies(*fewer), hole=()), words
+    return replace(case, boundary=stiffest, packing=case.packing.with_copies(*fewer), hole=()), words
 
 
 def parts_of(trial: Trial) -> Iterator[str]:

@@ -55,7 +55,7 @@ def test_the_elastic_start_ends_at_a_hundredth():
 
 
 def test_contacts_that_open_lower_the_limit():
-    """To 0.86 of that of closed ones, of which √(0.75/1.05) = 0.845 is used; without the loss at closing to less."""
+    """To 0.86 of that of closed ones, of which √(0.75/1.05) = 0.845 is used."""
     measured, used = grains.opening_limit()
     assert used == pytest.approx(np.sqrt(OPENING), rel=1e-3)
     assert used < measured < 0.9
