@@ -1,10 +1,12 @@
 """Runs one case: from its tables to a folder of results."""
 
+import gc
 import json
 import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +15,7 @@ from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import checked, kind_of
 from dembound.motion.clock import Clock
 from dembound.motion.energy import Ledger
-from dembound.motion.kind import Beginning, Plan, StalledError
+from dembound.motion.kind import Beginning, Kind, Plan, StalledError
 from dembound.motion.silence import Silence, silent_rule
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import Run, Tracker
@@ -23,6 +25,12 @@ from dembound.results.vtk import write_vtu
 
 MOST_STEPS = 1e11
 """Largest number of steps. Even a few nodes would take more than a day for it: a mistake in a time."""
+
+LARGE = 1e8
+"""Bytes of a scene from which on it is removed from memory at once after the run; this takes some tenths of a second.
+
+Files and pictures are made from the record alone.
+"""
 
 ENTRIES = 100
 """Entries of the energy ledger where the case does not give an interval."""
@@ -109,32 +117,41 @@ def run_case(
     """
     clock = Clock()
     clock.seconds.update(dict.fromkeys(SECTIONS, 0.0) | dict(seconds or {}))
+    folder, partial = results / case.name, results / f"{case.name}.partial"
     with clock.with_compiling():
-        planned, progress = plan(case, clock), progress or Progress()
-        folder, partial = results / case.name, results / f"{case.name}.partial"
-        for old in (folder, partial):
-            _must_be_replaceable(old)
-        if partial.exists():
-            shutil.rmtree(partial)
-        partial.mkdir(parents=True)
-        record = partial / "run.h5"
-        with _about(case), _gone_if_empty(partial):
-            warnings = _passed_on(warnings_before(planned), progress)
-            simulation, beginning = _simulate(planned, record, progress, clock)
+        summary = _record(case, folder, partial, progress or Progress(), clock)
+        if summary["memory_bytes"] > LARGE:
+            gc.collect()
+        kind = kind_of(case)
         with clock.of("export"):
-            write_vtu(record, partial / "paraview", planned.kind)
+            write_vtu(partial / "run.h5", partial / "paraview", kind)
         with clock.of("pictures"):
             if case.output.pictures:
-                _draw(planned, partial)
-    summary = summarise(planned, simulation, record, clock.seconds)
-    summary |= planned.kind.summarise(planned.scene, simulation, beginning, record)
-    warnings += _passed_on(planned.kind.warnings_after(planned.scene, summary, record), progress)
-    summary["warnings"] = warnings
+                _draw(case, kind, partial)
+    summary |= {"wall_time": sum(clock.seconds.values()), "seconds": clock.seconds}
     (partial / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
     if folder.exists():
         shutil.rmtree(folder)
     partial.rename(folder)
     return folder
+
+
+def _record(case: Case, folder: Path, partial: Path, progress: Progress, clock: Clock) -> dict[str, Any]:
+    """Run a case that is to end in a folder, and record it in the partial one; returns the summary."""
+    planned = plan(case, clock)
+    for old in (folder, partial):
+        _must_be_replaceable(old)
+    if partial.exists():
+        shutil.rmtree(partial)
+    partial.mkdir(parents=True)
+    record = partial / "run.h5"
+    with _about(case), _gone_if_empty(partial):
+        warnings = _passed_on(warnings_before(planned), progress)
+        simulation, beginning = _simulate(planned, record, progress, clock)
+    summary = summarise(planned, simulation, record, clock.seconds)
+    summary |= planned.kind.summarise(planned.scene, simulation, beginning, record)
+    warnings += _passed_on(planned.kind.warnings_after(planned.scene, summary, record), progress)
+    return summary | {"warnings": warnings}
 
 
 def _passed_on(warnings: list[str], progress: Progress) -> list[str]:
@@ -144,16 +161,16 @@ def _passed_on(warnings: list[str], progress: Progress) -> list[str]:
     return warnings
 
 
-def _draw(planned: Plan, folder: Path) -> None:
+def _draw(case: Case, kind: Kind[Any, Any], folder: Path) -> None:
     """Draw the pictures of a run into its folder: the monitors' velocities, and from snapshots those of its kind."""
     from dembound.plot.histories import plot_histories
     from dembound.plot.style import save
 
     record = folder / "run.h5"
-    if planned.scene.case.output.snapshots:
-        for name, figure in planned.kind.pictures(record):
+    if case.output.snapshots:
+        for name, figure in kind.pictures(record):
             save(figure, folder / f"{name}.png")
-    if planned.scene.case.monitor:
+    if case.monitor:
         save(plot_histories([record]), folder / "histories.png")
 
 
