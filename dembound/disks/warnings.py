@@ -249,14 +249,15 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
 def _pieces(scene: DiskScene, broken: np.ndarray) -> np.ndarray:
     """Number (n,) of the piece of each particle; pieces are connected by pairs of the start that have not broken.
 
-    broken (k, 2) particles.
+    broken (k, 2) particles; without any, the body is in one piece, as built.
     """
+    if len(broken) == 0:
+        return np.zeros(scene.count, dtype=np.int8)
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
     pairs = scene.assembly.pairs
-    if len(broken) > 0:
-        listed, gone = (np.sort(each.astype(np.int64), axis=1) @ [scene.count, 1] for each in (pairs, broken))
-        pairs = pairs[~np.isin(listed, gone)]
+    listed, gone = (np.sort(each.astype(np.int64), axis=1) @ [scene.count, 1] for each in (pairs, broken))
+    pairs = pairs[~np.isin(listed, gone)]
     joined = coo_matrix((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(scene.count, scene.count))
     return connected_components(joined, directed=False)[1]
