@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import numba
 
-PARTICLES_PER_THREAD = 10_000
+PARTICLES_PER_THREAD = 40_000
 """Below this a step takes less than 0.2 ms, and much of it would be the synchronisation of threads."""
 
 
