@@ -77,6 +77,8 @@ def assert_same_breaking(scene, steps):
     step = choose_step(scene)[0]
     before, after = (Simulation(each, step) for each in (in_order(scene), scene))
     for simulation in (before, after):
+        for contacts in simulation.system.contacts.values():  # pairs are searched for as if any two disks might meet
+            contacts.cells = contacts.cells._replace(reach=0.0)
         simulation.advance(steps // 3)
     # disks that just touch open or stay closed by rounding: of a random packing a push of 1e-13 m/s moves velocities by
     # 1e-6 m/s within 25 steps
@@ -95,7 +97,7 @@ def assert_same_breaking(scene, steps):
         assert part.contacts.rows is not None
         near = part.contacts.of("contact_type").max() >= len(part.contacts.bonds)
         assert near == (scene.case.packing.pattern == "B")  # pairs without a bond are there
-        assert part.contacts.origin.any() == (scene.case.packing.pattern == "B")  # pairs were searched for on the way
+        assert part.contacts.origin.any()  # pairs were searched for on the way
     return expected, after.state.work
 
 
