@@ -21,9 +21,9 @@ def load(path: Path) -> Case:
     return reader.load(path, SCHEMAS)
 
 
-def loads(text: str, folder: Path = Path(), name: str = "case") -> Case:
-    """Read a case from TOML text, as if it were the file `name` in the folder; errors as `load`."""
-    return reader.loads(text, SCHEMAS, folder, name)
+def loads(text: str, folder: Path = Path(), name: str = "case", files: Mapping[str, str] | None = None) -> Case:
+    """Read a case from TOML text, as if it were the file `name` in the folder; see `case.reader.loads`."""
+    return reader.loads(text, SCHEMAS, folder, name, files)
 
 
 def with_changes(case: Case, changes: Mapping[str, Any]) -> Case:
@@ -33,4 +33,4 @@ def with_changes(case: Case, changes: Mapping[str, Any]) -> Case:
 
 def checked(case: Case) -> Case:
     """The case, its tables checked as if they had been read from a file; errors as `load`."""
-    return case if case.is_checked else loads(case.text, case.folder, case.name)
+    return case if case.is_checked else loads(case.text, case.folder, case.name, case.files)

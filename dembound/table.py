@@ -20,7 +20,13 @@ class Table(BaseModel):
     def given(self) -> dict[str, Any]:
         """The keys that have been given, in TOML's types; the key that distinguishes types is always included."""
         keys = [name for name in type(self).model_fields if name in self.model_fields_set | DISCRIMINATORS]
-        return {name: as_toml(getattr(self, name)) for name in keys if getattr(self, name) is not None}
+        given = {name: getattr(self, name) for name in keys if getattr(self, name) is not None}
+        return {self.key_of(name): as_toml(value) for name, value in given.items()}
+
+    @classmethod
+    def key_of(cls, name: str) -> str:
+        """The key of a field; another name only where the key is a word of Python, as "from"."""
+        return cls.model_fields[name].alias or name
 
 
 DISCRIMINATORS = {"type", "pattern"}
@@ -34,6 +40,15 @@ def as_toml(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {name: as_toml(inner) for name, inner in value.items()}
     return [as_toml(inner) for inner in value] if isinstance(value, tuple | list) else value
+
+
+def every_key(value: Any) -> Any:
+    """The same with all keys, those that have not been given with their defaults; None for those without a value."""
+    if isinstance(value, Table):
+        return {value.key_of(name): every_key(getattr(value, name)) for name in type(value).model_fields}
+    if isinstance(value, Mapping):
+        return {name: every_key(inner) for name, inner in value.items()}
+    return [every_key(inner) for inner in value] if isinstance(value, tuple | list) else value
 
 
 def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:

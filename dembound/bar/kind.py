@@ -20,6 +20,7 @@ from dembound.bar.wave_front import front_of_bar
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.motion.kind import Beginning, Finding, Kind, OnLook
 from dembound.motion.paths import Front, Source
+from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run
 from dembound.results.reader import has_monitors
@@ -54,7 +55,7 @@ class Bars(Kind[BarCase, BarScene]):
         """Always true, as the step limit of a bar is computed within milliseconds."""
         return True
 
-    def begin(self, scene: BarScene, time_step: float, on_look: OnLook) -> Beginning:
+    def begin(self, scene: BarScene, time_step: float, on_look: OnLook, stages: Stages | None = None) -> Beginning:
         """The bar at rest."""
         return Beginning(scene.system(time_step))
 

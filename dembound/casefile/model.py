@@ -12,7 +12,7 @@ from dembound.casefile.chart import Chart
 from dembound.casefile.output import Output
 from dembound.casefile.run import Run
 from dembound.errors import CaseError
-from dembound.table import as_toml
+from dembound.table import as_toml, every_key
 from dembound.waves import Wave
 
 
@@ -67,6 +67,16 @@ class Case:
         """Whether its tables are still those that have been checked."""
         checked = self.checked
         return checked is not None and all(table is checked[name] for name, table in self.tables.items())
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """The tables with all keys, also those that were left out, as plain JSON values."""
+        return {name: every_key(table) for name, table in self.tables.items()}
+
+    @property
+    def files(self) -> dict[str, str]:
+        """Texts of the files that the case refers to, by their paths in it."""
+        return {path: text for wave in self.wave.values() for path, text in wave.files().items()}
 
     def side(self, name: str) -> Boundary:
         """The table of a side; one that is absent is free."""

@@ -38,12 +38,28 @@ def load(path: Path, schemas: Sequence[Schema]) -> Case:
     return _read(text, path.parent, path.stem, str(path), schemas)
 
 
-def loads(text: str, schemas: Sequence[Schema], folder: Path = Path(), name: str = "case") -> Case:
-    """Read a case from TOML text, as if it were the file `name` in the folder; errors as `load`."""
-    return _read(text, folder, name, name, schemas)
+def loads(
+    text: str,
+    schemas: Sequence[Schema],
+    folder: Path = Path(),
+    name: str = "case",
+    files: Mapping[str, str] | None = None,
+) -> Case:
+    """Read a case from TOML text, as if it were the file `name` in the folder; errors as `load`.
+
+    files : texts of files that the case refers to, by their paths in it, in place of files in the folder.
+    """
+    return _read(text, folder, name, name, schemas, files)
 
 
-def _read(text: str, folder: Path, name: str, source: str, schemas: Sequence[Schema]) -> Case:
+def _read(
+    text: str,
+    folder: Path,
+    name: str,
+    source: str,
+    schemas: Sequence[Schema],
+    files: Mapping[str, str] | None = None,
+) -> Case:
     """The case; source : name of the text in errors."""
     try:
         data = tomllib.loads(text)
@@ -54,7 +70,7 @@ def _read(text: str, folder: Path, name: str, source: str, schemas: Sequence[Sch
     if schema is None:
         strange = [f"{key}: {unknown('table', key, known)}" for key in data if key not in known]
         raise CaseError([*strange, _of_no_kind(schemas)], source)
-    reader = _Reader(folder, schema)
+    reader = _Reader(schema, {"folder": folder, "files": files or {}})
     reader.problems = [_stray(key, data, schema, known) for key in data if key not in schema.keys]
     tables = reader.read(data)
     if reader.problems:
@@ -98,9 +114,9 @@ def _json_schema(kind: TypeAdapter[Any]) -> dict[str, Any]:
 class _Reader:
     """Validates table by table, so that the mistakes in all tables are found."""
 
-    def __init__(self, folder: Path, schema: Schema) -> None:
-        self.folder = folder
+    def __init__(self, schema: Schema, context: Mapping[str, Any]) -> None:
         self.schema = schema
+        self.context = context
         self.problems: list[str] = []
 
     def read(self, data: Mapping[str, Any]) -> dict[str, Any]:
@@ -125,7 +141,7 @@ class _Reader:
         """
         try:
             json = to_json(raw, inf_nan_mode="constants")
-            return kind.validate_json(json, strict=True, context={"folder": self.folder})
+            return kind.validate_json(json, strict=True, context=self.context)
         except ValidationError as error:
             self.problems += describe(error, path, raw, _json_schema(kind))
             return None

@@ -19,6 +19,9 @@ class Run(Table):
     safety: float = quantity(
         0.9, unit="1", help="share of the stability limit that an automatic step uses", gt=0.0, le=1.0
     )
+    checkpoint: float = quantity(
+        300.0, unit="s", help="wall time between two checkpoints; 0: none, and the run cannot be resumed", ge=0.0
+    )
     until: Literal["duration", "silent"] = quantity(
         "duration", unit="1", help='when it ends; "silent": before its duration if all monitors are silent'
     )

@@ -32,7 +32,7 @@ def with_changes(case: Case, changes: Mapping[str, Any], schemas: Sequence[Schem
     CaseError
         If a key does not exist or the changed case is not valid.
     """
-    return loads(_changed(case.text, changes), schemas, case.folder, case.name)
+    return loads(_changed(case.text, changes), schemas, case.folder, case.name, case.files)
 
 
 def to_toml(case: Case, folder: Path | None = None) -> str:

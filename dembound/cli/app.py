@@ -30,6 +30,7 @@ EXIT_CODES = (  # in one line: line breaks within a paragraph stay in the help
     "could not be made; 5 a file could not be read or written; 130 stopped with Ctrl-C."
 )
 CANNOT_WRITE = 5
+INTERRUPTED = 130
 
 COLLECT_EVERY = 100_000
 """New objects after which Python searches for unused cycles: nearly all objects are those of packages, and remain."""

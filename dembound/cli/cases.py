@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from dembound.cli.app import (
+    INTERRUPTED,
     PICTURE,
     Cases,
     Name,
@@ -65,8 +66,6 @@ def run(
     All case files are read before the first is run, so a mistake in the last one is found at once.
     """
     from dembound.cli.progress import progress_of
-    from dembound.kinds import kind_of
-    from dembound.results.summary import end_in_words
     from dembound.running import preflight, run_case
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
@@ -85,17 +84,56 @@ def run(
         try:
             with progress_of(case.name) as step:
                 folder = run_case(case, output, step, spent)
-        except KeyboardInterrupt:
-            partial = output / f"{case.name}.partial"
-            kept = f"histories so far are in {partial}" if (partial / "run.h5").is_file() else "the run had not begun"
-            err.print(f"{case.name}: stopped; {kept}")
-            raise
+        except KeyboardInterrupt as stop:
+            raise _stopped(output / f"{case.name}.partial", stop) from None
         spent = {}  # counted for the first case only
-        summary = json.loads((folder / "summary.json").read_text())
-        facts = [*end_in_words(summary), *kind_of(case).outcome(summary)]
-        if facts:
-            out.print(f"{case.name}: {'; '.join(facts)}")
-        out.print(f"{case.name}: results in {folder}")
+        _print_results(folder)
+
+
+@app.command("resume", rich_help_panel="Cases")
+def resume(
+    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Folders of results, or NAME.partial.")],
+    until: Annotated[float | None, typer.Option(min=0.0, help="New duration in s; needed for a complete run.")] = None,
+    threads: Threads = None,
+) -> None:
+    """Continue runs from their last checkpoints, to the same results as without the interruption.
+
+    A complete run is continued to a later time; histories, ledger and snapshots keep their intervals.
+    """
+    from dembound.cli.progress import progress_of
+    from dembound.running import resume_case
+
+    use_threads(threads)
+    for folder in results:
+        try:
+            with progress_of(folder.name) as step:
+                done = resume_case(folder, until, step)
+        except KeyboardInterrupt as stop:
+            partial = folder if folder.suffix == ".partial" else folder.with_name(f"{folder.name}.partial")
+            raise _stopped(partial, stop) from None
+        _print_results(done)
+
+
+def _print_results(folder: Path) -> None:
+    """Print the outcome of a run and its folder."""
+    from dembound.kinds import kind_of_record
+    from dembound.results.summary import end_in_words
+
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    name = summary["name"]
+    facts = [*end_in_words(summary), *kind_of_record(folder / "run.h5").outcome(summary)]
+    if facts:
+        out.print(f"{name}: {'; '.join(facts)}", markup=False)
+    out.print(f"{name}: results in {folder}", markup=False)
+
+
+def _stopped(partial: Path, stop: KeyboardInterrupt) -> typer.Exit:
+    """Print what is left of a run that a signal has stopped; returns the end of the process, with its exit code."""
+    kept = [f"histories so far are in {partial}"] if (partial / "run.h5").is_file() else []
+    if (partial / "checkpoint.npz").is_file():
+        kept.append(f"to continue: dembound resume {partial}")
+    err.print(f"{partial.stem}: stopped; {'; '.join(kept) or 'the run had not begun'}", markup=False)
+    return typer.Exit(getattr(stop, "exit_code", INTERRUPTED))
 
 
 @app.command("packing", rich_help_panel="Cases")

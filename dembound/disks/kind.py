@@ -13,15 +13,17 @@ from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
 from dembound.disks.outcome import disk_outcome
 from dembound.disks.reduction import reduced
 from dembound.disks.scene import DiskScene, build
+from dembound.disks.settled import Settled, settling_keys
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
-from dembound.disks.static import Settled, settle
+from dembound.disks.static import settle
 from dembound.disks.summary import asked_stress, describe_static, summarise_disks
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
 from dembound.disks.wave_front import front_of
 from dembound.motion.kind import Beginning, Kind, OnLook, Stage
 from dembound.motion.paths import Front, Source
+from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run
 
@@ -55,11 +57,11 @@ class Disks(Kind[DiskCase, DiskScene]):
         """One of its rows or one half, from whose motion that of all disks follows."""
         return reduced(scene)
 
-    def begin(self, scene: DiskScene, time_step: float, on_look: OnLook) -> Beginning:
+    def begin(self, scene: DiskScene, time_step: float, on_look: OnLook, stages: Stages | None = None) -> Beginning:
         """Settle the body if the case has a static stage, else begin with the body as built."""
         if scene.case.static is None:
             return Beginning(scene.system(time_step))
-        settled = settle(scene, on_look)
+        settled = settle(scene, on_look, stages)
         return Beginning(
             system=DiskSystem(scene, time_step, settled.start),
             datum=settled.start.displacement,
@@ -82,6 +84,14 @@ class Disks(Kind[DiskCase, DiskScene]):
     def has_static_stage(self, scene: DiskScene) -> bool:
         """Whether the case has one."""
         return scene.case.static is not None
+
+    def stage_keys(self, scene: DiskScene) -> dict[str, Any]:
+        """What the result of its static stage depends on."""
+        return settling_keys(scene)
+
+    def stages_from(self, case: DiskCase) -> Path | None:
+        """The folder given by ``static.from``."""
+        return None if case.static is None or case.static.from_ is None else Path(case.static.from_)
 
     def unit(self, scene: DiskScene) -> tuple[float, float]:
         """A brick."""

@@ -14,12 +14,14 @@ from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.casefile.disks.static import Static
 from dembound.disks.contacts import ContactList
 from dembound.disks.scene import DiskScene, boundary_medium, column_alone
+from dembound.disks.settled import Settled
 from dembound.disks.stability import step_limit
 from dembound.disks.system import DiskSystem, Start
 from dembound.disks.tractions import Tractions, mean_stress
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.kind import StalledError
 from dembound.motion.simulation import Simulation
+from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays, State
 from dembound.motion.trackers import Run, Tracker
 
@@ -36,38 +38,12 @@ WORST = 3
 """Number of particles in the message about a stalled stage."""
 
 
-@dataclass(frozen=True)
-class Settled:
-    """A body at rest, and the results of its static stage.
-
-    Attributes
-    ----------
-    start : the state in which the run begins.
-    steps : steps it took.
-    ratio : mean unbalanced over mean contact force at the end.
-    mean_reaction : N, mean force of supports and tractions on the particles they act on.
-    mean_residual : N, mean unbalanced force on all other particles, which F_0 balances too.
-    stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive.
-    cracks : the bonds that broke on the way.
-    tractions : (3,) Pa, the stress of the tractions at the end; None without a target stress. before : the same before
-    an excavation, if there was one, with the numbering of particles before it. column : the same for the free-field
-    column alone, if there is one.
-    """
-
-    start: Start
-    steps: int
-    ratio: float
-    mean_reaction: float
-    mean_residual: float
-    stress: np.ndarray
-    cracks: Cracks
-    tractions: np.ndarray | None = None
-    before: "Settled | None" = None
-    column: "Settled | None" = None
+OnLook = Callable[[int, float], None] | None
+"""Called with the steps done and the force ratio from time to time."""
 
 
-def settle(scene: DiskScene, on_look: Callable[[int, float], None] | None = None) -> Settled:
-    """Run a scene's static stage; on_look gets the steps done and the force ratio from time to time.
+def settle(scene: DiskScene, on_look: OnLook = None, stages: Stages | None = None) -> Settled:
+    """Run a scene's static stage, or take what `stages` has kept of it.
 
     A scene with an excavation settles before it, and then again from this state, under the same loads and supports.
     With a free field the column settles first, alone; the body starts from its state, and both settle together.
@@ -76,19 +52,32 @@ def settle(scene: DiskScene, on_look: Callable[[int, float], None] | None = None
     Raises StalledError, with the force ratio reached, when the ratio no longer decreases or the steps exceed the
     maximum, and RunError when the motion grows without bound.
     """
+    kept = stages or Stages()
     if scene.before is not None:
-        before = _settle_built(scene.before, on_look, "before the excavation the static stage")
-        excavated = _settle(scene, _excavate(scene, before.start), on_look, tractions=before.tractions)
+        before = _settle_built(scene.before, _Stage("before", "before the excavation the static stage", on_look, kept))
+        stage = _Stage("body", "the static stage", on_look, kept)
+        excavated = _settle(scene, lambda: _excavate(scene, before.start), stage, tractions=before.tractions)
         return replace(excavated, before=before)
-    return _settle_built(scene, on_look, "the static stage")
+    return _settle_built(scene, _Stage("body", "the static stage", on_look, kept))
 
 
-def _settle_built(scene: DiskScene, on_look: Callable[[int, float], None] | None, name: str) -> Settled:
-    """The stage of a body as built, after that of its free-field column; name : used in messages."""
+@dataclass(frozen=True)
+class _Stage:
+    """One stage: its key in `stages`, its name in messages, who gets its progress, and what keeps it."""
+
+    key: str
+    name: str
+    on_look: OnLook
+    stages: Stages
+
+
+def _settle_built(scene: DiskScene, stage: _Stage) -> Settled:
+    """The stage of a body as built, after that of its free-field column."""
     if scene.seam is None:
-        return _settle(scene, None, on_look, name)
-    column = _settle(column_alone(scene), None, on_look, f"{name} of the free-field column alone")
-    return replace(_settle(scene, _beside(scene, column.start), on_look, name), column=column)
+        return _settle(scene, lambda: None, stage)
+    alone = replace(stage, key=f"{stage.key}.column", name=f"{stage.name} of the free-field column alone")
+    column = _settle(column_alone(scene), lambda: None, alone)
+    return replace(_settle(scene, lambda: _beside(scene, column.start), stage), column=column)
 
 
 def _excavate(scene: DiskScene, before: Start) -> Start:
@@ -114,27 +103,29 @@ def _beside(scene: DiskScene, column: Start) -> Start:
 
 
 def _settle(
-    scene: DiskScene,
-    start: Start | None,
-    on_look: Callable[[int, float], None] | None,
-    name: str = "the static stage",
-    tractions: np.ndarray | None = None,
+    scene: DiskScene, starting: Callable[[], Start | None], stage: _Stage, tractions: np.ndarray | None = None
 ) -> Settled:
-    """One stage: from a start, or from the scene as built, to rest; tractions (3,) Pa, if they have been corrected."""
-    static = scene.case.static
+    """One stage to rest, unless it is kept.
+
+    starting : returns its start, None for the scene as built. tractions : (3,) Pa, if they have been corrected.
+    """
+    if (kept := stage.stages.finished(stage.key)) is not None:
+        return Settled.recalled(scene, kept)
+    static, start = scene.case.static, starting()
     assert static is not None
     body = _StaticScene(scene, static, tractions)
     step = SAFETY * step_limit(body.scene, damp=static.damp)
     datum = np.zeros((3, scene.count)) if start is None else start.displacement
     system = DiskSystem(body.scene, step, start, settling=True, load=body.load(datum))
     simulation = Simulation(body.scene, step, system=system, datum=datum, damp=static.damp)
-    rest = _UntilAtRest(body, system, on_look, name)
+    rest = _UntilAtRest(body, system, stage.on_look, stage.name)
     simulation.track(rest)
+    stage.stages.begin(stage.key, simulation)
     simulation.run(static.max_steps)
     displacement, forces = simulation.state.displacement, rest.forces
     unbalanced = np.hypot(*(forces + scene.steady_load)[:2])
     held = body.held
-    return Settled(
+    settled = Settled(
         start=Start(displacement, system.contacts, system.uses_history),
         steps=simulation.state.step,
         ratio=rest.ratio,
@@ -144,6 +135,8 @@ def _settle(
         cracks=rest.take_cracks(),
         tractions=body.applied,
     )
+    stage.stages.finish(stage.key, settled.memory())
+    return settled
 
 
 class _UntilAtRest(Tracker):
@@ -164,9 +157,7 @@ class _UntilAtRest(Tracker):
 
     name = "until at rest"
 
-    def __init__(
-        self, body: "_StaticScene", system: DiskSystem, on_look: Callable[[int, float], None] | None, stage: str
-    ) -> None:
+    def __init__(self, body: "_StaticScene", system: DiskSystem, on_look: OnLook, stage: str) -> None:
         self.ratio, self.forces = np.inf, np.zeros((3, 0))
         self._body, self._system, self._on_look, self._stage = body, system, on_look, stage
         self._best, self._best_at = np.inf, 0

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from dembound.disks.scene import DiskScene, boundary_medium
-from dembound.disks.static import Settled
+from dembound.disks.settled import Settled
 from dembound.motion.trackers import Run
 
 

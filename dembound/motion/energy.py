@@ -73,6 +73,7 @@ class Ledger(Tracker):
     def __init__(self, run: Run, interval: int, last: int = NEVER) -> None:
         self.entries: list[Entry] = []
         self.due = run.state.step
+        self._time_step = run.time_step
         self._interval, self._last = interval, last
         self._unit, self._weight = run.scene.energy_unit, run.scene.weight
         self._inertia = run.scene.layout.spread(np.stack([run.scene.mass, run.scene.mass, run.scene.inertia]))
@@ -158,6 +159,27 @@ class Ledger(Tracker):
         self._most = tuple(memory["most"].tolist())
         begun = _Begun(memory["u"].copy(), memory["before"].copy(), float(memory["balancing"]), int(memory["laws"]))
         self._begun = begun if memory["has_begun"] else None
+        self._drop_end()
+
+    @property
+    def regular_entries(self) -> int:
+        """Number of entries without that of the last step, unless it belongs to the interval."""
+        return len(self.entries) - (len(self.entries) > 0 and self._step_of_last() % self._interval > 0)
+
+    def _step_of_last(self) -> int:
+        """Step of the last entry."""
+        return round(self.entries[-1].time / self._time_step)
+
+    def _drop_end(self) -> None:
+        """Drop the entry of the last step of a run that this one continues, unless it belongs to the interval."""
+        entered = self._begun is None
+        last = self._step_of_last() if entered and self.entries else self.due - 1
+        past = last % self._interval
+        if past == 0 or last >= self._last:
+            return
+        self._begun = None
+        del self.entries[self.regular_entries :]
+        self.due = min(last - past + self._interval, self._last)
 
 
 def _by_node(values: np.ndarray, state: State) -> np.ndarray:

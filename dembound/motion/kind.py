@@ -17,6 +17,7 @@ from dembound.motion.cracks import Cracks
 from dembound.motion.part import System
 from dembound.motion.paths import Front, Source
 from dembound.motion.scene import Scene
+from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run
 
@@ -36,6 +37,7 @@ class Plan:
     """A case before its first step: the scene, the time step and its limit (s), the number of steps.
 
     stepped : the scene whose motion is computed, the scene itself or a smaller one, see `Kind.reduced`.
+    regular_steps : steps from which intervals of ledger and snapshots are found: those of the run as it was begun.
     """
 
     kind: Kind[Any, Any]
@@ -44,6 +46,7 @@ class Plan:
     time_step: float
     step_limit: float
     steps: int
+    regular_steps: int
 
 
 class Finding(NamedTuple):
@@ -132,8 +135,8 @@ class Kind(ABC, Generic[C, S]):
         return scene
 
     @abstractmethod
-    def begin(self, scene: S, time_step: float, on_look: OnLook) -> Beginning:
-        """Bring a scene to the state in which its run begins.
+    def begin(self, scene: S, time_step: float, on_look: OnLook, stages: Stages | None = None) -> Beginning:
+        """Bring a scene to the state in which its run begins; stages : keep its stages, by default nothing.
 
         Raises StalledError when a stage before does not come to rest.
         """
@@ -153,6 +156,14 @@ class Kind(ABC, Generic[C, S]):
     def has_static_stage(self, scene: S) -> bool:
         """Whether a stage before the run loads the scene, by default not."""
         return False
+
+    def stage_keys(self, scene: S) -> dict[str, Any]:
+        """What the results of the stages before a run depend on, as plain JSON values by key."""
+        return {}
+
+    def stages_from(self, case: C) -> Path | None:
+        """The folder of results whose stages a case uses; by default none."""
+        return None
 
     @abstractmethod
     def unit(self, scene: S) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dembound.errors import CaseError
+from dembound.results.committed import CommittedFile, log_of
 
 if TYPE_CHECKING:
     import h5py
@@ -22,12 +23,14 @@ COMPONENTS = ("x", "y", "rotation")
 def open_record(path: Path) -> h5py.File:
     """Open a record (``run.h5``, ``calibration.h5``) for reading; use it in a ``with`` statement.
 
+    One whose process has ended during a commit is read with the log of the commit.
+
     Raises CaseError when it does not exist or is not readable.
     """
     import h5py
 
     try:
-        return h5py.File(path, "r")
+        return h5py.File(CommittedFile(path, "r") if log_of(path).is_file() else path, "r")
     except OSError as error:
         raise CaseError([f"{path}: cannot be read as a record of results: {error}"]) from None
 

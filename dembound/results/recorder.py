@@ -25,19 +25,22 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
 
 from __future__ import annotations
 
+import json
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.kind import Stage, StalledError
-from dembound.motion.trackers import NEVER, Run, Tracker
+from dembound.motion.trackers import Run
+from dembound.results.committed import CommittedFile
+from dembound.results.datasets import extend, make, write
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -52,19 +55,34 @@ KEPT_BYTES, KEPT_SECONDS = 2**20, 10.0
 Thousands of small writes take longer than all steps of a small scene.
 """
 
+HISTORY = (
+    ("time", (), "f8", "s"),
+    ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
+    ("velocity", (3,), "f8", VELOCITY_UNIT),
+)
+CRACKS = (
+    ("time", (), "f8", "s"),
+    ("position", (2,), "f8", "m"),
+    ("particles", (2,), "i8", "1"),
+    ("shear", (), "?", "1"),
+)
+
 
 class Recorder:
     """Writes one run, appending during the run; ``complete`` becomes true only at its end.
 
-    At the end of its ``with`` statement the file has everything that was recorded, also after an error or Ctrl-C.
+    At the end of its ``with`` statement the file has everything that was recorded, also after an error or Ctrl-C. If
+    the process is killed, or the disk is full, it has everything up to the last `flush`.
 
     Parameters
     ----------
     path : file to create.
     run : the run to record, of whose whole scene all nodes are written; its first probes are the monitors in order.
     step_limit : stability limit in s, written to the record.
-    interval : time between two history samples in s; 0: every step is recorded. ledger : the run's energy ledger,
-    written at the end; None: without a ledger. stages : those before the run.
+    interval : time between two history samples in s; 0: every step is recorded. ledger : the run's energy ledger; None:
+    without a ledger. stages : those before the run.
+    counts : what `counts` has returned in a run that this one continues; the file is then not created, but goes on from
+    there. None: a new file.
     """
 
     def __init__(
@@ -75,6 +93,7 @@ class Recorder:
         interval: float = 0.0,
         ledger: Ledger | None = None,
         stages: Sequence[Stage] = (),
+        counts: Mapping[str, int] | None = None,
     ) -> None:
         import h5py
 
@@ -82,17 +101,20 @@ class Recorder:
         self.scene = run.scene.whole
         self.ledger = ledger
         self.stride = max(1, round(interval / run.time_step))
-        self.file = h5py.File(path, "w")
-        self._write_header(step_limit)
-        self._write_particles()
-        self._histories = self._make_histories()
-        self._cracks = self._make_cracks()
-        for stage in stages:
-            self._write_stage(stage)
-        self._snapshots = 0
         self._times: list[np.ndarray] = []
         self._samples: list[np.ndarray] = []
         self._broken: list[Cracks] = []
+        self._store = CommittedFile(path, "w" if counts is None else "a")
+        self.file = h5py.File(self._store, "w" if counts is None else "a")
+        if counts is None:
+            self._create(step_limit, stages)
+        else:
+            self._cut(counts)
+        self._histories = [dict(self.file["histories"][name]) for name in self.scene.monitors]
+        self._cracks, self._laws = dict(self.file["cracks"]), dict(self.file["laws"])
+        self._energy = dict(self.file.get("energy", {}))
+        for stage in stages if counts is None else ():
+            self._append_cracks(stage.cracks, 0.0)  # before the run began
         self.flush()
 
     def __enter__(self) -> Recorder:
@@ -101,15 +123,27 @@ class Recorder:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.flush()
-        if kind is None:
-            self._write_boundaries()
-            self._write_peaks()
-            self._write_energy()
-        self._write_laws()
-        self.file.attrs["steps"] = self.run.state.step
-        self.file.attrs["complete"] = kind is None
-        self.file.close()
+        try:
+            if kind is None:
+                self.file.attrs["complete"] = True
+            self.flush()
+        finally:
+            self.file.close()
+            self._store.close()
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How much a run continues of what grows: rows of histories, cracks, energy and laws, snapshots.
+
+        The ledger's entry of the last step, which may be the last of this run only, is not included.
+        """
+        return {
+            "histories": len(self._histories[0]["time"]) if self._histories else 0,
+            "cracks": len(self._cracks["time"]),
+            "energy": 0 if self.ledger is None else self.ledger.regular_entries,
+            "laws": len(self._laws["time"]),
+            "snapshots": len(self.file["snapshots"]),
+        }
 
     def append(self, record: np.ndarray) -> None:
         """Take every stride-th of the last steps; record : of the probes, see `Simulation.advance`."""
@@ -120,207 +154,182 @@ class Recorder:
         self._samples.append(self.run.scene.observed(record[rows]))
         self._broken.append(self.run.system.take_cracks(state.step))
         kept = sum(samples.nbytes for samples in self._samples)
-        if kept >= KEPT_BYTES or time.monotonic() - self._written >= KEPT_SECONDS:
+        if time.monotonic() - self._written >= KEPT_SECONDS:
             self.flush()
+        elif kept >= KEPT_BYTES:
+            self._append_kept()
 
     def flush(self) -> None:
-        """Write what is kept in memory; should the process be killed, the file can be read as of now."""
-        if self._times:
-            times, samples = np.concatenate(self._times), np.concatenate(self._samples)
-            self._times, self._samples = [], []
-            for index, history in enumerate(self._histories):
-                _extend(history["time"], times)
-                _extend(history["displacement"], samples[:, index, :3])
-                _extend(history["velocity"], samples[:, index, 3:6])
-                if "stress" in history:
-                    _extend(history["stress"], samples[:, index, 6])
-        self._append_cracks(joined(self._broken), self.run.time_step)
-        self._broken = []
+        """Write everything up to now; the file can be read as of now, whatever happens next.
+
+        Raises OSError if that or anything before could not be written; the file is then as after the flush before.
+        """
+        self._append_kept()
+        self._append_energy()
+        self._append_laws()
+        self._write_peaks()
+        self.file.attrs["steps"] = self.run.state.step
         self.file.flush()
+        self._store.commit()
         self._written = time.monotonic()
 
     def snapshot(self) -> None:
         """Write the present state of the whole scene."""
-        state = self.run.state
-        group = self.file.create_group(f"snapshots/{self._snapshots:04d}")
+        state, snapshots = self.run.state, self.file["snapshots"]
+        group = snapshots.create_group(f"{len(snapshots):04d}")
         group.attrs["time"] = self.run.time
         widened = self.run.scene.widened
-        _write(group, "displacement", widened("displacement", (state.displacement - state.datum).T), DISPLACEMENT_UNIT)
-        _write(group, "velocity", widened("velocity", state.velocity.T), VELOCITY_UNIT)
+        write(group, "displacement", widened("displacement", (state.displacement - state.datum).T), DISPLACEMENT_UNIT)
+        write(group, "velocity", widened("velocity", state.velocity.T), VELOCITY_UNIT)
         for name, (values, unit) in self.run.system.snapshot(state.displacement).items():
-            _write(group, name, widened(name, values), unit)
-        self._snapshots += 1
-        self.file.flush()
+            write(group, name, widened(name, values), unit)
 
     def stalled_snapshot(self, stalled: StalledError) -> None:
         """Write the scene at the end of a stage that stalled, with unbalanced forces and cracks."""
         self.snapshot()
         self._append_cracks(stalled.cracks, self.run.time_step)
-        _write(self.file[f"snapshots/{self._snapshots - 1:04d}"], "unbalanced", stalled.unbalanced, "N")
+        write(list(self.file["snapshots"].values())[-1], "unbalanced", stalled.unbalanced, "N")
 
-    def _write_header(self, step_limit: float) -> None:
-        scene, case = self.scene, self.scene.case
-        self.file.attrs.update(
-            {
-                "name": case.name,
-                "title": case.title,
-                "case": case.text,
-                "version": __version__,
-                "time_step": self.run.time_step,
-                "step_limit": step_limit,
-                "size": scene.size,
-                "kind": scene.kind,
-                "complete": False,
-                **scene.attributes,
-            }
-        )
-
-    def _write_particles(self) -> None:
+    def _create(self, step_limit: float, stages: Sequence[Stage]) -> None:
+        """All groups of a new file."""
+        self.file.attrs.update(self._header(step_limit))
         group = self.file.create_group("particles")
         for name, (values, unit) in self.scene.columns.items():
-            _write(group, name, values, unit)
+            write(group, name, values, unit)
+        self._write_inputs()
+        self._make_histories()
+        self._write_boundaries()
+        make(self.file.create_group("cracks"), CRACKS)
+        if self.ledger is not None:
+            unit = self.scene.energy_unit
+            columns = [(field.name, (), "f8", "s" if field.name == "time" else unit) for field in fields(Entry)]
+            make(self.file.create_group("energy"), columns)
+        self._make_laws()
+        self.file.create_group("snapshots")
+        for stage in stages:
+            group = self.file.require_group(stage.name)
+            group.attrs.update(stage.facts)
+            write(group, "displacement", stage.displacement.T, DISPLACEMENT_UNIT)
 
-    def _make_histories(self) -> list[dict[str, h5py.Dataset]]:
-        """The datasets of each monitor by name; searching one in the file takes as long as extending it."""
+    def _cut(self, counts: Mapping[str, int]) -> None:
+        """Remove what was written after the state that the run continues from."""
+        for name, history in self.file["histories"].items():
+            if name in self.scene.monitors:
+                _cut(history, counts["histories"])
+        for name in ("cracks", "energy", "laws"):
+            _cut(self.file[name], counts[name])
+        for number in list(self.file["snapshots"])[counts["snapshots"] :]:
+            del self.file["snapshots"][number]
+        self.file.attrs["complete"] = False
+        header = self._header(0.0)
+        self.file.attrs.update({name: header[name] for name in ("case", "keys")})  # it may run for longer
+
+    def _header(self, step_limit: float) -> dict[str, Any]:
+        """The attributes of the record."""
+        scene, case = self.scene, self.scene.case
+        return {
+            "name": case.name,
+            "title": case.title,
+            "case": case.text,
+            "keys": json.dumps(case.keys),
+            "version": __version__,
+            "time_step": self.run.time_step,
+            "step_limit": step_limit,
+            "size": scene.size,
+            "kind": scene.kind,
+            "complete": False,
+            **scene.attributes,
+        }
+
+    def _write_inputs(self) -> None:
+        """The texts of the files that the case refers to, with their paths in it."""
+        group = self.file.create_group("inputs")
+        for number, (path, text) in enumerate(self.scene.case.files.items()):
+            write(group, str(number), np.frombuffer(text.encode(), dtype=np.uint8), "UTF-8")
+            group[str(number)].attrs["path"] = path
+
+    def _make_histories(self) -> None:
+        """The groups of the monitors, with empty datasets."""
         scene = self.scene
         histories = self.file.create_group("histories", track_order=True)  # in the order of the case, not alphabetical
-        kept = []
+        columns = HISTORY if scene.record_width <= 6 else (*HISTORY, ("stress", (), "f8", "Pa"))
         for name, node in scene.monitors.items():
             group = histories.create_group(name)
             group.attrs["particle"] = node
             group.attrs["position"] = scene.positions[node]
             group.attrs["wanted"] = scene.places.get(name, scene.positions[node])  # a twin has no given position
             group.attrs["unit"] = "m"
-            columns = [
-                ("time", (), "f8", "s"),
-                ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
-                ("velocity", (3,), "f8", VELOCITY_UNIT),
-            ]
-            if scene.record_width > 6:
-                columns.append(("stress", (), "f8", "Pa"))
-            kept.append(_make(group, columns))
-        return kept
+            make(group, columns)
 
-    def _make_cracks(self) -> dict[str, h5py.Dataset]:
-        columns = [
-            ("time", (), "f8", "s"),
-            ("position", (2,), "f8", "m"),
-            ("particles", (2,), "i8", "1"),
-            ("shear", (), "?", "1"),
-        ]
-        return _make(self.file.create_group("cracks"), columns)
+    def _make_laws(self) -> None:
+        """Empty datasets of the laws and their first times."""
+        import h5py
 
-    def _append_cracks(self, cracks: Cracks, time_step: float) -> None:
-        if len(cracks.step) == 0:
-            return
-        _extend(self._cracks["time"], cracks.step * time_step)
-        before = 0.5 * self.run.state.datum[:2, cracks.pair].sum(axis=2).T  # of the middle, up to the start of the run
-        _extend(self._cracks["position"], cracks.position - before)
-        _extend(self._cracks["particles"], cracks.pair)
-        _extend(self._cracks["shear"], cracks.shear)
-
-    def _write_stage(self, stage: Stage) -> None:
-        """Write the results of a stage before the run."""
-        group = self.file.require_group(stage.name)
-        group.attrs.update(stage.facts)
-        _write(group, "displacement", stage.displacement.T, DISPLACEMENT_UNIT)
-        self._append_cracks(stage.cracks, 0.0)  # before the run began
-
-    def _write_energy(self) -> None:
-        if self.ledger is None:
-            return
-        unit = self.scene.energy_unit
-        group = self.file.create_group("energy")
-        for field, column in zip(fields(Entry), self.ledger.columns.T, strict=True):
-            _write(group, field.name, column, "s" if field.name == "time" else unit)
-
-    def _write_laws(self) -> None:
         group = self.file.create_group("laws")
-        names, steps = zip(*self.run.state.laws, strict=True)
-        group.create_dataset("name", data=list(names))
-        _write(group, "time", np.array(steps) * self.run.time_step, "s")
+        group.create_dataset("name", shape=(0,), maxshape=(None,), dtype=h5py.string_dtype())
+        make(group, [("time", (), "f8", "s")])
 
     def _write_boundaries(self) -> None:
+        """The sides; their peaks are written later."""
         scene = self.scene
         for side, edge in scene.edges.items():
             group = self.file.create_group(f"boundaries/{side}")
             group.attrs["length"] = edge.length
             group.attrs["diameter_sum_ratio"] = edge.diameter_sum_ratio
-            _write(group, "particle", edge.nodes, "1")
-            _write(group, "position", scene.positions[edge.nodes], "m")
-            _write(group, "diameter", edge.diameters, "m")
-            _write(group, "peak_velocity", self.run.edge_peaks(side), VELOCITY_UNIT)
+            write(group, "particle", edge.nodes, "1")
+            write(group, "position", scene.positions[edge.nodes], "m")
+            write(group, "diameter", edge.diameters, "m")
+            write(group, "peak_velocity", np.zeros((len(edge.nodes), 3, 2)), VELOCITY_UNIT)
+
+    def _append_kept(self) -> None:
+        """Write samples and cracks that are kept in memory."""
+        if self._times:
+            times, samples = np.concatenate(self._times), np.concatenate(self._samples)
+            self._times, self._samples = [], []
+            for index, history in enumerate(self._histories):
+                extend(history["time"], times)
+                extend(history["displacement"], samples[:, index, :3])
+                extend(history["velocity"], samples[:, index, 3:6])
+                if "stress" in history:
+                    extend(history["stress"], samples[:, index, 6])
+        self._append_cracks(joined(self._broken), self.run.time_step)
+        self._broken = []
+
+    def _append_cracks(self, cracks: Cracks, time_step: float) -> None:
+        if len(cracks.step) == 0:
+            return
+        extend(self._cracks["time"], cracks.step * time_step)
+        before = 0.5 * self.run.state.datum[:2, cracks.pair].sum(axis=2).T  # of the middle, up to the start of the run
+        extend(self._cracks["position"], cracks.position - before)
+        extend(self._cracks["particles"], cracks.pair)
+        extend(self._cracks["shear"], cracks.shear)
+
+    def _append_energy(self) -> None:
+        """Write the new entries of the ledger."""
+        if self.ledger is None:
+            return
+        columns = self.ledger.columns[len(self._energy["time"]) :]
+        for field, column in zip(fields(Entry), columns.T, strict=True):
+            extend(self._energy[field.name], column)
+
+    def _append_laws(self) -> None:
+        """Write the laws that are new."""
+        for name, step in self.run.state.laws[len(self._laws["time"]) :]:
+            extend(self._laws["name"], np.array([name], dtype=object))
+            extend(self._laws["time"], np.array([step * self.run.time_step]))
 
     def _write_peaks(self) -> None:
+        """Replace the peaks of the sides, and those of all particles if the case asks for them."""
+        for side in self.scene.edges:
+            self.file[f"boundaries/{side}/peak_velocity"][...] = self.run.edge_peaks(side)
         if self.scene.case.output.peaks:
             speed = self.run.scene.widened("peak_velocity", self.run.state.top_speed)
-            _write(self.file["particles"], "peak_velocity", speed, "m/s")
+            if "peak_velocity" not in self.file["particles"]:
+                write(self.file["particles"], "peak_velocity", speed, "m/s")
+            self.file["particles/peak_velocity"][...] = speed
 
 
-class Histories(Tracker):
-    """Writes the motion of the monitors, and the bonds that broke, after every return of the loop."""
-
-    name = "histories"
-
-    def __init__(self, recorder: Recorder) -> None:
-        self.recorder = recorder
-
-    def handle(self, run: Run) -> None:
-        """Does nothing, as it is never due."""
-
-    def observe(self, run: Run, record: np.ndarray) -> None:
-        """Append the record."""
-        self.recorder.append(record)
-
-
-class Snapshots(Tracker):
-    """Writes the whole scene at some steps.
-
-    Parameters
-    ----------
-    recorder : writes the file.
-    steps : those steps.
-    """
-
-    name = "snapshots"
-
-    def __init__(self, recorder: Recorder, steps: Sequence[int]) -> None:
-        self.recorder = recorder
-        self._steps = sorted(steps)
-        self._last = -1
-        self._after(-1)
-
-    def _after(self, step: int) -> None:
-        self.due = next((later for later in self._steps if later > step), NEVER)
-
-    def handle(self, run: Run) -> None:
-        """Write the scene."""
-        self.recorder.snapshot()
-        self._last = run.state.step
-        self._after(run.state.step)
-
-    def take_last(self, run: Run) -> None:
-        """Write the scene at the end of a run that was ended early, unless it has just been written."""
-        if self._last < run.state.step:
-            self.handle(run)
-
-
-def _make(group: h5py.Group, columns: Iterable[tuple[str, tuple[int, ...], str, str]]) -> dict[str, h5py.Dataset]:
-    """Empty datasets of a group that rows can be appended to; columns: their names, widths of a row, types, units."""
-    kept = {}
-    for name, width, kind, unit in columns:
-        kept[name] = group.create_dataset(name, shape=(0, *width), maxshape=(None, *width), dtype=kind)
-        kept[name].attrs["unit"] = unit
-    return kept
-
-
-def _write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:
-    group.create_dataset(name, data=values).attrs["unit"] = unit
-
-
-def _extend(dataset: h5py.Dataset, values: np.ndarray) -> None:
-    if len(values) == 0:
-        return
-    count = len(dataset)
-    dataset.resize(count + len(values), axis=0)
-    dataset[count:] = values
+def _cut(group: h5py.Group, count: int) -> None:
+    """Remove rows from the end of all datasets of a group."""
+    for dataset in group.values():
+        dataset.resize(count, axis=0)

@@ -49,7 +49,7 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
     """
     with open_record(run) as file:
         snapshots = file.get("snapshots", {})
-        if not snapshots:
+        if len(snapshots) == 0:
             return None
         folder.mkdir(parents=True, exist_ok=True)
         particles = {name: dataset[:] for name, dataset in file["particles"].items()}

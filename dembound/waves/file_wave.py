@@ -18,7 +18,7 @@ class FileWave(Wave):
 
     The file is read by `read_samples` and has times (s) and velocities (m/s). Its times are counted from `start`. A
     relative path is taken from the case file's folder, which validation passes as the context ``{"folder": Path}``;
-    without one, from the current folder.
+    without one, from the current folder. Texts of files by path that are passed as "files" replace these files.
     """
 
     type: Literal["file"]
@@ -28,11 +28,15 @@ class FileWave(Wave):
     # tuples rather than arrays: two equal waves then compare equal
     _times: tuple[float, ...] = PrivateAttr(default=())
     _velocities: tuple[float, ...] = PrivateAttr(default=())
+    _text: str = PrivateAttr(default="")
 
     @model_validator(mode="after")
     def _read(self, info: ValidationInfo) -> "FileWave":
-        folder = (info.context or {}).get("folder", Path())
-        samples = read_samples(folder / self.path)
+        context = info.context or {}
+        path = context.get("folder", Path()) / self.path
+        given = context.get("files", {}).get(self.path)
+        self._text = read_text(path) if given is None else given
+        samples = samples_of(self._text, path)
         self._times = tuple(samples[:, 0].tolist())
         self._velocities = tuple((self.scale * samples[:, 1]).tolist())
         return self
@@ -78,6 +82,10 @@ class FileWave(Wave):
             return {}
         return {"path": Path(os.path.relpath(here / self.path, there)).as_posix()}
 
+    def files(self) -> dict[str, str]:
+        """The text of the file."""
+        return {self.path: self._text}
+
     def dominant_frequency(self) -> float:
         """Frequency at which the *acceleration's* amplitude spectrum is largest, Hz.
 
@@ -101,7 +109,25 @@ class FileWave(Wave):
 
 
 def read_samples(path: Path, quantity: str = "values") -> np.ndarray:
-    """Read a two-column text file into an array (k, 2): times, s, and values of a quantity (error texts name it).
+    """Read a two-column text file, see `samples_of`; raises ValueError also if the file is absent."""
+    return samples_of(read_text(path), path, quantity)
+
+
+def read_text(path: Path) -> str:
+    """The text of a file, without the byte order mark of spreadsheets.
+
+    Raises ValueError if the file is absent or no text, with a message that starts with ``path:``.
+    """
+    if not path.is_file():
+        raise ValueError(f'path: no file "{path}"')
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise ValueError(f'path: "{path}" is not two columns of numbers, as it is not a text in UTF-8') from None
+
+
+def samples_of(text: str, path: Path, quantity: str = "values") -> np.ndarray:
+    """The two columns of the text of a file as an array (k, 2): times, s, and values of a quantity (for error texts).
 
     Columns are separated by semicolons, where numbers may have decimal commas; in a file called ``.csv`` by commas; or
     else by blanks. A ``#`` begins a comment, and a first line without numbers is a header.
@@ -109,12 +135,10 @@ def read_samples(path: Path, quantity: str = "values") -> np.ndarray:
     Raises
     ------
     ValueError
-        If the file is absent or does not contain a history; the message starts with ``path:``.
+        If it does not contain a history; the message starts with ``path:``.
     """
-    if not path.is_file():
-        raise ValueError(f'path: no file "{path}"')
     try:
-        lines, separator = _numbers(path)
+        lines, separator = _numbers(text, path)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # an empty file is reported below
             samples = np.loadtxt(lines, ndmin=2, delimiter=separator)
@@ -130,9 +154,8 @@ def read_samples(path: Path, quantity: str = "values") -> np.ndarray:
     return samples
 
 
-def _numbers(path: Path) -> tuple[list[str], str | None]:
+def _numbers(text: str, path: Path) -> tuple[list[str], str | None]:
     """The lines with numbers of a file, with decimal points, and the separator of their columns; None: blanks."""
-    text = path.read_text(encoding="utf-8-sig")  # removes the byte order mark of spreadsheets
     lines = [line for line in (line.partition("#")[0] for line in text.splitlines()) if line.strip()]
     separator = "," if path.suffix.lower() == ".csv" else None
     if lines and ";" in lines[-1]:

@@ -81,6 +81,10 @@ class Wave(Table, ABC):
         """Keys with paths relative to the folder `here`, with the corresponding paths in `there`; by default none."""
         return {}
 
+    def files(self) -> dict[str, str]:
+        """Texts of the files that the wave was read from, by their paths in the case; by default none."""
+        return {}
+
 
 class Shape(Wave):
     """A wave given by a formula: `amplitude` times a shape whose argument is the time since `start`."""

@@ -16,7 +16,9 @@ from dembound.kinds import loads, with_changes
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
-from dembound.results.recorder import Histories, Recorder, Snapshots
+from dembound.motion.trackers import NEVER
+from dembound.results.recorder import Recorder
+from dembound.results.recording import Histories, Snapshots
 from dembound.running import plan
 from dembound.starting import starting_point
 
@@ -62,12 +64,23 @@ def record(path: Path, name: str, snapshots: int) -> Path:
     return recorded(path, planned, half + snapshots * quarter, [half + k * quarter for k in range(snapshots)])
 
 
+class At(Snapshots):
+    """Snapshots at some steps."""
+
+    def __init__(self, recorder: Recorder, steps: Sequence[int]) -> None:
+        self.at = sorted(steps)
+        super().__init__(recorder, 0, 1)
+
+    def _after(self, step: int) -> None:
+        self.due = next((later for later in self.at if later > step), NEVER)
+
+
 def recorded(path: Path, planned: Plan, steps: int, shots: Sequence[int], entries: Sequence[int] = ()) -> Path:
     """Record so many steps of a plan, with snapshots at some steps and entries of the ledger, of which two or more."""
     simulation = Simulation(planned.scene, planned.time_step, list(planned.scene.monitors.values()))
     ledger = Ledger(simulation, entries[1] - entries[0]) if len(entries) > 0 else None
     with Recorder(path, simulation, planned.step_limit, ledger=ledger) as recorder:
-        simulation.track(Histories(recorder), Snapshots(recorder, shots), *([ledger] if ledger else []))
+        simulation.track(Histories(recorder), At(recorder, shots), *([ledger] if ledger else []))
         simulation.run(steps)
     return path
 

@@ -586,7 +586,10 @@ def test_a_bar_leaves_pictures_and_what_paraview_shows(dembound, tmp_path) -> No
 
     histories = {"histories.png", "histories_stress.png"}
     shown = {f"paraview/bar_{number:04d}.vtu" for number in range(3)} | {"paraview/bar.pvd", "paraview/view.py"}
-    assert files(tmp_path / "results" / "rod") == {"run.h5", "summary.json", "scene.png", *histories} | shown
+    assert (
+        files(tmp_path / "results" / "rod")
+        == {"run.h5", "checkpoint.npz", "summary.json", "scene.png", *histories} | shown
+    )
 
 
 def test_a_table_has_what_is_drawn(dembound, small_run, tmp_path) -> None:

@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.static import Settled, settle
+from dembound.disks.settled import Settled
+from dembound.disks.static import settle
 from dembound.kinds import with_changes
 
 DISKS = 6  # in the hole's radius

@@ -20,4 +20,11 @@ class Static(Table):
     )
     damp: float = quantity(0.7, unit="1", help="local damping coefficient of the stage", gt=0.0, lt=1.0)
     max_steps: int = quantity(200_000, unit="1", help="steps after which the stage has failed", ge=1)
+    from_: str | None = quantity(
+        None,
+        unit="1",
+        help="folder of the results of a case that has settled the same body, from the current folder; absent: settle",
+        alias="from",
+        min_length=1,
+    )
     boundary: Mapping[str, StaticSide] = quantity({}, unit="1", help="side -> its support; an absent side is free")

@@ -15,7 +15,8 @@ from dembound.gauge.peaks import first_fall
 from dembound.motion.energy import Ledger
 from dembound.motion.kind import Beginning, Plan
 from dembound.motion.simulation import Simulation
-from dembound.results.recorder import Histories, Recorder
+from dembound.results.recorder import Recorder
+from dembound.results.recording import Histories
 from dembound.results.summary import summarise
 from dembound.running import plan
 

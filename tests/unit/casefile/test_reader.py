@@ -182,8 +182,8 @@ def test_optional_tables_may_be_absent() -> None:
         (
             "duration = 0.1",
             "duration = 0.1\ntimestep = 1",
-            "run.timestep: unknown key; allowed: duration, time_step, safety, until, silent_level, silent_for "
-            "(did you mean time_step?)",
+            "run.timestep: unknown key; allowed: duration, time_step, safety, checkpoint, until, silent_level, "
+            "silent_for (did you mean time_step?)",
         ),
         (
             "duration = 0.1",

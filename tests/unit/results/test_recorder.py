@@ -14,7 +14,8 @@ from dembound.disks.system import DiskSystem, Start
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.simulation import Simulation
 from dembound.results import recorder as module
-from dembound.results.recorder import Histories, Recorder, Snapshots
+from dembound.results.recorder import Recorder
+from dembound.results.recording import Histories, Snapshots
 from dembound.version import __version__
 
 STEP = 3e-4
@@ -215,17 +216,17 @@ def test_a_run_without_a_ledger_has_no_energies(tmp_path, simulation) -> None:
 def test_trackers_keep_histories_and_snapshots(tmp_path, simulation) -> None:
     plain = Simulation(simulation.scene, STEP, simulation.probes)
     with recorder(tmp_path / "run.h5", simulation) as kept:
-        simulation.track(Histories(kept), Snapshots(kept, [12, 19, 5]))
+        simulation.track(Histories(kept), Snapshots(kept, 3, 19))
         simulation.run(19)
 
-    expected, moved = plain.advance(5), [plain.state.displacement.T.copy()]
-    for steps in (7, 7):
+    expected, moved = plain.advance(6), [plain.state.displacement.T.copy()]
+    for steps in (6, 7):
         expected = np.concatenate([expected, plain.advance(steps)])
         moved.append(plain.state.displacement.T.copy())
     with h5py.File(tmp_path / "run.h5") as file:
         assert np.array_equal(file["histories/front/time"], np.arange(19) * STEP)
         assert np.array_equal(file["histories/back/velocity"], expected[:, 1, 3:])
-        assert [group.attrs["time"] for group in file["snapshots"].values()] == [5 * STEP, 12 * STEP, 19 * STEP]
+        assert [group.attrs["time"] for group in file["snapshots"].values()] == [6 * STEP, 12 * STEP, 19 * STEP]
         for group, displacement in zip(file["snapshots"].values(), moved, strict=True):
             assert np.array_equal(group["displacement"], displacement)
 
@@ -313,12 +314,10 @@ def test_a_run_that_fails_leaves_its_histories_and_is_not_complete(tmp_path, sim
         assert not file.attrs["complete"]
         assert file.attrs["steps"] == 5
         assert len(file["histories/front/time"]) == 5
-        assert "boundaries" not in file
+        assert np.any(file["boundaries/left/peak_velocity"])
 
 
-@pytest.mark.parametrize(
-    ("limit", "value", "samples"), [("KEPT_BYTES", 1, 10), ("KEPT_SECONDS", 0.0, 10), (None, 0, 0)]
-)
+@pytest.mark.parametrize(("limit", "value", "samples"), [("KEPT_BYTES", 1, 0), ("KEPT_SECONDS", 0.0, 10), (None, 0, 0)])
 def test_what_was_written_can_be_read_if_the_process_dies(
     tmp_path, simulation, monkeypatch, limit, value, samples
 ) -> None:
@@ -334,7 +333,7 @@ def test_what_was_written_can_be_read_if_the_process_dies(
     with h5py.File(tmp_path / "as_found.h5") as file:
         assert not file.attrs["complete"]
         assert len(file["histories/front/time"]) == samples
-        assert len(file["snapshots"]) == 1
+        assert len(file["snapshots"]) == (samples > 0)
 
 
 def test_ctrl_c_loses_nothing(tmp_path, simulation) -> None:

@@ -10,7 +10,8 @@ import pytest
 from dembound.casefile import Case
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
-from dembound.results.recorder import Histories, Recorder
+from dembound.results.recorder import Recorder
+from dembound.results.recording import Histories
 from dembound.results.summary import _fields_left_out, arrival, summarise
 from dembound.running import plan
 

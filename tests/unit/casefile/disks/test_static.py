@@ -62,7 +62,8 @@ def test_stages_are_equal_when_their_tables_are() -> None:
         (
             "dump = 0.5",
             [
-                "static.dump: unknown key; allowed: stress, ratio, damp, max_steps, boundary (did you mean damp?)",
+                "static.dump: unknown key; allowed: stress, ratio, damp, max_steps, from, boundary "
+                "(did you mean damp?)",
             ],
         ),
         ("boundary = 1", ["static.boundary: is 1, must be made of tables [static.boundary.NAME]"]),

@@ -58,7 +58,7 @@ def test_a_run_leaves_one_whole_folder(bar, tmp_path) -> None:
     assert folder == tmp_path / "new" / "results" / "bar"
     assert list(folder.parent.iterdir()) == [folder]
     names = {path.name for path in folder.iterdir()}
-    assert names == {"run.h5", "summary.json", "paraview", "scene.png", "histories.png"}
+    assert names == {"run.h5", "checkpoint.npz", "summary.json", "paraview", "scene.png", "histories.png"}
     with h5py.File(folder / "run.h5") as file:
         assert file.attrs["complete"]
 
@@ -86,7 +86,7 @@ def test_histories_alone_are_written_without_snapshots(bar, spalling, tmp_path) 
         )
         with h5py.File(full / "run.h5") as file, h5py.File(alone / "run.h5") as without:
             assert list(file["snapshots"]) == ["0000"]
-            assert "snapshots" not in without
+            assert len(without["snapshots"]) == 0
             for name, group in file["histories"].items():
                 for quantity, values in group.items():
                     assert np.array_equal(values, without["histories"][name][quantity])
@@ -126,7 +126,7 @@ def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> Non
             "boundaries",
             "monitors",
         ),
-        *("laws", "static", "cracks", "energy", "reduced", "warnings"),
+        *("laws", "static", "cracks", "energy", "reduced", "resumed", "warnings"),
     }
     assert (found["name"], found["particles"], found["contacts"]) == ("bar", 40, 2 * 19 + 20)
     assert found["duration"] == pytest.approx(found["steps"] * found["time_step"], rel=1e-15)
@@ -399,7 +399,8 @@ def test_a_bar_is_run_from_its_tables_to_a_folder(spalling, tmp_path) -> None:
     folder = run_case(spalling({**changes, "run.courant": 0.9}), tmp_path)
 
     names = {path.name for path in folder.iterdir()}
-    assert names == {"run.h5", "summary.json", "paraview", "scene.png", "histories.png", "histories_stress.png"}
+    pictures = {"scene.png", "histories.png", "histories_stress.png"}
+    assert names == {"run.h5", "checkpoint.npz", "summary.json", "paraview"} | pictures
     found = summary(folder)
     assert found["steps"] == 67  # 60/0.9
     assert found["courant"] == pytest.approx(0.9, rel=1e-12)

@@ -1,0 +1,132 @@
+"""Checkpoints: the state of a run in a file, from which another process continues it to the same bits.
+
+A checkpoint is a NumPy archive (``.npz``, with a CRC-32 of every array): the arrays of `State.arrays`, and ``facts``,
+a JSON text with the version, the case with all its keys and files, the stage, the step, and what has been recorded.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import time
+import zipfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.motion.state import Arrays
+from dembound.motion.trackers import Run, Tracker
+from dembound.results.interrupts import Interrupts, Stopped
+from dembound.version import __version__
+
+if TYPE_CHECKING:
+    from dembound.casefile import Case
+
+FILE = "checkpoint.npz"
+
+FACTS = "facts"
+"""Name of the facts in the archive."""
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """A state of a run, or of a stage before it.
+
+    facts : JSON values by name; arrays : by name, see `State.arrays`.
+    """
+
+    facts: Mapping[str, Any]
+    arrays: Arrays
+
+    def write(self, path: Path, *, durable: bool = True) -> None:
+        """Write it beside the file and swap it in; durable : wait until the disk has it."""
+        part = path.with_name(f"{path.name}.part")
+        try:
+            with part.open("wb") as file:
+                text = np.frombuffer(json.dumps(dict(self.facts)).encode(), dtype=np.uint8)
+                np.savez(file, allow_pickle=False, **{FACTS: text, **self.arrays})  # type: ignore[arg-type]
+                if durable:
+                    file.flush()
+                    os.fsync(file.fileno())
+            part.replace(path)
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
+
+    @classmethod
+    def read(cls, path: Path) -> Checkpoint:
+        """Read a checkpoint; raises CaseError for a file that is damaged or of another version."""
+        try:
+            with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
+                arrays = {name: archive[name] for name in archive.files}
+            facts = json.loads(arrays.pop(FACTS).tobytes())
+            version = facts["version"]
+        except (ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError) as error:
+            raise CaseError([f"{path}: is damaged: {error}"]) from None
+        if version != __version__:
+            raise CaseError([f"{path}: is of dembound {version}, this is {__version__}; run the case anew"])
+        return cls(facts, arrays)
+
+
+class Checkpoints(Tracker):
+    """Writes a checkpoint at intervals of wall time, and when a signal ends the run; the last tracker of a run.
+
+    Parameters
+    ----------
+    path : file of the checkpoint. None: none are written.
+    interval : s of wall time from one to the next.
+    interrupts : notes the signals.
+    facts : returns the facts of the present state, after everything before it has been recorded.
+    """
+
+    name = "checkpoints"
+
+    def __init__(
+        self, path: Path | None, interval: float, interrupts: Interrupts, facts: Callable[[Run], dict[str, Any]]
+    ) -> None:
+        self._path, self._interval, self._interrupts, self._facts = path, interval, interrupts, facts
+        self._written = time.monotonic()
+
+    def handle(self, run: Run) -> None:
+        """Does nothing, as it is never due."""
+
+    def observe(self, run: Run, record: np.ndarray) -> None:
+        """Write a checkpoint if the last one is old; raises Stopped, after a checkpoint, if a signal was caught."""
+        if self._interrupts.caught is not None:
+            self.write(run)
+            raise Stopped(self._interrupts.caught)
+        if time.monotonic() - self._written >= self._interval:
+            self.write(run)
+
+    def write(self, run: Run, *, durable: bool = True) -> None:
+        """Write a checkpoint now."""
+        if self._path is not None:
+            Checkpoint(self._facts(run), run.state.arrays()).write(self._path, durable=durable)
+            self._written = time.monotonic()
+
+
+def facts_of(case: Case) -> dict[str, Any]:
+    """The facts of any checkpoint of a case."""
+    return {
+        "version": __version__,
+        "name": case.name,
+        "case": case.text,
+        "files": case.files,
+        "keys": case.keys,
+    }
+
+
+def differences(first: Any, second: Any, key: str = "") -> list[str]:
+    """The keys in which two nested tables differ, a line each with both values."""
+    if isinstance(first, Mapping) and isinstance(second, Mapping):
+        names = dict.fromkeys([*first, *second])
+        pairs = [(f"{key}.{name}" if key else name, first.get(name), second.get(name)) for name in names]
+        return [line for name, one, two in pairs for line in differences(one, two, name)]
+    if first == second:
+        return []
+    return [f"{key}: is {json.dumps(first)} here, and {json.dumps(second)} there"]

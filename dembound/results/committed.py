@@ -1,0 +1,211 @@
+"""A file for HDF5 that changes only by commits: a process may end, or a disk be full, at any moment.
+
+HDF5 changes its tables in place, so a file whose writer is killed between two writes may not be readable, and a write
+that fails leaves the library unable to close the file. Here writes beyond the end that the file had at the last commit
+go to the file at once, where no table refers to them yet. Writes below that end are kept in memory as pages. A commit
+writes the pages to a log, renames it to ``<file>.log``, changes the file, and removes the log; so either the file is
+complete, or file and log are. A write that fails is kept in memory, too, so that HDF5 can go on to its end, and is
+reported by `CommittedFile.check`; the file then remains as it was at the last commit.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import struct
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    import h5py
+
+PAGE = 4096
+"""Bytes of a page, the unit of the log."""
+
+HEADER = struct.Struct("<4sQQI")
+"""Of a log: `MAGIC`, size of the file, number of pages, CRC-32 of what follows: page numbers, then pages."""
+
+MAGIC = b"dbl1"
+
+
+class CommittedFile(io.RawIOBase):
+    """A file that is changed only by `commit`.
+
+    Parameters
+    ----------
+    path : of the file.
+    mode : "w" creates it, "a" also completes an interrupted commit and goes on after it, "r" only reads.
+
+    Attributes
+    ----------
+    failure : the first write that failed; from then on nothing is written any more.
+    """
+
+    def __init__(self, path: Path, mode: Literal["w", "a", "r"]) -> None:
+        self.path, self.log = path, log_of(path)
+        self.failure: OSError | None = None
+        self._pages: dict[int, bytearray] = {}
+        self._at = 0
+        if mode == "w":
+            self.log.unlink(missing_ok=True)
+        self._file = io.FileIO(path, {"w": "w+", "a": "r+", "r": "r"}[mode])
+        self._size = os.fstat(self._file.fileno()).st_size
+        self._kept = self._size  # at the last commit
+        if mode != "w" and self.log.is_file():
+            self._take_log(self.log.read_bytes())
+            if mode == "a":
+                self.commit()
+
+    def seekable(self) -> bool:
+        """Always."""
+        return True
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """Go to a position, and return it."""
+        self._at = {os.SEEK_SET: 0, os.SEEK_CUR: self._at, os.SEEK_END: self._size}[whence] + offset
+        return self._at
+
+    def tell(self) -> int:
+        """The present position."""
+        return self._at
+
+    def truncate(self, size: int | None = None) -> int:
+        """Change the size from the next commit on."""
+        self._size = self._at if size is None else size
+        return self._size
+
+    def readinto(self, buffer: bytearray | memoryview) -> int:  # type: ignore[override]
+        """Read from the present position on; zeros where nothing was written."""
+        view = memoryview(buffer).cast("B")
+        self._file.seek(self._at)
+        read = self._file.readinto(view)
+        view[read:] = bytes(len(view) - read)
+        for number, inside, outside in _pages_of(self._at, len(view)):
+            if number in self._pages:
+                view[outside] = self._pages[number][inside]
+        self._at += len(view)
+        return len(view)
+
+    def write(self, data: bytes | memoryview) -> int:  # type: ignore[override]
+        """Write at the present position; returns the number of bytes even if the disk is full, see `check`."""
+        view = memoryview(data).cast("B")
+        kept = -(-self._kept // PAGE) * PAGE  # the last page may be in the log as a whole
+        below = min(len(view), max(0, kept - self._at)) if self.failure is None else len(view)
+        self._keep(self._at, view[:below])
+        try:
+            self._write_all(self._at + below, view[below:])
+        except OSError as error:
+            self.failure = error
+            self._keep(self._at + below, view[below:])
+        self._at += len(view)
+        self._size = max(self._size, self._at)
+        return len(view)
+
+    def commit(self) -> None:
+        """Make all that was written permanent; raises OSError as `check`."""
+        self.check()
+        try:
+            os.fsync(self._file.fileno())
+            if self._pages:
+                self._write_log()
+                for number, page in self._pages.items():
+                    self._write_all(number * PAGE, memoryview(page))
+            self._file.truncate(self._size)
+            if self._pages:
+                os.fsync(self._file.fileno())
+                self.log.unlink()
+        except OSError as error:
+            self.failure = error
+            self.check()
+        self._pages.clear()
+        self._kept = self._size
+
+    def check(self) -> None:
+        """Raise OSError with the name of the file if a write has failed."""
+        if self.failure is not None:
+            raise OSError(self.failure.errno, self.failure.strerror, str(self.path)) from self.failure
+
+    def close(self) -> None:
+        """Close the file; what was written since the last commit is lost."""
+        if not self.closed:
+            if self._file.writable() and not self.log.is_file():  # a log that could not be applied needs all of it
+                self._file.truncate(self._kept)
+            self._file.close()
+        super().close()
+
+    def __repr__(self) -> str:
+        return str(self.path)
+
+    def _keep(self, start: int, view: memoryview) -> None:
+        """Keep bytes in memory, page by page."""
+        for number, inside, outside in _pages_of(start, len(view)):
+            if number not in self._pages:
+                self._file.seek(number * PAGE)
+                self._pages[number] = bytearray(self._file.read(PAGE).ljust(PAGE, b"\0"))
+            self._pages[number][inside] = view[outside]
+
+    def _write_all(self, at: int, view: memoryview) -> None:
+        """Write all of some bytes to the file at a position."""
+        self._file.seek(at)
+        while len(view) > 0:
+            view = view[self._file.write(view) :]
+
+    def _write_log(self) -> None:
+        """Write all pages to a log, completely or not at all."""
+        numbers = struct.pack(f"<{len(self._pages)}Q", *self._pages)
+        body = numbers + b"".join(self._pages.values())
+        part = self.log.with_name(f"{self.log.name}.part")
+        try:
+            with part.open("wb") as file:
+                file.write(HEADER.pack(MAGIC, self._size, len(self._pages), zlib.crc32(body)) + body)
+                file.flush()
+                os.fsync(file.fileno())
+            part.replace(self.log)
+        except OSError:
+            part.unlink(missing_ok=True)
+            raise
+
+    def _take_log(self, log: bytes) -> None:
+        """Take the pages of a log; one that is not complete was never applied."""
+        if len(log) < HEADER.size:
+            return
+        magic, size, count, checksum = HEADER.unpack_from(log)
+        body = memoryview(log)[HEADER.size :]
+        if magic != MAGIC or len(body) != count * (8 + PAGE) or zlib.crc32(body) != checksum:
+            return
+        numbers = struct.unpack_from(f"<{count}Q", body)
+        starts = range(8 * count, len(body), PAGE)
+        self._pages = {number: bytearray(body[at : at + PAGE]) for number, at in zip(numbers, starts, strict=True)}
+        self._size = size
+
+
+def log_of(path: Path) -> Path:
+    """Where the log of a file is during a commit."""
+    return path.with_name(f"{path.name}.log")
+
+
+@contextmanager
+def new_file(path: Path) -> Iterator[h5py.File]:
+    """A new HDF5 file to be written as a whole: it appears under its name when it is complete, or not at all.
+
+    Raises OSError, such as for a full disk, without harm to HDF5.
+    """
+    import h5py
+
+    from dembound.results.reader import replacing
+
+    with replacing(path) as part, CommittedFile(part, "w") as store:
+        with h5py.File(store, "w") as file:
+            yield file
+        store.commit()
+
+
+def _pages_of(start: int, length: int) -> Iterator[tuple[int, slice, slice]]:
+    """The pages of a range of bytes: number, the range within the page, and that within the range."""
+    end = start + length
+    for number in range(start // PAGE, -(-end // PAGE) if length > 0 else 0):
+        first, last = max(start, number * PAGE), min(end, (number + 1) * PAGE)
+        yield number, slice(first - number * PAGE, last - number * PAGE), slice(first - start, last - start)

@@ -1,0 +1,56 @@
+"""Datasets of a record: arrays with units and checksums, some of which grow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import h5py
+
+CHUNK_BYTES = 2**20
+"""Largest size of a chunk, the unit in which HDF5 reads, and of which it has one checksum each."""
+
+GROWING_BYTES = 2**13
+"""The same of a dataset that grows, whose last chunk is written again and again."""
+
+Columns = Iterable[tuple[str, tuple[int, ...], str, str]]
+"""Datasets of a group: their names, widths of a row, types and units."""
+
+
+def write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:
+    """Write an array with its unit, and checksums (Fletcher's) that HDF5 compares when it reads."""
+    if values.size == 0 or values.ndim == 0:
+        group.create_dataset(name, data=values).attrs["unit"] = unit
+        return
+    chunks = (_rows(values.shape[1:], values.dtype, CHUNK_BYTES, len(values)), *values.shape[1:])
+    group.create_dataset(name, data=values, chunks=chunks, fletcher32=True).attrs["unit"] = unit
+
+
+def make(group: h5py.Group, columns: Columns) -> dict[str, h5py.Dataset]:
+    """Empty datasets of a group that rows can be appended to."""
+    kept = {}
+    for name, width, kind, unit in columns:
+        rows = _rows(width, np.dtype(kind), GROWING_BYTES)
+        kept[name] = group.create_dataset(
+            name, shape=(0, *width), maxshape=(None, *width), dtype=kind, chunks=(rows, *width), fletcher32=True
+        )
+        kept[name].attrs["unit"] = unit
+    return kept
+
+
+def extend(dataset: h5py.Dataset, values: np.ndarray) -> None:
+    """Append rows to a dataset."""
+    if len(values) == 0:
+        return
+    count = len(dataset)
+    dataset.resize(count + len(values), axis=0)
+    dataset[count:] = values
+
+
+def _rows(width: tuple[int, ...], kind: np.dtype, most_bytes: int, most: int = 2**62) -> int:
+    """Rows of a chunk."""
+    row = kind.itemsize * int(np.prod(width, dtype=np.int64))
+    return max(1, min(most, most_bytes // max(1, row)))

@@ -1,0 +1,107 @@
+"""The folder of a run: written aside, locked against a second run of the name, and swapped in when it is complete."""
+
+import re
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from filelock import FileLock, Timeout
+
+from dembound.errors import CaseError
+
+PARTIAL = ".partial"
+"""Ending of the folder of a run that is not complete."""
+
+REPLACED = ".replaced"
+"""Ending of a complete folder while a new one takes its place."""
+
+LOCK = "run.lock"
+
+OWN = re.compile(
+    r"run\.(h5|h5\.log|h5\.log\.part|lock)|checkpoint\.npz(\.part)?|settled/[a-z.]+\.npz(\.part)?|summary\.json(\.part)?"
+    r"|(scene|histories|histories_stress)\.png(\.part)?"
+    r"|paraview/(\w+_\d{4,}\.vt[up]|cracks\.vtu|\w+\.pvd|\w+\.vtkhdf|view\.py)(\.part)?"
+)
+"""The files that a run writes, by their paths in its folder; all others are somebody else's, and are kept."""
+
+
+class Folder:
+    """The folder ``results/<name>`` of a run.
+
+    Attributes
+    ----------
+    final : the folder of the complete run; partial : that of a run that is not complete.
+    """
+
+    def __init__(self, results: Path, name: str) -> None:
+        self.final, self.partial = results / name, results / f"{name}{PARTIAL}"
+        self._old = results / f"{name}{REPLACED}"
+
+    def check(self) -> None:
+        """Raise CaseError where results cannot be written: at a link or a file, or in a folder without a run."""
+        for path in (self.final, self.partial):
+            if path.is_symlink():
+                raise CaseError([f"{path}: is a link, must be a folder; a link may lead to the folder above it"])
+            if path.exists() and not path.is_dir():
+                raise CaseError([f"{path}: is a file, give another --output or --name"])
+        if self.final.is_dir() and any(self.final.iterdir()) and not (self.final / "run.h5").is_file():
+            raise CaseError([f"{self.final}: exists and holds no run, give another --output or --name"])
+
+    @contextmanager
+    def writing(self, *, anew: bool) -> Iterator[Path]:
+        """Yield the partial folder, locked, to write into; anew : without the files of an earlier run.
+
+        It is removed if nothing was written. Raises CaseError as `check`, and if another run is writing into it.
+        """
+        self.check()
+        self.partial.mkdir(parents=True, exist_ok=True)
+        lock = FileLock(self.partial / LOCK)
+        try:
+            lock.acquire(blocking=False)
+        except Timeout:
+            raise CaseError([f"{self.partial}: is being written by another run, wait or give another --name"]) from None
+        try:
+            if anew:
+                _remove_own(self.partial, but=LOCK)
+            yield self.partial
+        finally:
+            for folder in (self.partial, self.final):
+                (folder / LOCK).unlink(missing_ok=True)
+            lock.release()
+            if self.partial.is_dir() and not any(self.partial.iterdir()):
+                self.partial.rmdir()
+
+    def finish(self) -> None:
+        """Replace the final folder; files in it that no run has written remain there."""
+        if self.final.exists():
+            self.final.rename(self._old)
+        self.partial.rename(self.final)
+        if self._old.is_dir():
+            _remove_own(self._old)
+            _move_all(self._old, self.final)
+
+
+def _remove_own(folder: Path, but: str = "") -> None:
+    """Remove the files that a run has written, except one, and folders that are then empty."""
+    for path in sorted(folder.rglob("*"), reverse=True):
+        name = path.relative_to(folder).as_posix()
+        if path.is_dir() and not path.is_symlink():
+            if not any(path.iterdir()):
+                path.rmdir()
+        elif name != but and OWN.fullmatch(name):
+            path.unlink()
+
+
+def _move_all(here: Path, there: Path) -> None:
+    """Move all files of a folder into another one, unless there is one of that name, and remove it if it is empty."""
+    for path in sorted(here.rglob("*"), reverse=True):
+        target = there / path.relative_to(here)
+        if path.is_dir() and not path.is_symlink():
+            if not any(path.iterdir()):
+                path.rmdir()
+        elif not target.exists():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.move(path, target)
+    if not any(here.iterdir()):
+        here.rmdir()

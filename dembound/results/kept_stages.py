@@ -1,0 +1,74 @@
+"""The stages before a run in files, so that resumed runs and other runs of a batch need not repeat them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from dembound.errors import CaseError
+from dembound.motion.stages import Stages
+from dembound.motion.state import Arrays
+from dembound.results.checkpoint import Checkpoint, Checkpoints, differences
+from dembound.version import __version__
+
+if TYPE_CHECKING:
+    from dembound.motion.simulation import Simulation
+
+FOLDER = "settled"
+"""Name of the folder of stages within that of a run."""
+
+
+class KeptStages(Stages):
+    """Stages that are kept in the folder of a run, or taken from that of another one.
+
+    Parameters
+    ----------
+    folder : of the stages, created with the first one; None: none are kept.
+    keys : the keys of the case on which they depend.
+    checkpoints : makes the tracker that writes checkpoints of a stage of a name.
+    source : folder of another run whose stages are used; None: this one's.
+    unfinished : name of a stage that a checkpoint was written in, and a function that returns its arrays; or None.
+    """
+
+    def __init__(
+        self,
+        folder: Path | None,
+        keys: Mapping[str, Any],
+        checkpoints: Callable[[str], Checkpoints],
+        source: Path | None = None,
+        unfinished: tuple[str, Callable[[], Arrays]] | None = None,
+    ) -> None:
+        self._folder, self._keys, self._checkpoints = folder, keys, checkpoints
+        self._source = folder if source is None else source / FOLDER
+        self._required = source is not None
+        self._unfinished = unfinished
+
+    def finished(self, name: str) -> Arrays | None:
+        """The arrays of a stage, if it has been kept.
+
+        Raises CaseError if it is to be taken from another run that has none, or that depends on other keys.
+        """
+        path = None if self._source is None else self._source / f"{name}.npz"
+        if path is None or not path.is_file():
+            if self._required:
+                raise CaseError([f"static.from: {self._source} has no settled state ({name}.npz)"])
+            return None
+        kept = Checkpoint.read(path)
+        if different := differences(self._keys, kept.facts["keys"]):
+            raise CaseError([f"static.from: {path.parent} has settled another body", *different])
+        return kept.arrays
+
+    def begin(self, name: str, simulation: Simulation) -> None:
+        """Write checkpoints of the stage, and continue it where it was left."""
+        simulation.track(self._checkpoints(name))
+        if self._unfinished is not None and self._unfinished[0] == name:
+            simulation.state.take(self._unfinished[1]())
+            self._unfinished = None
+
+    def finish(self, name: str, arrays: Arrays) -> None:
+        """Keep the stage."""
+        if self._folder is not None:
+            self._folder.mkdir(exist_ok=True)
+            facts = {"version": __version__, "keys": self._keys}
+            Checkpoint(facts, arrays).write(self._folder / f"{name}.npz")

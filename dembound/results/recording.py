@@ -1,0 +1,57 @@
+"""Trackers that write a run to its record."""
+
+import numpy as np
+
+from dembound.motion.trackers import NEVER, Run, Tracker
+from dembound.results.recorder import Recorder
+
+
+class Histories(Tracker):
+    """Writes the motion of the monitors, and the bonds that broke, after every return of the loop."""
+
+    name = "histories"
+
+    def __init__(self, recorder: Recorder) -> None:
+        self.recorder = recorder
+
+    def handle(self, run: Run) -> None:
+        """Does nothing, as it is never due."""
+
+    def observe(self, run: Run, record: np.ndarray) -> None:
+        """Append the record."""
+        self.recorder.append(record)
+
+
+class Snapshots(Tracker):
+    """Writes the whole scene at some steps.
+
+    Parameters
+    ----------
+    recorder : writes the file.
+    number : of snapshots in `steps`, evenly spaced, the last one at the end; a run of more steps goes on like this.
+    steps : of the run as it was begun.
+    """
+
+    name = "snapshots"
+
+    def __init__(self, recorder: Recorder, number: int, steps: int) -> None:
+        self.recorder = recorder
+        self._number, self._steps = min(number, steps), steps
+        self._last = -1
+        self._after(-1)
+
+    def _after(self, step: int) -> None:
+        """Set the first step after this one: the first k·steps/number, rounded down, above it."""
+        later = -(-(step + 1) * self._number // self._steps)
+        self.due = self._steps * max(1, later) // self._number if self._number > 0 else NEVER
+
+    def handle(self, run: Run) -> None:
+        """Write the scene."""
+        self.recorder.snapshot()
+        self._last = run.state.step
+        self._after(run.state.step)
+
+    def take_last(self, run: Run) -> None:
+        """Write the scene at the end of a run that was ended early, unless it has just been written."""
+        if self._last < run.state.step:
+            self.handle(run)

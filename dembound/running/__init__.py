@@ -1,0 +1,18 @@
+"""Runs cases: from their tables, or from a checkpoint, to folders of results."""
+
+from dembound.running.job import SECTIONS, resume_case, run_case
+from dembound.running.planning import MOST_STEPS, plan, preflight, simulation_of, warnings_before
+from dembound.running.progress import Progress, Reports
+
+__all__ = [
+    "MOST_STEPS",
+    "SECTIONS",
+    "Progress",
+    "Reports",
+    "plan",
+    "preflight",
+    "resume_case",
+    "run_case",
+    "simulation_of",
+    "warnings_before",
+]

@@ -1,0 +1,238 @@
+"""Runs one case, from its tables or a checkpoint to a folder of results."""
+
+import gc
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from dembound.casefile import Case
+from dembound.errors import CaseError, RunError
+from dembound.kinds import kind_of
+from dembound.motion.clock import Clock
+from dembound.motion.kind import Beginning, Kind, Plan, StalledError
+from dembound.motion.simulation import Simulation
+from dembound.motion.trackers import Run
+from dembound.results.checkpoint import FILE as CHECKPOINT
+from dembound.results.checkpoint import Checkpoints, facts_of
+from dembound.results.folder import Folder
+from dembound.results.interrupts import Interrupts
+from dembound.results.kept_stages import FOLDER as STAGES
+from dembound.results.kept_stages import KeptStages
+from dembound.results.reader import replacing
+from dembound.results.recorder import Recorder
+from dembound.results.recording import Histories, Snapshots
+from dembound.results.summary import summarise
+from dembound.results.vtk import write_vtu
+from dembound.running.planning import about, plan, simulation_of, warnings_before
+from dembound.running.progress import Progress, Reports
+from dembound.running.unfinished import Unfinished, find_unfinished
+
+LARGE = 1e8
+"""Bytes of a scene from which on it is removed from memory at once after the run; this takes some tenths of a second.
+
+Files and pictures are made from the record alone.
+"""
+
+SECTIONS = ("import", "compile", "build", "settle", "step", "record", "export", "pictures")
+"""The parts of a run whose time is measured, in the order of the summary."""
+
+RESUMED_SECTIONS = ("settle", "step", "record")
+"""Those that a resumed run does not repeat."""
+
+
+def run_case(
+    case: Case, results: Path, progress: Progress | None = None, seconds: Mapping[str, float] | None = None
+) -> Path:
+    """Run a case and write ``results/<case name>/``; returns that folder.
+
+    Everything is written to ``<case name>.partial``, which is renamed when the run is complete, so a finished folder is
+    always complete. After a run that fails the partial folder contains the histories so far; after a static stage that
+    stalls it contains a snapshot of the state it reached. A run that a signal or the end of its process has stopped is
+    continued by `resume_case` from its last checkpoint.
+
+    All warnings are sent to the progress and written to the summary; seconds: time already spent, by `SECTIONS`.
+
+    Raises the errors of `plan`, RunError when the static stage does not settle or the motion grows without bound,
+    Stopped after a signal, CaseError when another run is writing the same folder, and OSError when a file cannot be
+    written.
+    """
+    folder = Folder(results, case.name)
+    folder.check()
+    return _Job(case, folder, progress or Progress(), seconds or {}).run()
+
+
+def resume_case(
+    folder: Path,
+    until: float | None = None,
+    progress: Progress | None = None,
+    seconds: Mapping[str, float] | None = None,
+) -> Path:
+    """Continue a run from its last checkpoint, to the same results as if it had never stopped; returns its folder.
+
+    folder : of its results, the partial one or the complete one. until : s, another duration; histories, ledger and
+    snapshots keep their intervals. Without it a run that is complete cannot be continued.
+
+    Raises CaseError if there is no checkpoint, one of another version or of another case than the record, or of a run
+    that has reached that time; else errors as `run_case`.
+    """
+    found = find_unfinished(folder, until)
+    return _Job(found.case, found.folder, progress or Progress(), seconds or {}, found).run()
+
+
+class _Job:
+    """The work on one folder of results.
+
+    Parameters
+    ----------
+    case : to be run; folder : of its results; progress : is informed; seconds : spent before, by section.
+    found : an unfinished run of the case; None: a new run.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        folder: Folder,
+        progress: Progress,
+        seconds: Mapping[str, float],
+        found: Unfinished | None = None,
+    ) -> None:
+        self.case, self.folder, self.progress, self.found = case, folder, progress, found
+        self.clock = Clock()
+        self.clock.seconds.update(dict.fromkeys(SECTIONS, 0.0) | dict(seconds))
+        for section, spent in (found.facts["seconds"] if found else {}).items():
+            self.clock.seconds[section] += spent
+
+    def run(self) -> Path:
+        """Run it, and write all files; returns the folder of the complete results."""
+        case, clock = self.case, self.clock
+        with clock.with_compiling():
+            planned = self._plan()
+            with about(case), self.folder.writing(anew=self.found is None) as partial:
+                if self.found is not None:
+                    self.found.copy_to(partial)
+                summary = self._record(planned, partial)
+                if summary["memory_bytes"] > LARGE:
+                    del planned
+                    gc.collect()
+                self._export(partial)
+                summary |= {"wall_time": sum(clock.seconds.values()), "seconds": clock.seconds}
+                with replacing(partial / "summary.json") as part:
+                    part.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+                self.folder.finish()
+        return self.folder.final
+
+    def _plan(self) -> Plan:
+        """The plan; that of a resumed run has the time step of its checkpoint."""
+        planned = plan(self.case, self.clock)
+        if self.found is None:
+            return planned
+        time_step, regular_steps = (self.found.facts[name] for name in ("time_step", "regular_steps"))
+        if abs(planned.time_step - time_step) > 1e-9 * time_step:
+            raise CaseError([f"run.time_step: is {planned.time_step} s here, and {time_step} s in the checkpoint"])
+        steps = max(1, math.ceil(self.case.run.duration / time_step - 1e-9))
+        return replace(planned, time_step=time_step, steps=steps, regular_steps=regular_steps)
+
+    def _record(self, planned: Plan, partial: Path) -> dict[str, Any]:
+        """Run a plan and record it; returns the summary."""
+        record, kind = partial / "run.h5", planned.kind
+        warnings = _passed_on(warnings_before(planned), self.progress)
+        simulation, beginning = self._simulate(planned, partial)
+        summary = summarise(planned, simulation, record, self.clock.seconds)
+        summary |= kind.summarise(planned.scene, simulation, beginning, record)
+        warnings += _passed_on(kind.warnings_after(planned.scene, summary, record), self.progress)
+        resumed = [] if self.found is None else self.found.resumed
+        return summary | {"warnings": warnings, "resumed": resumed}
+
+    def _simulate(self, planned: Plan, partial: Path) -> tuple[Simulation, Beginning]:
+        """Start from the state given by the kind of body, or from a checkpoint, and advance to the end."""
+        case, steps, found = planned.scene.case, planned.steps, self.found
+        counts = None if found is None else found.facts["counts"]
+        with Interrupts() as interrupts:
+            beginning = self._begin(planned, partial, interrupts)
+            simulation, ledger = simulation_of(planned, beginning, self.clock)
+            with Recorder(
+                partial / "run.h5", simulation, planned.step_limit, case.output.history_interval, ledger,
+                beginning.stages, counts,
+            ) as recorder:  # fmt: skip
+                checkpoints = self._checkpoints(planned, partial, interrupts, None, recorder)
+                snapshots = Snapshots(recorder, case.output.snapshots, planned.regular_steps)
+                simulation.track(Histories(recorder), ledger, snapshots, Reports(self.progress, steps), checkpoints)
+                if found is not None and counts is not None:
+                    simulation.state.take(found.arrays())
+                simulation.run(steps)
+                checkpoints.write(simulation, durable=False)
+                if simulation.stopped:
+                    snapshots.take_last(simulation)
+        return simulation, beginning
+
+    def _begin(self, planned: Plan, partial: Path, interrupts: Interrupts) -> Beginning:
+        """The state at which the run begins; if a stage before it stalls, its state is written to the record."""
+        case, kind, found = self.case, planned.kind, self.found
+        in_stage = None if found is None or found.stage is None else (found.stage, found.arrays)
+        stages = KeptStages(
+            partial / STAGES if case.run.checkpoint > 0.0 else None,
+            kind.stage_keys(planned.stepped),
+            lambda name: self._checkpoints(planned, partial, interrupts, name, None),
+            kind.stages_from(case),
+            in_stage,
+        )
+        try:
+            with self.clock.of("settle"):
+                return kind.begin(planned.stepped, planned.time_step, self.progress.settling, stages)
+        except StalledError as stalled:
+            with Recorder(partial / "run.h5", stalled.run, planned.step_limit) as recorder:
+                recorder.stalled_snapshot(stalled)
+                raise RunError(f"{stalled}\nto see it: dembound plot {partial} --field unbalanced") from None
+
+    def _checkpoints(
+        self, planned: Plan, partial: Path, interrupts: Interrupts, stage: str | None, recorder: Recorder | None
+    ) -> Checkpoints:
+        """The tracker that writes checkpoints of the run, or of a stage before it."""
+        interval = self.case.run.checkpoint
+
+        def facts(run: Run) -> dict[str, Any]:
+            if recorder is not None:
+                recorder.flush()
+            return facts_of(self.case) | {
+                "stage": stage,
+                "step": run.state.step,
+                "time_step": planned.time_step,
+                "regular_steps": planned.regular_steps,
+                "counts": None if recorder is None else recorder.counts,
+                "resumed": [] if self.found is None else self.found.resumed,
+                "seconds": {name: self.clock.seconds[name] for name in RESUMED_SECTIONS},
+            }
+
+        return Checkpoints(partial / CHECKPOINT if interval > 0.0 else None, interval, interrupts, facts)
+
+    def _export(self, partial: Path) -> None:
+        """Write the files that are made from the record."""
+        kind = kind_of(self.case)
+        with self.clock.of("export"):
+            write_vtu(partial / "run.h5", partial / "paraview", kind)
+        with self.clock.of("pictures"):
+            if self.case.output.pictures:
+                _draw(self.case, kind, partial)
+
+
+def _passed_on(warnings: list[str], progress: Progress) -> list[str]:
+    """The same warnings, after the progress has received each."""
+    for warning in warnings:
+        progress.warned(warning)
+    return warnings
+
+
+def _draw(case: Case, kind: Kind[Any, Any], folder: Path) -> None:
+    """Draw the pictures of a run into its folder: the monitors' velocities, and from snapshots those of its kind."""
+    from dembound.plot.histories import plot_histories
+    from dembound.plot.style import save
+
+    record = folder / "run.h5"
+    if case.output.snapshots:
+        for name, figure in kind.pictures(record):
+            save(figure, folder / f"{name}.png")
+    if case.monitor:
+        save(plot_histories([record]), folder / "histories.png")

@@ -1,0 +1,106 @@
+"""Runs that can be continued: from a folder of results to its case and its last checkpoint."""
+
+import json
+import shutil
+import tomllib
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from dembound.casefile import Case
+from dembound.errors import CaseError
+from dembound.motion.state import Arrays
+from dembound.results.checkpoint import FILE, Checkpoint, differences
+from dembound.results.folder import PARTIAL, Folder
+from dembound.results.kept_stages import FOLDER as STAGES
+from dembound.results.reader import open_record
+from dembound.kinds import loads
+
+SILENCE = ("until", "silent_level", "silent_for")
+"""Keys of ``[run]`` that end a run before its duration."""
+
+
+@dataclass(frozen=True)
+class Unfinished:
+    """A run that is continued.
+
+    Attributes
+    ----------
+    case : with its new duration, if it has one. folder : of its results.
+    path : the folder of its checkpoint, the partial or the complete one. facts : of the checkpoint, without its arrays.
+    """
+
+    case: Case
+    folder: Folder
+    path: Path
+    facts: dict[str, Any]
+
+    @property
+    def stage(self) -> str | None:
+        """The stage before the run in which it was stopped; None in the run itself."""
+        return self.facts["stage"]
+
+    @property
+    def resumed(self) -> list[dict[str, Any]]:
+        """The states from which it has been continued, this one included, for the summary."""
+        here = {"stage": self.stage, "step": self.facts["step"]}
+        return [*self.facts["resumed"], here]
+
+    def arrays(self) -> Arrays:
+        """The arrays of the checkpoint, read anew."""
+        return Checkpoint.read(self.path / FILE).arrays
+
+    def copy_to(self, partial: Path) -> None:
+        """Copy what a run is continued from to its partial folder, unless it is there."""
+        if self.path == partial:
+            return
+        for name in ("run.h5", FILE):
+            shutil.copy(self.path / name, partial / name)
+        if (self.path / STAGES).is_dir():
+            shutil.copytree(self.path / STAGES, partial / STAGES, dirs_exist_ok=True)
+
+
+def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
+    """The run of a folder of results; until : s, its new duration.
+
+    Raises CaseError as `dembound.running.resume_case`.
+    """
+    path = folder if (folder / FILE).is_file() else folder.with_name(f"{folder.name}{PARTIAL}")
+    if not (path / FILE).is_file():
+        raise CaseError([f"{folder}: has no checkpoint ({FILE}); is run.checkpoint 0, or had the run not begun?"])
+    facts = dict(Checkpoint.read(path / FILE).facts)
+    is_complete = not path.name.endswith(PARTIAL)
+    name = path.name.removesuffix(PARTIAL)
+    case = replace(_case_of(facts, path), name=name)
+    if until is not None:
+        case, reached = _lasting(case, until), facts["step"] * facts["time_step"]
+        if facts["stage"] is None and until <= reached:
+            raise CaseError([f"--until: is {until:g} s, must be after {reached:g} s, which the run has reached"])
+    elif is_complete:
+        raise CaseError([f"{path}: is complete; --until continues it to a later time"])
+    return Unfinished(case, Folder(path.parent, name), path, facts)
+
+
+def _case_of(facts: dict[str, Any], path: Path) -> Case:
+    """The case of a checkpoint.
+
+    Raises CaseError if it is not that of the record, or has other keys here than where it was written.
+    """
+    case = loads(facts["case"], name=facts["name"], files=facts["files"])
+    others = [("this installation", json.loads(json.dumps(case.keys)))]
+    if facts["stage"] is None:
+        with open_record(path / "run.h5") as record:
+            others.append(("run.h5", json.loads(record.attrs["keys"])))
+    for where, keys in others:
+        if different := differences(facts["keys"], keys):
+            raise CaseError([f"{path}: the case of {FILE} is not that of {where}", *different])
+    return case
+
+
+def _lasting(case: Case, until: float) -> Case:
+    """The case with another duration (s), before which it does not end."""
+    data = tomllib.loads(case.text)
+    data["run"] = {key: value for key, value in data["run"].items() if key not in SILENCE} | {"duration": until}
+    return loads(tomli_w.dumps(data), case.folder, case.name, case.files)

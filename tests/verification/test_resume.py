@@ -1,0 +1,225 @@
+"""A run that is stopped at any step and resumed has the same record and summary, to the bit, as one that is not."""
+
+import json
+import re
+
+import h5py
+import numpy as np
+import pytest
+import tomli_w
+
+from dembound.running import job
+from dembound.kinds import loads
+from dembound.results.checkpoint import Checkpoints
+from dembound.results.folder import Folder
+from dembound.results.interrupts import Stopped
+from dembound.running import resume_case, run_case
+
+PACKING = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+MATERIAL = {"density": 2500.0, "p_wave_speed": 1000.0}
+BRITTLE = MATERIAL | {"law": "linearpbond", "pb_ten": 3e5, "pb_coh": 6e5, "fric": 0.3}
+INPUT = {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}
+FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
+DISKS = {
+    "packing": PACKING,
+    "material": MATERIAL,
+    "boundary": {"bottom": INPUT, "right": {"type": "viscous"}},
+    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.01}},
+    "monitor": [{"name": "middle", "position": [4.0, 2.0]}, {"name": "top", "position": [4.0, 4.0]}],
+    "run": {"duration": 0.03},
+    "output": {"peaks": True, "pictures": False, "snapshots": 5, "history_interval": 4e-4, "energy_interval": 1.1e-3},
+}
+BAR = {
+    "bar": {"length": 1.0, "spacing": 0.01, "density": 2500.0, "wave_speed": 1000.0, "strength": 8e6},
+    "boundary": {"right": {"type": "viscous", "beta_p": 0.2}},
+    "load": [{"name": "hit", "pressure": -15e6, "nodes": 3, "wave": "hit"}],
+    "wave": {"hit": {"type": "triangle", "amplitude": 1.0, "rise": 2e-4, "fall": 2e-4}},
+    "monitor": [{"name": "gauge", "position": 0.5}],
+    "run": {"duration": 2e-3},
+    "output": {"pictures": False, "snapshots": 5, "energy_interval": 9e-5},
+}
+CASES = {
+    "elastic": DISKS,
+    "rows and symmetry": DISKS
+    | {
+        "packing": {"pattern": "A", "size": [20.0, 6.0], "radius": 0.5},
+        "motion": {"held": ["y"]},
+        "boundary": {"left": {"type": "velocity", "wave_p": "pulse"}, "right": {"type": "viscous"}},
+    },
+    "law changes, bonds break": DISKS
+    | {
+        "material": BRITTLE,
+        "motion": {"held": ["y"]},
+        "boundary": {"left": {"type": "velocity", "wave_p": "pulse"}},
+    },
+    "settled, updated": DISKS | {"material": BRITTLE, "static": {"stress": [-1e6, -1e6, 0.0], "ratio": 1e-3}},
+    "free field that breaks": DISKS | {"material": BRITTLE, "boundary": FREE_FIELD | {"bottom": INPUT}},
+    "ends in silence": DISKS | {"run": {"duration": 0.5, "until": "silent", "silent_level": 0.2}},
+    "peridynamics": BAR | {"method": {"type": "peridynamics", "horizon": 3}},
+    "finite differences": BAR | {"method": {"type": "finite_difference"}},
+    "switch": BAR | {"method": {"type": "switch", "horizon": 3}},
+    "patch": BAR | {"method": {"type": "patch", "horizon": 3}},
+}
+CUTS = 10
+"""Steps at which each case is stopped, evenly spaced, and at the change of the law."""
+
+
+class Stop(Checkpoints):
+    """Stops a run, as a signal does, once it has come to a step: of the run, or of one stage before it."""
+
+    at = 0
+    stage: str | None = None
+    is_on = False
+
+    def observe(self, run, record) -> None:
+        in_stage = getattr(run.system, "_settling", False)
+        if Stop.is_on and in_stage == (Stop.stage is not None) and run.state.step >= Stop.at:
+            Stop.is_on = False
+            self.write(run)
+            raise Stopped(2)
+
+
+@pytest.fixture(autouse=True)
+def stopping(monkeypatch) -> None:
+    """Runs return from the loop after every step, and stop where `Stop` says."""
+    Stop.is_on = False
+    monkeypatch.setattr(job, "Checkpoints", Stop)
+
+
+def case_of(name: str, **changes):
+    tables = CASES[name] | changes
+    return loads(tomli_w.dumps(tables), name=re.sub(r"\W+", "_", name))
+
+
+def stopped(case, folder, step: int, stage: str | None = None):
+    """Run a case up to a step of the run, or of a static stage, and stop it there; returns the partial folder."""
+    Stop.at, Stop.stage, Stop.is_on = step, stage, True
+    with pytest.raises(Stopped):
+        run_case(case, folder)
+    return Folder(folder, case.name).partial
+
+
+def contents(path) -> dict[str, bytes]:
+    """All numbers, texts and attributes of a record, by path."""
+    found = {}
+    with h5py.File(path) as file:
+
+        def note(name, item) -> None:
+            for key, value in item.attrs.items():
+                found[f"{name}@{key}"] = str(np.asarray(value).tolist()).encode()
+            if isinstance(item, h5py.Dataset):
+                values = item[()]
+                found[name] = b"".join(values) if values.dtype == object else values.tobytes()
+
+        note("", file)
+        file.visititems(note)
+    return found
+
+
+def differences(one, other) -> list[str]:
+    first, second = contents(one / "run.h5"), contents(other / "run.h5")
+    names = first.keys() | second.keys()
+    return sorted(name for name in names if first.get(name) != second.get(name))
+
+
+def summary(folder) -> dict:
+    numbers = json.loads((folder / "summary.json").read_text())
+    return {key: value for key, value in numbers.items() if key not in {"seconds", "wall_time", "resumed"}} | {
+        "particle_steps_per_second": None
+    }
+
+
+@pytest.fixture(scope="module", params=CASES)
+def whole(request, tmp_path_factory):
+    """A case, and the results of its run without a stop."""
+    case = case_of(request.param)
+    return case, run_case(case, tmp_path_factory.mktemp("whole"))
+
+
+def test_a_stopped_run_is_resumed_to_the_same_bits(whole, tmp_path) -> None:
+    case, folder = whole
+    expected = summary(folder)
+    steps = expected["steps"]
+    switches = [round(law["from"] / expected["time_step"]) for law in expected["laws"]]
+    assert len(expected["laws"]) > 1 or "breaks" not in case.name
+    for cut in sorted({*np.linspace(0, steps, CUTS, endpoint=False).astype(int), *switches}):
+        partial = stopped(case, tmp_path, int(cut))
+        again = resume_case(partial)
+        assert differences(again, folder) == [], f"stopped at step {cut}"
+        assert summary(again) == expected
+
+
+def test_a_stopped_run_can_be_stopped_again(whole, tmp_path) -> None:
+    case, folder = whole
+    partial = stopped(case, tmp_path, 7)
+    for step in (20, 30):
+        Stop.at, Stop.is_on = step, True
+        with pytest.raises(Stopped):
+            resume_case(partial)
+    again = resume_case(partial)
+    assert differences(again, folder) == []
+    assert len(json.loads((again / "summary.json").read_text())["resumed"]) == 3
+
+
+def test_a_complete_run_is_continued_as_if_it_had_been_longer(whole, tmp_path) -> None:
+    case, folder = whole
+    if case.run.until == "silent":
+        pytest.skip("ends before its duration; see the next test")
+    part, snapshots = 0.6 * case.run.duration, 3
+    changes = {"run": {"duration": part}, "output": CASES_OUTPUT[case.name] | {"snapshots": snapshots}}
+    first = run_case(case_of(NAMES[case.name], **changes), tmp_path)
+    steps = json.loads((first / "summary.json").read_text())["steps"]
+    again = resume_case(first, until=case.run.duration)
+
+    assert again == first
+    # snapshots are at other steps, as numbers of steps are rounded; nothing else may differ
+    names = [name for name in differences(again, folder) if not name.startswith("snapshots/") and "@" not in name]
+    assert names == []
+    with h5py.File(again / "run.h5") as file:
+        taken = [round(group.attrs["time"] / file.attrs["time_step"]) for group in file["snapshots"].values()]
+        assert taken == [steps * k // snapshots for k in range(1, 7) if steps * k // snapshots <= file.attrs["steps"]]
+        assert file.attrs["complete"]
+
+
+NAMES = {re.sub(r"\W+", "_", name): name for name in CASES}
+CASES_OUTPUT = {name: CASES[NAMES[name]]["output"] for name in NAMES}
+
+
+def test_a_run_that_ended_in_silence_is_continued_without_it(tmp_path) -> None:
+    first = run_case(case_of("ends in silence"), tmp_path / "one")
+    time = json.loads((first / "summary.json").read_text())["duration"]
+    again = resume_case(first, until=1.5 * time)
+    long = run_case(case_of("ends in silence", run={"duration": 1.5 * time}), tmp_path / "two")
+
+    with h5py.File(again / "run.h5") as found, h5py.File(long / "run.h5") as expected:
+        for name in ("histories/middle/velocity", "energy/error", "particles/peak_velocity"):
+            assert found[name][()].tobytes() == expected[name][()].tobytes()
+
+
+@pytest.mark.parametrize("stage", ["body", "body.column"])
+def test_a_static_stage_is_resumed_to_the_same_bits(tmp_path, stage) -> None:
+    changes = {} if stage == "body" else {
+        "boundary": FREE_FIELD | {"bottom": INPUT},
+        "static": {"ratio": 1e-3, "boundary": {"bottom": {"type": "fixed"}}},
+        "load": [{"name": "gravity", "acceleration": [0.0, -9.81]}],
+    }  # fmt: skip
+    case = case_of("settled, updated", **changes)
+    folder = run_case(case, tmp_path / "whole")
+    for step in (1, 150, 300):
+        partial = stopped(case, tmp_path / "cut", step, stage)
+        assert not (partial / "run.h5").exists()
+        again = resume_case(partial)
+        assert differences(again, folder) == []
+        assert summary(again) == summary(folder)
+
+
+def test_a_settled_state_is_used_by_another_case(tmp_path, monkeypatch) -> None:
+    static = CASES["settled, updated"]["static"]
+    softer = {"bottom": INPUT | {"beta_p": 0.8}, "right": {"type": "viscous"}}
+    first = run_case(case_of("settled, updated"), tmp_path / "first")
+    alone = run_case(case_of("settled, updated", boundary=softer), tmp_path / "alone")
+    used = run_case(case_of("settled, updated", boundary=softer, static=static | {"from": str(first)}), tmp_path)
+
+    assert [name for name in differences(used, alone) if not name.startswith("@")] == []
+    assert json.loads((used / "summary.json").read_text())["seconds"]["settle"] < 0.5
+    assert not (used / "settled").exists()
