@@ -1,7 +1,7 @@
 """dembound: waves in bonded particles, with artificial boundaries that absorb.
 
-From Python: `load`, `case`, `change`, `run`, `calibrate`, `calibrate_all` and `Results`; see `dembound.api` and
-docs/python.md.
+From Python: `load`, `case`, `change`, `run`, `resume`, `calibrate`, `calibrate_all` and `Results`; see
+`dembound.api` and docs/python.md.
 """
 
 from importlib import import_module
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         change,
         load,
         loads,
+        resume,
         run,
     )
 
@@ -45,6 +46,7 @@ __all__ = [
     "change",
     "load",
     "loads",
+    "resume",
     "run",
 ]
 

@@ -1,7 +1,8 @@
 """dembound from Python: cases made of tables, runs, and their results as arrays. See docs/python.md."""
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.errors import CaseError, DemboundError, PackingError, RunError
 from dembound.results.results import Arrays, Results
-from dembound.running import Progress, run_case
+from dembound.running import Progress, resume_case, run_case
 from dembound.studies import all_sides, calibration
 from dembound.studies.calibration import Calibration
 from dembound.table import Table, as_toml
@@ -36,6 +37,7 @@ __all__ = [
     "change",
     "load",
     "loads",
+    "resume",
     "run",
 ]
 
@@ -97,10 +99,33 @@ def run(
     Raises CaseError if the case cannot be run, PackingError if its brick cannot be packed, RunError if the run fails.
     """
     chosen = case if isinstance(case, Case) else load(case)
+    with _threads(threads):
+        return Results(run_case(chosen, Path(results), progress or _Warns()))
+
+
+def resume(
+    results: Path | str, until: float | None = None, *, progress: Progress | None = None, threads: int | None = None
+) -> Results:
+    """Continue a run from its last checkpoint, as ``dembound resume`` does; returns the results.
+
+    Parameters
+    ----------
+    results : folder of the results, the partial one of a run that was interrupted, or a complete one.
+    until : s, another duration; without it a complete run cannot be continued. progress, threads : as for `run`.
+
+    Raises CaseError if there is nothing to continue, or a checkpoint of another version or case; else as `run`.
+    """
+    with _threads(threads):
+        return Results(resume_case(Path(results), until, progress or _Warns()))
+
+
+@contextmanager
+def _threads(threads: int | None) -> Iterator[None]:
+    """Use so many threads inside, if there are that many; None: as many as there are."""
     before = numba.get_num_threads()
     numba.set_num_threads(before if threads is None else max(1, min(threads, before)))
     try:
-        return Results(run_case(chosen, Path(results), progress or _Warns()))
+        yield
     finally:
         numba.set_num_threads(before)
 

@@ -11,7 +11,7 @@ other exception is a bug and prints a traceback.
 | 3 | a run, calibration or view failed: motion grew without bound, β did not converge, no window opened |
 | 4 | a packing could not be made |
 | 5 | a file could not be read or written |
-| 130 | stopped with Ctrl-C |
+| 130 | stopped with Ctrl-C, 143 by SIGTERM, 129 by SIGHUP |
 """
 
 from collections.abc import Iterable

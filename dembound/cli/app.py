@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 EXIT_CODES = (  # in one line: line breaks within a paragraph stay in the help
     "Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration or view failed; 4 a packing "
-    "could not be made; 5 a file could not be read or written; 130 stopped with Ctrl-C."
+    "could not be made; 5 a file could not be read or written; 130 stopped with Ctrl-C, "
+    "143 by SIGTERM, 129 by SIGHUP."
 )
 CANNOT_WRITE = 5
 INTERRUPTED = 130
@@ -104,9 +105,15 @@ def _version(
 
 def load_case(path: Path, changes: list[str] | None, name: str | None = None) -> Case:
     """Read a case file, and change its keys and its name as given by the options."""
-    from dembound.schemas import load, with_changes
+    from dembound.schemas import load
 
-    case = load(path)
+    return changed(load(path), changes, name)
+
+
+def changed(case: Case, changes: list[str] | None, name: str | None) -> Case:
+    """The case with keys and name changed as given by the options."""
+    from dembound.schemas import with_changes
+
     if changes:
         case = with_changes(case, dict(_setting(text) for text in changes))
     if name is None:

@@ -21,6 +21,7 @@ from dembound.cli.app import (
     Side,
     Threads,
     app,
+    changed,
     compact_table,
     err,
     load_case,
@@ -33,6 +34,7 @@ from dembound.version import IMPORT_BEGAN
 
 if TYPE_CHECKING:
     from dembound.boundaries.support import Edge
+    from dembound.casefile import Case
     from dembound.disks.scene import DiskScene
 
 
@@ -65,8 +67,8 @@ def run(
 
     All case files are read before the first is run, so a mistake in the last one is found at once.
     """
-    from dembound.cli.progress import progress_of
-    from dembound.running import preflight, run_case
+    from dembound.results.folder import Folder
+    from dembound.running import preflight
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
     use_threads(threads)
@@ -76,18 +78,15 @@ def run(
     names = [case.name for case in loaded]
     if len(set(names)) < len(names):
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
+    for case in loaded:
+        Folder(output, case.name).check()
     for case in loaded[1:]:  # the first is planned below, before anything is written
         preflight(case)
     for number, case in enumerate(loaded):
         if number > 0:
             gc.collect()  # the arrays of the run before, whose objects refer to each other
-        try:
-            with progress_of(case.name) as step:
-                folder = run_case(case, output, step, spent)
-        except KeyboardInterrupt as stop:
-            raise _stopped(output / f"{case.name}.partial", stop) from None
+        _run(case, output, spent)
         spent = {}  # counted for the first case only
-        _print_results(folder)
 
 
 @app.command("resume", rich_help_panel="Cases")
@@ -112,6 +111,35 @@ def resume(
             partial = folder if folder.suffix == ".partial" else folder.with_name(f"{folder.name}.partial")
             raise _stopped(partial, stop) from None
         _print_results(done)
+
+
+@app.command("rerun", rich_help_panel="Cases")
+def rerun(
+    record: Annotated[Path, typer.Argument(metavar="RESULTS", help="Folder of results, or its run.h5.")],
+    output: Output = Path("results"),
+    changes: Settings = None,
+    name: Name = None,
+    threads: Threads = None,
+) -> None:
+    """Run the case of a record again, from the record alone: case, seeds and wave files are in it."""
+    from dembound.running.recorded import recorded_case
+
+    case = recorded_case(record if record.suffix == ".h5" else record / "run.h5")
+    use_threads(threads)
+    _run(changed(case, changes, name), output, {})
+
+
+def _run(case: Case, output: Path, spent: dict[str, float]) -> None:
+    """Run a case, with its progress, and print its outcome; spent : seconds before, by section."""
+    from dembound.cli.progress import progress_of
+    from dembound.running import run_case
+
+    try:
+        with progress_of(case.name) as step:
+            folder = run_case(case, output, step, spent)
+    except KeyboardInterrupt as stop:
+        raise _stopped(output / f"{case.name}.partial", stop) from None
+    _print_results(folder)
 
 
 def _print_results(folder: Path) -> None:

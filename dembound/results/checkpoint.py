@@ -22,6 +22,7 @@ from dembound.errors import CaseError
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
 from dembound.results.interrupts import Interrupts, Stopped
+from dembound.results.reader import replacing
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -45,18 +46,12 @@ class Checkpoint:
 
     def write(self, path: Path, *, durable: bool = True) -> None:
         """Write it beside the file and swap it in; durable : wait until the disk has it."""
-        part = path.with_name(f"{path.name}.part")
-        try:
-            with part.open("wb") as file:
-                text = np.frombuffer(json.dumps(dict(self.facts)).encode(), dtype=np.uint8)
-                np.savez(file, allow_pickle=False, **{FACTS: text, **self.arrays})  # type: ignore[arg-type]
-                if durable:
-                    file.flush()
-                    os.fsync(file.fileno())
-            part.replace(path)
-        except BaseException:
-            part.unlink(missing_ok=True)
-            raise
+        text = np.frombuffer(json.dumps(dict(self.facts)).encode(), dtype=np.uint8)
+        with replacing(path) as part, part.open("wb") as file:
+            np.savez(file, allow_pickle=False, **{FACTS: text, **self.arrays})  # type: ignore[arg-type]
+            if durable:
+                file.flush()
+                os.fsync(file.fileno())
 
     @classmethod
     def read(cls, path: Path) -> Checkpoint:

@@ -96,7 +96,8 @@ class CommittedFile(io.RawIOBase):
         below = min(len(view), max(0, kept - self._at)) if self.failure is None else len(view)
         self._keep(self._at, view[:below])
         try:
-            self._write_all(self._at + below, view[below:])
+            self._file.seek(self._at + below)
+            _write_all(self._file, view[below:])
         except OSError as error:
             self.failure = error
             self._keep(self._at + below, view[below:])
@@ -112,7 +113,8 @@ class CommittedFile(io.RawIOBase):
             if self._pages:
                 self._write_log()
                 for number, page in self._pages.items():
-                    self._write_all(number * PAGE, memoryview(page))
+                    self._file.seek(number * PAGE)
+                    _write_all(self._file, memoryview(page))
             self._file.truncate(self._size)
             if self._pages:
                 os.fsync(self._file.fileno())
@@ -129,10 +131,12 @@ class CommittedFile(io.RawIOBase):
             raise OSError(self.failure.errno, self.failure.strerror, str(self.path)) from self.failure
 
     def close(self) -> None:
-        """Close the file; what was written since the last commit is lost."""
+        """Close the file; what was written since the last commit is lost, and a file without a commit is removed."""
         if not self.closed:
             if self._file.writable() and not self.log.is_file():  # a log that could not be applied needs all of it
                 self._file.truncate(self._kept)
+                if self._kept == 0:
+                    self.path.unlink(missing_ok=True)
             self._file.close()
         super().close()
 
@@ -147,21 +151,14 @@ class CommittedFile(io.RawIOBase):
                 self._pages[number] = bytearray(self._file.read(PAGE).ljust(PAGE, b"\0"))
             self._pages[number][inside] = view[outside]
 
-    def _write_all(self, at: int, view: memoryview) -> None:
-        """Write all of some bytes to the file at a position."""
-        self._file.seek(at)
-        while len(view) > 0:
-            view = view[self._file.write(view) :]
-
     def _write_log(self) -> None:
         """Write all pages to a log, completely or not at all."""
         numbers = struct.pack(f"<{len(self._pages)}Q", *self._pages)
         body = numbers + b"".join(self._pages.values())
         part = self.log.with_name(f"{self.log.name}.part")
         try:
-            with part.open("wb") as file:
-                file.write(HEADER.pack(MAGIC, self._size, len(self._pages), zlib.crc32(body)) + body)
-                file.flush()
+            with io.FileIO(part, "w") as file:
+                _write_all(file, memoryview(HEADER.pack(MAGIC, self._size, len(self._pages), zlib.crc32(body)) + body))
                 os.fsync(file.fileno())
             part.replace(self.log)
         except OSError:
@@ -182,6 +179,12 @@ class CommittedFile(io.RawIOBase):
         self._size = size
 
 
+def _write_all(file: io.FileIO, view: memoryview) -> None:
+    """Write all of some bytes to an unbuffered file."""
+    while len(view) > 0:
+        view = view[file.write(view) :]
+
+
 def log_of(path: Path) -> Path:
     """Where the log of a file is during a commit."""
     return path.with_name(f"{path.name}.log")
@@ -199,6 +202,24 @@ def new_file(path: Path) -> Iterator[h5py.File]:
 
     with replacing(path) as part, CommittedFile(part, "w") as store:
         with h5py.File(store, "w") as file:
+            yield file
+        store.commit()
+
+
+@contextmanager
+def changed_file(path: Path) -> Iterator[h5py.File]:
+    """An HDF5 file to be changed, created if it does not exist; it keeps its contents if there is an error.
+
+    Raises OSError, such as for a full disk, without harm to HDF5.
+    """
+    import h5py
+
+    if not path.is_file():
+        with new_file(path) as file:
+            yield file
+        return
+    with CommittedFile(path, "a") as store:
+        with h5py.File(store, "a") as file:
             yield file
         store.commit()
 

@@ -1,5 +1,6 @@
 """The folder of a run: written aside, locked against a second run of the name, and swapped in when it is complete."""
 
+import errno
 import re
 import shutil
 from collections.abc import Iterator
@@ -35,11 +36,18 @@ class Folder:
     """
 
     def __init__(self, results: Path, name: str) -> None:
+        self.name = name
         self.final, self.partial = results / name, results / f"{name}{PARTIAL}"
         self._old = results / f"{name}{REPLACED}"
 
     def check(self) -> None:
-        """Raise CaseError where results cannot be written: at a link or a file, or in a folder without a run."""
+        """Raise CaseError where results cannot be written: at a link, a file, a folder without a run or one in use.
+
+        A name cannot end like the folder of another run.
+        """
+        for ending in (PARTIAL, REPLACED):
+            if self.name.endswith(ending):
+                raise CaseError([f"{self.name}: is no name of a case, must not end in {ending}; give another --name"])
         for path in (self.final, self.partial):
             if path.is_symlink():
                 raise CaseError([f"{path}: is a link, must be a folder; a link may lead to the folder above it"])
@@ -47,30 +55,41 @@ class Folder:
                 raise CaseError([f"{path}: is a file, give another --output or --name"])
         if self.final.is_dir() and any(self.final.iterdir()) and not (self.final / "run.h5").is_file():
             raise CaseError([f"{self.final}: exists and holds no run, give another --output or --name"])
+        if (self.partial / LOCK).is_file():
+            self._lock().release()
 
     @contextmanager
     def writing(self, *, anew: bool) -> Iterator[Path]:
         """Yield the partial folder, locked, to write into; anew : without the files of an earlier run.
 
-        It is removed if nothing was written. Raises CaseError as `check`, and if another run is writing into it.
+        It is removed if nothing was written. Raises CaseError as `check`.
         """
         self.check()
         self.partial.mkdir(parents=True, exist_ok=True)
-        lock = FileLock(self.partial / LOCK)
-        try:
-            lock.acquire(blocking=False)
-        except Timeout:
-            raise CaseError([f"{self.partial}: is being written by another run, wait or give another --name"]) from None
+        lock = self._lock()
         try:
             if anew:
                 _remove_own(self.partial, but=LOCK)
             yield self.partial
+        except CaseError:
+            if self.partial.is_dir():
+                raise
+            raise FileNotFoundError(errno.ENOENT, "has been removed during the run", str(self.partial)) from None
         finally:
             for folder in (self.partial, self.final):
                 (folder / LOCK).unlink(missing_ok=True)
             lock.release()
             if self.partial.is_dir() and not any(self.partial.iterdir()):
                 self.partial.rmdir()
+
+    def _lock(self) -> FileLock:
+        """The lock of the partial folder, acquired; raises CaseError if another run has it."""
+        lock = FileLock(self.partial / LOCK)
+        try:
+            lock.acquire(blocking=False)
+        except Timeout:
+            raise CaseError([f"{self.partial}: is being written by another run, wait or give another --name"]) from None
+        return lock
 
     def finish(self) -> None:
         """Replace the final folder; files in it that no run has written remain there."""

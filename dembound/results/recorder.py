@@ -106,6 +106,14 @@ class Recorder:
         self._broken: list[Cracks] = []
         self._store = CommittedFile(path, "w" if counts is None else "a")
         self.file = h5py.File(self._store, "w" if counts is None else "a")
+        try:
+            self._begin(step_limit, stages, counts)
+        except BaseException:
+            self._close()
+            raise
+
+    def _begin(self, step_limit: float, stages: Sequence[Stage], counts: Mapping[str, int] | None) -> None:
+        """Create all groups of a new file, or cut one to what is continued."""
         if counts is None:
             self._create(step_limit, stages)
         else:
@@ -128,8 +136,11 @@ class Recorder:
                 self.file.attrs["complete"] = True
             self.flush()
         finally:
-            self.file.close()
-            self._store.close()
+            self._close()
+
+    def _close(self) -> None:
+        self.file.close()
+        self._store.close()
 
     @property
     def counts(self) -> dict[str, int]:

@@ -30,6 +30,7 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
     return {
         "name": scene.case.name,
         "title": scene.case.title,
+        "keys": scene.case.keys,
         "version": __version__,
         "time_step": planned.time_step,
         "step_limit": planned.step_limit if np.isfinite(planned.step_limit) else None,

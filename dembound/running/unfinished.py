@@ -11,12 +11,12 @@ import tomli_w
 
 from dembound.casefile import Case
 from dembound.errors import CaseError
+from dembound.kinds import loads
 from dembound.motion.state import Arrays
 from dembound.results.checkpoint import FILE, Checkpoint, differences
 from dembound.results.folder import PARTIAL, Folder
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.reader import open_record
-from dembound.kinds import loads
 
 SILENCE = ("until", "silent_level", "silent_for")
 """Keys of ``[run]`` that end a run before its duration."""
@@ -73,13 +73,14 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
     facts = dict(Checkpoint.read(path / FILE).facts)
     is_complete = not path.name.endswith(PARTIAL)
     name = path.name.removesuffix(PARTIAL)
+    if until is None and is_complete:
+        raise CaseError([f"{path}: is complete; --until continues it to a later time"])
+    reached = facts["step"] * facts["time_step"] if facts["stage"] is None else 0.0
+    if until is not None and until <= reached:
+        raise CaseError([f"--until: is {until:g} s, must be after {reached:g} s, which the run has reached"])
     case = replace(_case_of(facts, path), name=name)
     if until is not None:
-        case, reached = _lasting(case, until), facts["step"] * facts["time_step"]
-        if facts["stage"] is None and until <= reached:
-            raise CaseError([f"--until: is {until:g} s, must be after {reached:g} s, which the run has reached"])
-    elif is_complete:
-        raise CaseError([f"{path}: is complete; --until continues it to a later time"])
+        case = _lasting(case, until)
     return Unfinished(case, Folder(path.parent, name), path, facts)
 
 

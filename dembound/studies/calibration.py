@@ -14,7 +14,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
-import h5py
 import numpy as np
 
 from dembound.boundaries import OPPOSITE, Boundary, Motion, axis_of_motion, normal_axis
@@ -25,6 +24,7 @@ from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError, RunError
 from dembound.motion.simulation import Simulation
+from dembound.results.committed import new_file
 from dembound.studies.strip import AFTER, calibration_pulse, full_scene, linear_medium, short_strip
 from dembound.version import __version__
 from dembound.waves import Cosine
@@ -100,7 +100,7 @@ class Calibration:
 
     def write(self, path: Path) -> None:
         """Record the passes in an HDF5 file: attributes, and datasets beta, outgoing (m/s) and ratio."""
-        with h5py.File(path, "w") as file:
+        with new_file(path) as file:
             scalars = {key: value for key, value in self.summary().items() if not isinstance(value, list)}
             file.attrs.update({**scalars, "case": self.case.text, "reduced": "\n".join(self.shortened)})
             for name, values, unit in (

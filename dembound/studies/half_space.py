@@ -3,11 +3,13 @@
 It is written as a record with the layout of a run, so that it can be plotted and compared in the same way.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import h5py
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
@@ -16,8 +18,11 @@ from dembound.casefile.types import LAWS
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
-from dembound.results.reader import replacing
+from dembound.results.committed import new_file
 from dembound.version import __version__
+
+if TYPE_CHECKING:
+    import h5py
 
 ISOTROPY = 1e-6
 """Relative difference of C11 − C12 and 2 C66 up to which a medium is treated as isotropic."""
@@ -61,7 +66,7 @@ def write_exact(case: DiskCase, path: Path) -> None:
     scene = build(case)
     times, motions = surface_motions(scene)
     path.parent.mkdir(parents=True, exist_ok=True)
-    with replacing(path) as part, h5py.File(part, "w") as file:
+    with new_file(path) as file:
         file.attrs.update(
             {"name": case.name, "case": case.text, "version": __version__, "size": scene.size, "complete": True}
         )

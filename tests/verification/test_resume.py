@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 import tomli_w
 
-from dembound.running import job
 from dembound.kinds import loads
 from dembound.results.checkpoint import Checkpoints
 from dembound.results.folder import Folder
 from dembound.results.interrupts import Stopped
-from dembound.running import resume_case, run_case
+from dembound.running import job, resume_case, run_case
 
 PACKING = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 MATERIAL = {"density": 2500.0, "p_wave_speed": 1000.0}

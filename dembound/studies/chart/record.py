@@ -1,15 +1,21 @@
 """The runs of a chart in ``chart.h5``, each written as soon as it is over, so that a chart can be resumed."""
 
+from __future__ import annotations
+
 import shutil
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import h5py
 import numpy as np
 
 from dembound.errors import CaseError
 from dembound.motion.kind import Finding
+from dembound.results.committed import changed_file
+from dembound.results.reader import open_record
 from dembound.studies.chart.measure import Gauge, Gauges, Outcome
+
+if TYPE_CHECKING:
+    import h5py
 
 FILE = "chart.h5"
 
@@ -29,7 +35,7 @@ class Record:
         """The results of the case with this digest; None if it has not been run."""
         if not self.path.is_file():
             return None
-        with h5py.File(self.path, "r") as file:
+        with open_record(self.path) as file:
             group = file.get(f"runs/{key}")
             if group is None:
                 return None
@@ -44,7 +50,7 @@ class Record:
 
     def add(self, key: str, outcome: Outcome) -> None:
         """Write the results of a case; costs come later, one by one."""
-        with h5py.File(self.path, "a") as file:
+        with changed_file(self.path) as file:
             group = file.require_group("runs").create_group(key)
             group.attrs.update({name: getattr(outcome, name) for name in NUMBERS})
             write_gauges(group.create_group("gauges"), outcome.gauges)
@@ -56,7 +62,7 @@ class Record:
 
     def add_cost(self, key: str, cpu: float, wall: float) -> None:
         """Append the costs (s) of another run of a case."""
-        with h5py.File(self.path, "a") as file:
+        with changed_file(self.path) as file:
             for name, value in (("cpu", cpu), ("wall", wall)):
                 dataset = file[f"runs/{key}/{name}"]
                 dataset.resize(len(dataset) + 1, axis=0)

@@ -1,19 +1,24 @@
 """The results of a chart in files: groups of ``chart.h5`` beside the runs, and ``chart.csv``."""
 
+from __future__ import annotations
+
 import csv
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import h5py
 import numpy as np
 
+from dembound.results.committed import changed_file
 from dembound.results.reader import replacing
 from dembound.studies.chart.choices import digest
 from dembound.studies.chart.record import write_gauges
 from dembound.studies.chart.study import Charted, Line
 from dembound.version import __version__
+
+if TYPE_CHECKING:
+    import h5py
 
 RESULTS = ("choices", "reference")
 """The groups with the results, which are written anew every time."""
@@ -27,7 +32,7 @@ COLUMNS = (
 
 def write_results(charted: Charted, path: Path) -> None:
     """Write errors, front and reference into the record that has the runs of the chart."""
-    with h5py.File(path, "a") as file:
+    with changed_file(path) as file:
         for name in RESULTS:
             if name in file:
                 del file[name]
@@ -62,6 +67,8 @@ def _write_reference(group: h5py.Group, charted: Charted) -> None:
 
 def _write_line(group: h5py.Group, charted: Charted, number: int, line: Line) -> None:
     """A choice: its name and changes, a link to its run, and the errors of its monitors."""
+    import h5py
+
     group["run"] = h5py.SoftLink(f"/runs/{digest(line.choice.case)}")
     group.attrs.update(
         {

@@ -1,0 +1,30 @@
+"""The case of a record: everything that is needed to run it again."""
+
+import tomllib
+from pathlib import Path
+
+import tomli_w
+
+from dembound.casefile import Case
+from dembound.errors import CaseError
+from dembound.kinds import loads
+from dembound.results.reader import open_record
+
+
+def recorded_case(record: Path) -> Case:
+    """The case of a record, with the files that it refers to, all read from the record.
+
+    A settled state of another run (``static.from``) is not used, as it is not in the record; the body settles itself,
+    with the same result.
+
+    Raises CaseError if there is no record with a case.
+    """
+    with open_record(record) as file:
+        if "case" not in file.attrs or "inputs" not in file:
+            raise CaseError([f"{record}: has no case that could be run again"])
+        text, name = str(file.attrs["case"]), str(file.attrs["name"])
+        files = {str(given.attrs["path"]): given[:].tobytes().decode() for given in file["inputs"].values()}
+    data = tomllib.loads(text)
+    if data.get("static", {}).pop("from", None) is not None:
+        text = tomli_w.dumps(data)
+    return loads(text, name=name, files=files)

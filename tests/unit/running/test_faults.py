@@ -1,0 +1,266 @@
+"""Whatever fails during a run, its record can be read, its checkpoint continued, and earlier results remain."""
+
+import json
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.errors import CaseError
+from dembound.kinds import loads
+from dembound.results import recorder
+from dembound.results.folder import LOCK, OWN
+from dembound.results.interrupts import Interrupts, Stopped
+from dembound.results.reader import open_record
+from dembound.running import job, resume_case, run_case
+
+CASE = """
+[bar]
+length = 1.0
+spacing = 0.01
+density = 2500.0
+wave_speed = 1000.0
+strength = 8e6
+[method]
+type = "patch"
+horizon = 3
+[[load]]
+name = "hit"
+pressure = -15e6
+wave = "hit"
+[wave.hit]
+type = "triangle"
+amplitude = 1.0
+rise = 2e-4
+fall = 2e-4
+[[monitor]]
+name = "gauge"
+position = 0.5
+[run]
+duration = 0.02
+checkpoint = 1e-9
+[output]
+snapshots = 3
+pictures = false
+energy_interval = 4e-3
+"""
+
+
+@pytest.fixture
+def case(monkeypatch):
+    """A case whose run returns often from the loop, and writes its record and a checkpoint each time."""
+    monkeypatch.setattr(recorder, "KEPT_SECONDS", 0.0)
+    return loads(CASE, name="bar")
+
+
+@contextmanager
+def largest_file(size: int):
+    """No file can become larger than so many bytes: further writes fail, as on a full disk."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def history(record) -> np.ndarray:
+    with open_record(record) as file:
+        return file["histories/gauge/velocity"][()]
+
+
+def test_a_full_disk_loses_nothing_that_was_written(case, tmp_path) -> None:
+    folder = run_case(case, tmp_path / "whole")
+    whole, largest = history(folder / "run.h5"), max(path.stat().st_size for path in folder.rglob("*"))
+    reached = set()
+    for number, size in enumerate(np.linspace(100, 0.95 * largest, 9, dtype=int)):
+        results = tmp_path / str(number)
+        earlier = shutil.copytree(folder, results / "bar") / "run.h5"
+        with largest_file(int(size)), pytest.raises(OSError, match=r"File too large|larger than") as failure:
+            run_case(case, results)
+        assert str(failure.value.filename).startswith(str(results / "bar.partial"))
+        assert np.array_equal(history(earlier), whole)
+        partial = results / "bar.partial"
+        if (partial / "run.h5").is_file() and (partial / "run.h5").stat().st_size > 0:
+            kept = history(partial / "run.h5")
+            assert np.array_equal(kept, whole[: len(kept)])
+            reached.add(len(kept))
+        again = resume_case(partial) if (partial / "checkpoint.npz").is_file() else run_case(case, results)
+        assert np.array_equal(history(again / "run.h5"), whole)
+    assert len(reached) > 2  # from its beginning to its end
+
+
+def test_a_folder_that_is_removed_ends_the_run_with_its_name(case, tmp_path, monkeypatch) -> None:
+    def removed(*_: object) -> None:
+        shutil.rmtree(tmp_path / "bar.partial")
+
+    monkeypatch.setattr(job, "write_vtu", removed)
+    with pytest.raises(FileNotFoundError) as failure:
+        run_case(case, tmp_path)
+    assert "bar.partial" in str(failure.value.filename)
+
+
+def test_files_that_no_run_has_written_are_kept(case, tmp_path) -> None:
+    folder = run_case(case, tmp_path)
+    (folder / "notes.txt").write_text("mine")
+    (folder / "paraview" / "state.pvsm").write_text("mine")
+    (folder / "paraview" / "bar_0007.vtu").write_text("old")  # of an earlier run with more snapshots
+    (tmp_path / "bar.partial").mkdir()
+    (tmp_path / "bar.partial" / "seen.txt").write_text("mine")
+    again = run_case(case, tmp_path)
+
+    assert again == folder
+    for name in ("notes.txt", "paraview/state.pvsm", "seen.txt"):
+        assert (folder / name).read_text() == "mine"
+    assert not (folder / "paraview" / "bar_0007.vtu").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["bar"]
+
+
+def test_every_file_of_a_run_is_known_as_its_own(case, tmp_path) -> None:
+    folder = run_case(loads(CASE.replace("false", "true"), name="bar"), tmp_path)
+    names = [path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()]
+    assert [name for name in names if not OWN.fullmatch(name)] == []
+
+
+def test_two_runs_of_one_name_do_not_mix(case, tmp_path) -> None:
+    other = subprocess.Popen(
+        [sys.executable, "-c", HOLD, str(tmp_path / "bar.partial")], stdout=subprocess.PIPE, text=True
+    )
+    assert other.stdout is not None
+    assert other.stdout.readline() == "locked\n"
+    try:
+        with pytest.raises(CaseError, match=r"bar\.partial: is being written by another run"):
+            run_case(case, tmp_path)
+    finally:
+        other.kill()
+        other.wait()
+    # the lock of a process that was killed holds nobody up
+    assert (tmp_path / "bar.partial" / LOCK).is_file()
+    assert run_case(case, tmp_path).name == "bar"
+
+
+HOLD = """
+import sys, time
+from pathlib import Path
+from dembound.results.folder import Folder
+partial = Path(sys.argv[1])
+with Folder(partial.parent, partial.stem).writing(anew=True):
+    print("locked", flush=True)
+    time.sleep(60)
+"""
+
+
+@pytest.mark.parametrize("name", ["bar.partial", "bar.replaced"])
+def test_a_name_cannot_be_that_of_an_unfinished_run(tmp_path, name) -> None:
+    with pytest.raises(CaseError, match="is no name of a case, must not end in"):
+        run_case(loads(CASE, name=name), tmp_path)
+
+
+@pytest.mark.parametrize("place", ["bar", "bar.partial"])
+def test_a_link_or_a_file_is_found_before_the_run(case, tmp_path, place) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "links").mkdir()
+    (tmp_path / "links" / place).symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(CaseError, match="is a link"):
+        run_case(case, tmp_path / "links")
+    (tmp_path / "files").mkdir()
+    (tmp_path / "files" / place).write_text("mine")
+    with pytest.raises(CaseError, match="is a file"):
+        run_case(case, tmp_path / "files")
+    # a link above it may lead anywhere
+    (tmp_path / "results").symlink_to(tmp_path / "elsewhere")
+    assert run_case(case, tmp_path / "results").is_dir()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_a_run_with_a_checkpoint(case, tmp_path, monkeypatch, number) -> None:
+    whole = history(run_case(case, tmp_path / "whole") / "run.h5")
+
+    class Signalled(job.Checkpoints):
+        """Is signalled in one of the blocks."""
+
+        def observe(self, run, record) -> None:
+            if run.state.step > 1000:
+                os.kill(os.getpid(), number)
+                time.sleep(0.0)  # the handler is called between two instructions
+            super().observe(run, record)
+
+    monkeypatch.setattr(job, "Checkpoints", Signalled)
+    before = signal.getsignal(number)
+    with pytest.raises(Stopped) as stop:
+        run_case(case, tmp_path)
+    monkeypatch.undo()
+
+    assert stop.value.exit_code == 128 + number
+    assert signal.getsignal(number) is before
+    kept = history(tmp_path / "bar.partial" / "run.h5")
+    assert 1000 < len(kept) < len(whole)
+    assert np.array_equal(history(resume_case(tmp_path / "bar.partial") / "run.h5"), whole)
+
+
+def test_a_second_signal_acts_at_once() -> None:
+    with Interrupts() as interrupts:
+        os.kill(os.getpid(), signal.SIGINT)
+        assert interrupts.caught == signal.SIGINT
+        with pytest.raises(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+
+
+def test_what_cannot_be_resumed_is_refused_with_the_reason(case, tmp_path) -> None:
+    with pytest.raises(CaseError, match="has no checkpoint"):
+        resume_case(tmp_path / "nothing")
+    folder = run_case(case, tmp_path)
+    with pytest.raises(CaseError, match=r"is complete; --until continues it"):
+        resume_case(folder)
+    with pytest.raises(CaseError, match=r"--until: is 0.001 s, must be after 0.02"):
+        resume_case(folder, until=0.001)
+
+    checkpoint = (folder / "checkpoint.npz").read_bytes()
+    other = loads(CASE.replace("8e6", "9e6"), name="other")
+    shutil.copy(run_case(other, tmp_path) / "run.h5", folder / "run.h5")
+    with pytest.raises(CaseError, match=r"bar\.strength: is 8000000\.0 here, and 9000000\.0 there"):
+        resume_case(folder, until=0.05)
+    (folder / "checkpoint.npz").write_bytes(re.sub(rb'("version": ")[^"]+', version_of_equal_length, checkpoint))
+    with pytest.raises(CaseError, match="is damaged"):  # its checksum no longer fits
+        resume_case(folder, until=0.05)
+    (folder / "checkpoint.npz").write_bytes(checkpoint[: len(checkpoint) // 2])
+    with pytest.raises(CaseError, match="is damaged"):
+        resume_case(folder, until=0.05)
+
+
+def version_of_equal_length(found: re.Match) -> bytes:
+    return found[1] + b"9" * (len(found[0]) - len(found[1]))
+
+
+def test_a_checkpoint_of_another_version_is_refused(case, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr("dembound.results.checkpoint.__version__", "0.0.1")
+    folder = run_case(case, tmp_path)
+    monkeypatch.undo()
+    with pytest.raises(CaseError, match=r"is of dembound 0\.0\.1, this is"):
+        resume_case(folder, until=0.05)
+
+
+def test_without_checkpoints_nothing_is_kept(case, tmp_path) -> None:
+    folder = run_case(loads(CASE.replace("1e-9", "0"), name="bar"), tmp_path)
+    assert not (folder / "checkpoint.npz").exists()
+    assert json.loads((folder / "summary.json").read_text())["resumed"] == []
+
+
+def test_checksums_find_a_changed_byte(case, tmp_path) -> None:
+    record = run_case(case, tmp_path) / "run.h5"
+    with h5py.File(record) as file:
+        place = file["histories/gauge/velocity"].id.get_chunk_info(0).byte_offset
+    data = bytearray(record.read_bytes())
+    data[place + 100] ^= 1
+    record.write_bytes(data)
+    with h5py.File(record) as file, pytest.raises(OSError, match=r"checksum|filter"):
+        file["histories/gauge/velocity"][()]
