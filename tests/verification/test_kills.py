@@ -1,0 +1,103 @@
+"""A run that is killed again and again loses at most the time of a checkpoint interval each, and ends with its bits."""
+
+import random
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import pytest
+
+from dembound.results.reader import open_record
+
+INTERVAL = 0.3
+"""Seconds between two checkpoints."""
+
+MARGIN = 2.0
+"""Seconds of a block of steps and of writing a checkpoint, on a busy machine."""
+
+CASE = f"""
+[packing]
+pattern = "B"
+size = [20.0, 10.0]
+radius = 0.25
+radius_ratio = 1.5
+brick = [5.0, 5.0]
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+law = "linearpbond"
+pb_ten = 4e5
+pb_coh = 8e5
+[static]
+stress = [-2e5, -2e5, 0.0]
+[boundary.left]
+type = "viscous_input"
+wave_p = "pulse"
+[boundary.right]
+type = "viscous"
+[wave.pulse]
+type = "cosine"
+amplitude = 1.0
+period = 0.02
+[[monitor]]
+name = "middle"
+position = [10.0, 5.0]
+[run]
+duration = 0.4
+checkpoint = {INTERVAL}
+[output]
+pictures = false
+snapshots = 4
+energy_interval = 1e-3
+"""
+
+
+def started(*words: str) -> subprocess.Popen:
+    command = [sys.executable, "-m", "dembound", *words]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+
+def numbers(record: Path) -> dict[str, bytes]:
+    found: dict[str, bytes] = {}
+    with h5py.File(record) as file:
+
+        def note(name, item) -> None:
+            if isinstance(item, h5py.Dataset) and item.dtype != object:
+                found[name] = item[()].tobytes()
+
+        file.visititems(note)
+    return found
+
+
+@pytest.mark.parametrize(("kills", "duration"), [(3, 0.4), pytest.param(50, 8.0, marks=pytest.mark.slow)])
+def test_a_run_that_is_killed_goes_on(tmp_path, kills, duration) -> None:
+    for name in ("killed", "whole"):
+        (tmp_path / f"{name}.toml").write_text(CASE.replace("duration = 0.4", f"duration = {duration}"))
+    whole = started("run", str(tmp_path / "whole.toml"), "-o", str(tmp_path))
+    assert whole.wait() == 0
+    draw = random.Random(kills)
+    partial, checkpoint = tmp_path / "killed.partial", tmp_path / "killed.partial" / "checkpoint.npz"
+    run = started("run", str(tmp_path / "killed.toml"), "-o", str(tmp_path))
+    done, lost = 0, []
+    while done < kills and run.poll() is None:
+        # the first checkpoint of each process, so that each gets further, and a random time after it
+        before = checkpoint.stat().st_mtime_ns if checkpoint.exists() else 0
+        while run.poll() is None and not (checkpoint.exists() and checkpoint.stat().st_mtime_ns > before):
+            time.sleep(0.01)
+        time.sleep(draw.uniform(0.0, 2.0 * INTERVAL))
+        if run.poll() is not None:
+            break
+        run.kill()
+        run.wait()
+        done += 1
+        lost.append(time.time() - checkpoint.stat().st_mtime)
+        if (partial / "run.h5").exists():
+            with open_record(partial / "run.h5") as file:
+                assert not file.attrs["complete"]
+        run = started("resume", str(partial))
+    assert run.wait() == 0, run.stderr.read()
+    assert done == kills
+    assert max(lost) < INTERVAL + MARGIN
+    assert numbers(tmp_path / "killed" / "run.h5") == numbers(tmp_path / "whole" / "run.h5")
