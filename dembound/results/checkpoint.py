@@ -76,13 +76,14 @@ class Checkpoints(Tracker):
     path : file of the checkpoint. None: none are written.
     interval : s of wall time from one to the next.
     interrupts : notes the signals.
-    facts : returns the facts of the present state, after everything before it has been recorded.
+    facts : returns the facts of the present state, after everything before it has been recorded; its second argument is
+    whether to wait until the disk has the record.
     """
 
     name = "checkpoints"
 
     def __init__(
-        self, path: Path | None, interval: float, interrupts: Interrupts, facts: Callable[[Run], dict[str, Any]]
+        self, path: Path | None, interval: float, interrupts: Interrupts, facts: Callable[[Run, bool], dict[str, Any]]
     ) -> None:
         self._path, self._interval, self._interrupts, self._facts = path, interval, interrupts, facts
         self._written = time.monotonic()
@@ -101,7 +102,7 @@ class Checkpoints(Tracker):
     def write(self, run: Run, *, durable: bool = True) -> None:
         """Write a checkpoint now."""
         if self._path is not None:
-            Checkpoint(self._facts(run), run.state.arrays()).write(self._path, durable=durable)
+            Checkpoint(self._facts(run, durable), run.state.arrays()).write(self._path, durable=durable)
             self._written = time.monotonic()
 
 

@@ -14,7 +14,7 @@ import io
 import os
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -105,19 +105,23 @@ class CommittedFile(io.RawIOBase):
         self._size = max(self._size, self._at)
         return len(view)
 
-    def commit(self) -> None:
-        """Make all that was written permanent; raises OSError as `check`."""
+    def commit(self, *, durable: bool = True) -> None:
+        """Make all that was written permanent; raises OSError as `check`.
+
+        durable : also if the power fails, for which the disk has to be waited for.
+        """
         self.check()
+        wait = os.fsync if durable else _no_wait
         try:
-            os.fsync(self._file.fileno())
+            wait(self._file.fileno())
             if self._pages:
-                self._write_log()
+                self._write_log(wait)
                 for number, page in self._pages.items():
                     self._file.seek(number * PAGE)
                     _write_all(self._file, memoryview(page))
             self._file.truncate(self._size)
             if self._pages:
-                os.fsync(self._file.fileno())
+                wait(self._file.fileno())
                 self.log.unlink()
         except OSError as error:
             self.failure = error
@@ -151,15 +155,15 @@ class CommittedFile(io.RawIOBase):
                 self._pages[number] = bytearray(self._file.read(PAGE).ljust(PAGE, b"\0"))
             self._pages[number][inside] = view[outside]
 
-    def _write_log(self) -> None:
-        """Write all pages to a log, completely or not at all."""
+    def _write_log(self, wait: Callable[[int], None]) -> None:
+        """Write all pages to a log, completely or not at all; wait : waits for the disk, or not."""
         numbers = struct.pack(f"<{len(self._pages)}Q", *self._pages)
         body = numbers + b"".join(self._pages.values())
         part = self.log.with_name(f"{self.log.name}.part")
         try:
             with io.FileIO(part, "w") as file:
                 _write_all(file, memoryview(HEADER.pack(MAGIC, self._size, len(self._pages), zlib.crc32(body)) + body))
-                os.fsync(file.fileno())
+                wait(file.fileno())
             part.replace(self.log)
         except OSError:
             part.unlink(missing_ok=True)
@@ -177,6 +181,10 @@ class CommittedFile(io.RawIOBase):
         starts = range(8 * count, len(body), PAGE)
         self._pages = {number: bytearray(body[at : at + PAGE]) for number, at in zip(numbers, starts, strict=True)}
         self._size = size
+
+
+def _no_wait(descriptor: int) -> None:
+    """Does not wait for the disk."""
 
 
 def _write_all(file: io.FileIO, view: memoryview) -> None:
@@ -203,7 +211,7 @@ def new_file(path: Path) -> Iterator[h5py.File]:
     with replacing(path) as part, CommittedFile(part, "w") as store:
         with h5py.File(store, "w") as file:
             yield file
-        store.commit()
+        store.commit(durable=False)
 
 
 @contextmanager
@@ -221,7 +229,7 @@ def changed_file(path: Path) -> Iterator[h5py.File]:
     with CommittedFile(path, "a") as store:
         with h5py.File(store, "a") as file:
             yield file
-        store.commit()
+        store.commit(durable=False)
 
 
 def _pages_of(start: int, length: int) -> Iterator[tuple[int, slice, slice]]:

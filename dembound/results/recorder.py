@@ -123,7 +123,7 @@ class Recorder:
         self._energy = dict(self.file.get("energy", {}))
         for stage in stages if counts is None else ():
             self._append_cracks(stage.cracks, 0.0)  # before the run began
-        self.flush()
+        self.flush(durable=False)
 
     def __enter__(self) -> Recorder:
         return self
@@ -134,7 +134,7 @@ class Recorder:
         try:
             if kind is None:
                 self.file.attrs["complete"] = True
-            self.flush()
+            self.flush(durable=False)
         finally:
             self._close()
 
@@ -170,8 +170,10 @@ class Recorder:
         elif kept >= KEPT_BYTES:
             self._append_kept()
 
-    def flush(self) -> None:
+    def flush(self, *, durable: bool = True) -> None:
         """Write everything up to now; the file can be read as of now, whatever happens next.
+
+        durable : also if the power fails, for which the disk has to be waited for.
 
         Raises OSError if that or anything before could not be written; the file is then as after the flush before.
         """
@@ -181,7 +183,7 @@ class Recorder:
         self._write_peaks()
         self.file.attrs["steps"] = self.run.state.step
         self.file.flush()
-        self._store.commit()
+        self._store.commit(durable=durable)
         self._written = time.monotonic()
 
     def snapshot(self) -> None:

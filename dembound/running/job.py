@@ -193,9 +193,9 @@ class _Job:
         """The tracker that writes checkpoints of the run, or of a stage before it."""
         interval = self.case.run.checkpoint
 
-        def facts(run: Run) -> dict[str, Any]:
+        def facts(run: Run, durable: bool) -> dict[str, Any]:
             if recorder is not None:
-                recorder.flush()
+                recorder.flush(durable=durable)
             return facts_of(self.case) | {
                 "stage": stage,
                 "step": run.state.step,

@@ -155,8 +155,8 @@ def done_of(path) -> int:
 def noted(commit):
     """A commit that is counted once it is done."""
 
-    def and_counted(store: CommittedFile) -> None:
-        commit(store)
+    def and_counted(store: CommittedFile, **options) -> None:
+        commit(store, **options)
         COMMITS[str(store.path)] = COMMITS.get(str(store.path), 0) + 1
 
     return and_counted
@@ -189,7 +189,7 @@ def test_a_damaged_log_is_not_used(tmp_path, disk, damage) -> None:
     store = CommittedFile(path, "a")
     with h5py.File(store, "a") as file:
         file.attrs["total"] = 0
-    store._write_log()
+    store._write_log(lambda descriptor: None)
     store._file.close()
     log = bytearray(log_of(path).read_bytes())
     log[len(log) // 2] ^= 1 if damage == "flipped" else 0
