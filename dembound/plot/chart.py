@@ -1,5 +1,6 @@
 """A chart: the error of every choice against its cost, with the Pareto front and the names of all choices."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,6 +32,9 @@ MOST_LISTED = 28
 ELSEWHERE = "others: see chart.csv"
 
 DARK = "#404040"
+
+NO_BREAK = "\u00a0"
+"""A blank at which `textwrap` breaks no line."""
 
 REFERENCE_HEAD, OTHERS = "reference", "others"
 
@@ -235,7 +239,9 @@ def _entries(head: str, dots: Sequence[Dot], colour: str) -> list[tuple[str, str
 
 
 def _wrapped(text: str, width: int) -> str:
-    """A text in lines of at most `width` characters."""
+    """A text in lines of at most `width` characters, in which every number is on one line with the word after it."""
     import textwrap
 
-    return "\n".join(textwrap.wrap(text, width, subsequent_indent="     " if width == WIDTH else ""))
+    together = re.sub(r"(?<=\d) (?=\S)", NO_BREAK, text)
+    lines = textwrap.wrap(together, width, subsequent_indent="     " if width == WIDTH else "")
+    return "\n".join(lines).replace(NO_BREAK, " ")

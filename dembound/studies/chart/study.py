@@ -144,6 +144,8 @@ def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown
         raise RunError("\n".join(f"{c.name}: {o.failure}" for c, o in zip(choices, outcomes, strict=True)))
     reference = reference_of(case, choices, outcomes, _wanted_reference(case, options), runs.one)
     lines = [_line(choice, outcome, reference, options) for choice, outcome in zip(choices, outcomes, strict=True)]
+    if not any(line.errors for line in lines):
+        raise RunError("\n".join(dict.fromkeys(f"{line.outcome.failure}" for line in lines)))
     charted = Charted(case, reference, options.wanted.quantity, kind_of(case).work_unit, lines, left_out)
     judged = charted.judged
     return replace(charted, front=[judged[k] for k in front([_point(lines[k]) for k in judged])])
