@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -166,15 +167,19 @@ def _widen(panel: Axes, dots: Sequence[Dot]) -> None:
 
 
 def _number(figure: Figure, panel: Axes, dots: Sequence[Dot]) -> None:
-    """Write the number of every point beside it, where it covers no other number or point; the front comes first."""
+    """Write the number of every point beside it, inside the panel, where it covers no other number or point.
+
+    Those on the front come first.
+    """
     centres = panel.transData.transform([(dot.cost, dot.shown) for dot in dots])
     taken: list[tuple[float, float]] = []
     point = figure.dpi / 72.0
+    inside = panel.get_window_extent().padded(-7.0 * point)
     for dot, centre in sorted(zip(dots, centres, strict=True), key=lambda pair: not pair[0].on_front):
         others = [*taken, *(tuple(other) for other in centres if other is not centre)]
         for place in PLACES:
             there = centre + point * np.array(place)
-            if all(abs(there[0] - x) > 15.0 * point or abs(there[1] - y) > 11.0 * point for x, y in others):
+            if inside.contains(*there) and all(abs(there[0] - x) > 15.0 * point or abs(there[1] - y) > 11.0 * point for x, y in others):
                 break
         else:
             continue
@@ -194,6 +199,7 @@ def _annotate(panel: Axes, dot: Dot, place: tuple[float, float]) -> Annotation:
         fontsize=9.5 if dot.on_front else 8.0,
         fontweight="bold" if dot.on_front else "normal",
         color=COLOURS[1] if dot.on_front else COLOURS[0],
+        path_effects=[withStroke(linewidth=2.5, foreground="white")],
     )
 
 

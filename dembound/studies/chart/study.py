@@ -89,7 +89,8 @@ class Charted:
     def found(self, line: Line) -> str:
         """The findings of a choice in words, as differences from those of the reference if it has them."""
         wanted, found = self.reference.findings, line.outcome.findings
-        parts = [f"no {name}" for name in wanted if name not in found]
+        missing = [name for name in wanted if name not in found]
+        parts = [f"no {', '.join(missing)}"] if missing else []
         for name, (value, unit) in found.items():
             number = f"{value:.5g}" if name not in wanted else f"{value - wanted[name]:+.2g}"
             parts.append(f"{name} {number} {unit}")
