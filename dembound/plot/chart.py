@@ -178,13 +178,12 @@ def _number(figure: Figure, panel: Axes, dots: Sequence[Dot]) -> None:
     for dot, centre in sorted(zip(dots, centres, strict=True), key=lambda pair: not pair[0].on_front):
         others = [*taken, *(tuple(other) for other in centres if other is not centre)]
         for place in PLACES:
-            there = centre + point * np.array(place)
-            if inside.contains(*there) and all(abs(there[0] - x) > 15.0 * point or abs(there[1] - y) > 11.0 * point for x, y in others):
+            x, y = centre + point * np.array(place)
+            is_clear = all(abs(x - u) > 15.0 * point or abs(y - v) > 11.0 * point for u, v in others)
+            if is_clear and inside.contains(x, y):
+                taken.append((float(x), float(y)))
+                _annotate(panel, dot, place)
                 break
-        else:
-            continue
-        taken.append((float(there[0]), float(there[1])))
-        _annotate(panel, dot, place)
 
 
 def _annotate(panel: Axes, dot: Dot, place: tuple[float, float]) -> Annotation:
