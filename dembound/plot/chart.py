@@ -47,8 +47,8 @@ WIDTH = 68
 
 PLACES = [
     (radius * np.cos(angle), radius * np.sin(angle))
-    for radius in (11.0, 17.0, 25.0)
-    for angle in np.radians([45, 225, 135, 315, 0, 90, 180, 270])
+    for radius in (12.0, 17.0, 25.0)
+    for angle in np.radians([45, 225, 135, 315, 0, 90, 180, 270, *range(22, 360, 45)])
 ]
 """Places of a number beside its point, in points, in the order in which they are tried."""
 
@@ -167,22 +167,23 @@ def _widen(panel: Axes, dots: Sequence[Dot]) -> None:
 
 
 def _number(figure: Figure, panel: Axes, dots: Sequence[Dot]) -> None:
-    """Write the number of every point beside it, inside the panel, where it covers no other number or point.
+    """Write the number of every point beside it, inside the panel, nearer to it than to other points.
 
-    Those on the front come first.
+    A number covers no other number or point; those on the front are written first, and some may find no place.
     """
     centres = panel.transData.transform([(dot.cost, dot.shown) for dot in dots])
     taken: list[tuple[float, float]] = []
     point = figure.dpi / 72.0
     inside = panel.get_window_extent().padded(-7.0 * point)
-    for dot, centre in sorted(zip(dots, centres, strict=True), key=lambda pair: not pair[0].on_front):
-        others = [*taken, *(tuple(other) for other in centres if other is not centre)]
+    for k in sorted(range(len(dots)), key=lambda k: not dots[k].on_front):
+        points = np.delete(centres, k, axis=0)
         for place in PLACES:
-            x, y = centre + point * np.array(place)
-            is_clear = all(abs(x - u) > 15.0 * point or abs(y - v) > 11.0 * point for u, v in others)
-            if is_clear and inside.contains(x, y):
+            x, y = centres[k] + point * np.array(place)
+            is_clear = all(abs(x - u) > 12.5 * point or abs(y - v) > 9.5 * point for u, v in (*taken, *points))
+            is_nearest = all(np.hypot(x - u, y - v) > point * np.hypot(*place) for u, v in points)
+            if is_clear and is_nearest and inside.contains(x, y):
                 taken.append((float(x), float(y)))
-                _annotate(panel, dot, place)
+                _annotate(panel, dots[k], place)
                 break
 
 

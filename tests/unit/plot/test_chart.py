@@ -80,10 +80,13 @@ def test_numbers_cover_neither_each_other_nor_points(chart) -> None:
         [(line.get_xdata()[0], line.get_ydata()[0]) for line in panel.lines if line.get_gid()]
     )
     assert not any(box.contains(*point) for box in boxes for point in points)
+    for text, box in zip(panel.texts, boxes, strict=True):
+        middle = np.mean(box.corners(), axis=0)
+        assert np.argmin(np.hypot(*(points - middle).T)) == int(text.get_text()) - 1
 
 
 def test_numbers_are_inside_the_panel(chart) -> None:
-    figure = plot_chart(chart([(f"choice {k}", 0.9 + 0.01 * k, [1.0]) for k in range(9)], front=[8]))
+    figure = plot_chart(chart([(f"choice {k}", 0.1 * 1.5**k, [1.0]) for k in range(9)], front=[8]))
     figure.draw_without_rendering()
     panel = figure.axes[0]
     inside = panel.get_window_extent()
