@@ -9,6 +9,8 @@ from dembound.table import Table, quantity
 
 ReferenceName = Literal["exact", "extended", "finest"]
 
+End = Literal["break", "end"]
+
 
 class ChartChoice(Table):
     """A named choice: some keys of the case, each with another value."""
@@ -27,6 +29,11 @@ class Chart(Table):
     repeats: int = quantity(3, unit="1", help="timed runs of every choice, after one that compiles", ge=1)
     reference: ReferenceName | None = quantity(
         None, unit="1", help="what errors are measured against; absent: exact, extended or finest, as the case allows"
+    )
+    until: End = quantity(
+        "break",
+        unit="1",
+        help='up to when histories are compared: the first spall or broken bond of the reference, or the "end"',
     )
 
     @field_validator("vary")

@@ -121,7 +121,7 @@ def _print(charted: Charted) -> None:
     failures = [f"{line.choice.name}: failed, {line.outcome.failure}" for line in charted.lines if line.outcome.failure]
     for text in (*charted.left_out, *failures):
         err.print(f"{charted.case.name}: {text}", markup=False)
-    heads = ("choice", "RMS (%)", "peak (%)", "CPU (s)", "run (s)", charted.work_unit, "")
+    heads = ("choice", "RMS (%)", "peak (%)", "CPU (s)", "run (s)", "work", "")
     table = compact_table(
         Column(heads[0], overflow="fold"),
         *(Column(head, no_wrap=True, justify="right") for head in heads[1:]),
@@ -132,6 +132,7 @@ def _print(charted: Charted) -> None:
         table.add_row(f"{line.choice.name}: {found}" if found else line.choice.name, *_cells(charted, number, line))
     out.print(table)
     out.print("* on the Pareto front; CPU: time of stepping, run: of the whole run without files, medians")
+    out.print(f"work: {charted.work_unit}")
     out.print(f"{charted.case.name}: {charted.sentence}", markup=False)
 
 
@@ -140,7 +141,7 @@ def _cells(charted: Charted, number: int, line: Line) -> list[str]:
     if line.outcome.failure:
         return ["failed"]
     worst = line.errors[0]
-    mark = "reference" if number == charted.reference.own else "*" if number in charted.front else ""
+    mark = "ref." if number == charted.reference.own else "*" if number in charted.front else ""
     numbers = f"{100.0 * worst.rms:.3g}", f"{100.0 * worst.peak:.3g}", f"{line.cpu:.3g}", f"{line.wall:.3g}"
     return [*numbers, f"{line.outcome.work:.3g}", mark]
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
+from dembound.disks.breaks import first_break
 from dembound.disks.facts import disk_facts
 from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
 from dembound.disks.outcome import disk_outcome
@@ -21,7 +22,7 @@ from dembound.disks.summary import asked_stress, describe_static, summarise_disk
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
 from dembound.disks.wave_front import front_of
-from dembound.motion.kind import Beginning, Kind, OnLook, Stage
+from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Stage
 from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
@@ -123,6 +124,10 @@ class Disks(Kind[DiskCase, DiskScene]):
     def work(self, run: Run) -> int:
         """Steps times the particles that are stepped."""
         return run.state.step * run.scene.count
+
+    def findings(self, scene: DiskScene, run: Run) -> dict[str, Finding]:
+        """Time (s) and place (m) of the first broken bonds, if any break."""
+        return first_break(run)
 
     def outcome(self, summary: Mapping[str, Any]) -> list[str]:
         """Static stage, laws and cracks in words."""

@@ -1,5 +1,6 @@
 """A chart: the error of every choice against its cost, with the Pareto front and the names of all choices."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -32,6 +34,9 @@ ELSEWHERE = "others: see chart.csv"
 
 DARK = "#404040"
 
+NO_BREAK = "\u00a0"
+"""A blank at which `textwrap` breaks no line."""
+
 REFERENCE_HEAD, OTHERS = "reference", "others"
 
 LINE = 0.033
@@ -42,8 +47,8 @@ WIDTH = 68
 
 PLACES = [
     (radius * np.cos(angle), radius * np.sin(angle))
-    for radius in (11.0, 17.0, 25.0)
-    for angle in np.radians([45, 225, 135, 315, 0, 90, 180, 270])
+    for radius in (12.0, 17.0, 25.0)
+    for angle in np.radians([45, 225, 135, 315, 0, 90, 180, 270, *range(22, 360, 45)])
 ]
 """Places of a number beside its point, in points, in the order in which they are tried."""
 
@@ -162,20 +167,24 @@ def _widen(panel: Axes, dots: Sequence[Dot]) -> None:
 
 
 def _number(figure: Figure, panel: Axes, dots: Sequence[Dot]) -> None:
-    """Write the number of every point beside it, where it covers no other number or point; the front comes first."""
+    """Write the number of every point beside it, inside the panel, nearer to it than to other points.
+
+    A number covers no other number or point; those on the front are written first, and some may find no place.
+    """
     centres = panel.transData.transform([(dot.cost, dot.shown) for dot in dots])
     taken: list[tuple[float, float]] = []
     point = figure.dpi / 72.0
-    for dot, centre in sorted(zip(dots, centres, strict=True), key=lambda pair: not pair[0].on_front):
-        others = [*taken, *(tuple(other) for other in centres if other is not centre)]
+    inside = panel.get_window_extent().padded(-7.0 * point)
+    for k in sorted(range(len(dots)), key=lambda k: not dots[k].on_front):
+        points = np.delete(centres, k, axis=0)
         for place in PLACES:
-            there = centre + point * np.array(place)
-            if all(abs(there[0] - x) > 15.0 * point or abs(there[1] - y) > 11.0 * point for x, y in others):
+            x, y = centres[k] + point * np.array(place)
+            is_clear = all(abs(x - u) > 12.5 * point or abs(y - v) > 9.5 * point for u, v in (*taken, *points))
+            is_nearest = all(np.hypot(x - u, y - v) > point * np.hypot(*place) for u, v in points)
+            if is_clear and is_nearest and inside.contains(x, y):
+                taken.append((float(x), float(y)))
+                _annotate(panel, dots[k], place)
                 break
-        else:
-            continue
-        taken.append((float(there[0]), float(there[1])))
-        _annotate(panel, dot, place)
 
 
 def _annotate(panel: Axes, dot: Dot, place: tuple[float, float]) -> Annotation:
@@ -190,6 +199,7 @@ def _annotate(panel: Axes, dot: Dot, place: tuple[float, float]) -> Annotation:
         fontsize=9.5 if dot.on_front else 8.0,
         fontweight="bold" if dot.on_front else "normal",
         color=COLOURS[1] if dot.on_front else COLOURS[0],
+        path_effects=[withStroke(linewidth=2.5, foreground="white")],
     )
 
 
@@ -235,7 +245,9 @@ def _entries(head: str, dots: Sequence[Dot], colour: str) -> list[tuple[str, str
 
 
 def _wrapped(text: str, width: int) -> str:
-    """A text in lines of at most `width` characters."""
+    """A text in lines of at most `width` characters, in which every number is on one line with the word after it."""
     import textwrap
 
-    return "\n".join(textwrap.wrap(text, width, subsequent_indent="     " if width == WIDTH else ""))
+    together = re.sub(r"(?<=\d) (?=\S)", NO_BREAK, text)
+    lines = textwrap.wrap(together, width, subsequent_indent="     " if width == WIDTH else "")
+    return "\n".join(lines).replace(NO_BREAK, " ")

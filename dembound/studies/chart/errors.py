@@ -66,17 +66,20 @@ class MonitorError:
 def errors(choice: Choice, outcome: Outcome, reference: Reference, wanted: Wanted) -> list[MonitorError]:
     """The errors of a choice at all monitors that are not quiet in the reference, the largest RMS first.
 
-    Raises CaseError for a monitor that does not exist and if the reference does not move.
+    Raises CaseError for a monitor that does not exist and if the reference does not move until histories end.
     """
-    expected = reference.gauges(choice, outcome)
-    names = _monitors(outcome.gauges, expected, wanted)
+    gauges, expected = (
+        {name: _until(gauge, reference.until) for name, gauge in each.items()}
+        for each in (outcome.gauges, reference.gauges(choice, outcome))
+    )
+    names = _monitors(gauges, expected, wanted)
     series = {name: expected[name].of(wanted.quantity) for name in names}
     columns = {name: _column(values, wanted) for name, values in series.items()}
-    peaks = {name: float(np.abs(values[:, columns[name]]).max()) for name, values in series.items()}
+    peaks = {name: float(np.abs(values[:, columns[name]]).max(initial=0.0)) for name, values in series.items()}
     if not max(peaks.values()) > 0.0:
         raise CaseError([f"monitor: the {wanted.quantity} is zero in the reference ({reference.sentence})"])
     loud = [name for name in names if peaks[name] >= QUIET * max(peaks.values())]
-    found = [_error(name, outcome.gauges, expected, columns[name], reference, wanted) for name in loud]
+    found = [_error(name, gauges[name], expected[name], columns[name], wanted) for name in loud]
     return sorted(found, key=lambda error: -error.rms)
 
 
@@ -94,25 +97,24 @@ def _column(values: np.ndarray, wanted: Wanted) -> int:
         return 0
     if wanted.component is not None:
         return COMPONENTS.index(wanted.component)
-    return int(np.argmax(np.abs(values[:, :2]).max(axis=0)))
+    return int(np.argmax(np.abs(values[:, :2]).max(axis=0, initial=0.0)))
 
 
-def _error(
-    name: str, found: Gauges, expected: Gauges, column: int, reference: Reference, wanted: Wanted
-) -> MonitorError:
+def _error(name: str, found: Gauge, expected: Gauge, column: int, wanted: Wanted) -> MonitorError:
     """The error at a monitor, at the times of the history with fewer samples, so that the finer one is interpolated."""
-    mine, theirs = (_until(gauges[name], wanted.quantity, column, reference.until) for gauges in (found, expected))
+    mine, theirs = ((gauge.time, gauge.of(wanted.quantity)[:, column]) for gauge in (found, expected))
     if len(theirs[0]) > len(mine[0]):
         right, left = on_common_clock(*theirs, *mine)
     else:
         left, right = on_common_clock(*mine, *theirs)
     rms, peak = relative_errors(left, right)
-    apart = float(np.hypot(*(found[name].position - expected[name].position)))
+    apart = float(np.hypot(*(found.position - expected.position)))
     component = "stress" if wanted.quantity == "stress" else COMPONENTS[column]
     return MonitorError(name, component, rms, peak, apart)
 
 
-def _until(gauge: Gauge, quantity: Quantity, column: int, end: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times (k,) and one column (k,) of a quantity, up to a time (s)."""
-    kept = gauge.time <= end
-    return gauge.time[kept], gauge.of(quantity)[kept, column]
+def _until(gauge: Gauge, end: float) -> Gauge:
+    """The history up to a time (s)."""
+    kept = slice(0, int(np.searchsorted(gauge.time, end, side="right")))
+    stress = None if gauge.stress is None else gauge.stress[kept]
+    return Gauge(gauge.position, gauge.time[kept], gauge.displacement[kept], gauge.velocity[kept], stress)

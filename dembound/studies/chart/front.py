@@ -6,8 +6,8 @@ compared by their CPU times only if these differ clearly, else by their work:
 
 - In every round all choices run one after the other, and so under nearly the same load. The ratio of their costs is the
   median over the rounds of the ratios within a round.
-- If it is below 1 + NOISE, or within half the range of these ratios, the ratio of the work is used instead, and works
-  that differ by less than EQUAL are the same cost.
+- If it is below 1 + NOISE, or within half the range of these ratios, or if the median costs differ by less than
+  LEAST_TIME, the ratio of the work is used instead, and works that differ by less than EQUAL_WORK are the same cost.
 - Errors that differ by less than EQUAL are the same error, and all below ROUNDING are.
 
 A choice is on the front unless another has the same or a smaller error at a lower cost, or a smaller error at the same
@@ -22,9 +22,14 @@ import numpy as np
 NOISE = 0.5
 """Relative difference of two CPU times up to which work decides."""
 
-EQUAL = 0.01
-"""Relative difference of two errors, or of two works, up to which they count as equal."""
+LEAST_TIME = 1e-3
+"""Difference (s) of two CPU times up to which work decides: starting a run takes as long."""
 
+EQUAL = 0.01
+"""Relative difference of two errors up to which they count as equal."""
+
+EQUAL_WORK = 0.05
+"""Relative difference of two works up to which they count as equal: one more row of disks is no cost."""
 
 ROUNDING = 1e-9
 """Relative error up to which a result is exact: what remains are rounding errors."""
@@ -55,10 +60,11 @@ def cost_ratio(first: Point, second: Point) -> float:
     rounds = min(len(first.cpu), len(second.cpu))
     ratios = np.array(first.cpu[:rounds]) / np.array(second.cpu[:rounds])
     ratio, spread = float(np.median(ratios)), 0.5 * float(np.ptp(ratios))
-    if abs(np.log(ratio)) > np.log1p(max(NOISE, spread / ratio)):
+    apart = abs(np.median(first.cpu[:rounds]) - np.median(second.cpu[:rounds]))
+    if apart > LEAST_TIME and abs(np.log(ratio)) > np.log1p(max(NOISE, spread / ratio)):
         return ratio
     ratio = first.work / second.work
-    return 1.0 if abs(ratio - 1.0) < EQUAL else ratio
+    return 1.0 if abs(ratio - 1.0) < EQUAL_WORK else ratio
 
 
 def _beats(other: Point, point: Point) -> bool:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from dembound.bar.kind import SPALL_TIME
 from dembound.casefile import Case
 from dembound.casefile.chart import ReferenceName
+from dembound.disks.breaks import BREAK_TIME
 from dembound.errors import CaseError, RunError
 from dembound.kinds import with_changes
 from dembound.studies.chart.choices import Choice
@@ -37,7 +38,7 @@ def reference_of(
 
     Raises CaseError if a reference that is asked for by name is not possible, RunError if its run fails.
     """
-    finest = _finest(choices, outcomes)
+    finest = _finest(case, choices, outcomes)
     if wanted == "exact":
         return _exact(exact_of(case))
     if wanted == "extended":
@@ -72,15 +73,7 @@ def _extended(
         name: replace(outcome.gauges[name], position=gauge.position)
         for name, gauge in outcomes[finest.own].gauges.items()
     }
-    return replace(
-        finest,
-        name="extended",
-        sentence=larger.sentence.removeprefix("reference: "),
-        gauges=lambda choice, _: moved,
-        until=_first_spall(outcome),
-        findings={name: found.value for name, found in outcome.findings.items()},
-        own=None,
-    )
+    return _of_run("extended", larger.sentence.removeprefix("reference: "), case, replace(outcome, gauges=moved))
 
 
 def _exact(solution: Exact) -> Reference:
@@ -94,7 +87,7 @@ def _exact(solution: Exact) -> Reference:
     )
 
 
-def _finest(choices: Sequence[Choice], outcomes: Sequence[Outcome]) -> Reference:
+def _finest(case: Case, choices: Sequence[Choice], outcomes: Sequence[Outcome]) -> Reference:
     """The choice with the most nodes times steps, the first of several.
 
     Work would be no measure of accuracy for bars: wider horizons have more bonds and larger errors.
@@ -103,16 +96,17 @@ def _finest(choices: Sequence[Choice], outcomes: Sequence[Outcome]) -> Reference
     if not done:
         raise RunError("no choice could be run")
     own = max(done, key=lambda k: outcomes[k].count * outcomes[k].steps)
+    return replace(_of_run("finest", f"the finest run, {choices[own].name}", case, outcomes[own]), own=own)
+
+
+def _of_run(name: str, sentence: str, case: Case, outcome: Outcome) -> Reference:
+    """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
+    findings = {found: value for found, (value, _) in outcome.findings.items()}
+    breaks = [findings[at] for at in (SPALL_TIME, BREAK_TIME) if at in findings and case.chart.until == "break"]
     return Reference(
-        name="finest",
-        sentence=f"the finest run, {choices[own].name}",
-        gauges=lambda choice, outcome: outcomes[own].gauges,
-        until=_first_spall(outcomes[own]),
-        findings={name: found.value for name, found in outcomes[own].findings.items()},
-        own=own,
+        name=name,
+        sentence=sentence + "".join(f", up to its first break at {1e3 * time:.4g} ms" for time in breaks),
+        gauges=lambda choice, _: outcome.gauges,
+        until=min(breaks, default=math.inf),
+        findings=findings,
     )
-
-
-def _first_spall(outcome: Outcome) -> float:
-    """Time (s) of the first spall, from which on histories do not converge; infinite without one."""
-    return outcome.findings[SPALL_TIME].value if SPALL_TIME in outcome.findings else math.inf

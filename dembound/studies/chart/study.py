@@ -89,7 +89,8 @@ class Charted:
     def found(self, line: Line) -> str:
         """The findings of a choice in words, as differences from those of the reference if it has them."""
         wanted, found = self.reference.findings, line.outcome.findings
-        parts = [f"no {name}" for name in wanted if name not in found]
+        missing = [name for name in wanted if name not in found]
+        parts = [f"no {', '.join(missing)}"] if missing else []
         for name, (value, unit) in found.items():
             number = f"{value:.5g}" if name not in wanted else f"{value - wanted[name]:+.2g}"
             parts.append(f"{name} {number} {unit}")
@@ -144,6 +145,8 @@ def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown
         raise RunError("\n".join(f"{c.name}: {o.failure}" for c, o in zip(choices, outcomes, strict=True)))
     reference = reference_of(case, choices, outcomes, _wanted_reference(case, options), runs.one)
     lines = [_line(choice, outcome, reference, options) for choice, outcome in zip(choices, outcomes, strict=True)]
+    if not any(line.errors for line in lines):
+        raise RunError("\n".join(dict.fromkeys(f"{line.outcome.failure}" for line in lines)))
     charted = Charted(case, reference, options.wanted.quantity, kind_of(case).work_unit, lines, left_out)
     judged = charted.judged
     return replace(charted, front=[judged[k] for k in front([_point(lines[k]) for k in judged])])

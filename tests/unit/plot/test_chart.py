@@ -80,6 +80,26 @@ def test_numbers_cover_neither_each_other_nor_points(chart) -> None:
         [(line.get_xdata()[0], line.get_ydata()[0]) for line in panel.lines if line.get_gid()]
     )
     assert not any(box.contains(*point) for box in boxes for point in points)
+    for text, box in zip(panel.texts, boxes, strict=True):
+        middle = np.mean(box.corners(), axis=0)
+        assert np.argmin(np.hypot(*(points - middle).T)) == int(text.get_text()) - 1
+
+
+def test_numbers_are_inside_the_panel(chart) -> None:
+    figure = plot_chart(chart([(f"choice {k}", 0.1 * 1.5**k, [1.0]) for k in range(9)], front=[8]))
+    figure.draw_without_rendering()
+    panel = figure.axes[0]
+    inside = panel.get_window_extent()
+    assert len(panel.texts) > 6
+    assert all(inside.contains(*corner) for text in panel.texts for corner in text.get_window_extent().corners())
+
+
+@pytest.mark.parametrize("length", range(40, 60))
+def test_units_stay_beside_their_numbers(chart, length: int) -> None:
+    side = plot_chart(chart([("x" * length + " of 12 m", 0.2, [0.5])])).axes[1]
+    lines = texts(side)[-1].split("\n")
+    assert " ".join(line.strip() for line in lines) == f"1  {'x' * length} of 12 m: 20 %, 0.5 s"
+    assert not any(line.strip()[0] in "m%s" for line in lines[1:])
 
 
 def test_many_choices_are_listed_elsewhere(chart) -> None:

@@ -35,6 +35,16 @@ def test_work_decides_between_times_that_differ_little() -> None:
     assert cost_ratio(point(0.1, 1.0, work=1000), point(0.1, 1.0, work=1001)) == 1.0
 
 
+def test_work_decides_between_the_shortest_runs() -> None:
+    assert cost_ratio(point(0.1, 1.2e-3, work=50), point(0.1, 0.4e-3, work=100)) == 0.5
+    assert cost_ratio(point(0.1, 3.2e-3, work=50), point(0.1, 1.6e-3, work=100)) == 2.0
+
+
+def test_a_row_of_disks_more_is_no_cost() -> None:
+    assert front([point(0.2, 1.0, work=100), point(0.1, 1.0, work=104)]) == [1]
+    assert front([point(0.2, 1.0, work=100), point(0.1, 1.0, work=106)]) == [1, 0]
+
+
 def test_a_load_that_slows_a_whole_round_does_not_count() -> None:
     first = Point(0.1, [1.0, 5.0, 1.0], 300)
     second = Point(0.1, [0.5, 2.5, 0.5], 100)

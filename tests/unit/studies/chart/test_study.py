@@ -108,6 +108,39 @@ def test_spalls_are_compared_with_the_closed_form(charted, spalling) -> None:
     assert found.found(charted(spalling({"load.1.pressure": 9e6}), repeats=1)[0].lines[0]).startswith("spall place")
 
 
+SPALLING_DISKS = {
+    "material.law": "linearpbond",
+    "material.contact_share": 0.0,
+    "material.pb_ten": 0.4e6,
+    "motion.held": ["y", "rotation"],
+    "boundary.right": {"type": "free"},
+    "run.duration": 0.05,
+}
+"""A bar whose bonds break when the pulse comes back from its free end."""
+
+
+def test_histories_are_compared_up_to_the_first_broken_bond(charted, bar) -> None:
+    laws = {"material.elastic_start": [True, False], "run.safety": [0.9, 0.3]}
+    found, _ = charted(bar(SPALLING_DISKS), laws, repeats=1)
+    time = found.lines[found.reference.own].outcome.findings["break time"].value
+    assert found.reference.until == time < 0.05
+    assert found.reference.sentence.endswith(f", up to its first break at {1e3 * time:.4g} ms")
+    assert "break time +" in found.found(found.lines[0]) or "break time -" in found.found(found.lines[0])
+
+    whole, _ = charted(bar(SPALLING_DISKS | {"chart.until": "end"}), laws, repeats=1)
+    assert (whole.reference.until, "break" in whole.reference.sentence) == (np.inf, False)
+    # the pieces fly on at speeds of their own
+    assert whole.lines[0].errors[0].rms > 3.0 * found.lines[0].errors[0].rms
+
+
+def test_a_law_that_does_not_break_is_described_so(bar, tmp_path) -> None:
+    unbreakable = {"density": 2500.0, "p_wave_speed": 1000.0, "contact_share": 0.0}
+    case = bar(SPALLING_DISKS)
+    options = {"law": {"material": unbreakable}, "own": {"run.safety": 0.4}}
+    found = chart(case, Options(named=options, repeats=1), tmp_path, False, Log())
+    assert found.found(found.lines[0]) == "no break time, break x, break y"
+
+
 def test_an_extended_scene_is_the_reference_of_sides(charted, bar) -> None:
     # the pulse of 10 m meets the end while it is still driven: nothing returns from an end far away
     sides = {"boundary.right": [{"type": "viscous"}, {"type": "free"}], "packing.radius": [0.25, 0.5]}
