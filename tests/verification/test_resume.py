@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import tomli_w
 
+from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.results.checkpoint import Checkpoints
 from dembound.results.folder import Folder
@@ -59,8 +60,6 @@ CASES = {
     "switch": BAR | {"method": {"type": "switch", "horizon": 3}},
     "patch": BAR | {"method": {"type": "patch", "horizon": 3}},
 }
-CUTS = 10
-"""Steps at which each case is stopped, evenly spaced, and at the change of the law."""
 
 
 class Stop(Checkpoints):
@@ -135,13 +134,15 @@ def whole(request, tmp_path_factory):
     return case, run_case(case, tmp_path_factory.mktemp("whole"))
 
 
-def test_a_stopped_run_is_resumed_to_the_same_bits(whole, tmp_path) -> None:
+@pytest.mark.parametrize("cuts", [3, pytest.param(10, marks=pytest.mark.slow)])
+def test_a_stopped_run_is_resumed_to_the_same_bits(whole, tmp_path, cuts) -> None:
     case, folder = whole
     expected = summary(folder)
     steps = expected["steps"]
     switches = [round(law["from"] / expected["time_step"]) for law in expected["laws"]]
     assert len(expected["laws"]) > 1 or "breaks" not in case.name
-    for cut in sorted({*np.linspace(0, steps, CUTS, endpoint=False).astype(int), *switches}):
+    # evenly spaced, and at changes of the law
+    for cut in sorted({*np.linspace(0, steps, cuts, endpoint=False).astype(int), *switches}):
         partial = stopped(case, tmp_path, int(cut))
         again = resume_case(partial)
         assert differences(again, folder) == [], f"stopped at step {cut}"
@@ -222,3 +223,19 @@ def test_a_settled_state_is_used_by_another_case(tmp_path, monkeypatch) -> None:
     assert [name for name in differences(used, alone) if not name.startswith("@")] == []
     assert json.loads((used / "summary.json").read_text())["seconds"]["settle"] < 0.5
     assert not (used / "settled").exists()
+
+
+def test_the_settled_state_of_another_body_is_refused(tmp_path) -> None:
+    static = CASES["settled, updated"]["static"]
+    first = run_case(case_of("settled, updated"), tmp_path / "first")
+    used = static | {"from": str(first)}
+    half = {"bottom": INPUT | {"half_mass": True}}
+    for changes, key in [
+        ({"static": used | {"damp": 0.5}}, "static.damp: is 0.5 here, and 0.7 there"),
+        ({"static": used, "material": BRITTLE | {"pb_ten": 4e5}}, "material.pb_ten: is 400000.0 here"),
+        ({"static": used, "boundary": half}, "half_mass.bottom: is true here, and null there"),
+        ({"static": static | {"from": str(tmp_path)}}, "has no settled state"),
+    ]:
+        with pytest.raises(CaseError, match=re.escape(key)):
+            run_case(case_of("settled, updated", **changes), tmp_path / "other")
+        assert not (tmp_path / "other" / "settled_updated").exists()

@@ -109,6 +109,25 @@ def test_a_folder_that_is_removed_ends_the_run_with_its_name(case, tmp_path, mon
     assert "bar.partial" in str(failure.value.filename)
 
 
+def test_a_run_that_ends_in_its_last_files_is_resumed(case, tmp_path, monkeypatch) -> None:
+    whole = history(run_case(case, tmp_path / "whole") / "run.h5")
+
+    def ended(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(job, "write_vtu", ended)
+    with pytest.raises(KeyboardInterrupt):
+        run_case(case, tmp_path)
+    monkeypatch.undo()
+    again = resume_case(tmp_path / "bar.partial")
+
+    assert np.array_equal(history(again / "run.h5"), whole)
+    assert (again / "paraview" / "bar.pvd").is_file()
+    with open_record(again / "run.h5") as one, open_record(tmp_path / "whole" / "bar" / "run.h5") as other:
+        assert np.array_equal(one["energy/time"], other["energy/time"])
+        assert len(one["snapshots"]) == len(other["snapshots"])
+
+
 def test_files_that_no_run_has_written_are_kept(case, tmp_path) -> None:
     folder = run_case(case, tmp_path)
     (folder / "notes.txt").write_text("mine")
