@@ -37,7 +37,8 @@ class CommittedFile(io.RawIOBase):
     Parameters
     ----------
     path : of the file.
-    mode : "w" creates it, "a" also completes an interrupted commit and goes on after it, "r" only reads.
+    mode : "w" creates it with the first commit; until then it is called ``<file>.new``. "a" completes an interrupted
+    commit and goes on after it, "r" only reads.
 
     Attributes
     ----------
@@ -46,12 +47,11 @@ class CommittedFile(io.RawIOBase):
 
     def __init__(self, path: Path, mode: Literal["w", "a", "r"]) -> None:
         self.path, self.log = path, log_of(path)
+        self._place = path.with_name(f"{path.name}.new") if mode == "w" else path
         self.failure: OSError | None = None
         self._pages: dict[int, bytearray] = {}
         self._at = 0
-        if mode == "w":
-            self.log.unlink(missing_ok=True)
-        self._file = io.FileIO(path, {"w": "w+", "a": "r+", "r": "r"}[mode])
+        self._file = io.FileIO(self._place, {"w": "w+", "a": "r+", "r": "r"}[mode])
         self._size = os.fstat(self._file.fileno()).st_size
         self._kept = self._size  # at the last commit
         if mode != "w" and self.log.is_file():
@@ -80,8 +80,7 @@ class CommittedFile(io.RawIOBase):
     def readinto(self, buffer: bytearray | memoryview) -> int:  # type: ignore[override]
         """Read from the present position on; zeros where nothing was written."""
         view = memoryview(buffer).cast("B")
-        self._file.seek(self._at)
-        read = self._file.readinto(view)
+        read = self._read(self._at, view)
         view[read:] = bytes(len(view) - read)
         for number, inside, outside in _pages_of(self._at, len(view)):
             if number in self._pages:
@@ -123,6 +122,8 @@ class CommittedFile(io.RawIOBase):
             if self._pages:
                 wait(self._file.fileno())
                 self.log.unlink()
+            if self._place != self.path:
+                self._appear()
         except OSError as error:
             self.failure = error
             self.check()
@@ -137,22 +138,39 @@ class CommittedFile(io.RawIOBase):
     def close(self) -> None:
         """Close the file; what was written since the last commit is lost, and a file without a commit is removed."""
         if not self.closed:
-            if self._file.writable() and not self.log.is_file():  # a log that could not be applied needs all of it
+            if (
+                not self._file.closed and self._file.writable() and not self.log.is_file()
+            ):  # a log that could not be applied needs all of it
                 self._file.truncate(self._kept)
-                if self._kept == 0:
-                    self.path.unlink(missing_ok=True)
             self._file.close()
+            if self._place != self.path:
+                self._place.unlink(missing_ok=True)
         super().close()
 
     def __repr__(self) -> str:
         return str(self.path)
 
+    def _appear(self) -> None:
+        """Give a new file its name, in place of an earlier one; it stays closed if that fails."""
+        self._file.close()
+        self.log.unlink(missing_ok=True)
+        self._place.replace(self.path)
+        self._place = self.path
+        self._file = io.FileIO(self.path, "r+")
+
+    def _read(self, at: int, view: memoryview) -> int:
+        """Read bytes of the file at a position; returns their number, below that asked for at its end."""
+        if self._file.closed:
+            return 0
+        self._file.seek(at)
+        return self._file.readinto(view)
+
     def _keep(self, start: int, view: memoryview) -> None:
         """Keep bytes in memory, page by page."""
         for number, inside, outside in _pages_of(start, len(view)):
             if number not in self._pages:
-                self._file.seek(number * PAGE)
-                self._pages[number] = bytearray(self._file.read(PAGE).ljust(PAGE, b"\0"))
+                self._pages[number] = bytearray(PAGE)
+                self._read(number * PAGE, memoryview(self._pages[number]))
             self._pages[number][inside] = view[outside]
 
     def _write_log(self, wait: Callable[[int], None]) -> None:

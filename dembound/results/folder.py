@@ -20,7 +20,7 @@ REPLACED = ".replaced"
 LOCK = "run.lock"
 
 OWN = re.compile(
-    r"run\.(h5|h5\.log|h5\.log\.part|lock)|checkpoint\.npz(\.part)?|settled/[a-z.]+\.npz(\.part)?|summary\.json(\.part)?"
+    r"run\.(h5|h5\.new|h5\.log|h5\.log\.part|lock)|checkpoint\.npz(\.part)?|settled/[a-z.]+\.npz(\.part)?|summary\.json(\.part)?"
     r"|(scene|histories|histories_stress)\.png(\.part)?"
     r"|paraview/(\w+_\d{4,}\.vt[up]|cracks\.vtu|\w+\.pvd|\w+\.vtkhdf|view\.py)(\.part)?"
 )

@@ -198,6 +198,16 @@ def test_a_damaged_log_is_not_used(tmp_path, disk, damage) -> None:
     assert total_of(path) == total
 
 
+def test_a_folder_that_is_gone_is_an_error_and_no_crash(tmp_path) -> None:
+    folder = tmp_path / "gone"
+    folder.mkdir()
+    with pytest.raises(FileNotFoundError, match="gone"), CommittedFile(folder / "a.h5", "w") as store:
+        with h5py.File(store, "w") as file:
+            file.attrs["total"] = 1
+            shutil.rmtree(folder)
+        store.commit()
+
+
 def change_and_fail(file) -> None:
     file.attrs["total"] = 3
     file.create_dataset("large", data=np.zeros(100_000))
