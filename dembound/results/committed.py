@@ -138,9 +138,8 @@ class CommittedFile(io.RawIOBase):
     def close(self) -> None:
         """Close the file; what was written since the last commit is lost, and a file without a commit is removed."""
         if not self.closed:
-            if (
-                not self._file.closed and self._file.writable() and not self.log.is_file()
-            ):  # a log that could not be applied needs all of it
+            # a log that could not be applied needs all of the file
+            if not self._file.closed and self._file.writable() and not self.log.is_file():
                 self._file.truncate(self._kept)
             self._file.close()
             if self._place != self.path:

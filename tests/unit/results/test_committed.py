@@ -201,11 +201,12 @@ def test_a_damaged_log_is_not_used(tmp_path, disk, damage) -> None:
 def test_a_folder_that_is_gone_is_an_error_and_no_crash(tmp_path) -> None:
     folder = tmp_path / "gone"
     folder.mkdir()
-    with pytest.raises(FileNotFoundError, match="gone"), CommittedFile(folder / "a.h5", "w") as store:
+    with CommittedFile(folder / "a.h5", "w") as store:
         with h5py.File(store, "w") as file:
             file.attrs["total"] = 1
             shutil.rmtree(folder)
-        store.commit()
+        with pytest.raises(FileNotFoundError, match="gone"):
+            store.commit()
 
 
 def change_and_fail(file) -> None:
