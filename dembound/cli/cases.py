@@ -20,13 +20,11 @@ from dembound.cli.app import (
     Side,
     Threads,
     app,
-    compact_table,
-    err,
     load_case,
     load_disks,
-    out,
     use_threads,
 )
+from dembound.cli.console import compact_table, err, out
 from dembound.errors import CaseError
 from dembound.version import IMPORT_BEGAN
 
