@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from dembound.cli.console import err, escape_unprintable, out
-from dembound.errors import CaseError, DemboundError, UnusableTypeWarning
+from dembound.errors import CONTROL, CaseError, DemboundError, UnusableTypeWarning
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -102,6 +102,8 @@ def load_case(path: Path, changes: list[str] | None, name: str | None = None) ->
         return case
     if name != Path(name).name or name in ("", ".", ".."):
         raise CaseError([f"--name: is {name}, must be the name of one folder"])
+    if CONTROL.search(name):
+        raise CaseError([f"--name: is {name}, must have no control characters"])
     return replace(case, name=name)
 
 

@@ -21,8 +21,8 @@ class PlainConsole(Console):
         super().__init__(markup=False, emoji=False, highlight=False, soft_wrap=True, **options)
 
     def render_str(self, text: str, **options: Any) -> Text:
-        """The text of anything printed, of cells and titles too, line by line."""
-        return super().render_str("\n".join(map(visible, text.split("\n"))), **options)
+        """The text of anything printed, also of cells and titles, in one line."""
+        return super().render_str(visible(text), **options)
 
 
 out = PlainConsole()

@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.gauge.estimates import FEWEST
-from dembound.results.reader import open_record
+from dembound.results.reader import history_of, open_record
 from dembound.waves.file_wave import read_samples
 
 FREE = "free"
@@ -122,8 +122,9 @@ def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
         metadata = _bar_metadata(file)
         if metadata is not None and metadata.ends[1] != FREE:
             raise CaseError([f"--free-end: is {free_end}, where the bar's end is {metadata.ends[1]}, must be free"])
-        group, outwards = there[free_end], 1.0 if _loaded_end(file) == "left" else -1.0
-        return group["time"][:], outwards * group["velocity"][:, 0]
+        outwards = 1.0 if _loaded_end(file) == "left" else -1.0
+        time, velocity = history_of(there[free_end], "velocity")
+        return time, outwards * velocity[:, 0]
 
 
 def not_above_zero(option: str, value: float | None, unit: str) -> Iterator[str]:
@@ -155,7 +156,7 @@ def _recorded(path: Path, name: str | None) -> tuple[np.ndarray, np.ndarray, Gau
     """Time, stress and metadata of a monitor in a record."""
     with open_record(path) as file:
         group = _gauge(file, name)
-        time, stress = group["time"][:], group["stress"][:]
+        time, stress = history_of(group, "stress")
         _enough(time, path)
         density = file.attrs.get("density")
         known = GaugeMetadata(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dembound.errors import CaseError
+from dembound.errors import CaseError, DemboundError, RecordError
 
 if TYPE_CHECKING:
     import h5py
@@ -19,17 +19,45 @@ COMPONENTS = ("x", "y", "rotation")
 """The columns of every displacement and velocity in a record."""
 
 
-def open_record(path: Path) -> h5py.File:
-    """Open a record (``run.h5``, ``calibration.h5``) for reading; use it in a ``with`` statement.
+@contextmanager
+def open_record(path: Path) -> Iterator[h5py.File]:
+    """Open a record (``run.h5``, ``calibration.h5``) for reading in a ``with`` statement.
 
-    Raises CaseError when it does not exist or is not readable.
+    Raises RecordError when it cannot be read, and for everything that damaged contents raise inside the statement,
+    which should therefore do little but read. Errors of the operating system about other files are passed on.
     """
     import h5py
 
     try:
-        return h5py.File(path, "r")
-    except OSError as error:
-        raise CaseError([f"{path}: cannot be read as a record of results: {error}"]) from None
+        with h5py.File(path, "r") as file:
+            require_equal_rows(file)
+            yield file
+    except DemboundError:
+        raise
+    except Exception as error:  # h5py and numpy raise nearly anything for damaged contents
+        if isinstance(error, OSError) and error.filename not in (None, str(path)):
+            raise
+        reason = str(error) or type(error).__name__
+        raise RecordError([f"{path}: cannot be read as a record of results: {reason[:200]}"]) from error
+
+
+def require_equal_rows(file: h5py.File) -> None:
+    """Raise RecordError if columns of a complete record that belong together differ in their number of rows."""
+    if not file.attrs.get("complete", False):
+        return
+    bodies = ["particles", *(f"snapshots/{number}" for number in file.get("snapshots", {}))]
+    alone = ["energy", "cracks", "laws", *(f"histories/{name}" for name in file.get("histories", {}))]
+    for names in (bodies, *([name] for name in alone)):
+        rows = {len(column) for name in names for column in file.get(name, {}).values() if hasattr(column, "shape")}
+        if len(rows) > 1:
+            raise RecordError([f"{file.filename}: is damaged: {names[0]} has columns of different lengths"])
+
+
+def history_of(group: h5py.Group, quantity: str) -> tuple[np.ndarray, np.ndarray]:
+    """Times (k,) in s and values (k, …) of a history; of an interrupted run up to where both were written."""
+    time, values = group["time"][:], group[quantity][:]
+    count = min(len(time), len(values))
+    return time[:count], values[:count]
 
 
 def has_monitors(path: Path) -> bool:

@@ -8,7 +8,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RecordError
 from dembound.results.reader import energy_of, laws_of, open_record
 
 
@@ -64,7 +64,7 @@ class Results:
     snapshots : in the order of time: ``displacement``, ``velocity`` (n, 3) and more; ``attributes["time"]`` in s.
     cracks : ``time``, ``position``, ``particles``, ``shear`` of the bonds that broke.
 
-    Raises CaseError when there is no record that can be read.
+    Raises RecordError when there is no record that can be read.
     """
 
     def __init__(self, folder: Path | str) -> None:
@@ -99,7 +99,10 @@ class Results:
         path = self.folder / "summary.json"
         if not path.is_file():
             raise CaseError([f"{path}: is missing, the run is not complete"])
-        found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        try:
+            found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        except ValueError:
+            raise RecordError([f"{path}: is damaged, no JSON"]) from None
         return found
 
     @property

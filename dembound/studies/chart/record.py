@@ -9,6 +9,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.motion.kind import Finding
+from dembound.results.reader import open_record
 from dembound.studies.chart.measure import Gauge, Gauges, Outcome
 
 FILE = "chart.h5"
@@ -29,7 +30,7 @@ class Record:
         """The results of the case with this digest; None if it has not been run."""
         if not self.path.is_file():
             return None
-        with h5py.File(self.path, "r") as file:
+        with open_record(self.path) as file:
             group = file.get(f"runs/{key}")
             if group is None:
                 return None
