@@ -21,7 +21,16 @@ COMPONENTS = ("x", "y", "rotation")
 
 @contextmanager
 def open_record(path: Path) -> Iterator[h5py.File]:
-    """Open a record (``run.h5``, ``calibration.h5``) for reading in a ``with`` statement.
+    """Open a record (``run.h5``, ``calibration.h5``) for reading in a ``with`` statement; errors as of `reading`."""
+    with reading(path) as file:
+        require_sound(file)
+        require_equal_rows(file)
+        yield file
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[h5py.File]:
+    """The same, of a record that has been open before and whose columns need not be compared again.
 
     Raises RecordError when it cannot be read, and for everything that damaged contents raise inside the statement,
     which should therefore do little but read. Errors of the operating system about other files are passed on.
@@ -30,7 +39,6 @@ def open_record(path: Path) -> Iterator[h5py.File]:
 
     try:
         with h5py.File(path, "r") as file:
-            require_equal_rows(file)
             yield file
     except DemboundError:
         raise
@@ -39,6 +47,25 @@ def open_record(path: Path) -> Iterator[h5py.File]:
             raise
         reason = str(error) or type(error).__name__
         raise RecordError([f"{path}: cannot be read as a record of results: {reason[:200]}"]) from error
+
+
+def require_sound(file: h5py.File) -> None:
+    """Open every group, dataset and attribute of a file once, as methods such as ``items`` leave out damaged ones.
+
+    Raises what h5py raises for them.
+    """
+    waiting = [file]
+    while waiting:
+        item = waiting.pop()
+        for name in item.attrs:
+            _ = item.attrs[name]
+        if hasattr(item, "keys"):
+            waiting += [item[name] for name in item]
+
+
+def text_of(value: str | bytes) -> str:
+    """A text of a record, which may be of fixed length, that is, bytes in UTF-8."""
+    return value.decode() if isinstance(value, bytes) else str(value)
 
 
 def require_equal_rows(file: h5py.File) -> None:
@@ -148,7 +175,7 @@ def record_names(paths: Sequence[Path]) -> list[str]:
     names = []
     for path in paths:
         with open_record(path) as file:
-            names.append(str(file.attrs["name"]))
+            names.append(text_of(file.attrs["name"]))
     folders = [path.resolve().parent.name for path in paths]
     return [
         name if names.count(name) == 1 else folder if folders.count(folder) == 1 else str(path)
