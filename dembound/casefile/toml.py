@@ -65,7 +65,7 @@ def _problems(data: Mapping[str, Any]) -> Iterator[str]:
     while waiting:
         place, value, depth = waiting.pop()
         if depth > DEEPEST:
-            yield f"{place[:SHOWN]}: is nested more than {DEEPEST} deep, deeper than any key of a case"
+            yield f"{re.split(r'[.[]', place)[0]}: is nested more than {DEEPEST} deep, deeper than any key of a case"
             return
         if isinstance(value, Mapping):
             waiting += [(f"{place}.{key}", inner, depth + 1) for key, inner in value.items()]

@@ -223,7 +223,7 @@ def _change(draw: st.DrawFn, parent: Any, key: Any) -> None:
     what = draw(st.sampled_from(["allowed", "allowed", "scaled", "limit", "gone", "renamed", "twice"]))
     value = parent[key]
     if what == "allowed" and key in KEYS:
-        parent[key] = draw(KEYS[key])
+        parent[key] = deepcopy(draw(KEYS[key]))
     elif what == "scaled" and isinstance(value, float):
         parent[key] = value * draw(st.sampled_from([-1.0, 0.0, 0.1, 0.5, 1.5, 2.0, 10.0, 1e-6, 1e6]))
     elif what == "gone":
@@ -233,7 +233,7 @@ def _change(draw: st.DrawFn, parent: Any, key: Any) -> None:
     elif what == "twice" and isinstance(parent, list):
         parent.append(deepcopy(value))
     else:
-        parent[key] = draw(LIMITS)
+        parent[key] = deepcopy(draw(LIMITS))
 
 
 def is_small(case: Case) -> bool:

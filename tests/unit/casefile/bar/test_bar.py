@@ -414,3 +414,10 @@ def test_all_mistakes_of_all_tables_are_listed_at_once() -> None:
         "run.courant",
         "boundary.left.wave_p",
     ]
+
+
+def test_two_spacings_are_too_few_with_soft_ends() -> None:
+    two = changed("spacing = 0.01", "spacing = 0.5")
+    assert problems(changed("horizon = 3", "horizon = 1", two)) == [
+        "bar.spacing: makes 2 of them, a bar with soft ends must have 3 or more"
+    ]
