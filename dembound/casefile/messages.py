@@ -18,7 +18,7 @@ LIMITS = {
 
 KINDS = {
     *("float_type", "int_type", "bool_type", "string_type", "tuple_type", "literal_error"),
-    *("missing", "too_short", "too_long", "string_too_short"),
+    *("missing", "too_short", "too_long", "string_too_short", "dict_type", "model_type"),
 }
 """Mistakes whose message lists all allowed values."""
 

@@ -194,6 +194,11 @@ acceleration = [0.0, -9.81]
 [run]
 duration = 0.01
 until = "duration"
+[chart]
+vary = { "packing.seed" = [0, 1] }
+[[chart.choice]]
+name = "fine"
+set = { "packing.radius" = 0.2 }
 """
 
 SOUND = [tomllib.loads(text) for text in (SMALL, RANDOM, *map(starting_point, names()))]

@@ -37,7 +37,7 @@ def test_a_title_given_takes_the_place_of_the_figures_own(tmp_path):
 def test_titles_and_names_are_no_formulas(tmp_path):
     @styled
     def draw():
-        figure = new_figure(2.0, 1.0)
+        figure = new_figure(5.0, 4.0)
         panel = figure.subplots()
         panel.plot([0.0, 1.0], label="$x^{$")
         panel.set_title(r"$\nothing$")
