@@ -14,7 +14,16 @@ other exception is a bug and prints a traceback.
 | 130 | stopped with Ctrl-C, 143 by SIGTERM, 129 by SIGHUP |
 """
 
+import re
 from collections.abc import Iterable
+
+CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
+"""Characters that no name or title may have: control characters, line separators, and bytes that are not text."""
+
+
+def visible(text: str) -> str:
+    r"""A text in one line, with its control characters as escapes such as ``\x1b``, so that none reaches a terminal."""
+    return CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
 
 
 class DemboundError(Exception):
@@ -33,9 +42,15 @@ class CaseError(DemboundError):
     exit_code = 2
 
     def __init__(self, problems: Iterable[str], source: str = "") -> None:
-        self.problems = list(problems)
+        self.problems = [visible(problem) for problem in problems]
         self.source = source
         super().__init__("\n".join(self.problems))
+
+
+class RecordError(CaseError):
+    """A record of results that cannot be read, is damaged, or lacks what every record has."""
+
+    exit_code = 5
 
 
 class RunError(DemboundError):
@@ -48,3 +63,7 @@ class PackingError(DemboundError):
     """A packing that did not reach the stress, the force balance or the size asked for."""
 
     exit_code = 4
+
+
+class UnusableTypeWarning(UserWarning):
+    """A type of tables that another package registers, but that cannot be used."""

@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from dembound.casefile import Case
+from dembound.errors import RecordError
 from dembound.motion.kind import Kind
-from dembound.results.reader import open_record
+from dembound.results.reader import open_record, text_of
 from dembound.schemas import SCHEMAS as SCHEMAS  # with the following, for who needs the kinds as well
 from dembound.schemas import checked as checked
 from dembound.schemas import load as load
@@ -39,7 +40,11 @@ def kind_of(case: Case) -> Kind[Any, Any]:
 
 
 def kind_of_record(path: Path) -> Kind[Any, Any]:
-    """The kind of body a record belongs to; raises CaseError when it cannot be read."""
+    """The kind of body a record belongs to; raises RecordError when it cannot be read, or is of an unknown kind."""
     with open_record(path) as file:
-        name = file.attrs.get("kind", "disks")  # files of exact histories have no kind; they belong to cases of disks
+        name = text_of(
+            file.attrs.get("kind", "disks")
+        )  # files of exact histories have no kind; they belong to cases of disks
+    if name not in KINDS:
+        raise RecordError([f"{path}: is of the kind {name}, must be of {' or '.join(KINDS)}"])
     return KINDS[name]()

@@ -7,15 +7,28 @@ from functools import cache
 from importlib.metadata import entry_points
 from typing import Annotated, Any, TypeVar, Union, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator
+
+from dembound.errors import CONTROL, UnusableTypeWarning, visible
 
 T = TypeVar("T")
+
+SMALLEST, LARGEST = 1e-30, 1e30
+"""Sizes of numbers, in SI units, between which products of them neither overflow nor vanish."""
+
+LARGEST_WHOLE = 2**63 - 1
+"""The largest whole number of a TOML file."""
 
 
 class Table(BaseModel):
     """One TOML table. Unknown keys are refused, so a mistyped key is always reported."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    @field_validator("*", mode="after")
+    @classmethod
+    def _usable(cls, value: Any) -> Any:
+        return usable(value)
 
     def given(self) -> dict[str, Any]:
         """The keys that have been given, in TOML's types; the key that distinguishes types is always included."""
@@ -27,6 +40,23 @@ class Table(BaseModel):
     def key_of(cls, name: str) -> str:
         """The key of a field; another name only where the key is a word of Python, as "from"."""
         return cls.model_fields[name].alias or name
+
+
+def usable(value: T) -> T:
+    """The value of any key itself, if all numbers in it can be computed with and all texts are one line.
+
+    Raises ValueError, with the limits, if not.
+    """
+    if isinstance(value, tuple):
+        for each in value:
+            usable(each)
+    elif isinstance(value, str) and CONTROL.search(value):
+        raise ValueError(f'is "{visible(value[:60])}", must be one line without control characters')
+    elif isinstance(value, float) and value != 0.0 and not SMALLEST <= abs(value) <= LARGEST:
+        raise ValueError(f"is {value:g}, must be 0 or of a size between {SMALLEST:g} and {LARGEST:g}")
+    elif isinstance(value, int) and abs(value) > LARGEST_WHOLE:
+        raise ValueError(f"has {len(str(abs(value)))} digits, must be at most {LARGEST_WHOLE}")
+    return value
 
 
 DISCRIMINATORS = {"type", "pattern"}
@@ -67,7 +97,7 @@ def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:
 def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tuple[type[T], ...]:
     """These types of tables, and those that other installed packages register under the entry point group `group`.
 
-    A type that cannot be used is left out, with a Python warning that gives the reason.
+    A type that cannot be used is left out, with an `UnusableTypeWarning` that gives the reason.
     """
     found = list(types)
     taken = {name_of(table) for table in found}
@@ -75,12 +105,14 @@ def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tu
         try:
             table = entry.load()
         except Exception as error:  # whatever another package may raise
-            warnings.warn(f"{group}: {entry.name} ({entry.value}) cannot be imported: {error}", stacklevel=2)
+            warnings.warn(
+                f"{group}: {entry.name} ({entry.value}) cannot be imported: {error}", UnusableTypeWarning, stacklevel=2
+            )
             continue
         if table in found:
             continue
         if flaw := _flaw(table, base, taken):
-            warnings.warn(f"{group}: {entry.name} ({entry.value}) {flaw}", stacklevel=2)
+            warnings.warn(f"{group}: {entry.name} ({entry.value}) {flaw}", UnusableTypeWarning, stacklevel=2)
             continue
         taken.add(name_of(table))
         found.append(table)

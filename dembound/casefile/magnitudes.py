@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
+from itertools import chain
 
 import numpy as np
 
@@ -51,9 +52,11 @@ def time_warnings(case: Case, time_step: float, travel: float) -> Iterator[str]:
     """
     used = waves_used(case)
     for name, wave in case.wave.items():
-        doubts = [*_too_long(wave, case.run.duration, travel), *_too_short(wave, case.run.duration, time_step, travel)]
-        if name in used and doubts:
-            yield f"wave.{name}: {doubts[0]}; are all times in s and lengths in m?"
+        doubts = chain(
+            _too_long(wave, case.run.duration, travel), _too_short(wave, case.run.duration, time_step, travel)
+        )  # in this order: the length of a wave that starts very late is lost in rounding
+        if name in used and (doubt := next(doubts, None)):
+            yield f"wave.{name}: {doubt}; are all times in s and lengths in m?"
 
 
 def _too_long(wave: Wave, duration: float, travel: float) -> Iterator[str]:

@@ -18,7 +18,7 @@ LIMITS = {
 
 KINDS = {
     *("float_type", "int_type", "bool_type", "string_type", "tuple_type", "literal_error"),
-    *("missing", "too_short", "too_long", "string_too_short"),
+    *("missing", "too_short", "too_long", "string_too_short", "dict_type", "model_type"),
 }
 """Mistakes whose message lists all allowed values."""
 
@@ -37,9 +37,10 @@ def describe(error: ValidationError, path: str, raw: object, schema: Mapping[str
     schema
         JSON schema of the expected value: a table, tables distinguished by a key, or a plain value.
     """
-    if not isinstance(raw, Mapping) or not {"properties", "discriminator"} & schema.keys():
-        return [f"{path}: is {show(raw)}, must be {allowed(schema)}"]
     details = error.errors(include_url=False)
+    if not isinstance(raw, Mapping) or not {"properties", "discriminator"} & schema.keys():
+        own = details[0]["ctx"]["error"] if details[0]["type"] == "value_error" else None
+        return [f"{path}: {own or f'is {show(raw)}, must be {allowed(schema)}'}"]
     keys, others = schema.get("properties", {}), {}
     if "discriminator" in schema:
         selector, variants = schema["discriminator"]["propertyName"], schema["discriminator"]["mapping"]

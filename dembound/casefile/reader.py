@@ -1,21 +1,21 @@
 """From a TOML file to a `Case`, or to the list of everything wrong with it."""
 
-import re
-import tomllib
 from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import AfterValidator, TypeAdapter, ValidationError
 from pydantic_core import to_json
 
 from dembound.casefile.messages import describe, show, unknown
 from dembound.casefile.model import Case
 from dembound.casefile.schema import WAVE, Schema
-from dembound.errors import CaseError
+from dembound.casefile.toml import parsed
+from dembound.errors import CONTROL, CaseError
+from dembound.table import usable
 
-TITLE: TypeAdapter[Any] = TypeAdapter(str)
+TITLE: TypeAdapter[Any] = TypeAdapter(Annotated[str, AfterValidator(usable)])
 
 
 def load(path: Path, schemas: Sequence[Schema]) -> Case:
@@ -35,6 +35,8 @@ def load(path: Path, schemas: Sequence[Schema]) -> Case:
         raise CaseError(["is not a text file in UTF-8"], str(path)) from None
     except OSError as error:
         raise CaseError([f"cannot be read: {error.strerror}"], str(path)) from None
+    except ValueError:
+        raise CaseError(["is not the path of a file"], str(path)) from None
     return _read(text, path.parent, path.stem, str(path), schemas)
 
 
@@ -61,10 +63,9 @@ def _read(
     files: Mapping[str, str] | None = None,
 ) -> Case:
     """The case; source : name of the text in errors."""
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise CaseError([_syntax_problem(str(error), text)], source) from None
+    if CONTROL.search(name):
+        raise CaseError(["has a name with control characters or bytes that are not text, rename it"], source)
+    data = parsed(text, source)
     schema = next((schema for schema in schemas if not data.keys().isdisjoint(schema.marks)), None)
     known = list(dict.fromkeys(key for each in schemas for key in each.keys))  # no mapping
     if schema is None:
@@ -82,17 +83,6 @@ def _of_no_kind(schemas: Sequence[Schema]) -> str:
     """Message for a file whose tables do not identify the kind of its case."""
     kinds = " nor ".join(f"[{schema.marks[0]}] ({schema.noun})" for schema in schemas)
     return f"has neither {kinds}; {' and '.join(f'`{schema.new}`' for schema in schemas)} write a case to start from"
-
-
-def _syntax_problem(message: str, text: str) -> str:
-    """Tomllib's message with the line first: ``line 7: … in: period = fast``."""
-    place = re.search(r" \(at (?:line (\d+), column \d+|end of document)\)$", message)
-    if not place:
-        return message
-    what = message[: place.start()]
-    if not place[1]:
-        return f"at the end: {what}"
-    return f"line {place[1]}: {what}, in: {text.splitlines()[int(place[1]) - 1].strip()}"
 
 
 def _stray(key: str, data: Mapping[str, Any], schema: Schema, known: Collection[str]) -> str:
@@ -151,6 +141,7 @@ class _Reader:
         if not isinstance(raw, Mapping):
             self.problems.append(f"{path}: is {show(raw)}, must be made of tables [{path}.NAME]")
             return {}
+        self.problems += [f"{path}.{name}: has control characters in its name" for name in raw if CONTROL.search(name)]
         return {name: self._valid(f"{path}.{name}", table, kind) for name, table in raw.items()}
 
     def _sides(self, path: str, raw: object, kind: TypeAdapter[Any], sides: tuple[str, ...]) -> dict[str, Any]:

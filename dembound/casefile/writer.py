@@ -1,6 +1,5 @@
 """Cases made from other cases: the same TOML with some keys changed."""
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from pathlib import Path
@@ -12,6 +11,7 @@ from dembound.casefile.messages import unknown
 from dembound.casefile.model import Case
 from dembound.casefile.reader import loads
 from dembound.casefile.schema import Schema
+from dembound.casefile.toml import DEEPEST, parsed
 from dembound.errors import CaseError
 
 
@@ -50,11 +50,13 @@ def to_toml(case: Case, folder: Path | None = None) -> str:
 
 def _changed(text: str, changes: Mapping[str, Any]) -> str:
     """TOML text with the values at dotted keys replaced or added."""
-    data = tomllib.loads(text)
+    data = parsed(text)
     for dotted, value in changes.items():
         *path, last = dotted.split(".")
         if not all((*path, last)):
             raise CaseError([f"{dotted}: is no key, must be names with one dot between two, such as run.duration"])
+        if len(path) > DEEPEST:
+            raise CaseError([f"{dotted[:40]}…: has {len(path)} dots, must have at most {DEEPEST}"])
         table: Any = data
         for name in path:
             table = _inner(table, name, dotted)

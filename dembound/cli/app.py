@@ -6,7 +6,6 @@ import atexit
 import gc
 import logging
 import sys
-import tomllib
 import warnings
 from dataclasses import replace
 from enum import StrEnum
@@ -14,11 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich import box
-from rich.console import Console
-from rich.table import Column, Table
 
-from dembound.errors import CaseError, DemboundError
+from dembound.cli.console import err, escape_unprintable, out
+from dembound.errors import CONTROL, CaseError, DemboundError, UnusableTypeWarning
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -44,13 +41,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-out = Console(highlight=False, soft_wrap=True)
-err = Console(stderr=True, highlight=False, soft_wrap=True)
-
-
-def compact_table(*columns: Column | str, **looks: Any) -> Table:
-    """A table without frame and with narrow gaps between its columns, so that it fits into 80 characters."""
-    return Table(*columns, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False, title_justify="left", **looks)
 
 
 def writable(path: Path | None) -> Path | None:
@@ -120,6 +110,8 @@ def changed(case: Case, changes: list[str] | None, name: str | None) -> Case:
         return case
     if name != Path(name).name or name in ("", ".", ".."):
         raise CaseError([f"--name: is {name}, must be the name of one folder"])
+    if CONTROL.search(name):
+        raise CaseError([f"--name: is {name}, must have no control characters"])
     return replace(case, name=name)
 
 
@@ -137,10 +129,9 @@ def _setting(text: str) -> tuple[str, Any]:
     key, equals, value = text.partition("=")
     if not equals or not key.strip():
         raise CaseError([f"--set: is {text}, must be KEY=VALUE, e.g. boundary.right.beta_p=0.8"])
-    try:
-        return key.strip(), tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError:
-        return key.strip(), value.strip()
+    from dembound.casefile.toml import value_of
+
+    return key.strip(), value_of(value, f"--set {key.strip()}")
 
 
 def use_threads(threads: int | None) -> None:
@@ -154,9 +145,20 @@ def use_threads(threads: int | None) -> None:
         numba.set_num_threads(threads)
 
 
+def _show_only_own_warnings() -> None:
+    """Show none of Python's warnings but those about types of other packages, unless Python's option -W asks for them.
+
+    Those of numpy and matplotlib are about code, which a user cannot mend.
+    """
+    warnings.showwarning = _in_one_line
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")
+        warnings.simplefilter("default", UnusableTypeWarning)
+
+
 def _in_one_line(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
     """Print a Python warning without the place in the source that it comes from."""
-    print(f"warning: {' '.join(str(message).split())}", file=sys.stderr)
+    err.print(f"warning: {' '.join(str(message).split())}")
 
 
 class _Printed(logging.Handler):
@@ -164,7 +166,7 @@ class _Printed(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print a message on a separate line."""
-        err.print(record.getMessage(), markup=False)
+        err.print(record.getMessage())
 
 
 logging.getLogger("dembound").addHandler(_Printed(logging.INFO))
@@ -175,15 +177,16 @@ def main() -> None:
     """Run the command line; every failure a user can cause is one message and its exit code."""
     gc.set_threshold(COLLECT_EVERY)
     atexit.register(gc.freeze)  # else everything is searched once more at the end
+    escape_unprintable()
     try:
         with warnings.catch_warnings():
-            warnings.showwarning = _in_one_line
+            _show_only_own_warnings()
             app(prog_name="dembound")  # the name in help and completion, however it was started
     except DemboundError as error:
         source = f"{error.source}: " if error.source else ""
         for line in str(error).splitlines():
-            err.print(f"{source}{line}", style="red", markup=False)
+            err.print(f"{source}{line}", style="red")
         sys.exit(error.exit_code)
     except OSError as error:  # a missing folder, no permission, a full disk
-        err.print(f"{error.filename or 'output'}: {error.strerror or error}", style="red", markup=False)
+        err.print(f"{error.filename or 'output'}: {error.strerror or error}", style="red")
         sys.exit(CANNOT_WRITE)

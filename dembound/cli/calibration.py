@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.table import Table
 
-from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, out, use_threads
+from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, use_threads
+from dembound.cli.console import out
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:

@@ -22,13 +22,11 @@ from dembound.cli.app import (
     Threads,
     app,
     changed,
-    compact_table,
-    err,
     load_case,
     load_disks,
-    out,
     use_threads,
 )
+from dembound.cli.console import compact_table, err, out
 from dembound.errors import CaseError
 from dembound.version import IMPORT_BEGAN
 
@@ -151,8 +149,8 @@ def _print_results(folder: Path) -> None:
     name = summary["name"]
     facts = [*end_in_words(summary), *kind_of_record(folder / "run.h5").outcome(summary)]
     if facts:
-        out.print(f"{name}: {'; '.join(facts)}", markup=False)
-    out.print(f"{name}: results in {folder}", markup=False)
+        out.print(f"{name}: {'; '.join(facts)}")
+    out.print(f"{name}: results in {folder}")
 
 
 def _stopped(partial: Path, stop: KeyboardInterrupt) -> typer.Exit:
@@ -160,7 +158,7 @@ def _stopped(partial: Path, stop: KeyboardInterrupt) -> typer.Exit:
     kept = [f"histories so far are in {partial}"] if (partial / "run.h5").is_file() else []
     if (partial / "checkpoint.npz").is_file():
         kept.append(f"to continue: dembound resume {partial}")
-    err.print(f"{partial.stem}: stopped; {'; '.join(kept) or 'the run had not begun'}", markup=False)
+    err.print(f"{partial.stem}: stopped; {'; '.join(kept) or 'the run had not begun'}")
     return typer.Exit(getattr(stop, "exit_code", INTERRUPTED))
 
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Column
 
-from dembound.cli.app import Name, Output, PictureTitle, Settings, app, compact_table, err, load_case, out, use_threads
+from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case, use_threads
+from dembound.cli.console import compact_table, err, out
 
 if TYPE_CHECKING:
     from dembound.running import Progress
@@ -113,14 +114,14 @@ def chart(
         raise
     _print(charted)
     for path in _leave(charted, folder, title):
-        out.print(f"wrote {path}", markup=False)
+        out.print(f"wrote {path}")
 
 
 def _print(charted: Charted) -> None:
     """Print a line for every choice, what was left out, and the cheapest ones."""
     failures = [f"{line.choice.name}: failed, {line.outcome.failure}" for line in charted.lines if line.outcome.failure]
     for text in (*charted.left_out, *failures):
-        err.print(f"{charted.case.name}: {text}", markup=False)
+        err.print(f"{charted.case.name}: {text}")
     heads = ("choice", "RMS (%)", "peak (%)", "CPU (s)", "run (s)", "work", "")
     table = compact_table(
         Column(heads[0], overflow="fold"),
@@ -133,7 +134,7 @@ def _print(charted: Charted) -> None:
     out.print(table)
     out.print("* on the Pareto front; CPU: time of stepping, run: of the whole run without files, medians")
     out.print(f"work: {charted.work_unit}")
-    out.print(f"{charted.case.name}: {charted.sentence}", markup=False)
+    out.print(f"{charted.case.name}: {charted.sentence}")
 
 
 def _cells(charted: Charted, number: int, line: Line) -> list[str]:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Table
 
-from dembound.cli.app import PICTURE, PictureTitle, Settings, app, compact_table, load_case, out, writable
+from dembound.cli.app import PICTURE, PictureTitle, Settings, app, load_case, writable
+from dembound.cli.console import compact_table, out
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:

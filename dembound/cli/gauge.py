@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Table
 
-from dembound.cli.app import PICTURE, PictureTitle, app, compact_table, err, out
+from dembound.cli.app import PICTURE, PictureTitle, app
+from dembound.cli.console import compact_table, err, out
 from dembound.cli.results import results_file
 
 if TYPE_CHECKING:

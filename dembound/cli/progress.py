@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as RichProgress
 
-from dembound.cli.app import err
+from dembound.cli.console import err
 from dembound.motion.trackers import Run
 from dembound.running import Progress
 
@@ -22,9 +22,9 @@ def progress_of(name: str) -> Iterator[Progress]:
         yield Lines(name)
         return
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
-        TextColumn("{task.percentage:3.0f} %  {task.fields[rate]}"),
+        TextColumn("{task.percentage:3.0f} %  {task.fields[rate]}", markup=False),
         TimeRemainingColumn(),
     )
     with RichProgress(*columns, console=err, transient=True) as bar:
@@ -33,7 +33,7 @@ def progress_of(name: str) -> Iterator[Progress]:
 
 def print_warning(name: str, message: str) -> None:
     """Print a warning about the case of that name to stderr."""
-    err.print(f"{name}: warning: {message}", markup=False)
+    err.print(f"{name}: warning: {message}")
 
 
 class Lines(Progress):
@@ -62,7 +62,7 @@ class Lines(Progress):
         if self.now() - self.said >= INTERVAL:
             self.said = self.now()
             took = self.said - self.began
-            err.print(f"{self.name}: settling for {took:.0f} s, {steps:,} steps, force ratio {ratio:.1e}", markup=False)
+            err.print(f"{self.name}: settling for {took:.0f} s, {steps:,} steps, force ratio {ratio:.1e}")
 
     def running(self, run: Run, steps: int) -> None:
         """Print steps done and in all, simulated time, and particle-steps per second since the last line."""
@@ -75,8 +75,7 @@ class Lines(Progress):
             self.said, self.steps, self.compiled = self.said + since, run.state.step, compiled
             err.print(
                 f"{self.name}: {run.state.step:,} of {steps:,} steps, {run.time:.4g} s simulated, "
-                f"{rate:.3g} M particle-steps/s",
-                markup=False,
+                f"{rate:.3g} M particle-steps/s"
             )
 
 

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 from rich.table import Column
 
-from dembound.cli.app import PICTURE, PictureTitle, Side, app, compact_table, out, png, writable
+from dembound.cli.app import PICTURE, PictureTitle, Side, app, png, writable
+from dembound.cli.console import compact_table, out
 from dembound.errors import CaseError
 
 CALIBRATIONS = "calibrations"
@@ -249,7 +250,7 @@ def compare_histories(
     for line in found:
         if line.place != line.reference_place:
             places = f"at {line.place} in {line.run}, at {line.reference_place} in the reference"
-            out.print(f"{line.monitor} is {places}", markup=False)
+            out.print(f"{line.monitor} is {places}")
 
 
 def results_file(path: Path) -> Path:

@@ -8,21 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.table import Table
+from rich.text import Text
 
-from dembound.cli.app import (
-    PICTURE,
-    PictureTitle,
-    Settings,
-    Threads,
-    app,
-    compact_table,
-    err,
-    load_case,
-    out,
-    use_threads,
-    writable,
-)
+from dembound.cli.app import PICTURE, PictureTitle, Settings, Threads, app, load_case, use_threads, writable
 from dembound.cli.calibration import OneCase
+from dembound.cli.console import compact_table, err, out
 from dembound.errors import RunError
 
 if TYPE_CHECKING:
@@ -54,10 +44,10 @@ def stability(
 
     use_threads(threads)
     loaded = load_case(case, changes)
-    found, words = measure(loaded, steps=steps, full=full, report=lambda line: err.print(line, markup=False))
+    found, words = measure(loaded, steps=steps, full=full, report=lambda line: err.print(line))
     out.print(_overview(found, f"{loaded.name}: {words[0]}"))
     for line in words[1:]:
-        out.print(f"  {line}", markup=False)
+        out.print(f"  {line}")
     short, long = _lines(found)
     figure = plot_stability(short, long, f"Noise in {loaded.name}: {words[0]}")
     save(figure, output, title)
@@ -80,7 +70,7 @@ def _overview(found: Sequence[Stability], title: str) -> Table:
             own = f"{each.trial.step / limit:.4f}"
             state = "stable" if each.is_stable else "UNSTABLE"
             overview.add_row(name, f"{limit:.5g}", measured, own, last, f"{run.rise:.1e}", state)
-    overview.caption = (
+    overview.caption = Text(
         "measured: largest stable step over the limit; own step: the case's over the limit;\n"
         "energy: at the end over the start, with what boundaries took where contacts may\n"
         "open (if unstable: kinetic energy); rise: largest energy over the start, less 1"

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from dembound import shipped
-from dembound.cli.app import app, out, writable
+from dembound.cli.app import app, writable
+from dembound.cli.console import out
 from dembound.errors import CaseError
 from dembound.starting import DEFAULT, names, starting_point, titles
 
@@ -39,7 +40,7 @@ def new(
         _write_schema_beside(path)
         text = f"#:schema ./{SCHEMA_FILE}\n{text}"
     path.write_text(text, encoding="utf-8")
-    out.print(f"wrote {path}; try: dembound check {path}", markup=False)
+    out.print(f"wrote {path}; try: dembound check {path}")
 
 
 def _write_schema_beside(path: Path) -> None:
@@ -57,7 +58,7 @@ def _write_schema_beside(path: Path) -> None:
             return
     writable(file)
     file.write_text(text, encoding="utf-8")
-    out.print(f"wrote {file}, with which editors complete and check cases", markup=False)
+    out.print(f"wrote {file}, with which editors complete and check cases")
 
 
 def _schema() -> str:
@@ -79,7 +80,7 @@ def schema(
         typer.echo(_schema(), nl=False)
         return
     output.write_text(_schema(), encoding="utf-8")
-    out.print(f"wrote {output}", markup=False)
+    out.print(f"wrote {output}")
 
 
 @cases.callback()
@@ -88,7 +89,7 @@ def list_cases(context: typer.Context) -> None:
     if context.invoked_subcommand is None:
         _print_titles(shipped.titles())
         groups = " or ".join(shipped.groups())
-        out.print(f"copy one, or all of {groups}: dembound cases copy NAME [FOLDER]", markup=False)
+        out.print(f"copy one, or all of {groups}: dembound cases copy NAME [FOLDER]")
 
 
 @cases.command("copy")
@@ -105,11 +106,11 @@ def copy(
 ) -> None:
     """Copy a case, or a group of cases with their scripts, and the files they read. Overwrites nothing."""
     for path in shipped.copy(name, folder):
-        out.print(f"wrote {path}", markup=False)
+        out.print(f"wrote {path}")
 
 
 def _print_titles(titles: Mapping[str, str]) -> None:
     """Names and titles, one line each."""
     width = max(map(len, titles))
     for name, title in titles.items():
-        out.print(f"{name:{width}}  {title}", markup=False)
+        out.print(f"{name:{width}}  {title}")

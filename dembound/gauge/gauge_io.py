@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.gauge.estimates import FEWEST
-from dembound.results.reader import open_record
+from dembound.results.reader import history_of, open_record, text_of
 from dembound.waves.file_wave import read_samples
 
 FREE = "free"
@@ -122,8 +122,9 @@ def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
         metadata = _bar_metadata(file)
         if metadata is not None and metadata.ends[1] != FREE:
             raise CaseError([f"--free-end: is {free_end}, where the bar's end is {metadata.ends[1]}, must be free"])
-        group, outwards = there[free_end], 1.0 if _loaded_end(file) == "left" else -1.0
-        return group["time"][:], outwards * group["velocity"][:, 0]
+        outwards = 1.0 if _loaded_end(file) == "left" else -1.0
+        time, velocity = history_of(there[free_end], "velocity")
+        return time, outwards * velocity[:, 0]
 
 
 def not_above_zero(option: str, value: float | None, unit: str) -> Iterator[str]:
@@ -155,7 +156,7 @@ def _recorded(path: Path, name: str | None) -> tuple[np.ndarray, np.ndarray, Gau
     """Time, stress and metadata of a monitor in a record."""
     with open_record(path) as file:
         group = _gauge(file, name)
-        time, stress = group["time"][:], group["stress"][:]
+        time, stress = history_of(group, "stress")
         _enough(time, path)
         density = file.attrs.get("density")
         known = GaugeMetadata(
@@ -187,7 +188,7 @@ def _bar_metadata(file: h5py.File) -> BarMetadata | None:
     """Data of the bar in a record; None if it has no wave speed."""
     if "wave_speed" not in file.attrs:
         return None
-    left, right = (str(end) for end in file.attrs["ends"])
+    left, right = map(text_of, file.attrs["ends"])
     return BarMetadata(
         speed=float(file.attrs["wave_speed"]),
         attenuation=float(file.attrs["attenuation"]),
@@ -203,11 +204,11 @@ def _length(file: h5py.File) -> float:
 
 def _loaded_end(file: h5py.File) -> str:
     """The end of a recorded bar from which all positions are measured."""
-    loaded = file.attrs.get("loaded")
+    loaded = text_of(file.attrs.get("loaded", ""))
     if loaded not in ("left", "right"):
         where = {"both": "both ends", "none": "neither end"}.get(loaded, "an end that the record does not name")
         raise CaseError([f"{file.filename}: has a bar loaded at {where}, must be loaded at the left or the right"])
-    return str(loaded)
+    return loaded
 
 
 def _from_loaded_end(file: h5py.File, group: h5py.Group) -> float:

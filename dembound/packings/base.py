@@ -16,6 +16,12 @@ Count = tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 TYPED = 5e-6
 """Relative difference allowed between a size and whole bricks: sizes may have six digits, as 5.19615 m for 3√3 m."""
 
+MOST_DISKS = 500_000_000
+"""Largest number of disks of a scene: the ends of their contacts, 4.4 each, are numbered with 32 bits."""
+
+MOST_IN_BRICK = 1_000_000
+"""Largest number of disks of a random brick, which is packed in hours; scenes are made of many bricks."""
+
 # Confining stress over contact modulus if the case gives none: 4.5 contacts per disk, and eight times the stress ρcv of
 # a wave of 0.5 m/s at 1000 m/s.
 PRESSURE = 8e-3
@@ -67,6 +73,10 @@ class Packing(Table, ABC):
         (across, up), (width, height) = self.copies, self.brick_size
         return across * width, up * height
 
+    def about(self, extent: tuple[float, float]) -> float:
+        """Number of disks in a rectangle of this width and height (m), within some per cent."""
+        return extent[0] / (2.0 * self.radius) * (extent[1] / (2.0 * self.radius))
+
     def with_copies(self, across: int, up: int) -> Self:
         """The packing with other numbers of bricks along x and y."""
         return self.model_copy(update={"size": None, "bricks": (across, up)})
@@ -75,6 +85,9 @@ class Packing(Table, ABC):
     def _whole_bricks(self) -> Self:
         if (self.size is None) == (self.bricks is None):
             raise ValueError("must have exactly one of size (m) and bricks (numbers), the extent of the scene")
+        if (count := self.about(self.extent)) > MOST_DISKS:
+            key = "bricks" if self.size is None else "size"
+            raise ValueError(f"{key}: holds {count:.3g} disks of this radius, must hold at most {MOST_DISKS:,}")
         for whole, part in zip(self.extent, self.brick_size, strict=True):
             number = whole / part
             if number < 1.0 - TYPED or abs(number - round(number)) > TYPED * number:
@@ -135,6 +148,8 @@ class DensePacking(Packing):
 
     @model_validator(mode="after")
     def _wide_brick(self) -> Self:
+        if (count := self.about(self.brick)) > MOST_IN_BRICK:
+            raise ValueError(f"brick: holds {count:.3g} disks of this radius, must hold at most {MOST_IN_BRICK:,}")
         # below four diameters a disk could touch another one through two faces at once
         least = 8.0 * self.largest_radius
         if min(self.brick) < least:

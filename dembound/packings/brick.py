@@ -50,6 +50,26 @@ class Brick:
     stress: np.ndarray
     residual_ratio: float
 
+    def check(self) -> None:
+        """Raise ValueError if shapes, numbers or indices are not those of a brick."""
+        count, contacts = len(self.radii), len(self.pairs)
+        shapes = {
+            "size": (2,),
+            "positions": (count, 2),
+            "radii": (count,),
+            "pairs": (contacts, 2),
+            "images": (contacts, 2),
+            "edge_rows": (count, 2),
+            "stress": (3,),
+        }
+        if wrong := [name for name, shape in shapes.items() if getattr(self, name).shape != shape]:
+            raise ValueError(f"{', '.join(wrong)} of a brick must be of other shapes")
+        numbers = np.concatenate([self.size, self.positions.ravel(), self.radii, self.stress, [self.residual_ratio]])
+        if not np.isfinite(numbers).all() or not (self.radii > 0.0).all() or not (self.size > 0.0).all():
+            raise ValueError("a brick must have finite numbers, and positive radii and sizes")
+        if contacts and not 0 <= self.pairs.min() <= self.pairs.max() < count:
+            raise ValueError("pairs of a brick must be indices of its disks")
+
     @property
     def vectors(self) -> np.ndarray:
         """Contact vectors (b, 2) m, from the centre of i to the centre of j."""

@@ -1,15 +1,15 @@
 """Packed bricks kept on disk, one file per set of parameters.
 
-A brick depends only on its parameters, so a file is never out of date; a brick that cannot be read is packed again and
-replaced.
+A brick depends only on its parameters, so a file is never out of date. It ends with a digest of all bytes before it;
+a file that is damaged, or whose brick is none, is packed again and replaced, with a line in the log.
 """
 
 import contextlib
 import hashlib
+import io
 import json
+import logging
 import os
-import zipfile
-import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -20,8 +20,12 @@ import platformdirs
 
 from dembound.packings.brick import Brick
 
-FORMAT = 2  # raise it whenever the packing procedure or the file layout changes
-UNREADABLE = (OSError, ValueError, KeyError, EOFError, TypeError, zipfile.BadZipFile, zlib.error)
+LOGGER = logging.getLogger(__name__)
+
+FORMAT = 3  # raise it whenever the packing procedure or the file layout changes
+
+DIGEST = hashlib.sha256
+"""Computes the digest at the end of a file, which is still an NPZ file: such files may be followed by anything."""
 
 
 def cache_folder() -> Path:
@@ -58,21 +62,31 @@ def _digest(key_params: Mapping[str, Any]) -> str:
 
 
 def _load(path: Path) -> Brick | None:
+    """The brick of a file; None if there is no file or it is damaged, in which case it is logged."""
     try:
-        with np.load(path, allow_pickle=False) as data:
-            arrays = {name: data[name] for name in data.files}
-        return Brick(**{**arrays, "residual_ratio": float(arrays["residual_ratio"])})
-    except UNREADABLE:
+        content = path.read_bytes()
+    except OSError:
         return None
+    size = DIGEST().digest_size
+    if DIGEST(content[:-size]).digest() == content[-size:]:
+        with np.load(io.BytesIO(content), allow_pickle=False) as data:
+            arrays = {name: data[name] for name in data.files}
+        with contextlib.suppress(ValueError, TypeError, KeyError):  # written by something else
+            brick = Brick(**{**arrays, "residual_ratio": float(arrays["residual_ratio"])})
+            brick.check()
+            return brick
+    LOGGER.info("the cached brick %s is damaged, it is packed again", path)
+    return None
 
 
 def _save(brick: Brick, path: Path) -> None:
+    content = io.BytesIO()
+    np.savez_compressed(content, **asdict(brick))
     part = path.with_suffix(f".{os.getpid()}.part")
     with contextlib.suppress(OSError):  # without a cache only time is lost
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
-            with part.open("wb") as file:
-                np.savez_compressed(file, **asdict(brick))
+            part.write_bytes(content.getvalue() + DIGEST(content.getvalue()).digest())
             part.replace(path)  # atomic, as another process may write the same brick
         finally:
             part.unlink(missing_ok=True)

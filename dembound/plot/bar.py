@@ -26,7 +26,7 @@ from dembound.plot.style import (
     styled,
     time_unit,
 )
-from dembound.results.reader import cracks_until, laws_of, open_record, snapshot_of
+from dembound.results.reader import cracks_until, laws_of, open_record, snapshot_of, text_of
 
 MILLI, MEGA = 1e-3, 1e6
 
@@ -140,7 +140,7 @@ def read_course(run: Path, fields: Sequence[str], snapshot: int | None = None) -
             crack_place=cracks["position"][:, 0],
             crack_time=cracks["time"] / unit.seconds,
             changes=[(name, since / unit.seconds) for name, since in laws_of(file)[1:] if since <= time[-1]],
-            case=str(file.attrs["name"]),
+            case=text_of(file.attrs["name"]),
             unit=unit,
         )
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, MaxNLocator, StrMethodFormatter
 
 from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled, time_unit
-from dembound.results.reader import energy_of, is_line, open_record
+from dembound.results.reader import energy_of, is_line, open_record, text_of
 
 COLUMNS = {
     "outside": "in: boundaries and driven loads",
@@ -60,7 +60,7 @@ def plot_energy(run: Path) -> Figure:
     Raises CaseError when the file cannot be read or has no ledger.
     """
     with open_record(run) as file:
-        name, columns, bar = str(file.attrs["name"]), energy_of(file), is_line(file.attrs["size"])
+        name, columns, bar = text_of(file.attrs["name"]), energy_of(file), is_line(file.attrs["size"])
     unit = time_unit(columns["time"][-1])
     time = columns["time"] / unit.seconds
     figure = new_figure(9.0, 6.0)

@@ -10,7 +10,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.plot.disks import Window
 from dembound.results.histories import FREE_FIELD, UNITS
-from dembound.results.reader import COMPONENTS, cracks_until, laws_in_words, laws_of, snapshot_of
+from dembound.results.reader import COMPONENTS, cracks_until, laws_in_words, laws_of, snapshot_of, text_of
 
 FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced"]
 
@@ -88,7 +88,7 @@ def read_disks(file: h5py.File) -> Disks:
         radii=file["particles/radius"][:],
         monitors={name: place for name, place in places.items() if not name.endswith(FREE_FIELD)},
         twins=np.array(twins).reshape(-1, 2),
-        case=str(file.attrs["name"]),
+        case=text_of(file.attrs["name"]),
         laws=laws_in_words(laws) if len(laws) > 1 else "",
         column=int(file.attrs.get("column", 0)),
     )

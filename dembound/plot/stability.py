@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from dembound.plot.style import COLOURS, REFERENCE, new_figure, outside_legend, styled
+from dembound.plot.style import COLOURS, REFERENCE, decade, new_figure, outside_legend, styled
 
 LEAST, MOST = 1e-20, 1e100
 """Smallest and largest energy drawn, over that of the noise."""
@@ -39,6 +40,8 @@ def plot_stability(short: Sequence[Line], long: Sequence[Line], title: str) -> F
             panel.plot(line.steps[: len(energy)], energy, label=line.name, gid=line.name, **look)
         panel.axhline(1.0, color=REFERENCE, linewidth=1.0, zorder=1)
         panel.set_yscale("log")
+        panel.yaxis.set_major_formatter(FuncFormatter(decade))
+        panel.yaxis.set_minor_formatter(NullFormatter())
         panel.set_xlabel("steps")
         panel.set_xlim(left=0)
     left.set_ylabel("kinetic energy / that of the noise (–)")

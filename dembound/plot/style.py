@@ -80,6 +80,7 @@ def styled(draw: Callable[Parameters, Figure]) -> Callable[Parameters, Figure]:
             "grid.linewidth": 0.6,
             "lines.linewidth": 1.4,
             "lines.markersize": 4.0,
+            "text.parse_math": False,  # names and titles appear as they are, with whatever they have of $ and \\
             "legend.frameon": False,
         }
         with style.context(["default", settings]):
@@ -123,6 +124,11 @@ class Powers(ScalarFormatter):
         return power and f"×10{power.translate(RAISED)}"
 
 
+def decade(value: float, _: object = None) -> str:
+    """A power of ten as the number of a logarithmic axis, such as 10⁻³, for `matplotlib.ticker.FuncFormatter`."""
+    return "10" + str(round(np.log10(value))).translate(RAISED)
+
+
 def line_style(index: int) -> dict[str, str]:
     """Colour and dashes of the index-th of several lines; repeats only after 28."""
     return {"color": COLOURS[index % len(COLOURS)], "linestyle": DASHES[index % len(DASHES)]}
@@ -160,7 +166,7 @@ def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None
 def save(figure: Figure, path: Path, title: str | None = None) -> None:
     """Write the figure as a PNG file, either completely or not at all; `title` replaces the title of the figure."""
     if title is not None:
-        figure.suptitle(title, fontsize=11)
+        figure.suptitle(title, fontsize=11, parse_math=False)
     if figure.axes and (layout := figure.get_layout_engine()) is not None:
         layout.execute(figure)
         figure.set_layout_engine("none")

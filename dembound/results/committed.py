@@ -22,6 +22,9 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     import h5py
 
+FORMAT = ("v110", "v110")
+"""Version of the HDF5 format: the first with checksums of all that HDF5 writes about data."""
+
 PAGE = 4096
 """Bytes of a page, the unit of the log."""
 
@@ -226,7 +229,7 @@ def new_file(path: Path) -> Iterator[h5py.File]:
     from dembound.results.reader import replacing
 
     with replacing(path) as part, CommittedFile(part, "w") as store:
-        with h5py.File(store, "w") as file:
+        with h5py.File(store, "w", libver=FORMAT) as file:
             yield file
         store.commit(durable=False)
 
@@ -244,7 +247,7 @@ def changed_file(path: Path) -> Iterator[h5py.File]:
             yield file
         return
     with CommittedFile(path, "a") as store:
-        with h5py.File(store, "a") as file:
+        with h5py.File(store, "a", libver=FORMAT) as file:
             yield file
         store.commit(durable=False)
 

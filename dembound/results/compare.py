@@ -50,6 +50,8 @@ def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Diffe
 
 def _difference(run: str, monitor: str, history: History, reference: History, quantity: Quantity) -> Difference:
     """One monitor's difference."""
+    if len(history.time) == 0 or len(reference.time) == 0:
+        raise CaseError([f"monitor {monitor}: has no samples, as a run was stopped at its start"])
     column = int(np.argmax(np.abs(reference.values[:, :2]).max(axis=0)))
     values, expected = on_common_clock(
         history.time, history.values[:, column], reference.time, reference.values[:, column]

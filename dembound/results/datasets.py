@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,13 +20,27 @@ Columns = Iterable[tuple[str, tuple[int, ...], str, str]]
 """Datasets of a group: their names, widths of a row, types and units."""
 
 
+def text(value: str) -> np.bytes_:
+    """A text in UTF-8 of fixed length, whose bytes have a checksum; HDF5 keeps others in heaps that have none."""
+    return np.bytes_(value.encode() or b"\0")
+
+
+def describe(item: h5py.HLObject, facts: Mapping[str, Any]) -> None:
+    """Write the attributes of a group or dataset: numbers, texts, or several of them."""
+    for name, value in facts.items():
+        several = isinstance(value, list | tuple) and any(isinstance(each, str) for each in value)
+        item.attrs[name] = (
+            text(value) if isinstance(value, str) else np.array([text(each) for each in value]) if several else value
+        )
+
+
 def write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:
     """Write an array with its unit, and checksums (Fletcher's) that HDF5 compares when it reads."""
     if values.size == 0 or values.ndim == 0:
-        group.create_dataset(name, data=values).attrs["unit"] = unit
+        group.create_dataset(name, data=values).attrs["unit"] = text(unit)
         return
     chunks = (_rows(values.shape[1:], values.dtype, CHUNK_BYTES, len(values)), *values.shape[1:])
-    group.create_dataset(name, data=values, chunks=chunks, fletcher32=True).attrs["unit"] = unit
+    group.create_dataset(name, data=values, chunks=chunks, fletcher32=True).attrs["unit"] = text(unit)
 
 
 def make(group: h5py.Group, columns: Columns) -> dict[str, h5py.Dataset]:
@@ -37,7 +51,7 @@ def make(group: h5py.Group, columns: Columns) -> dict[str, h5py.Dataset]:
         kept[name] = group.create_dataset(
             name, shape=(0, *width), maxshape=(None, *width), dtype=kind, chunks=(rows, *width), fletcher32=True
         )
-        kept[name].attrs["unit"] = unit
+        kept[name].attrs["unit"] = text(unit)
     return kept
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.casefile.disks.monitor import FREE_FIELD as FREE_FIELD  # ending of a twin's name, also for pictures
 from dembound.errors import CaseError
-from dembound.results.reader import open_record, place_in_words
+from dembound.results.reader import history_of, open_record, place_in_words
 
 if TYPE_CHECKING:
     import h5py
@@ -67,7 +67,7 @@ def read_histories(path: Path, quantity: Quantity) -> dict[str, History]:
 
 def _read(group: h5py.Group, quantity: Quantity, size: list[float]) -> History:
     """A monitor's history."""
-    time, values = group["time"][:], group[SOURCES.get(quantity, quantity)][:]
+    time, values = history_of(group, SOURCES.get(quantity, quantity))
     if quantity in SOURCES:
         values = np.gradient(values, time, axis=0)
     place, wanted = (place_in_words(group.attrs[name], size) for name in ("position", "wanted"))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dembound.errors import CaseError
+from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.results.committed import CommittedFile, log_of
 
 if TYPE_CHECKING:
@@ -20,19 +20,72 @@ COMPONENTS = ("x", "y", "rotation")
 """The columns of every displacement and velocity in a record."""
 
 
-def open_record(path: Path) -> h5py.File:
-    """Open a record (``run.h5``, ``calibration.h5``) for reading; use it in a ``with`` statement.
+@contextmanager
+def open_record(path: Path) -> Iterator[h5py.File]:
+    """Open a record (``run.h5``, ``calibration.h5``) for reading in a ``with`` statement; errors as of `reading`."""
+    with reading(path) as file:
+        require_sound(file)
+        require_equal_rows(file)
+        yield file
 
-    One whose process has ended during a commit is read with the log of the commit.
 
-    Raises CaseError when it does not exist or is not readable.
+@contextmanager
+def reading(path: Path) -> Iterator[h5py.File]:
+    """The same, of a record that has been open before and whose columns need not be compared again.
+
+    Raises RecordError when it cannot be read, and for everything that damaged contents raise inside the statement,
+    which should therefore do little but read. Errors of the operating system about other files are passed on.
     """
     import h5py
 
     try:
-        return h5py.File(CommittedFile(path, "r") if log_of(path).is_file() else path, "r")
-    except OSError as error:
-        raise CaseError([f"{path}: cannot be read as a record of results: {error}"]) from None
+        with h5py.File(CommittedFile(path, "r") if log_of(path).is_file() else path, "r") as file:
+            yield file
+    except DemboundError:
+        raise
+    except Exception as error:  # h5py and numpy raise nearly anything for damaged contents
+        if isinstance(error, OSError) and error.filename not in (None, str(path)):
+            raise
+        reason = str(error) or type(error).__name__
+        raise RecordError([f"{path}: cannot be read as a record of results: {reason[:200]}"]) from error
+
+
+def require_sound(file: h5py.File) -> None:
+    """Open every group, dataset and attribute of a file once, as methods such as ``items`` leave out damaged ones.
+
+    Raises what h5py raises for them.
+    """
+    waiting = [file]
+    while waiting:
+        item = waiting.pop()
+        for name in item.attrs:
+            _ = item.attrs[name]
+        if hasattr(item, "keys"):
+            waiting += [item[name] for name in item]
+
+
+def text_of(value: str | bytes) -> str:
+    """A text of a record, which may be of fixed length, that is, bytes in UTF-8."""
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def require_equal_rows(file: h5py.File) -> None:
+    """Raise RecordError if columns of a complete record that belong together differ in their number of rows."""
+    if not file.attrs.get("complete", False):
+        return
+    bodies = ["particles", *(f"snapshots/{number}" for number in file.get("snapshots", {}))]
+    alone = ["energy", "cracks", "laws", *(f"histories/{name}" for name in file.get("histories", {}))]
+    for names in (bodies, *([name] for name in alone)):
+        rows = {len(column) for name in names for column in file.get(name, {}).values() if hasattr(column, "shape")}
+        if len(rows) > 1:
+            raise RecordError([f"{file.filename}: is damaged: {names[0]} has columns of different lengths"])
+
+
+def history_of(group: h5py.Group, quantity: str) -> tuple[np.ndarray, np.ndarray]:
+    """Times (k,) in s and values (k, …) of a history; of an interrupted run up to where both were written."""
+    time, values = group["time"][:], group[quantity][:]
+    count = min(len(time), len(values))
+    return time[:count], values[:count]
 
 
 def has_monitors(path: Path) -> bool:
@@ -123,7 +176,7 @@ def record_names(paths: Sequence[Path]) -> list[str]:
     names = []
     for path in paths:
         with open_record(path) as file:
-            names.append(str(file.attrs["name"]))
+            names.append(text_of(file.attrs["name"]))
     folders = [path.resolve().parent.name for path in paths]
     return [
         name if names.count(name) == 1 else folder if folders.count(folder) == 1 else str(path)

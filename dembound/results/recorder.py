@@ -39,8 +39,8 @@ from dembound.motion.cracks import Cracks, joined
 from dembound.motion.energy import Entry, Ledger
 from dembound.motion.kind import Stage, StalledError
 from dembound.motion.trackers import Run
-from dembound.results.committed import CommittedFile
-from dembound.results.datasets import extend, make, write
+from dembound.results.committed import FORMAT, CommittedFile
+from dembound.results.datasets import describe, extend, make, text, write
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -54,6 +54,9 @@ KEPT_BYTES, KEPT_SECONDS = 2**20, 10.0
 
 Thousands of small writes take longer than all steps of a small scene.
 """
+
+LONGEST_NAME = 64
+"""Bytes of the name of a law."""
 
 HISTORY = (
     ("time", (), "f8", "s"),
@@ -105,7 +108,7 @@ class Recorder:
         self._samples: list[np.ndarray] = []
         self._broken: list[Cracks] = []
         self._store = CommittedFile(path, "w" if counts is None else "a")
-        self.file = h5py.File(self._store, "w" if counts is None else "a")
+        self.file = h5py.File(self._store, "w" if counts is None else "a", libver=FORMAT)
         try:
             self._begin(step_limit, stages, counts)
         except BaseException:
@@ -118,9 +121,7 @@ class Recorder:
             self._create(step_limit, stages)
         else:
             self._cut(counts)
-        self._histories = [dict(self.file["histories"][name]) for name in self.scene.monitors]
-        self._cracks, self._laws = dict(self.file["cracks"]), dict(self.file["laws"])
-        self._energy = dict(self.file.get("energy", {}))
+        self._find_datasets()
         for stage in stages if counts is None else ():
             self._append_cracks(stage.cracks, 0.0)  # before the run began
         self.flush(durable=False)
@@ -156,6 +157,12 @@ class Recorder:
             "snapshots": len(self.file["snapshots"]),
         }
 
+    def _find_datasets(self) -> None:
+        """The datasets that grow; searching one in the file takes as long as extending it."""
+        self._histories = [dict(self.file["histories"][name]) for name in self.scene.monitors]
+        self._cracks, self._laws = dict(self.file["cracks"]), dict(self.file["laws"])
+        self._energy = dict(self.file.get("energy", {}))
+
     def append(self, record: np.ndarray) -> None:
         """Take every stride-th of the last steps; record : of the probes, see `Simulation.advance`."""
         state, step = self.run.state, self.run.time_step
@@ -177,13 +184,19 @@ class Recorder:
 
         Raises OSError if that or anything before could not be written; the file is then as after the flush before.
         """
+        import h5py
+
         self._append_kept()
         self._append_energy()
         self._append_laws()
         self._write_peaks()
         self.file.attrs["steps"] = self.run.state.step
-        self.file.flush()
-        self._store.commit(durable=durable)
+        self.file.close()  # an open file has a mark, and could not be read
+        try:
+            self._store.commit(durable=durable)
+        finally:
+            self.file = h5py.File(self._store, "a", libver=FORMAT)
+            self._find_datasets()
         self._written = time.monotonic()
 
     def snapshot(self) -> None:
@@ -205,7 +218,7 @@ class Recorder:
 
     def _create(self, step_limit: float, stages: Sequence[Stage]) -> None:
         """All groups of a new file."""
-        self.file.attrs.update(self._header(step_limit))
+        describe(self.file, self._header(step_limit))
         group = self.file.create_group("particles")
         for name, (values, unit) in self.scene.columns.items():
             write(group, name, values, unit)
@@ -221,7 +234,7 @@ class Recorder:
         self.file.create_group("snapshots")
         for stage in stages:
             group = self.file.require_group(stage.name)
-            group.attrs.update(stage.facts)
+            describe(group, stage.facts)
             write(group, "displacement", stage.displacement.T, DISPLACEMENT_UNIT)
 
     def _cut(self, counts: Mapping[str, int]) -> None:
@@ -235,7 +248,7 @@ class Recorder:
             del self.file["snapshots"][number]
         self.file.attrs["complete"] = False
         header = self._header(0.0)
-        self.file.attrs.update({name: header[name] for name in ("case", "keys")})  # it may run for longer
+        describe(self.file, {name: header[name] for name in ("case", "keys")})  # it may run for longer
 
     def _header(self, step_limit: float) -> dict[str, Any]:
         """The attributes of the record."""
@@ -257,9 +270,9 @@ class Recorder:
     def _write_inputs(self) -> None:
         """The texts of the files that the case refers to, with their paths in it."""
         group = self.file.create_group("inputs")
-        for number, (path, text) in enumerate(self.scene.case.files.items()):
-            write(group, str(number), np.frombuffer(text.encode(), dtype=np.uint8), "UTF-8")
-            group[str(number)].attrs["path"] = path
+        for number, (path, content) in enumerate(self.scene.case.files.items()):
+            write(group, str(number), np.frombuffer(content.encode(), dtype=np.uint8), "UTF-8")
+            describe(group[str(number)], {"path": path})
 
     def _make_histories(self) -> None:
         """The groups of the monitors, with empty datasets."""
@@ -268,19 +281,13 @@ class Recorder:
         columns = HISTORY if scene.record_width <= 6 else (*HISTORY, ("stress", (), "f8", "Pa"))
         for name, node in scene.monitors.items():
             group = histories.create_group(name)
-            group.attrs["particle"] = node
-            group.attrs["position"] = scene.positions[node]
-            group.attrs["wanted"] = scene.places.get(name, scene.positions[node])  # a twin has no given position
-            group.attrs["unit"] = "m"
+            wanted = scene.places.get(name, scene.positions[node])  # a twin has no given position
+            describe(group, {"particle": node, "position": scene.positions[node], "wanted": wanted, "unit": "m"})
             make(group, columns)
 
     def _make_laws(self) -> None:
         """Empty datasets of the laws and their first times."""
-        import h5py
-
-        group = self.file.create_group("laws")
-        group.create_dataset("name", shape=(0,), maxshape=(None,), dtype=h5py.string_dtype())
-        make(group, [("time", (), "f8", "s")])
+        make(self.file.create_group("laws"), [("name", (), f"S{LONGEST_NAME}", ""), ("time", (), "f8", "s")])
 
     def _write_boundaries(self) -> None:
         """The sides; their peaks are written later."""
@@ -328,7 +335,7 @@ class Recorder:
     def _append_laws(self) -> None:
         """Write the laws that are new."""
         for name, step in self.run.state.laws[len(self._laws["time"]) :]:
-            extend(self._laws["name"], np.array([name], dtype=object))
+            extend(self._laws["name"], np.array([text(name)]))
             extend(self._laws["time"], np.array([step * self.run.time_step]))
 
     def _write_peaks(self) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dembound.errors import CaseError
-from dembound.results.reader import energy_of, laws_of, open_record
+from dembound.errors import CaseError, RecordError
+from dembound.results.reader import energy_of, laws_of, open_record, reading, text_of
 
 
 class Arrays(Mapping[str, np.ndarray]):
@@ -22,14 +22,14 @@ class Arrays(Mapping[str, np.ndarray]):
 
     def __init__(self, record: Path, group: h5py.Group) -> None:
         self._record, self._group = record, group.name
-        self._names = [name for name, item in group.items() if isinstance(item, h5py.Dataset)]
+        self._names = [name for name in group if isinstance(group[name], h5py.Dataset)]
         self.attributes: dict[str, Any] = {name: _plain(value) for name, value in group.attrs.items()}
 
     def __getitem__(self, name: str) -> np.ndarray:
         """The array of a name, in SI units; raises KeyError with the existing names."""
         if name not in self._names:
             raise KeyError(f"{self._group} has no {name}; it has {', '.join(self._names)}")
-        with open_record(self._record) as file:
+        with reading(self._record) as file:
             return file[self._group][name][:]
 
     def __iter__(self) -> Iterator[str]:
@@ -43,8 +43,8 @@ class Arrays(Mapping[str, np.ndarray]):
 
     def unit(self, name: str) -> str:
         """The unit of an array."""
-        with open_record(self._record) as file:
-            return str(file[self._group][name].attrs.get("unit", ""))
+        with reading(self._record) as file:
+            return text_of(file[self._group][name].attrs.get("unit", ""))
 
 
 class Results:
@@ -64,7 +64,7 @@ class Results:
     snapshots : in the order of time: ``displacement``, ``velocity`` (n, 3) and more; ``attributes["time"]`` in s.
     cracks : ``time``, ``position``, ``particles``, ``shear`` of the bonds that broke.
 
-    Raises CaseError when there is no record that can be read.
+    Raises RecordError when there is no record that can be read.
     """
 
     def __init__(self, folder: Path | str) -> None:
@@ -99,7 +99,10 @@ class Results:
         path = self.folder / "summary.json"
         if not path.is_file():
             raise CaseError([f"{path}: is missing, the run is not complete"])
-        found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        try:
+            found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        except ValueError:
+            raise RecordError([f"{path}: is damaged, no JSON"]) from None
         return found
 
     @property
@@ -116,5 +119,7 @@ class Results:
 def _plain(value: Any) -> Any:
     """An attribute as a plain Python value."""
     if isinstance(value, np.ndarray):
-        return value.tolist()
+        return [_plain(each) for each in value.tolist()]
+    if isinstance(value, bytes):
+        return text_of(value)
     return value.item() if isinstance(value, np.generic) else value

@@ -18,6 +18,7 @@ from dembound.results.reader import (
     replacing,
     snapshot_of,
     snapshot_of_largest_motion,
+    text_of,
 )
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def view(
         require_rendering(in_window=picture is None)
         plotter = make_plotter(file, first, field, exaggerate, off_screen=picture is not None)
         if picture is None:
-            plotter.show(title=f"dembound: {file.attrs['name']}")
+            plotter.show(title=f"dembound: {text_of(file.attrs['name'])}")
         else:
             with replacing(picture) as part:
                 imsave(part, plotter.screenshot(), format="png")
@@ -142,7 +143,7 @@ def make_plotter(
         scale = f", displacements × {exaggerate:g}" if exaggerate else ""
         broken = len(cracks["position"])
         marked = f", {counted(broken, 'broken bond')} ({CRACKS})" if broken else ""
-        title = f"{file.attrs['name']}: t = {shown.attrs['time']:.3g} s{scale}{marked}"
+        title = f"{text_of(file.attrs['name'])}: t = {shown.attrs['time']:.3g} s{scale}{marked}"
         plotter.add_text(title, name="time", font_size=12)
 
     show(snapshots.index(first))

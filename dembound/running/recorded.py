@@ -8,7 +8,7 @@ import tomli_w
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.kinds import loads
-from dembound.results.reader import open_record
+from dembound.results.reader import open_record, text_of
 
 
 def recorded_case(record: Path) -> Case:
@@ -22,8 +22,8 @@ def recorded_case(record: Path) -> Case:
     with open_record(record) as file:
         if "case" not in file.attrs or "inputs" not in file:
             raise CaseError([f"{record}: has no case that could be run again"])
-        text, name = str(file.attrs["case"]), str(file.attrs["name"])
-        files = {str(given.attrs["path"]): given[:].tobytes().decode() for given in file["inputs"].values()}
+        text, name = text_of(file.attrs["case"]), text_of(file.attrs["name"])
+        files = {text_of(given.attrs["path"]): given[()].tobytes().decode() for given in file["inputs"].values()}
     data = tomllib.loads(text)
     if data.get("static", {}).pop("from", None) is not None:
         text = tomli_w.dumps(data)

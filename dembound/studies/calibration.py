@@ -25,6 +25,7 @@ from dembound.disks.stability import choose_step
 from dembound.errors import CaseError, RunError
 from dembound.motion.simulation import Simulation
 from dembound.results.committed import new_file
+from dembound.results.datasets import describe, write
 from dembound.studies.strip import AFTER, calibration_pulse, full_scene, linear_medium, short_strip
 from dembound.version import __version__
 from dembound.waves import Cosine
@@ -102,13 +103,13 @@ class Calibration:
         """Record the passes in an HDF5 file: attributes, and datasets beta, outgoing (m/s) and ratio."""
         with new_file(path) as file:
             scalars = {key: value for key, value in self.summary().items() if not isinstance(value, list)}
-            file.attrs.update({**scalars, "case": self.case.text, "reduced": "\n".join(self.shortened)})
+            describe(file, {**scalars, "case": self.case.text, "reduced": "\n".join(self.shortened)})
             for name, values, unit in (
                 ("beta", self.beta, "1"),
                 ("outgoing", self.outgoing, "m/s"),
                 ("ratio", self.ratio, "1"),
             ):
-                file.create_dataset(name, data=np.array(values)).attrs["unit"] = unit
+                write(file, name, np.array(values), unit)
 
 
 Report = Callable[[Calibration], None]

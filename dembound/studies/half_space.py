@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,10 +18,8 @@ from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
 from dembound.results.committed import new_file
+from dembound.results.datasets import describe, write
 from dembound.version import __version__
-
-if TYPE_CHECKING:
-    import h5py
 
 ISOTROPY = 1e-6
 """Relative difference of C11 − C12 and 2 C66 up to which a medium is treated as isotropic."""
@@ -67,18 +64,17 @@ def write_exact(case: DiskCase, path: Path) -> None:
     times, motions = surface_motions(scene)
     path.parent.mkdir(parents=True, exist_ok=True)
     with new_file(path) as file:
-        file.attrs.update(
-            {"name": case.name, "case": case.text, "version": __version__, "size": scene.size, "complete": True}
-        )
+        facts = {"name": case.name, "case": case.text, "version": __version__, "size": scene.size, "complete": True}
+        describe(file, facts)
         histories = file.create_group("histories", track_order=True)
         for monitor in case.monitor:
             node, moved = scene.monitors[monitor.name], motions[monitor.name]
             place = scene.assembly.positions[node]
             group = histories.create_group(monitor.name)
-            group.attrs.update({"particle": node, "position": place, "wanted": monitor.position, "unit": "m"})
-            _write(group, "time", times, "s")
-            _write(group, "displacement", moved, "m, m, rad")
-            _write(group, "velocity", np.gradient(moved, times, axis=0), "m/s, m/s, rad/s")
+            describe(group, {"particle": node, "position": place, "wanted": monitor.position, "unit": "m"})
+            write(group, "time", times, "s")
+            write(group, "displacement", moved, "m, m, rad")
+            write(group, "velocity", np.gradient(moved, times, axis=0), "m/s, m/s, rad/s")
 
 
 def surface_motions(scene: DiskScene, samples: int = SAMPLES) -> tuple[np.ndarray, dict[str, np.ndarray]]:
@@ -183,7 +179,3 @@ def _ends_of_the_surface(scene: DiskScene, load: LineLoad) -> Iterator[str]:
 def _must_be_on_top(scene: DiskScene, node: int, place: str) -> None:
     if "top" not in scene.edges or node not in scene.edges["top"].nodes:
         raise CaseError([f"{place}: must be on the top of the scene, where the solution is computed"])
-
-
-def _write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:
-    group.create_dataset(name, data=values).attrs["unit"] = unit

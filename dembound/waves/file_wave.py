@@ -1,16 +1,21 @@
 """A measured or computed velocity history, read from a text file."""
 
 import os
-import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 from pydantic import PrivateAttr, ValidationInfo, model_validator
 
-from dembound.table import quantity
+from dembound.table import LARGEST, SMALLEST, quantity
 from dembound.waves.spectrum import amplitude_spectrum, faded_frequency
 from dembound.waves.wave import NonZero, Wave
+
+NO_COLUMNS = "is not two columns of numbers, separated by blanks or semicolons, in a .csv file by commas"
+
+MOST_SAMPLES = 2**20
+"""Largest number of even samples of a spectrum; a file with very uneven times would have any number of them."""
 
 
 class FileWave(Wave):
@@ -103,7 +108,8 @@ class FileWave(Wave):
 
     def _spectrum(self) -> tuple[np.ndarray, np.ndarray]:
         times, _ = self._samples()
-        time_step = float(np.median(np.diff(times)))
+        usual, length = float(np.median(np.diff(times))), float(times[-1] - times[0])
+        time_step = max(usual, length / MOST_SAMPLES)
         evenly = np.arange(times[0], times[-1] + time_step, time_step)
         return amplitude_spectrum(self.velocity(evenly), time_step)
 
@@ -118,12 +124,14 @@ def read_text(path: Path) -> str:
 
     Raises ValueError if the file is absent or no text, with a message that starts with ``path:``.
     """
-    if not path.is_file():
-        raise ValueError(f'path: no file "{path}"')
     try:
+        if not path.is_file():
+            raise ValueError(f'path: no file "{path}"')
         return path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
-        raise ValueError(f'path: "{path}" is not two columns of numbers, as it is not a text in UTF-8') from None
+        raise ValueError(f'path: "{path}" {NO_COLUMNS}: it is not text in UTF-8') from None
+    except OSError as error:
+        raise ValueError(f'path: "{path}" cannot be read: {error.strerror}') from None
 
 
 def samples_of(text: str, path: Path, quantity: str = "values") -> np.ndarray:
@@ -137,31 +145,42 @@ def samples_of(text: str, path: Path, quantity: str = "values") -> np.ndarray:
     ValueError
         If it does not contain a history; the message starts with ``path:``.
     """
+    lines, separator = _numbers(text, path.suffix.lower() == ".csv")
     try:
-        lines, separator = _numbers(text, path)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # an empty file is reported below
-            samples = np.loadtxt(lines, ndmin=2, delimiter=separator)
-    except ValueError as error:
-        reason = str(error).split(" at row")[0]
-        raise ValueError(
-            f'path: "{path}" is not two columns of numbers, separated by blanks or semicolons, in a .csv file by '
-            f"commas: {reason}"
-        ) from error
+        plain = [line for _, line in lines]
+        samples = np.loadtxt(plain, ndmin=2, delimiter=separator) if plain else np.empty((0, 2))
+    except ValueError:  # which quotes the file: it may be any file
+        raise ValueError(f'path: "{path}" {NO_COLUMNS}: {_misfit(lines, separator)}') from None
     problem = _problem(samples, quantity)
     if problem:
         raise ValueError(f'path: "{path}" {problem}')
     return samples
 
 
-def _numbers(text: str, path: Path) -> tuple[list[str], str | None]:
-    """The lines with numbers of a file, with decimal points, and the separator of their columns; None: blanks."""
-    lines = [line for line in (line.partition("#")[0] for line in text.splitlines()) if line.strip()]
-    separator = "," if path.suffix.lower() == ".csv" else None
-    if lines and ";" in lines[-1]:
-        lines, separator = [line.replace(",", ".") for line in lines], ";"
-    has_header = bool(lines) and not any(_is_number(field) for field in lines[0].split(separator))
+def _numbers(text: str, is_csv: bool) -> tuple[list[tuple[int, str]], str | None]:
+    """The lines with numbers of a text, each with its own, with decimal points, and the separator of their columns.
+
+    The separator None stands for blanks.
+    """
+    lines = [(number, line.partition("#")[0]) for number, line in enumerate(text.splitlines(), start=1)]
+    lines = [(number, line) for number, line in lines if line.strip()]
+    separator = "," if is_csv else None
+    if lines and ";" in lines[-1][1]:
+        lines, separator = [(number, line.replace(",", ".")) for number, line in lines], ";"
+    has_header = bool(lines) and not any(_is_number(field) for field in lines[0][1].split(separator))
     return lines[has_header:], separator
+
+
+def _misfit(lines: Sequence[tuple[int, str]], separator: str | None) -> str:
+    """Which line, numbered, is not like the first one or not of numbers; it is not quoted."""
+    columns = len(lines[0][1].split(separator))
+    for number, line in lines:
+        fields = line.split(separator)
+        if len(fields) != columns:
+            return f"line {number} has {len(fields)} of them, the first one has {columns}"
+        if not all(map(_is_number, fields)):
+            return f"line {number} has a text that is no number"
+    return "it has a number of unusual form"
 
 
 def _is_number(text: str) -> bool:
@@ -181,11 +200,13 @@ def _problem(samples: np.ndarray, quantity: str) -> str:
         return f"has {samples.shape[1]} columns, must have two: time (s), {quantity}"
     if not np.isfinite(samples).all():
         return "contains values that are not finite"
+    if np.abs(samples).max() > LARGEST:
+        return f"contains values beyond {LARGEST:g}"
     if len(samples) < 2:
         return "contains one line, must contain at least two"
     steps = np.diff(samples[:, 0])
-    if not (steps > 0.0).all():
-        line = int(np.argmin(steps > 0.0)) + 2
+    if not (steps > SMALLEST).all():
+        line = int(np.argmin(steps > SMALLEST)) + 2
         return f"must have increasing times; row {line} of its numbers does not follow the row before"
     if not samples[:, 1].any():
         return "contains only zeros"

@@ -1,6 +1,7 @@
 """Small cases and a small recorded run that many tests start from."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -199,6 +200,21 @@ def bar() -> Callable[..., Case]:
         return with_changes(loads(STARTER, Path(), name), {**BAR, **(changes or {})})
 
     return make
+
+
+@pytest.fixture
+def unstable() -> Callable[[], AbstractContextManager[None]]:
+    """Makes a context in which disks run with twice their largest stable step."""
+    from dembound.disks import kind
+
+    @contextmanager
+    def with_long_steps() -> Iterator[None]:
+        stable = kind.choose_step
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(kind, "choose_step", lambda scene: (2.0 * stable(scene)[1], stable(scene)[1]))
+            yield
+
+    return with_long_steps
 
 
 @pytest.fixture

@@ -11,6 +11,9 @@ from dembound.casefile.cross_checks import driving_waves, never_silent, repeated
 from dembound.casefile.messages import numbered
 from dembound.methods import Method
 
+FEWEST_CELLS = 3
+"""Smallest number of spacings of a bar with soft ends: of two, none is between them."""
+
 
 def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[str]:
     """Check the tables of a bar's case against each other.
@@ -80,3 +83,5 @@ def _horizon_too_long(bar: Bar, method: Method) -> Iterator[str]:
     """Horizons too long for the bar."""
     if 2 * method.largest_horizon > bar.cells:
         yield f"method.horizon: is {method.largest_horizon}, must be at most {bar.cells // 2}, half the bar's spacings"
+    elif method.soft_ends and bar.cells < FEWEST_CELLS:
+        yield f"bar.spacing: makes {bar.cells} of them, a bar with soft ends must have {FEWEST_CELLS} or more"

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile import Case
+from dembound.casefile.toml import value_of
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.studies.chart.words import label
@@ -92,16 +93,8 @@ def parsed(options: Sequence[str]) -> dict[str, list[Any]]:
             raise CaseError([f"--vary: is {option}, must be KEY=VALUE,VALUE,…, e.g. packing.radius=0.25,0.5"])
         if key in found:
             raise CaseError([f"--vary: has {key} twice, give all its values once"])
-        found[key] = [toml_value(value) for value in values]
+        found[key] = [value_of(value, f"--vary {key}") for value in values]
     return found
-
-
-def toml_value(text: str) -> Any:
-    """A value in TOML's syntax; a text that is none is that text."""
-    try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
-        return text
 
 
 def _split(text: str) -> Iterator[str]:

@@ -1,6 +1,9 @@
 """The brick cache: hits, misses, damage, moving and clearing."""
 
-from dataclasses import fields
+import hashlib
+import io
+import logging
+from dataclasses import asdict, fields
 
 import numpy as np
 import pytest
@@ -61,6 +64,26 @@ def test_a_file_without_all_arrays_is_damaged(packer, own_cache):
     np.savez(path, size=np.ones(2))
     load_or_pack(KEY, packer)
     assert packer.calls == 2
+
+
+def test_a_file_of_something_else_is_damaged(packer, own_cache, caplog):
+    caplog.set_level(logging.INFO)
+    brick = load_or_pack(KEY, packer)
+    (path,) = own_cache.iterdir()
+    for change in (
+        {"radii": np.ones(2)},
+        {"radii": np.zeros(1)},
+        {"positions": np.full((1, 2), np.nan)},
+        {"pairs": np.ones((2, 2), np.int64)},
+        {"extra": np.ones(1)},
+    ):
+        content = io.BytesIO()
+        np.savez_compressed(content, **(asdict(brick) | change))
+        path.write_bytes(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
+        packer.calls = 0
+        assert load_or_pack(KEY, packer).radii.tolist() == [0.5]
+        assert packer.calls == 1
+    assert caplog.messages == [f"the cached brick {path} is damaged, it is packed again"] * 5
 
 
 def test_the_folder_can_move(packer, own_cache, tmp_path, monkeypatch):

@@ -6,6 +6,7 @@ from matplotlib import image
 
 from dembound.plot.style import (
     Powers,
+    decade,
     line_style,
     measured_once,
     new_figure,
@@ -31,6 +32,25 @@ def test_a_title_given_takes_the_place_of_the_figures_own(tmp_path):
     assert figure.get_suptitle() == "what it shows"
     save(figure, tmp_path / "figure.png", "figure 1")
     assert figure.get_suptitle() == "figure 1"
+
+
+def test_titles_and_names_are_no_formulas(tmp_path):
+    @styled
+    def draw():
+        figure = new_figure(5.0, 4.0)
+        panel = figure.subplots()
+        panel.plot([0.0, 1.0], label="$x^{$")
+        panel.set_title(r"$\nothing$")
+        outside_legend(figure, [panel], columns=1)
+        return figure
+
+    save(draw(), tmp_path / "figure.png", "$x^{$")
+    assert (tmp_path / "figure.png").is_file()
+
+
+@pytest.mark.parametrize(("value", "shown"), [(1.0, "10⁰"), (1e-3, "10⁻³"), (1e12, "10¹²")])
+def test_decades_are_powers_of_ten(value, shown):
+    assert decade(value) == shown
 
 
 def test_the_same_figure_saves_to_the_same_bytes(tmp_path):

@@ -22,7 +22,7 @@ def test_one_sample_has_no_acceleration(small_run, tmp_path):
     run = tmp_path / "run.h5"
     run.write_bytes(small_run.read_bytes())
     with h5py.File(run, "r+") as file:
-        for name in ("time", "velocity"):
+        for name in ("time", "velocity", "displacement"):
             file["histories/front"][name].resize(1, axis=0)
     with pytest.raises(CaseError, match="fewer than two samples"):
         read_histories(run, "acceleration")

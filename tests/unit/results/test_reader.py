@@ -1,13 +1,16 @@
 """Records open by name and tell what happened; files are replaced whole."""
 
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pytest
 
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RecordError
 from dembound.results.reader import (
     cracks_until,
     energy_of,
+    history_of,
     is_line,
     laws_in_words,
     laws_of,
@@ -16,6 +19,7 @@ from dembound.results.reader import (
     record_names,
     replacing,
     snapshot_of,
+    text_of,
 )
 
 
@@ -23,8 +27,54 @@ def test_what_is_no_record_is_refused_by_name(tmp_path):
     text = tmp_path / "run.h5"
     text.write_text("not a record")
     for path in (text, tmp_path / "missing.h5"):
-        with pytest.raises(CaseError, match=path.name):
-            open_record(path)
+        with pytest.raises(RecordError, match=path.name), open_record(path):
+            pytest.fail("nothing can be read")
+
+
+def test_what_damage_raises_is_one_line_about_the_record(small_run, tmp_path):
+    path = tmp_path / "run.h5"
+    for damage in (
+        lambda file: file.pop("particles"),
+        lambda file: file["histories/front"].pop("time"),
+        lambda file: file.attrs.pop("name"),
+        lambda file: file["histories/front/time"].resize(3, axis=0),
+    ):
+        path.write_bytes(small_run.read_bytes())
+        with h5py.File(path, "r+") as file:
+            damage(file)
+        with pytest.raises(RecordError) as caught:
+            contents(path)
+        assert str(caught.value).startswith(f"{path}: ")
+        assert len(caught.value.problems) == 1
+
+
+def contents(path):
+    with open_record(path) as file:
+        return file["particles/position"][:], file["histories/front/time"][:], file.attrs["name"]
+
+
+def test_other_errors_are_passed_on(small_run):
+    with pytest.raises(FileNotFoundError), open_record(small_run):
+        Path("nowhere/else").read_text(encoding="utf-8")
+    with pytest.raises(CaseError, match=r"^said$") as caught, open_record(small_run):
+        raise CaseError(["said"])
+    assert caught.value.exit_code == 2
+
+
+def test_texts_may_be_of_fixed_length():
+    assert [text_of(value) for value in ("β", "β".encode(), np.bytes_("β".encode()))] == ["β"] * 3
+
+
+def test_the_history_of_an_interrupted_run_ends_where_both_columns_do(small_run, tmp_path):
+    path = tmp_path / "run.h5"
+    path.write_bytes(small_run.read_bytes())
+    with h5py.File(path, "r+") as file:
+        file.attrs["complete"] = False
+        file["histories/front/velocity"].resize(5, axis=0)
+    with open_record(path) as file:
+        time, velocity = history_of(file["histories/front"], "velocity")
+        np.testing.assert_array_equal(time, file["histories/front/time"][:5])
+    assert velocity.shape == (5, 3)
 
 
 def test_records_tell_bars_from_disks(small_run, spalled_run):

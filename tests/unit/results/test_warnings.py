@@ -20,7 +20,7 @@ def moved(small_run, tmp_path):
     def find(case, broken=(), component: int = 0, **velocities: np.ndarray) -> list[str]:
         path = Path(shutil.copy(small_run, tmp_path / "run.h5"))
         with h5py.File(path, "r+") as file:
-            del file["histories"], file["cracks/particles"]
+            del file["histories"], file["cracks"]
             file["cracks/particles"] = np.array(broken, dtype=np.int64).reshape(-1, 2)
             file.create_group("histories", track_order=True)
             for name, velocity in velocities.items():

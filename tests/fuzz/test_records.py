@@ -1,0 +1,180 @@
+"""A damaged record is refused in one line, or read as it was written; nothing else is ever read from it.
+
+This needs checksums of all data (``fletcher32``), of all metadata (a file format from HDF5 1.10 on), and texts of fixed
+length: those of variable length are in heaps without a checksum, in which HDF5 may search for ever.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from dembound.errors import RecordError
+from dembound.gauge.gauge_io import read_gauge
+from dembound.kinds import kind_of_record, loads
+from dembound.motion.energy import Ledger
+from dembound.motion.simulation import Simulation
+from dembound.plot.boundary import plot_boundary
+from dembound.plot.energy import plot_energy
+from dembound.plot.histories import plot_histories
+from dembound.results.compare import compare
+from dembound.results.recorder import Recorder
+from dembound.results.recording import Histories, Snapshots
+from dembound.results.results import Results
+from dembound.results.vtk import write_vtu
+from dembound.running import plan
+
+BAR = """
+[bar]
+length = 1.0
+spacing = 0.025
+density = 2500.0
+wave_speed = 1000.0
+strength = 8e6
+[method]
+type = "peridynamics"
+horizon = 3
+[[load]]
+name = "hit"
+pressure = 12e6
+nodes = 3
+wave = "hit"
+[wave.hit]
+type = "triangle"
+amplitude = 1.0
+rise = 2e-4
+fall = 2e-4
+[[monitor]]
+name = "gauge"
+position = 0.525
+[run]
+duration = 1.5e-3
+courant = 1.0
+"""
+
+DISKS = """
+[packing]
+pattern = "A"
+size = [4.0, 1.0]
+radius = 0.25
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+[boundary.left]
+type = "velocity"
+wave_p = "push"
+[boundary.right]
+type = "viscous"
+[wave.push]
+type = "cosine"
+amplitude = 0.5
+period = 0.01
+[[monitor]]
+name = "gauge"
+position = [2.4, 0.5]
+[run]
+duration = 0.005
+"""
+
+
+@pytest.fixture(params=[BAR, DISKS], ids=["bar", "disks"])
+def record(request, tmp_path) -> Path:
+    """The record of a run with histories, two snapshots, a ledger, and of the bar cracks."""
+    planned = plan(loads(request.param, Path(), "small"))
+    half = planned.steps // 2
+    simulation = Simulation(planned.scene, planned.time_step, list(planned.scene.monitors.values()))
+    ledger = Ledger(simulation, half)
+    path = tmp_path / "sound" / "run.h5"
+    path.parent.mkdir()
+    with Recorder(path, simulation, planned.step_limit, ledger=ledger) as recorder:
+        simulation.track(Histories(recorder), Snapshots(recorder, 2, 2 * half), ledger)
+        simulation.run(2 * half)
+    return path
+
+
+def contents(path: Path) -> Iterator[tuple[str, Any]]:
+    """All that a record is read for, by name."""
+    results = Results(path)
+    yield "attributes", results.attributes
+    yield "laws", results.laws
+    yield from results.energy.items()
+    groups = {"particles": results.particles, "cracks": results.cracks, **results.histories, **results.boundaries}
+    for name, arrays in (groups | {str(number): each for number, each in enumerate(results.snapshots)}).items():
+        yield f"{name} attributes", arrays.attributes
+        yield from ((f"{name}/{key}", values) for key, values in arrays.items())
+
+
+def drawn(path: Path, sound: Path) -> None:
+    """Everything that the commands make of a record, and Python does not."""
+    kind = kind_of_record(path)
+    plot_histories([path])
+    plot_energy(path)
+    compare(sound, [path], "velocity")
+    write_vtu(path, path.parent / "paraview", kind)
+    list(kind.pictures(path))
+    if kind.name == "bar":
+        read_gauge(path)
+    else:
+        plot_boundary([path], "right")
+
+
+def spoiled(content: bytes) -> st.SearchStrategy[bytes]:
+    """The bytes with one changed, some zeroed or overwritten, or cut off; half of the places are in the first tenth."""
+    last = len(content) - 1
+    places = st.one_of(st.integers(0, last), st.integers(0, last // 10))
+
+    def written(at: int, new: bytes) -> bytes:
+        return (content[:at] + new + content[at + len(new) :])[: len(content)]
+
+    flip = st.builds(lambda at, by: written(at, bytes([content[at] ^ by])), places, st.integers(1, 255))
+    zero = st.builds(lambda at, count: written(at, bytes(count)), places, st.integers(1, 500))
+    fill = st.builds(written, places, st.binary(min_size=1, max_size=64))
+    return st.one_of(flip, flip, zero, fill, places.map(lambda at: content[:at])).filter(lambda new: new != content)
+
+
+def outcome(read: Callable[[], Any]) -> Any:
+    """What is read, or None for a record that is refused, in one line and with exit code 5."""
+    try:
+        return read()
+    except RecordError as error:
+        refusal = error
+    assert refusal.exit_code == 5
+    assert len(str(refusal).splitlines()) == 1
+    return None
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(500, marks=pytest.mark.slow)])  # of each kind
+def test_a_damaged_record_is_refused_or_read_as_it_was(count: int, sweep, record: Path, tmp_path: Path) -> None:
+    expected = list(contents(record))
+    path = tmp_path / "run.h5"
+    found: list[bool] = []
+
+    @sweep(count)
+    @given(spoiled(record.read_bytes()))
+    def each(new: bytes) -> None:
+        path.write_bytes(new)
+        seen = outcome(lambda: list(contents(path)))
+        found.append(seen is not None)
+        if seen is not None:
+            assert_equal(seen, expected)
+        if len(found) % 10 == 1:
+            outcome(lambda: drawn(path, record))
+
+    each()
+    assert sum(found) < 0.5 * len(found)
+
+
+def assert_equal(seen: Sequence[tuple[str, Any]], expected: Sequence[tuple[str, Any]]) -> None:
+    """The same names, numbers and texts."""
+    assert [name for name, _ in seen] == [name for name, _ in expected]
+    for (_, one), (_, other) in zip(seen, expected, strict=True):
+        np.testing.assert_equal(one, other)
+
+
+def test_a_sound_record_is_read_and_drawn(record: Path) -> None:
+    assert_equal(list(contents(record)), list(contents(record)))
+    drawn(record, record)
