@@ -34,6 +34,7 @@ def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.nda
         "displacement": moved,
         "rotation": displacement[:, 2],
         "brick_particle": particles["brick_particle"][:],
+        "column": np.zeros(len(velocity)),
         "nbCracks": np.zeros(len(velocity)),
         "damage": np.zeros(len(velocity)),
     }
@@ -45,6 +46,7 @@ def test_positions_are_in_double_and_fields_in_single_precision(exported):
     kinds = {name: values.dtype for name, values in mesh.point_data.items()}
     whole = {"id", "brick_particle", "nbCracks"}
     assert mesh.points.dtype == np.float64
+    assert kinds.pop("column") == np.uint8
     assert kinds == {name: np.int32 if name in whole else np.float32 for name in kinds}
 
 
