@@ -143,9 +143,13 @@ class Disks(Kind[DiskCase, DiskScene]):
         yield "scene", plot_scene(record)
 
     def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
-        """The scene with disks coloured by a field."""
+        """The scene with disks coloured by a field, or with lines for the forces of contacts."""
+        from dembound.plot.chains import plot_chains
+        from dembound.plot.field import FORCES
         from dembound.plot.scene import plot_scene
 
+        if field == FORCES:
+            return plot_chains(record, snapshot)
         return plot_scene(record, snapshot, cast("FieldName", field))
 
 

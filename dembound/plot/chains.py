@@ -12,14 +12,17 @@ from matplotlib.figure import Figure
 from dembound.errors import CaseError
 from dembound.plot.disks import SMALLEST_PIXELS, Window, draw_disks
 from dembound.plot.field import Disks, read_disks
-from dembound.plot.scene import DRAWING, LONG, close_up
+from dembound.plot.scene import DRAWING, LONG, part_around
 from dembound.plot.style import COLOURS, new_figure, outside_legend, styled
 from dembound.results.reader import open_record, snapshot_of
 
 COLUMN = "contacts/normal_force"
 """Of a snapshot."""
 
-WIDEST = 0.6
+KILO = 1e3
+"""Newtons in a kilonewton."""
+
+WIDEST = 0.5
 """Width of the widest lines over the mean diameter of disks."""
 
 LEAST_WIDTH = 2.0
@@ -69,7 +72,7 @@ def plot_chains(run: Path, snapshot: int | None = None) -> Figure:
     run
         the ``run.h5`` of a run.
     snapshot
-        its number; negative ones count from the last. By default the one with the largest mean force.
+        its number; negative ones count from the last. By default the one with the largest sum of forces.
 
     Raises CaseError when the file cannot be read, or has no such snapshot or no contacts.
     """
@@ -111,7 +114,9 @@ def read_chains(file: h5py.File, snapshot: int | None) -> Chains:
 def _window(disks: Disks, chains: Chains) -> Window:
     """The whole scene, or of a long one the part around the largest forces."""
     size = disks.window.size
-    return close_up(disks, chains.largest) if max(size) > LONG * min(size) else disks.window
+    if max(size) <= LONG * min(size):
+        return disks.window
+    return part_around(disks, disks.positions[np.argmax(chains.largest)])
 
 
 def _draw_lines(panel: Axes, window: Window, chains: Chains, widest: float) -> str:
@@ -124,7 +129,7 @@ def _draw_lines(panel: Axes, window: Window, chains: Chains, widest: float) -> s
     widths = widest * np.minimum(np.abs(force) / (full or 1.0), 1.0)
     colours = np.where(force < 0.0, PUSH, PULL).tolist()
     panel.add_collection(LineCollection(list(ends), linewidths=widths, colors=colours, capstyle="round"), autolim=False)
-    panel.plot([], [], color=PUSH, linewidth=widest, label=f"compression, {full:.2g} N/m or more")
-    panel.plot([], [], color=PULL, linewidth=0.5 * widest, label=f"tension, {0.5 * full:.2g} N/m")
+    panel.plot([], [], color=PUSH, linewidth=widest, label=f"compression, {full / KILO:.2g} kN/m or more")
+    panel.plot([], [], color=PULL, linewidth=0.5 * widest, label=f"tension, {0.5 * full / KILO:.2g} kN/m")
     count = np.count_nonzero(inside)
     return f"{count:,} contacts" if count == len(chosen) else f"the {len(chosen):,} strongest of {count:,} contacts"
