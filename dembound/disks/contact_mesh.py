@@ -11,8 +11,8 @@ side. They have these cell data:
 | ``particles`` | 1 | (b, 2) | ids of the two disks |
 
 To see force chains in ParaView, open ``contacts.pvd`` or ``contacts.vtkhdf``, press Apply, and choose the filters *Cell
-Data to Point Data* and *Tube*, with scalars ``normalForce``, *Vary Radius* by absolute scalar, and a small radius
-factor.
+Data to Point Data*, *Calculator* with ``abs(normalForce)``, and *Tube* with its result as scalars, *Vary Radius* by
+scalar and a radius factor of 10 or so.
 """
 
 from __future__ import annotations
