@@ -129,7 +129,12 @@ def _draw_lines(panel: Axes, window: Window, chains: Chains, widest: float) -> s
     widths = widest * np.minimum(np.abs(force) / (full or 1.0), 1.0)
     colours = np.where(force < 0.0, PUSH, PULL).tolist()
     panel.add_collection(LineCollection(list(ends), linewidths=widths, colors=colours, capstyle="round"), autolim=False)
-    panel.plot([], [], color=PUSH, linewidth=widest, label=f"compression, {full / KILO:.2g} kN/m or more")
-    panel.plot([], [], color=PULL, linewidth=0.5 * widest, label=f"tension, {0.5 * full / KILO:.2g} kN/m")
+    panel.plot([], [], color=PUSH, linewidth=widest, label=f"compression, {_in_words(full)} or more")
+    panel.plot([], [], color=PULL, linewidth=0.5 * widest, label=f"tension, {_in_words(0.5 * full)}")
     count = np.count_nonzero(inside)
     return f"{count:,} contacts" if count == len(chosen) else f"the {len(chosen):,} strongest of {count:,} contacts"
+
+
+def _in_words(force: float) -> str:
+    """A force in N/m with two digits."""
+    return f"{np.format_float_positional(force / KILO, precision=2, fractional=False, trim='-')} kN/m"
