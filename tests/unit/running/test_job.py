@@ -66,14 +66,16 @@ def test_a_run_leaves_one_whole_folder(bar, tmp_path) -> None:
 
 def test_every_file_of_a_run_is_one_of_those_that_a_rerun_replaces(bar, spalling, tmp_path) -> None:
     pulled = {"boundary.left": GRIP, "wave.pulse.amplitude": -5.0}
-    brittle = {"material.law": "linearpbond", "material.pb_ten": 1e6, "output.contacts": True, **pulled}
-    every = {"output.pictures": True, "output.snapshots": 2, "output.stress": True, "output.peaks": True}
+    brittle = {"material.law": "linearpbond", "material.pb_ten": 1e6, **pulled}
+    output = {"pictures": True, "snapshots": 2, "stress": True, "contacts": True, "peaks": True}
+    every = {f"output.{key}": value for key, value in output.items()}
     cases = bar({**brittle, **every}, "brittle"), bar({**HANGING, **every}, "hanging"), spalling({**every})
     found = set()
     for case in cases:
         folder = run_case(case, tmp_path)
         names = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
         assert [name for name in names if not OWN.fullmatch(name)] == []
+        assert ("paraview/contacts.pvd" in names) == ("paraview/bar.pvd" not in names)  # a bar has no contacts
         found |= names
 
     of_each = [f"paraview/{name}" for name in ("particles", "contacts", "bar")]
