@@ -40,8 +40,11 @@ def acting(contacts: Contacts, geometry: int) -> np.ndarray:
     geometry : REFERENCE or SLID for the elastic law, under which contacts remain as they are at the start; else those
     with a force in the last step are closed.
     """
-    rows = contacts.constants[contacts.contact_type]
-    closed = rows[:, 3] >= rows[:, 2] if geometry >= REFERENCE else contacts.force[:2].any(axis=0)
+    if geometry >= REFERENCE:
+        rest, touch = contacts.constants[:, 2:4].T
+        closed = (touch >= rest)[contacts.contact_type]
+    else:
+        closed = contacts.force[:2].any(axis=0)
     whether: np.ndarray = (contacts.state == INTACT) | closed
     return whether
 

@@ -31,6 +31,9 @@ LEAST_WIDTH = 2.0
 FEW = 0.01
 """Share of the contacts whose larger forces have lines of the same width: the largest are several times the others."""
 
+NARROWEST = 4.0
+"""Inches on the page that title and legend need at least."""
+
 MOST_LINES = 30_000
 """Number of lines in a picture: those of the largest forces."""
 
@@ -80,7 +83,8 @@ def plot_chains(run: Path, snapshot: int | None = None) -> Figure:
         disks, chains = read_disks(file), read_chains(file, snapshot)
     window = _window(disks, chains)
     scale = min(DRAWING / window.size)
-    figure = new_figure(*(scale * window.size + [1.2, 1.8]))
+    width, height = scale * window.size
+    figure = new_figure(max(width, NARROWEST) + 1.2, height + 1.8)
     panel = figure.subplots()
     panel.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], xlabel="x (m)", ylabel="y (m)")
     panel.grid(False)
