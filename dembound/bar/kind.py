@@ -109,9 +109,9 @@ class Bars(Kind[BarCase, BarScene]):
         """Methods and spalls in words."""
         return bar_outcome(summary)
 
-    def mesh(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mesh:
+    def meshes(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> dict[str, meshio.Mesh]:
         """One line from each node to the next."""
-        return bar_mesh(particles, snapshot, cracks)
+        return {self.mesh_name: bar_mesh(particles, snapshot, cracks)}
 
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:
         """The bar over place and time, and the stress at its monitors."""

@@ -16,5 +16,6 @@ class Output(Table):
         1, unit="1", help="number of whole-scene snapshots, evenly spaced, the last at the end; 0: none", ge=0
     )
     stress: bool = quantity(False, unit="1", help="whether snapshots hold the stress of every particle")
+    contacts: bool = quantity(False, unit="1", help="whether snapshots hold the forces of every contact and bond")
     peaks: bool = quantity(False, unit="1", help="whether the largest speed of every particle in the run is kept")
     pictures: bool = quantity(True, unit="1", help="whether pictures are drawn when the run is over")

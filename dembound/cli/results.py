@@ -51,6 +51,7 @@ class SceneField(StrEnum):
     stress_xx = "stress_xx"
     stress_yy = "stress_yy"
     stress_xy = "stress_xy"
+    forces = "forces"
     peak = "peak"
     unbalanced = "unbalanced"
 
@@ -83,8 +84,8 @@ def plot(
         SceneField | None,
         typer.Option(
             metavar="FIELD",
-            help=f"Show the scene of one run instead, its disks coloured by this: {', '.join(SceneField)}; of a bar it "
-            "over place and time, stress, damage and motion.",
+            help=f"Show the scene of one run instead, its disks coloured by this: {', '.join(SceneField)}; forces: "
+            "force chains, contacts as lines; of a bar it over place and time, stress, damage and motion.",
         ),
     ] = None,
     snapshot: Annotated[

@@ -69,6 +69,7 @@ class DiskBody(Scene):
             "position": (assembly.positions, "m"),
             "radius": (assembly.radii, "m"),
             "brick_particle": (assembly.brick_particle, "1"),
+            "column": (np.arange(self.count) < (0 if self.seam is None else self.seam.count), "1"),
             "bonds": (np.bincount(assembly.pairs.ravel(), minlength=self.count) * int(bonded), "1"),
         }
 

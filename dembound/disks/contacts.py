@@ -6,6 +6,7 @@ import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.constants import brick_constants, limits_of, shared_constants
+from dembound.disks.contact_forces import acting
 from dembound.disks.neighbours import cells_of, near_pairs, pair_keys
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.pair_rows import PairPlan
@@ -300,9 +301,9 @@ class ContactList:
         """Particles (m,) bool with a bond that has broken since cracks were last recorded."""
         return self._counted(self.of("cracked") >= 0) > 0
 
-    def coordination(self) -> np.ndarray:
-        """Number (m,) of intact bonds and closed contacts of every particle, from the pairs' last forces."""
-        return self._counted((self.of("state") == INTACT) | self.force[:, :2].any(axis=1))
+    def coordination(self, geometry: int) -> np.ndarray:
+        """Number (m,) of intact bonds and closed contacts of every particle, see `contact_forces.acting`."""
+        return self._counted(acting(self.arrays, geometry)[self.live])
 
     def _counted(self, chosen: np.ndarray) -> np.ndarray:
         """Number (m,) of the chosen pairs (b,) that each particle has."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.breaks import first_break
+from dembound.disks.contact_mesh import contact_mesh
 from dembound.disks.facts import disk_facts
 from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
 from dembound.disks.outcome import disk_outcome
@@ -133,9 +134,12 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Static stage, laws and cracks in words."""
         return disk_outcome(summary)
 
-    def mesh(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mesh:
-        """One vertex per disk."""
-        return disk_mesh(particles, snapshot, cracks)
+    def meshes(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> dict[str, meshio.Mesh]:
+        """One vertex per disk, and one line per contact if the record has contacts."""
+        meshes = {self.mesh_name: disk_mesh(particles, snapshot, cracks)}
+        if "contacts/particles" in snapshot:
+            meshes["contacts"] = contact_mesh(particles, snapshot)
+        return meshes
 
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:
         """The scene."""
@@ -144,9 +148,13 @@ class Disks(Kind[DiskCase, DiskScene]):
         yield "scene", plot_scene(record)
 
     def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
-        """The scene with disks coloured by a field."""
+        """The scene with disks coloured by a field, or with lines for the forces of contacts."""
+        from dembound.plot.chains import plot_chains
+        from dembound.plot.field import FORCES
         from dembound.plot.scene import plot_scene
 
+        if field == FORCES:
+            return plot_chains(record, snapshot)
         return plot_scene(record, snapshot, cast("FieldName", field))
 
 

@@ -13,7 +13,8 @@ Every disk is a vertex at its reference position moved by its displacement (z = 
 | ``displacement`` | m | (n, 3) | since the start of the run, z = 0 |
 | ``rotation`` | rad | (n,) | since the start of the run |
 | ``brick_particle`` | 1 | (n,) | the disk of the brick that this one is a copy of |
-| ``coordNumber`` | 1 | (n,) | its intact bonds and closed contacts, under a history-dependent law (YADE's name) |
+| ``column`` | 1 | (n,) | 1 for a disk of a free-field column, else 0 |
+| ``coordNumber`` | 1 | (n,) | its intact bonds and closed contacts, of a history-dependent law (YADE's name) |
 | ``nbCracks`` | 1 | (n,) | its bonds that have broken so far (YADE's name) |
 | ``damage`` | 1 | (n,) | that number over the bonds it had at the start, 0 where it had none |
 | ``stress`` | Pa | (n, 6) | XX, YY, ZZ, XY, YZ, XZ, tension positive, with Z 0; if the case asks for it |
@@ -83,6 +84,7 @@ def disk_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mes
         "displacement": in_space(displacement[:, :2], np.float32),
         "rotation": displacement[:, 2],
         "brick_particle": particles["brick_particle"],
+        "column": particles["column"],
         "nbCracks": broken,
         "damage": broken / np.maximum(particles["bonds"], 1),  # without bonds none can break
     }
@@ -92,9 +94,12 @@ def disk_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mes
         data["stress"] = _tensors(snapshot["stress"])
     if "peak_velocity" in particles:
         data["peakVelocity"] = particles["peak_velocity"]
-    places = in_space(particles["position"])
-    places[:, :2] += displacement[:, :2]
-    return vertices(places, shown(data))
+    return vertices(places_of(particles, snapshot), shown(data))
+
+
+def places_of(particles: Arrays, snapshot: Arrays) -> np.ndarray:
+    """Where disks are drawn, (n, 3) m: at their positions at the start moved by their displacements."""
+    return in_space(particles["position"] + snapshot["displacement"][:, :2])
 
 
 def _tensors(stress: np.ndarray) -> np.ndarray:

@@ -96,21 +96,15 @@ class DiskPart(Part):
 
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Energy (J) in contacts and in bonds at displacements (3, slots)."""
-        if self.contacts is None:
-            return strain_energy(u, self._plain_contacts, REFERENCE)
-        elastic = SLID if self.contacts.keeps_slip else REFERENCE
-        geometry = self.contacts.limits.geometry if self.uses_history else elastic
-        return strain_energy(u, self.contacts.arrays, geometry)
+        return strain_energy(u, self.pairs, self.geometry)
 
     def take_cracks(self, steps: int) -> Cracks:
         """The bonds that broke since this was last called."""
         return NO_CRACKS if self.contacts is None else self.contacts.take_cracks()
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
-        """Under the history-dependent law: number of intact bonds and closed contacts of every disk."""
-        if self.contacts is None or not self.uses_history:
-            return {}
-        return {"coordination": (self.contacts.coordination(), "1")}
+        """Of a material whose law has a history: number of intact bonds and closed contacts of every disk."""
+        return {} if self.contacts is None else {"coordination": (self.contacts.coordination(self.geometry), "1")}
 
     def memory(self) -> Arrays:
         """Whether the law in use has a history, and the pairs."""
@@ -122,6 +116,15 @@ class DiskPart(Part):
         self.uses_history = bool(memory["uses_history"])
         if self.contacts is not None:
             self.contacts.recall(memory)
+
+    @property
+    def geometry(self) -> int:
+        """Geometry of its pairs under the law in use, see kernels/contacts.py."""
+        if self.contacts is None:
+            return REFERENCE
+        if self.uses_history:
+            return self.contacts.limits.geometry
+        return SLID if self.contacts.keeps_slip else REFERENCE
 
     @property
     def pairs(self) -> Contacts:

@@ -20,6 +20,7 @@ from dembound.disks.stress import particle_stress
 from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.holes import Hole
+from dembound.kernels.contacts import REFERENCE
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
 from dembound.packings.tiling import Assembly, tile
@@ -41,7 +42,7 @@ class DiskScene(DiskBody):
     def elastic_stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (n, 3) xx, yy, xy in Pa at displacements (3, n) under the elastic law, see `particle_stress`."""
         contacts = plain_contacts(self.ground, self.assembly, self.layout.slot)
-        return particle_stress(self, contacts, displacement, elastic=True)
+        return particle_stress(self, contacts, displacement, REFERENCE)
 
     @property
     def places_in_whole(self) -> np.ndarray:

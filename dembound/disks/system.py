@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 
 from dembound.disks.balance import Balance
 from dembound.disks.body import DiskBody
-from dembound.disks.contacts import ContactList
+from dembound.disks.contact_forces import contact_columns, pieces
+from dembound.disks.contacts import ContactList, plain_contacts
 from dembound.disks.layout import with_supports
 from dembound.disks.part import DiskPart, FreeFieldSeam
 from dembound.disks.rotation import turned_as_a_whole, turns_freely
 from dembound.disks.stress import part_stress
 from dembound.kernels.common import BROKE, LAW_ENDS, LIST_ENDS
-from dembound.kernels.contacts import UPDATED
+from dembound.kernels.contacts import REFERENCE, UPDATED
 from dembound.kernels.follower import turn_forces
 from dembound.motion.part import System
 from dembound.motion.state import Arrays, State, within
@@ -160,6 +162,22 @@ class DiskSystem(System):
     def stress(self, displacement: np.ndarray) -> np.ndarray:
         """Stress (n, 3) xx, yy, xy in Pa of all particles at displacements (3, n), tension positive."""
         return np.concatenate([part_stress(self.scene, part, displacement) for part in self.parts])
+
+    def contact_forces(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
+        """The contacts and bonds of the whole scene at displacements (3, n) of this one, see `contact_columns`.
+
+        Only with output.contacts. Of a smaller scene, which is under the elastic law, all disks are moved.
+        """
+        scene, whole = self.scene, self.scene.whole
+        if not scene.case.output.contacts:
+            return {}
+        lists = [(part.pairs, part.geometry) for part in self.parts]
+        if whole is not scene:
+            assert isinstance(whole, DiskBody)
+            displacement = scene.widened("displacement", displacement.T).T
+            lists = [(plain_contacts(whole.ground, whole.assembly, whole.layout.slot), REFERENCE)]
+        each = (pieces(whole.layout, pairs, displacement, geometry) for pairs, geometry in lists)
+        return contact_columns(chain.from_iterable(each))
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
         """Fields of every disk at displacements (3, n) other than its motion; stress only with output.stress."""

@@ -202,8 +202,11 @@ class Kind(ABC, Generic[C, S]):
         """The results of a run in words, from its summary."""
 
     @abstractmethod
-    def mesh(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mesh:
-        """One snapshot of a record for ParaView, and the cracks until then; each with its columns by name."""
+    def meshes(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> dict[str, meshio.Mesh]:
+        """One snapshot of a record for ParaView, and the cracks until then; each with its columns by name.
+
+        Meshes by the names of their files, the first of which is `mesh_name`.
+        """
 
     @abstractmethod
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:

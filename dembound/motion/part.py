@@ -146,6 +146,13 @@ class System:
         each = [part.snapshot(displacement) for part in self.parts]
         return {name: (np.concatenate([known[name][0] for known in each]), unit) for name, (_, unit) in each[0].items()}
 
+    def contact_forces(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
+        """Columns of the contacts of the whole scene at displacements (3, n), by name: values (b, …) and unit.
+
+        By default none; only if the case asks for them.
+        """
+        return {}
+
     def memory(self) -> Arrays:
         """All arrays that change during a run except the motion, by name."""
         memory: dict[str, np.ndarray] = {"load": self.load, "steady": self.steady}

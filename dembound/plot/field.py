@@ -14,6 +14,9 @@ from dembound.results.reader import COMPONENTS, cracks_until, laws_in_words, law
 
 FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced"]
 
+FORCES = "forces"
+"""Name of the picture of contacts, see plot/chains.py."""
+
 MEGA = 1e6
 """Pascals in a megapascal."""
 
@@ -103,7 +106,7 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
     Raises CaseError when the record has no such snapshot or does not have the field, or disks have no such field.
     """
     if name not in get_args(FieldName):
-        raise CaseError([f"field: is {name}, must be one of {', '.join(get_args(FieldName))} for disks"])
+        raise CaseError([f"field: is {name}, must be one of {', '.join((*get_args(FieldName), FORCES))} for disks"])
     if name == "peak":
         return _peak(file, snapshot)
     groups = list(snapshot_of(file, -1).parent.values())

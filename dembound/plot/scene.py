@@ -153,12 +153,17 @@ def _frame(panel: Axes, part: Window) -> None:
 
 def close_up(disks: Disks, values: np.ndarray) -> Window:
     """The part of a long scene around half the largest of values (n,), where colours change most."""
-    scene, sizes = disks.window, np.abs(values)
+    sizes = np.abs(values)
+    return part_around(disks, disks.positions[np.argmin(np.abs(sizes - 0.5 * sizes.max()))])
+
+
+def part_around(disks: Disks, centre: np.ndarray) -> Window:
+    """The part of a long scene around a place (2,) m in which every disk is visible."""
+    scene = disks.window
     along = int(np.argmax(scene.size))
     width = CLOSE_UP_DIAMETERS * 2.0 * float(disks.radii.mean())
     size = np.minimum(scene.size, width)
     size[along] = min(scene.size[along], max(CLOSE_UP_ASPECT * size.min(), width))
-    centre = disks.positions[np.argmin(np.abs(sizes - 0.5 * sizes.max()))]
     return Window(np.clip(centre - 0.5 * size, scene.corner, scene.corner + scene.size - size), size)
 
 

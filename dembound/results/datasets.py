@@ -39,7 +39,7 @@ def write(group: h5py.Group, name: str, values: np.ndarray, unit: str) -> None:
     if values.size == 0 or values.ndim == 0:
         group.create_dataset(name, data=values).attrs["unit"] = text(unit)
         return
-    chunks = (_rows(values.shape[1:], values.dtype, CHUNK_BYTES, len(values)), *values.shape[1:])
+    chunks = (chunk_rows(values.shape[1:], values.dtype, CHUNK_BYTES, len(values)), *values.shape[1:])
     group.create_dataset(name, data=values, chunks=chunks, fletcher32=True).attrs["unit"] = text(unit)
 
 
@@ -47,7 +47,7 @@ def make(group: h5py.Group, columns: Columns) -> dict[str, h5py.Dataset]:
     """Empty datasets of a group that rows can be appended to."""
     kept = {}
     for name, width, kind, unit in columns:
-        rows = _rows(width, np.dtype(kind), GROWING_BYTES)
+        rows = chunk_rows(width, np.dtype(kind), GROWING_BYTES)
         kept[name] = group.create_dataset(
             name, shape=(0, *width), maxshape=(None, *width), dtype=kind, chunks=(rows, *width), fletcher32=True
         )
@@ -64,7 +64,7 @@ def extend(dataset: h5py.Dataset, values: np.ndarray) -> None:
     dataset[count:] = values
 
 
-def _rows(width: tuple[int, ...], kind: np.dtype, most_bytes: int, most: int = 2**62) -> int:
+def chunk_rows(width: tuple[int, ...], kind: np.dtype, most_bytes: int, most: int = 2**62) -> int:
     """Rows of a chunk."""
     row = kind.itemsize * int(np.prod(width, dtype=np.int64))
     return max(1, min(most, most_bytes // max(1, row)))

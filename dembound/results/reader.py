@@ -126,6 +126,20 @@ def snapshot_of_largest_motion(file: h5py.File, field: str) -> h5py.Group:
     return max(groups, key=lambda group: float(np.abs(group[field][:, :2]).max()))
 
 
+def datasets_in(group: h5py.Group) -> dict[str, h5py.Dataset]:
+    """All datasets of a group by name, also those of groups within it, such as ``contacts/bonded``."""
+    import h5py
+
+    found: dict[str, h5py.Dataset] = {}
+
+    def note(name: str, item: h5py.Group | h5py.Dataset) -> None:
+        if isinstance(item, h5py.Dataset):
+            found[name] = item
+
+    group.visititems(note)
+    return found
+
+
 def cracks_until(file: h5py.File, time: float) -> dict[str, np.ndarray]:
     """The bonds of an open record that have broken at a time in s, those of the static stage included.
 

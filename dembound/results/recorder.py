@@ -6,15 +6,16 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             complete; of disks seed, of a bar density, section, wave_speed, attenuation, loaded,
                             the end that is, and ends, the types of the left and the right one
     particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
-                            of a bar's nodes volume (n,); if the case asks for it peak_velocity (n,), the largest speed
-                            of each in the whole run
+                            column (n,), whether it belongs to a free-field column, of a bar's nodes volume (n,); if the
+                            case asks for it peak_velocity (n,), the largest speed of each in the whole run
     histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle,
                             position, wanted
     boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2)
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
-                            under a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
+                            of a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
                             and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
-                            on each particle; attribute time
+                            on each particle; attribute time; of disks, if the case asks for them, contacts/ with the
+                            columns of `disks.contact_forces.contact_columns`
     energy/                 time and the columns of `motion.energy.Entry`, (k,) each
     cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
                             displacements, positions count from the start of the run
@@ -209,6 +210,8 @@ class Recorder:
         write(group, "velocity", widened("velocity", state.velocity.T), VELOCITY_UNIT)
         for name, (values, unit) in self.run.system.snapshot(state.displacement).items():
             write(group, name, widened(name, values), unit)
+        for name, (values, unit) in self.run.system.contact_forces(state.displacement).items():
+            write(group.require_group("contacts"), name, values, unit)
 
     def stalled_snapshot(self, stalled: StalledError) -> None:
         """Write the scene at the end of a stage that stalled, with unbalanced forces and cracks."""

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from dembound.errors import CaseError, RecordError
-from dembound.results.reader import energy_of, laws_of, open_record, reading, text_of
+from dembound.results.reader import datasets_in, energy_of, laws_of, open_record, reading, text_of
 
 
 class Arrays(Mapping[str, np.ndarray]):
@@ -22,7 +22,7 @@ class Arrays(Mapping[str, np.ndarray]):
 
     def __init__(self, record: Path, group: h5py.Group) -> None:
         self._record, self._group = record, group.name
-        self._names = [name for name in group if isinstance(group[name], h5py.Dataset)]
+        self._names = list(datasets_in(group))
         self.attributes: dict[str, Any] = {name: _plain(value) for name, value in group.attrs.items()}
 
     def __getitem__(self, name: str) -> np.ndarray:

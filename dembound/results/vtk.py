@@ -1,8 +1,8 @@
-"""Snapshots for ParaView: one VTU file each, a PVD file listing their times, and a script that shows them.
+"""Snapshots for ParaView: one VTU file each, a PVD file listing their times, all in one VTKHDF file, and a script.
 
-The contents of the files are described in `disks.mesh` and `bar.mesh`. Positions are in double precision, fields in
-single precision (`shown`), as the record has all digits. Nothing is compressed: that would halve the files, but take
-longer than the steps of a short run.
+The contents of the files are described in `disks.mesh`, `disks.contact_mesh` and `bar.mesh`, the format of the last one
+in `results.vtkhdf`. Positions are in double precision, fields in single precision (`shown`), as the record has all
+digits. Nothing is compressed: that would halve the files, but take longer than the steps of a short run.
 
 Where bonds broke in the run, ``cracks.vtu`` has one vertex per broken bond, in the middle between its two disks at that
 time:
@@ -16,6 +16,8 @@ time:
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
@@ -24,7 +26,8 @@ import numpy as np
 
 from dembound.motion.kind import Kind
 from dembound.motion.state import Arrays
-from dembound.results.reader import cracks_until, open_record, replacing, until
+from dembound.results.reader import cracks_until, datasets_in, open_record, replacing, until
+from dembound.results.vtkhdf import temporal_file
 
 if TYPE_CHECKING:
     import meshio
@@ -38,14 +41,15 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
     run
         the ``run.h5`` of a run.
     folder
-        created if it does not exist; receives ``particles_0000.vtu`` …, ``particles.pvd``, ``view.py`` and, where bonds
-        broke, ``cracks.vtu``; of a bar ``bar_0000.vtu`` … and ``bar.pvd``.
+        created if it does not exist; receives ``particles_0000.vtu`` …, ``particles.pvd``, ``particles.vtkhdf``,
+        ``view.py`` and, where bonds broke, ``cracks.vtu``; the same of ``contacts`` if the record has them; of a bar
+        ``bar_0000.vtu`` … in place of ``particles``.
     kind
         the kind of body that the run is of.
 
-    The PVD file is written last, so all files it lists exist.
+    PVD files are written last, so all files they list exist.
 
-    Raises CaseError when the record cannot be read.
+    Raises CaseError when the record cannot be read, OSError when a file cannot be written.
     """
     with open_record(run) as file:
         snapshots = file.get("snapshots", {})
@@ -54,16 +58,37 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
         folder.mkdir(parents=True, exist_ok=True)
         particles = {name: dataset[:] for name, dataset in file["particles"].items()}
         cracks = cracks_until(file, np.inf)
-        times = {}
-        for number, snapshot in snapshots.items():
-            name = f"{kind.mesh_name}_{number}.vtu"
-            times[name] = float(snapshot.attrs["time"])
-            fields = {name: dataset[:] for name, dataset in snapshot.items()}
-            _write(folder / name, kind.mesh(particles, fields, until(cracks, times[name])))
+        with ExitStack() as stack:
+            series: dict[str, Callable[[str, float, meshio.Mesh], None]] = {}
+            for number, snapshot in snapshots.items():
+                time = float(snapshot.attrs["time"])
+                fields = {name: dataset[:] for name, dataset in datasets_in(snapshot).items()}
+                for name, mesh in kind.meshes(particles, fields, until(cracks, time)).items():
+                    if name not in series:
+                        series[name] = stack.enter_context(_series(folder, name))
+                    series[name](number, time, mesh)
         if len(cracks["time"]) > 0:
             _write(folder / "cracks.vtu", _cracks(cracks))
     (folder / "view.py").write_text(kind.view_script, encoding="utf-8")
-    return _write_index(folder / f"{kind.mesh_name}.pvd", times)
+    return folder / f"{kind.mesh_name}.pvd"
+
+
+@contextmanager
+def _series(folder: Path, name: str) -> Iterator[Callable[[str, float, meshio.Mesh], None]]:
+    """A function that writes one mesh of a series, given its number and time (s), as VTU and to the VTKHDF file.
+
+    The PVD file is written at the end.
+    """
+    times: dict[str, float] = {}
+    with temporal_file(folder / f"{name}.vtkhdf") as file:
+
+        def append(number: str, time: float, mesh: meshio.Mesh) -> None:
+            _write(folder / f"{name}_{number}.vtu", mesh)
+            file.append(time, mesh)
+            times[f"{name}_{number}.vtu"] = time
+
+        yield append
+    _write_index(folder / f"{name}.pvd", times)
 
 
 def _cracks(cracks: Arrays) -> meshio.Mesh:
@@ -80,8 +105,8 @@ def vertices(points: np.ndarray, data: Arrays) -> meshio.Mesh:
 
 
 def shown(fields: Arrays) -> dict[str, np.ndarray]:
-    """Fields by name in the precision in which they are shown: single, whole numbers in 32 bits."""
-    kinds = {"f": np.float32, "i": np.int32}
+    """Fields by name in the precision in which they are shown: single, whole numbers in 32 bits, truth in 8."""
+    kinds = {"f": np.float32, "i": np.int32, "b": np.uint8}
     return {name: values.astype(kinds[values.dtype.kind], copy=False) for name, values in fields.items()}
 
 
@@ -100,8 +125,8 @@ def in_space(vectors: np.ndarray, precision: type = np.float64) -> np.ndarray:
     return whole
 
 
-def _write_index(path: Path, times: dict[str, float]) -> Path:
-    """The PVD file: file name -> time in s."""
+def _write_index(path: Path, times: dict[str, float]) -> None:
+    """Write the PVD file: file name -> time in s."""
     root = ElementTree.Element("VTKFile", type="Collection", version="0.1")
     collection = ElementTree.SubElement(root, "Collection")
     for name, time in times.items():
@@ -109,4 +134,3 @@ def _write_index(path: Path, times: dict[str, float]) -> Path:
     ElementTree.indent(root)
     with replacing(path) as part:
         ElementTree.ElementTree(root).write(part, encoding="utf-8", xml_declaration=True)
-    return path

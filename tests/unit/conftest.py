@@ -120,6 +120,7 @@ BRITTLE = {
     "wave.push.start": 0.002,
     "wave.shake.amplitude": 2.0,
     "wave.shake.start": 0.002,
+    "output.contacts": True,
 }
 """Bonds that break in tension and in shear where their end is pulled away and sideways, but not at once."""
 

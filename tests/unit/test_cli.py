@@ -587,7 +587,8 @@ def test_a_bar_leaves_pictures_and_what_paraview_shows(dembound, tmp_path) -> No
     assert dembound("run", "rod.toml", *short).code == 0
 
     histories = {"histories.png", "histories_stress.png"}
-    shown = {f"paraview/bar_{number:04d}.vtu" for number in range(3)} | {"paraview/bar.pvd", "paraview/view.py"}
+    shown = {f"paraview/{name}" for name in ("bar.pvd", "bar.vtkhdf", "view.py")}
+    shown |= {f"paraview/bar_{number:04d}.vtu" for number in range(3)}
     assert (
         files(tmp_path / "results" / "rod")
         == {"run.h5", "checkpoint.npz", "summary.json", "scene.png", *histories} | shown
@@ -663,7 +664,9 @@ def test_what_bars_and_disks_do_not_have_is_bad_input(dembound, spalled_run, sma
     for arguments, said in (
         (["plot", spalled_run, "--field", "peak"], "field: is peak, must be one of stress, damage, "),
         (["plot", spalled_run, "--boundary", "left"], "each end of which is one node"),
+        (["plot", spalled_run, "--field", "forces"], "field: is forces, must be one of stress, damage, "),
         (["plot", small_run, "--field", "damage"], "field: is damage, must be one of velocity, "),
+        (["plot", small_run, "--field", "forces"], "holds no contacts; runs with output.contacts = true do"),
         (["plot", small_run, "--field", "velocity", "--table", "a.csv"], "--table: is of lines, a field has none"),
         (["plot", small_run, "--field", "velocity", "--component", "x"], "--component: is not allowed together with"),
         (["plot", small_run, "--quantity", "stress"], "has no stress of its monitors"),
@@ -675,6 +678,12 @@ def test_what_bars_and_disks_do_not_have_is_bad_input(dembound, spalled_run, sma
         assert answer.code == 2
         assert said in answer.err
     assert not files(tmp_path)
+
+
+def test_force_chains_are_drawn_of_contacts(dembound, cracked_run, tmp_path) -> None:
+    answer = dembound("plot", cracked_run, "--field", "forces", "--snapshot", "-1", "-o", "forces.png")
+    assert answer == Answer(0, "wrote forces.png\n", "")
+    assert files(tmp_path) == {"forces.png"}
 
 
 def test_bricks_are_kept_where_the_command_says_until_they_are_cleared(

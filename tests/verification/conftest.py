@@ -259,7 +259,8 @@ def same_record() -> Callable[..., dict[str, Any]]:
             if values.dtype.kind != "f" or (to_the_bit and group in ("histories", "snapshots", "boundaries")):
                 np.testing.assert_array_equal(data[name], values, err_msg=name)
                 continue
-            size = largest("energy/kinetic") if group == "energy" else largest(quantity.removeprefix("peak_"))
+            like = "_force" if quantity.endswith("_force") else quantity.removeprefix("peak_")
+            size = largest("energy/kinetic") if group == "energy" else largest(like)
             bound = (accuracy or 1e-12) * size if group == "energy" else relative * size
             np.testing.assert_allclose(data[name], values, rtol=0.0, atol=bound, err_msg=name)
         return summary

@@ -74,19 +74,23 @@ def test_small_displacements_agree_to_rounding(lab, amplitude):
 
 
 def test_fields_of_stress_are_those_of_contacts_that_slid(lab):
-    """They are those of the other law but for its vectors of contacts, which follow the motion, as areas do not.
+    """They are those of the other law, as bonds keep their vectors, and so are the forces of contacts.
 
     Without their slip, contacts would have a thousandth of the largest displacement more shear: 8 kPa.
     """
-    stresses = []
+    stresses, forces = [], []
     for elastic in (False, True):
-        scene = build(with_changes(sheared(lab, "reference"), {"reduce.settled": elastic}))
+        scene = build(with_changes(sheared(lab, "reference"), {"reduce.settled": elastic, "output.contacts": True}))
         start, step = settle(scene).start, choose_step(scene)[0]
         system = DiskSystem(scene, step, start)
         Simulation(scene, step, system=system, datum=start.displacement).advance(1)
         stresses.append(system.stress(start.displacement))
-    strain = STRESS / (lab.density * lab.speed**2)
-    np.testing.assert_allclose(*stresses, rtol=0.0, atol=2.0 * strain * STRESS)
+        columns = system.contact_forces(start.displacement)
+        forces.append(np.stack([columns[f"{name}_force"][0] for name in ("normal", "shear")]))
+    # forces of stretches of 1e-4 m, which are differences of displacements of 1e-2 m, times some ten operations
+    rounding = 1e3 * EPS
+    np.testing.assert_allclose(*stresses, rtol=0.0, atol=rounding * STRESS)
+    np.testing.assert_allclose(*forces, rtol=0.0, atol=rounding * np.abs(forces[0]).max())
 
 
 def test_updated_geometry_differs_by_the_settled_strain(lab):

@@ -15,8 +15,9 @@ SPRINGS = {"distance": 30.0}
 def case_of(lab, pattern="A", size=(20.0, 4.0), **words):
     case = lab.case(pattern, size, wave=lab.pulse(0.02), duration=0.05, **words)
     monitors = [{"name": f"m{k}", "position": [0.3 * k * side for side in size]} for k in range(4)]
-    output = {"output.pictures": False, "output.snapshots": 2, "output.stress": True, "output.peaks": True}
-    return with_changes(case, {"monitor": monitors, **output})
+    output = {"output.pictures": False, "output.snapshots": 2, "output.peaks": True}
+    fields = {"output.stress": True, "output.contacts": True}
+    return with_changes(case, {"monitor": monitors, **output, **fields})
 
 
 @pytest.fixture

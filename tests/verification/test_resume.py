@@ -27,7 +27,14 @@ DISKS = {
     "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.01}},
     "monitor": [{"name": "middle", "position": [4.0, 2.0]}, {"name": "top", "position": [4.0, 4.0]}],
     "run": {"duration": 0.03},
-    "output": {"peaks": True, "pictures": False, "snapshots": 5, "history_interval": 4e-4, "energy_interval": 1.1e-3},
+    "output": {
+        "peaks": True,
+        "contacts": True,
+        "pictures": False,
+        "snapshots": 5,
+        "history_interval": 4e-4,
+        "energy_interval": 1.1e-3,
+    },
 }
 BAR = {
     "bar": {"length": 1.0, "spacing": 0.01, "density": 2500.0, "wave_speed": 1000.0, "strength": 8e6},

@@ -18,8 +18,9 @@ def case_of(lab, size=(10.0, 6.0), pattern="A", **words):
     case = lab.case(pattern, size, wave=lab.pulse(0.01), duration=0.03, **words)
     places = [(0.1, 0.9), (0.9, 0.9), (0.8, 0.2), (0.5, 0.7), (0.3, 0.5)]
     monitors = [{"name": f"m{k}", "position": [x * size[0], y * size[1]]} for k, (x, y) in enumerate(places)]
-    output = {"output.pictures": False, "output.snapshots": 2, "output.stress": True, "output.peaks": True}
-    return with_changes(case, {"monitor": monitors, **output})
+    output = {"output.pictures": False, "output.snapshots": 2, "output.peaks": True}
+    fields = {"output.stress": True, "output.contacts": True}
+    return with_changes(case, {"monitor": monitors, **output, **fields})
 
 
 @pytest.fixture

@@ -64,7 +64,7 @@ def test_the_index_lists_files_and_times_and_a_script_shows_them(spalled_run, ex
     assert [entry.get("file") for entry in entries] == shown
     assert [float(entry.get("timestep")) for entry in entries] == times
     names = sorted(path.name for path in exported.parent.iterdir())
-    assert names == sorted(["bar.pvd", "cracks.vtu", "view.py", *shown])
+    assert names == sorted(["bar.pvd", "bar.vtkhdf", "cracks.vtu", "view.py", *shown])
     script = (exported.parent / "view.py").read_text()
     ast.parse(script)
     assert f'"{exported.name}"' in script

@@ -7,7 +7,7 @@ import pytest
 
 from dembound.disks.contacts import ContactList, plain_contacts
 from dembound.disks.scene import DiskScene, build
-from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION, note_places
+from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED, note_places
 
 WRAP = {"type": "periodic"}
 SIDES = {
@@ -273,10 +273,10 @@ def test_bonds_and_contacts_that_push_count_as_neighbours(scene) -> None:
     pairs.state[pairs.state == INTACT] = SHEAR
     ends = np.concatenate([pairs.first[overlaps], pairs.second[overlaps]])
 
-    assert np.array_equal(contacts.coordination(), np.bincount(ends, minlength=len(radii)))
+    assert np.array_equal(contacts.coordination(UPDATED), np.bincount(ends, minlength=len(radii)))
     pairs.state[~overlaps] = INTACT
     everybody = np.concatenate([pairs.first, pairs.second])
-    assert np.array_equal(contacts.coordination(), np.bincount(everybody, minlength=len(radii)))
+    assert np.array_equal(contacts.coordination(UPDATED), np.bincount(everybody, minlength=len(radii)))
 
 
 def test_at_the_start_a_locked_in_packing_pushes_and_another_does_not(scene) -> None:

@@ -34,6 +34,7 @@ def expected(file: h5py.File, number: str) -> tuple[np.ndarray, dict[str, np.nda
         "displacement": moved,
         "rotation": displacement[:, 2],
         "brick_particle": particles["brick_particle"][:],
+        "column": np.zeros(len(velocity)),
         "nbCracks": np.zeros(len(velocity)),
         "damage": np.zeros(len(velocity)),
     }
@@ -45,6 +46,7 @@ def test_positions_are_in_double_and_fields_in_single_precision(exported):
     kinds = {name: values.dtype for name, values in mesh.point_data.items()}
     whole = {"id", "brick_particle", "nbCracks"}
     assert mesh.points.dtype == np.float64
+    assert kinds.pop("column") == np.uint8
     assert kinds == {name: np.int32 if name in whole else np.float32 for name in kinds}
 
 
@@ -109,3 +111,38 @@ def test_cracks_and_damage_are_counted_up_to_each_snapshot(cracked_run, tmp_path
             np.testing.assert_array_equal(data["coordNumber"], snapshot["coordination"][:])
         broken = [np.count_nonzero(cracks["time"] <= each.attrs["time"]) for each in file["snapshots"].values()]
     assert 0 < broken[0] < broken[1] == len(cracks["time"])
+
+
+def test_contacts_are_lines_between_the_centres_of_their_disks(cracked_run, tmp_path):
+    write_vtu(cracked_run, tmp_path, Disks())
+    with h5py.File(cracked_run) as file:
+        counts = [len(snapshot["contacts/bonded"]) for snapshot in file["snapshots"].values()]
+        for number, snapshot in file["snapshots"].items():
+            mesh = pyvista.read(tmp_path / f"contacts_{number}.vtu")
+            disks = pyvista.read(tmp_path / f"particles_{number}.vtu")
+            contacts = {name: values[:] for name, values in snapshot["contacts"].items()}
+            ends = mesh.points.reshape(-1, 2, 3)
+            first, second = contacts["particles"].T
+            assert set(mesh.celltypes) == {pyvista.CellType.LINE}
+            np.testing.assert_array_equal(mesh.cell_connectivity, np.arange(2 * len(first)))
+            # places of up to 10 m
+            np.testing.assert_array_equal(ends[:, 0], disks.points[first])
+            np.testing.assert_allclose(ends[:, 1], disks.points[second], atol=1e-12)
+            np.testing.assert_array_equal(mesh.cell_data["particles"], contacts["particles"])
+            for name, column in (("normalForce", "normal_force"), ("shearForce", "shear_force")):
+                np.testing.assert_array_equal(mesh.cell_data[name], contacts[column].astype(np.float32))
+            np.testing.assert_array_equal(mesh.cell_data["bonded"], contacts["bonded"])
+            assert contacts["bonded"].any()
+    assert counts[1] < counts[0]  # where bonds have broken
+
+
+def test_disks_of_a_column_are_marked(small_run, tmp_path):
+    run = tmp_path / "run.h5"
+    run.write_bytes(small_run.read_bytes())
+    marked = np.arange(100) < 25
+    with h5py.File(run, "r+") as file:
+        assert not file["particles/column"][:].any()
+        file["particles/column"][:] = marked
+    write_vtu(run, tmp_path / "paraview", Disks())
+    column = pyvista.read(tmp_path / "paraview" / "particles_0001.vtu").point_data["column"]
+    np.testing.assert_array_equal(column, marked)

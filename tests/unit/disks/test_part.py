@@ -202,7 +202,7 @@ def test_a_part_beside_another_moves_as_it_would_alone(scene, law: str) -> None:
         assert part.stored(u) == single.stored(alone_u)
         assert min(part.stored(u)) > 0.0
         known, expected = part.snapshot(u), single.snapshot(alone_u)
-        assert list(known) == list(expected) == ([] if law == ELASTIC else ["coordination"])
+        assert list(known) == list(expected) == ["coordination"]
         for name in known:
             assert np.array_equal(known[name][0], expected[name][0])
 

@@ -11,7 +11,7 @@ from dembound.disks.stress import particle_stress
 from dembound.disks.system import DiskSystem
 from dembound.disks.tractions import CLOSE, mean_stress
 from dembound.errors import CaseError, RunError
-from dembound.kernels.contacts import TENSION
+from dembound.kernels.contacts import TENSION, UPDATED
 from dembound.motion.kind import StalledError
 from dembound.motion.simulation import Simulation
 
@@ -90,7 +90,7 @@ def test_mean_stress_is_that_of_the_contacts_inside(bar) -> None:
     # one force on the first disk of all pairs along x, another along y
     pairs = contacts.arrays
     pairs.force[:2] = np.where(np.abs(pairs.constants[pairs.contact_type, 0]) > 0.0, [[3.0], [4.0]], [[5.0], [6.0]])
-    stress = mean_stress(body, particle_stress(body, pairs, np.zeros((3, 256)), elastic=False))
+    stress = mean_stress(body, particle_stress(body, pairs, np.zeros((3, 256)), UPDATED))
 
     # f ⊗ d / D² with d = (D, 0) or (0, D), the shear the mean of both
     np.testing.assert_allclose(stress, [3.0 / 0.5, 6.0 / 0.5, 0.5 * (4.0 + 5.0) / 0.5], rtol=1e-13)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.disks import stress as module
+from dembound.disks import contact_forces as module
 from dembound.disks.contacts import plain_contacts
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
@@ -11,6 +11,7 @@ from dembound.disks.static import settle
 from dembound.disks.stress import particle_stress
 from dembound.disks.system import DiskSystem
 from dembound.disks.tractions import mean_stress
+from dembound.kernels.contacts import REFERENCE, UPDATED
 from dembound.motion.simulation import Simulation
 
 K = 2500.0 * 1000.0**2
@@ -24,7 +25,7 @@ WRAP = {side: {"type": "periodic"} for side in ("left", "right", "bottom", "top"
 def elastic_stress(scene: DiskScene, displacement: np.ndarray) -> np.ndarray:
     """Of the pairs of the elastic law, which have no forces of their own."""
     return particle_stress(
-        scene, plain_contacts(scene.ground, scene.assembly, scene.layout.slot), displacement, elastic=True
+        scene, plain_contacts(scene.ground, scene.assembly, scene.layout.slot), displacement, REFERENCE
     )
 
 
@@ -66,7 +67,7 @@ def test_elastic_stress_is_that_of_the_pairs_forces_at_the_start(bar, monkeypatc
     displacement = np.random.default_rng(5).normal(0.0, 1e-4, (3, scene.count))
     contacts = scene.contact_lists()["body"]
     contacts.push(displacement)
-    listed = particle_stress(scene, contacts.arrays, np.zeros_like(displacement), elastic=False)
+    listed = particle_stress(scene, contacts.arrays, np.zeros_like(displacement), UPDATED)
 
     assert len(contacts.arrays.first) > 2 * 100
     # the order of summation differs: some ten terms of about the largest stress

@@ -17,6 +17,7 @@ from dembound.results import recorder as module
 from dembound.results.reader import text_of
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
+from dembound.results.results import Results
 from dembound.version import __version__
 
 STEP = 3e-4
@@ -118,6 +119,42 @@ def test_a_snapshot_is_the_whole_scene_at_its_time(tmp_path, simulation) -> None
         assert np.array_equal(file["snapshots/0001/velocity"], simulation.state.velocity.T)
 
 
+def test_contacts_are_kept_if_the_case_asks_for_them(tmp_path, bar, simulation) -> None:
+    asked = Simulation(build(bar({"output.contacts": True, "monitor": []})), STEP)
+    for name, each in (("asked", asked), ("not", simulation)):
+        with recorder(tmp_path / f"{name}.h5", each) as kept:
+            kept.append(each.advance(40))
+            kept.snapshot()
+
+    expected = asked.system.contact_forces(asked.state.displacement)
+    with h5py.File(tmp_path / "asked.h5") as file, h5py.File(tmp_path / "not.h5") as without:
+        group = file["snapshots/0000/contacts"]
+        assert {name: text_of(values.attrs["unit"]) for name, values in group.items()} == {
+            name: unit for name, (_, unit) in expected.items()
+        }
+        for name, (values, _) in expected.items():
+            np.testing.assert_array_equal(group[name], values)
+        assert group["normal_force"][:].min() < -1e4  # the wave of 0.5 m/s: ρcv is 1.25 MPa
+        assert "contacts" not in without["snapshots/0000"]
+    arrays = Results(tmp_path / "asked.h5").snapshots[0]
+    assert set(arrays) == {"displacement", "velocity", *(f"contacts/{name}" for name in expected)}
+    np.testing.assert_array_equal(arrays["contacts/vector"], expected["vector"][0])
+    assert arrays.unit("contacts/vector") == "m"
+
+
+def test_disks_of_a_column_are_marked(tmp_path, bar) -> None:
+    sides = {side: {"type": "free_field"} for side in ("left", "right")}
+    simulation = Simulation(build(bar({**MONITORS, "boundary": sides, "wave": {}})), STEP)
+    with recorder(tmp_path / "run.h5", simulation):
+        pass
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        column = file["particles/column"][:]
+        assert column.dtype == bool
+        np.testing.assert_array_equal(column, file["particles/position"][:, 0] < 0.0)
+        assert np.count_nonzero(column) == file.attrs["column"] > 0
+
+
 def test_stress_and_peaks_are_kept_if_the_case_asks_for_them(tmp_path, bar, simulation) -> None:
     triggered = Simulation(build(bar({"output.stress": True, "output.peaks": True, "monitor": []})), STEP)
     fastest = np.zeros(triggered.scene.count)
@@ -192,7 +229,7 @@ def test_every_dataset_has_its_unit(tmp_path, simulation) -> None:
     with h5py.File(tmp_path / "run.h5") as file:
         file.visititems(note)
     assert units.pop("laws/name") == ""  # text has none
-    assert len(units) == 4 + 2 * 3 + 4 * 4 + 2 + 12 + 4 + 1
+    assert len(units) == 5 + 2 * 3 + 4 * 4 + 2 + 12 + 4 + 1
     assert all(units.values())
     assert units["histories/front/time"] == units["energy/time"] == units["laws/time"] == "s"
     assert units["energy/kinetic"] == "J/m"
@@ -359,7 +396,7 @@ def test_a_bar_is_kept_with_its_section_and_volumes(spalled_run) -> None:
     with h5py.File(spalled_run) as file:
         about, particles = plain(file.attrs), file["particles"]
         assert (about["kind"], about["density"], about["section"]) == ("bar", 2500.0, 1.0)
-        assert (about["loaded"], list(about["ends"])) == ("left", ["free", "free"])
+        assert (about["loaded"], [text_of(end) for end in about["ends"]]) == ("left", ["free", "free"])
         assert (about["wave_speed"], about["attenuation"]) == (1000.0, 0.0)
         assert about["size"].tolist() == [1.0, 0.0]
         assert set(particles) == {"position", "volume"}

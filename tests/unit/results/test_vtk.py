@@ -28,7 +28,7 @@ def test_the_index_lists_files_and_times(small_run, exported):
 
 def test_the_folder_holds_the_view_script_and_no_leftovers(exported):
     names = sorted(path.name for path in exported.parent.iterdir())
-    assert names == ["particles.pvd", "particles_0000.vtu", "particles_0001.vtu", "view.py"]
+    assert names == ["particles.pvd", "particles.vtkhdf", "particles_0000.vtu", "particles_0001.vtu", "view.py"]
     ast.parse((exported.parent / "view.py").read_text())
 
 

@@ -12,6 +12,7 @@ from dembound.errors import CaseError, RunError
 from dembound.kinds import with_changes
 from dembound.motion.trackers import Run
 from dembound.plot.scene import plot_scene
+from dembound.results.folder import OWN
 from dembound.results.summary import end_in_words
 from dembound.running import SECTIONS, Progress, plan, preflight, run_case
 
@@ -62,6 +63,27 @@ def test_a_run_leaves_one_whole_folder(bar, tmp_path) -> None:
     assert names == {"run.h5", "checkpoint.npz", "summary.json", "paraview", "scene.png", "histories.png"}
     with h5py.File(folder / "run.h5") as file:
         assert file.attrs["complete"]
+
+
+def test_every_file_of_a_run_is_one_of_those_that_a_rerun_replaces(bar, spalling, tmp_path) -> None:
+    pulled = {"boundary.left": GRIP, "wave.pulse.amplitude": -5.0}
+    brittle = {"material.law": "linearpbond", "material.pb_ten": 1e6, **pulled}
+    output = {"pictures": True, "snapshots": 2, "stress": True, "contacts": True, "peaks": True}
+    every = {f"output.{key}": value for key, value in output.items()}
+    cases = bar({**brittle, **every}, "brittle"), bar({**HANGING, **every}, "hanging"), spalling({**every})
+    found = set()
+    for case in cases:
+        folder = run_case(case, tmp_path)
+        names = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+        assert [name for name in names if not OWN.fullmatch(name)] == []
+        assert ("paraview/contacts.pvd" in names) == ("paraview/bar.pvd" not in names)  # a bar has no contacts
+        found |= names
+
+    of_each = [f"paraview/{name}" for name in ("particles", "contacts", "bar")]
+    assert found >= {f"{name}{ending}" for name in of_each for ending in ("_0000.vtu", "_0001.vtu", ".pvd", ".vtkhdf")}
+    assert found >= {"paraview/cracks.vtu", "histories_stress.png", "checkpoint.npz", "settled/body.npz"}
+    for name in ("notes.txt", "paraview/mine_0000.vtu", "paraview/state.pvsm", "other/run.h5", "run.h5.bak"):
+        assert not OWN.fullmatch(name)
 
 
 def test_pictures_are_drawn_only_where_they_are_wanted(bar, tmp_path) -> None:

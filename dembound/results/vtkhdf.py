@@ -1,0 +1,121 @@
+"""All snapshots of a run in one file for ParaView: VTKHDF of the type ``UnstructuredGrid`` with ``Steps``.
+
+The format is version 2.0 of the "VTKHDF format specification" (docs.vtk.org), which VTK 9.4 and later read. Datasets
+have the values of all steps one after the other; tables in ``Steps`` have the time of every step and the rows at which
+its points, cells and arrays begin. What is equal to the step before, such as cells, radii and ids, is not written
+again: its row is the same.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from hashlib import blake2b
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dembound.results.committed import new_file
+from dembound.results.datasets import CHUNK_BYTES, chunk_rows, extend
+
+if TYPE_CHECKING:
+    import h5py
+    import meshio
+
+VERSION = (2, 0)
+"""Of the format."""
+
+CELL_TYPES = {"vertex": 1, "line": 3}
+"""VTK's numbers of the types of cells."""
+
+PART_SIZES = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
+
+
+class TemporalFile:
+    """Writes meshes of one cell block into an open file; all of them have the same arrays.
+
+    Parameters
+    ----------
+    file : a new HDF5 file.
+    """
+
+    def __init__(self, file: h5py.File) -> None:
+        self._root = file.create_group("VTKHDF")
+        self._root.attrs["Version"] = VERSION
+        self._root.attrs["Type"] = np.bytes_("UnstructuredGrid")  # of fixed length, VTK reads no other text
+        self._begun: dict[str, tuple[bytes, int]] = {}
+        self._parts: list[tuple[int, int, int]] = []
+        self._cells: tuple[bytes, dict[str, int]] = b"", {}
+        self._tables: dict[str, list[float]] = defaultdict(list)
+
+    def append(self, time: float, mesh: meshio.Mesh) -> None:
+        """Append a mesh at a time in s."""
+        rows = self._cells_of(mesh) | {"PointOffsets": self._row("Points", mesh.points)}
+        for name, values in mesh.point_data.items():
+            rows[f"PointDataOffsets/{name}"] = self._row(f"PointData/{name}", values)
+        for name, (values,) in mesh.cell_data.items():
+            rows[f"CellDataOffsets/{name}"] = self._row(f"CellData/{name}", values)
+        for name, row in rows.items():
+            self._tables[name].append(row)
+        self._tables["Values"].append(time)
+
+    def finish(self) -> None:
+        """Write sizes and tables, without which the file cannot be read."""
+        for name, sizes in zip(PART_SIZES, zip(*self._parts, strict=True), strict=True):
+            self._root[name] = np.array(sizes, dtype=np.int64)
+        steps = self._root.create_group("Steps")
+        steps.attrs["NSteps"] = len(self._tables["Values"])
+        for name, column in self._tables.items():
+            steps[name] = np.array(column, dtype=np.float64 if name == "Values" else np.int64)
+
+    def _cells_of(self, mesh: meshio.Mesh) -> dict[str, int]:
+        """The tables' rows for the cells of a mesh; they are a new part unless they are those of the step before."""
+        block = mesh.cells[0]
+        (count, corners), ids = block.data.shape, block.data.ravel().astype(np.int64)
+        sizes = (len(mesh.points), count, len(ids))
+        same = _digest(np.append(ids, sizes))
+        if self._cells[0] != same:
+            self._extend("Offsets", corners * np.arange(count + 1))  # one more than cells, from 0 in every part
+            begun = {
+                "PartOffsets": len(self._parts),
+                "NumberOfParts": 1,
+                "CellOffsets": self._extend("Types", np.full(count, CELL_TYPES[block.type], np.uint8)),
+                "ConnectivityIdOffsets": self._extend("Connectivity", ids),
+            }
+            self._parts.append(sizes)
+            self._cells = same, begun
+        return self._cells[1]
+
+    def _row(self, name: str, values: np.ndarray) -> int:
+        """The row of a dataset at which values begin; they are appended unless they are those of the step before."""
+        same = _digest(values)
+        if name not in self._begun or self._begun[name][0] != same:
+            self._begun[name] = same, self._extend(name, values)
+        return self._begun[name][1]
+
+    def _extend(self, name: str, values: np.ndarray) -> int:
+        """Append values to a dataset; returns the row at which they begin."""
+        width = values.shape[1:]
+        if name not in self._root:
+            chunks = (chunk_rows(width, values.dtype, CHUNK_BYTES, len(values)), *width)
+            shape, most = (0, *width), (None, *width)
+            self._root.create_dataset(name, shape, values.dtype, chunks=chunks, maxshape=most)
+        begin = len(self._root[name])
+        extend(self._root[name], values)
+        return begin
+
+
+@contextmanager
+def temporal_file(path: Path) -> Iterator[TemporalFile]:
+    """A new VTKHDF file, which appears when all its meshes are written; raises OSError, such as for a full disk."""
+    with new_file(path) as file:
+        series = TemporalFile(file)
+        yield series
+        series.finish()
+
+
+def _digest(values: np.ndarray) -> bytes:
+    """A digest of an array, which differs between arrays of one type and width that are not the same."""
+    return blake2b(np.ascontiguousarray(values).data).digest()

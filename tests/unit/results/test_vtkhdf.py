@@ -1,0 +1,128 @@
+"""What VTK reads from the one file of all snapshots equals what it reads from the file of each."""
+
+import errno
+
+import h5py
+import meshio
+import numpy as np
+import pytest
+import pyvista
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+
+from dembound.bar.kind import Bars
+from dembound.disks.kind import Disks
+from dembound.results import committed
+from dembound.results.vtk import write_vtu
+from dembound.results.vtkhdf import temporal_file
+
+
+def steps_of(path):
+    """The times (k,) that VTK lists, and the mesh it reads at each, from one reader that is moved to and fro."""
+    reader = pyvista.get_reader(path)
+    algorithm = reader.reader  # VTK's own
+    algorithm.UpdateInformation()
+    times = list(algorithm.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS()))
+    meshes = {}
+    for number in [*range(len(times)), *reversed(range(len(times)))]:
+        algorithm.UpdateTimeStep(times[number])
+        mesh = pyvista.wrap(algorithm.GetOutputDataObject(0)).copy(deep=True)
+        if number in meshes:
+            assert_same(mesh, meshes[number])
+        meshes[number] = mesh
+    return times, [meshes[number] for number in range(len(times))]
+
+
+def assert_same(mesh, expected):
+    """Points, cells and all arrays, with their types and widths."""
+    assert isinstance(mesh, pyvista.UnstructuredGrid)
+    for name in ("points", "celltypes", "cells"):
+        np.testing.assert_array_equal(getattr(mesh, name), getattr(expected, name), err_msg=name)
+    assert mesh.points.dtype == expected.points.dtype == np.float64
+    for arrays, others in ((mesh.point_data, expected.point_data), (mesh.cell_data, expected.cell_data)):
+        assert set(arrays.keys()) == set(others.keys())
+        for name in others:
+            assert (arrays[name].dtype, arrays[name].shape) == (others[name].dtype, others[name].shape)
+            np.testing.assert_array_equal(arrays[name], others[name], err_msg=name)
+
+
+@pytest.mark.parametrize(
+    ("run", "kind", "name"),
+    [
+        ("rich_run", Disks(), "particles"),
+        ("cracked_run", Disks(), "particles"),
+        ("cracked_run", Disks(), "contacts"),
+        ("spalled_run", Bars(), "bar"),
+    ],
+)
+def test_all_times_and_arrays_are_those_of_the_single_files(request, tmp_path, run, kind, name):
+    record = request.getfixturevalue(run)
+    write_vtu(record, tmp_path, kind)
+    index = pyvista.get_reader(tmp_path / f"{name}.pvd")
+    times, meshes = steps_of(tmp_path / f"{name}.vtkhdf")
+    with h5py.File(record) as file:
+        assert times == index.time_values == [group.attrs["time"] for group in file["snapshots"].values()]
+    assert len(times) > 1
+    for number, mesh in enumerate(meshes):
+        assert_same(mesh, pyvista.read(tmp_path / f"{name}_{number:04d}.vtu"))
+    assert any(not np.array_equal(mesh.points, meshes[0].points) for mesh in meshes)
+
+
+def test_what_stays_as_it_is_is_written_once(spalled_run, tmp_path):
+    write_vtu(spalled_run, tmp_path, Bars())
+    with h5py.File(tmp_path / "bar.vtkhdf") as file:
+        root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
+        assert steps.attrs["NSteps"] == 12
+        assert len(root["Connectivity"]) == 2 * 40
+        assert [len(root[name]) for name in ("NumberOfCells", "Offsets", "Types")] == [1, 41, 40]
+        assert [len(root["PointData"][name]) for name in ("id", "volume", "velocity")] == [41, 41, 12 * 41]
+        assert steps["PartOffsets"][:].tolist() == steps["PointDataOffsets/id"][:].tolist() == [0] * 12
+        assert steps["PointDataOffsets/velocity"][:].tolist() == list(range(0, 12 * 41, 41))
+
+
+def lines(count: int, seed: int) -> meshio.Mesh:
+    """So many separate lines, with one number for each and one for each of their ends."""
+    rng = np.random.default_rng(seed)
+    ends = np.arange(2 * count, dtype=np.int32).reshape(-1, 2)
+    points, at_ends, data = rng.normal(size=(2 * count, 3)), rng.normal(size=2 * count), rng.normal(size=count)
+    return meshio.Mesh(points, [("line", ends)], point_data={"end": at_ends}, cell_data={"force": [data]})
+
+
+def test_cells_may_come_and_go(tmp_path):
+    counts = [4, 4, 7, 0, 2, 4]
+    given = [lines(count, number) for number, count in enumerate(counts)]
+    with temporal_file(tmp_path / "lines.vtkhdf") as series:
+        for number, mesh in enumerate(given):
+            series.append(0.25 * number, mesh)
+    times, meshes = steps_of(tmp_path / "lines.vtkhdf")
+
+    assert times == [0.25 * number for number in range(6)]
+    for mesh, expected in zip(meshes, given, strict=True):
+        assert mesh.n_cells == len(expected.cells[0].data)
+        np.testing.assert_array_equal(mesh.points, expected.points.reshape(-1, 3))
+        np.testing.assert_array_equal(mesh.cell_connectivity, expected.cells[0].data.ravel())
+        if mesh.n_cells > 0:
+            np.testing.assert_array_equal(mesh.cell_data["force"], expected.cell_data["force"][0])
+            np.testing.assert_array_equal(mesh.point_data["end"], expected.point_data["end"])
+
+
+def test_the_same_ends_of_other_lines_are_not_taken_for_the_same_cells(tmp_path):
+    points = np.random.default_rng(2).normal(size=(3, 3))
+    cells = [[[0, 1], [1, 2]], [[0, 2], [1, 2]], [[0, 1], [1, 2]]]
+    with temporal_file(tmp_path / "lines.vtkhdf") as series:
+        for number, each in enumerate(cells):
+            series.append(float(number), meshio.Mesh(points, [("line", np.array(each))]))
+    _, meshes = steps_of(tmp_path / "lines.vtkhdf")
+
+    assert [mesh.cell_connectivity.reshape(-1, 2).tolist() for mesh in meshes] == cells
+    with h5py.File(tmp_path / "lines.vtkhdf") as file:
+        assert len(file["VTKHDF/Points"]) == 3
+
+
+def test_on_a_full_disk_no_part_of_it_is_left(tmp_path, monkeypatch):
+    def full(file, view):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(committed, "_write_all", full)
+    with pytest.raises(OSError, match="No space left"), temporal_file(tmp_path / "lines.vtkhdf") as series:
+        series.append(0.0, lines(1000, 0))
+    assert not list(tmp_path.iterdir())
