@@ -1,6 +1,5 @@
 """Runs one case: from its tables to a folder of results."""
 
-import gc
 import json
 import shutil
 from collections.abc import Iterator, Mapping
@@ -25,12 +24,6 @@ from dembound.results.vtk import write_vtu
 
 MOST_STEPS = 1e11
 """Largest number of steps. Even a few nodes would take more than a day for it: a mistake in a time."""
-
-LARGE = 1e8
-"""Bytes of a scene from which on it is removed from memory at once after the run; this takes some tenths of a second.
-
-Files and pictures are made from the record alone.
-"""
 
 ENTRIES = 100
 """Entries of the energy ledger where the case does not give an interval."""
@@ -120,8 +113,6 @@ def run_case(
     folder, partial = results / case.name, results / f"{case.name}.partial"
     with clock.with_compiling():
         summary = _record(case, folder, partial, progress or Progress(), clock)
-        if summary["memory_bytes"] > LARGE:
-            gc.collect()
         kind = kind_of(case)
         with clock.of("export"):
             write_vtu(partial / "run.h5", partial / "paraview", kind)
@@ -151,6 +142,7 @@ def _record(case: Case, folder: Path, partial: Path, progress: Progress, clock: 
     summary = summarise(planned, simulation, record, clock.seconds)
     summary |= planned.kind.summarise(planned.scene, simulation, beginning, record)
     warnings += _passed_on(planned.kind.warnings_after(planned.scene, summary, record), progress)
+    simulation.forget_trackers()
     return summary | {"warnings": warnings}
 
 

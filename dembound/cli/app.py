@@ -19,6 +19,7 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from dembound.errors import CaseError, DemboundError
+from dembound.machine import give_back_at_once
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -165,6 +166,7 @@ logging.getLogger("dembound").setLevel(logging.INFO)
 
 def main() -> None:
     """Run the command line; every failure a user can cause is one message and its exit code."""
+    give_back_at_once()
     gc.set_threshold(COLLECT_EVERY)
     atexit.register(gc.freeze)  # else everything is searched once more at the end
     try:

@@ -94,8 +94,8 @@ class Scene(ABC):
 
     @property
     @abstractmethod
-    def bytes(self) -> int:
-        """Memory of its arrays and of the state."""
+    def largest_memory(self) -> float:
+        """Largest memory (bytes) of a run of it, or of the scene it is stepped in place of."""
 
     @property
     @abstractmethod
