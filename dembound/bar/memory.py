@@ -13,7 +13,7 @@ def run_bytes(case: BarCase) -> float:
     """Largest memory (bytes) of a run; temporary arrays are those of the largest moment of a stage."""
     nodes, lengths = case.bar.cells + 1.0, max(case.method.largest_horizon, 1)
     run = scene_bytes(nodes) + bonds_bytes(nodes, lengths) + motion_bytes(nodes) + ledger_bytes(nodes)
-    run += record_bytes(case, 2048, 7, sum(load.nodes for load in case.load) + 2.0)
+    run += record_bytes(len(case.monitor), 2048, 7, sum(load.nodes for load in case.load) + 2.0)
     if case.output.snapshots:
         run += damage_bytes(nodes, lengths)
     step = scene_bytes(nodes) + bonds_bytes(nodes, lengths) + 4 * 8 * (lengths + 1) * nodes  # bands of the stiffness

@@ -1,8 +1,8 @@
 """The largest memory of a run of disks, from the numbers of its disks and contacts.
 
 Bytes are counted from the shapes of arrays, for n disks in s slots with b contacts; the history-dependent law lists p
-pairs, in q places. Temporary arrays are those of the largest moment of a stage. Arrays that are not touched count as
-nothing: zeros that nothing is added to, as steady forces without loads.
+pairs, in q places. Temporary arrays are those of the largest moment of a stage. Zeros that are never written to take
+no memory: steady forces without loads, work space for contacts that are computed one by one.
 """
 
 from __future__ import annotations
@@ -25,7 +25,10 @@ NEAR = 1.08
 
 @dataclass(frozen=True)
 class Sizes:
-    """Numbers of disks, of the slots that hold them, of contacts, and of supported nodes; in_rows : see layout.py."""
+    """Numbers of disks, of the slots that hold them, of contacts, and of lines of the support table.
+
+    in_rows : whether copies of a disk stand side by side, see layout.py.
+    """
 
     disks: float
     slots: float
@@ -40,7 +43,6 @@ class Sizes:
         from dembound.disks.row_plan import columns_of
 
         packing = case.packing
-        width, height = packing.extent
         across, up = packing.copies
         disks = packing.expected_disks
         lanes = LANES * columns_of(min(across, up), max(across, up)) / (across * up)  # slots for each disk
@@ -48,12 +50,14 @@ class Sizes:
         if any(table.needs_column for table in case.boundary.values()):
             disks *= 1.0 + 1.0 / across
         everywhere = any(load.wave is not None and load.position is None for load in case.load)
-        sides = (width + height) / packing.radius
+        width, height = packing.extent
+        lengths = {"left": height, "right": height, "bottom": width, "top": width}
+        sides = sum(3.0 * lengths[side] / (2.0 * packing.radius) for side in case.boundary)  # three components each
         return cls(
             disks=disks,
             slots=disks * lanes if in_rows else disks,
             contacts=disks * packing.expected_contacts,
-            supported=disks if everywhere else min(sides, disks),
+            supported=min(3.0 * disks if everywhere else sides, 3.0 * disks),
             in_rows=in_rows,
         )
 
@@ -71,9 +75,15 @@ class Sizes:
 
 def must_fit_here(case: DiskCase) -> None:
     """Raise CaseError if a run of a case needs more memory than is free here; nothing is built for this."""
-    expected = Sizes.expected(case)
     key = "packing.size" if case.packing.size is not None else "packing.bricks"
-    must_fit(run_bytes(case, [expected]), key, f"{expected.disks:.3g} disks")
+    must_fit(expected_bytes(case), key, f"{Sizes.expected(case).disks:.3g} disks")
+
+
+def expected_bytes(case: DiskCase) -> float:
+    """Largest memory (bytes) of a run of a case, computed without building it."""
+    expected = Sizes.expected(case)
+    excavated = any(hole.stage == "after" for hole in case.hole)
+    return run_bytes(case, [expected], expected if excavated else None)
 
 
 def run_bytes(case: DiskCase, scenes: Sequence[Sizes], before: Sizes | None = None) -> float:
@@ -97,10 +107,9 @@ def run_bytes(case: DiskCase, scenes: Sequence[Sizes], before: Sizes | None = No
 def scene_bytes(case: DiskCase, z: Sizes) -> float:
     """Of a scene: positions, radii, twins and tiles (36 n), its slots, mass, inertia and part of a cell; its contacts.
 
-    Pairs and types (12 b), for the kernels one by one 4 n + 16 b; in rows the node of each slot and work space. Steady
-    loads (3, n).
+    Pairs and types (12 b), for the kernels one by one 4 n + 16 b; in rows the node of each slot. Steady loads (3, n).
     """
-    rows = (8 + 24) * z.slots if z.in_rows else 4 * z.disks + 16 * z.contacts
+    rows = 8 * z.slots if z.in_rows else 4 * z.disks + 16 * z.contacts
     return (36 + 8 + 24 + 24 * bool(case.load)) * z.disks + 12 * z.contacts + rows
 
 
@@ -113,10 +122,10 @@ def pairs_bytes(z: Sizes) -> float:
     """Of the list of pairs with a history.
 
     In q places 37 bytes of numbers, types and states, and forces (4, q); by pair its place, image and two ends (18 p);
-    by slot the ends, arms and origin (28 s); cells (8 n); in rows also where disks stand (24 n) and work space (3, s).
+    by slot the ends, arms and origin (28 s); cells (8 n); in rows also where disks stand (24 n).
     """
     pairs, places = _pairs(z)
-    rows = 24 * (z.disks + z.slots) if z.in_rows else 0.0
+    rows = 24 * z.disks if z.in_rows else 0.0
     return (37 + 32) * places + 18 * pairs + 28 * z.slots + 8 * z.disks + rows
 
 
@@ -144,7 +153,7 @@ def export_bytes(case: DiskCase, z: Sizes) -> float:
 
 def _run_bytes(case: DiskCase, whole: Sizes, z: Sizes) -> float:
     """Motion, ledger and record of the stepped scene, its pairs, and the fields of a snapshot of the whole one."""
-    moving = motion_bytes(z.slots) + ledger_bytes(z.slots) + record_bytes(case, 256, 6, z.supported)
+    moving = motion_bytes(z.slots) + ledger_bytes(z.slots) + record_bytes(len(case.monitor), 256, 6, z.supported)
     moving += 8 * z.slots * case.output.peaks
     snapshot = (48 + 24 * case.output.stress) * whole.disks if case.output.snapshots else 0.0
     if not _has_history(case):
@@ -161,7 +170,7 @@ def _settling_bytes(case: DiskCase, z: Sizes) -> float:
     """Of a static stage: masses of its own, pairs under any law, loads, forces and their temporaries (3, n)."""
     listing = 24 * z.disks + listing_bytes(z)
     moving = motion_bytes(z.slots) + 24 * z.disks + pairs_bytes(z) + 24 * (3 * z.disks + 3 * z.slots)
-    return max(listing, moving + record_bytes(case, 256, 6, z.supported))
+    return max(listing, moving + record_bytes(len(case.monitor), 256, 6, z.supported))
 
 
 def _pairs(z: Sizes) -> tuple[float, float]:

@@ -4,8 +4,6 @@ The largest memory of a run is that of its largest stage: the program, plus the 
 shapes. What a stage needs beyond the arrays that remain is the temporary arrays of its largest moment.
 """
 
-from typing import Any
-
 from dembound.casefile import Case
 from dembound.errors import CaseError
 from dembound.machine import Memory, memory_here
@@ -34,13 +32,13 @@ def ledger_bytes(slots: float) -> float:
     return (2 + 6) * F * slots
 
 
-def record_bytes(case: Any, block: int, width: int, supported: float) -> float:
-    """Of what is kept for a block of steps: twice the record (block, p, width) of p monitors, and the drives.
+def record_bytes(monitors: int, block: int, width: int, lines: float) -> float:
+    """Of what is kept for a block of steps: twice the record (block, monitors, width), and the drives of supports.
 
-    The support table of k nodes has six columns (k, 3), the drives (block, k, 3), twice.
+    lines : of the support table, one for each component of a supported node. The nodes have six columns, and the drives
+    (block, lines), twice, of shorter blocks where there are many.
     """
-    record = 2.0 * F * block * width * len(case.monitor)
-    return record + 18 * F * supported + 2.0 * min(DRIVEN_BYTES, 3 * F * block * supported)
+    return 2.0 * F * block * width * monitors + 6 * F * lines + 2.0 * min(DRIVEN_BYTES, F * block * lines)
 
 
 def largest(stages: dict[str, float], case: Case) -> float:
@@ -65,8 +63,8 @@ def has_in_words(here: Memory) -> str:
 
 
 def in_words(size: float) -> str:
-    """Bytes as text, in MB or GB with three digits."""
+    """Bytes as text, in MB, GB or TB with three digits."""
     if size < 999.5e6:
         return f"{size / 1e6:.0f} MB"
-    return f"{size / 1e9:.3g} GB"
+    return f"{size / 1e9:.3g} GB" if size < 999.5e9 else f"{size / 1e12:.3g} TB"
 
