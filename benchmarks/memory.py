@@ -66,7 +66,11 @@ acceleration = [0.0, -1.0]
 FREE_FIELD = """
 [static]
 ratio = 0.9
-stress = [-1e5, -1e5, 0.0]
+[static.boundary.bottom]
+type = "fixed"
+[[load]]
+name = "gravity"
+acceleration = [0.0, -1.0]
 [boundary.left]
 type = "free_field"
 [boundary.right]

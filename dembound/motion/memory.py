@@ -67,4 +67,3 @@ def in_words(size: float) -> str:
     if size < 999.5e6:
         return f"{size / 1e6:.0f} MB"
     return f"{size / 1e9:.3g} GB" if size < 999.5e9 else f"{size / 1e12:.3g} TB"
-
