@@ -162,7 +162,7 @@ def _run_bytes(case: DiskCase, whole: Sizes, z: Sizes) -> float:
     else:
         pairs = pairs_bytes(z) + 34 * _pairs(z)[0] * bool(case.output.snapshots)  # forces, to count contacts
         steady = 24 * (z.disks + z.slots) + 24 * z.disks  # with the velocity at the change of law
-    settled = 4 * 24 * z.disks * (case.static is not None)  # datum, balancing forces, and what they are made of
+    settled = 2 * 24 * z.disks * (case.static is not None)  # datum and balancing forces
     return moving + snapshot + pairs + steady + settled
 
 

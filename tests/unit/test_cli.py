@@ -462,6 +462,17 @@ def test_bad_settings_are_bad_input(dembound, written, tmp_path, setting: str) -
     assert not (tmp_path / "results").exists()
 
 
+@pytest.mark.parametrize("name", ["check", "run", "packing"])
+def test_a_case_larger_than_the_machine_is_refused_with_both_numbers(dembound, written, tmp_path, name) -> None:
+    large = written("large", {"packing.size": [1e6, 1e6]})
+    answer = dembound(name, large)
+
+    assert answer.code == 2
+    sizes = r"need about [\d.e+]+ TB of memory, this machine has [\d.]+ [MGT]B, [\d.]+ [MGT]B of it free\n"
+    assert re.fullmatch(rf"(large: )?packing\.size: \S+ disks {sizes}", answer.err)
+    assert files(tmp_path) == {"large.toml"}
+
+
 def test_more_threads_than_cores_are_refused(dembound, written) -> None:
     answer = dembound("run", written(), "--threads", numba.get_num_threads() + 1)
 

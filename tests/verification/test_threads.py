@@ -1,8 +1,9 @@
 """Results do not depend on the number of threads, as nothing is summed in an order that depends on it.
 
 Each particle sums its own row of contacts. Energies and work are summed in chunks of particles and contacts that are
-the same for any number of threads, and chunks are added in order. A sum that threads share, each adding what it has found, has as many partial sums as there are threads, and differs in
-its last bits with a probability near one in each of the entries compared here.
+the same for any number of threads, and chunks are added in order. A sum that threads share, each adding what it has
+found, has as many partial sums as there are threads, and differs in its last bits with a probability near one in each
+of the entries compared here.
 """
 
 import numba
