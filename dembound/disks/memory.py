@@ -19,6 +19,9 @@ from dembound.motion.memory import largest, ledger_bytes, motion_bytes, must_fit
 if TYPE_CHECKING:
     from dembound.disks.scene import DiskScene
 
+PIECE = 2**18
+"""Number of pairs whose stresses are evaluated at once: this limits the temporary arrays of large scenes."""
+
 NEAR = 1.08
 """Listed pairs over contacts: those with a gap below `contacts.SKIN` are listed, too. In random bricks 1.07 to 1.08."""
 
@@ -98,7 +101,8 @@ def run_bytes(case: DiskCase, scenes: Sequence[Sizes], before: Sizes | None = No
     stages["export"] = export_bytes(case, whole)
     stages["run"] = built + _run_bytes(case, whole, stepped)
     if case.static is not None:
-        stages["settle"] = built + _settling_bytes(case, before or whole)
+        kept = 0.0 if before is None else pairs_bytes(before)  # from which the excavated body begins
+        stages["settle"] = built + kept + _settling_bytes(case, before or whole)
     elif _has_history(case):
         stages["list"] = built + listing_bytes(stepped)
     return largest(stages, case)
@@ -144,33 +148,44 @@ def export_bytes(case: DiskCase, z: Sizes) -> float:
     """Of a snapshot as a file for ParaView, when the scene is gone.
 
     Particles and fields as read (84 n), points and vertices with offsets and types (52 n), fields in single precision
-    with their temporaries (72 n), bytes and text of the largest array (56 n); with stress 72 n more, with the number
+    with their temporaries (72 n), bytes and text of the largest array (80 n); with stress 72 n more, with the number
     of contacts 12 n.
     """
     more = 72 * case.output.stress + 12 * _has_history(case) + 12 * case.output.peaks
-    return (84 + 52 + 72 + 56 + more) * z.disks if case.output.snapshots else 0.0
+    return (84 + 52 + 72 + 80 + more) * z.disks if case.output.snapshots else 0.0
+
+
+def stress_bytes(z: Sizes) -> float:
+    """Of stresses: displacements in slots, moments and their quotient (3, n), and a piece of the pairs.
+
+    For each of its pairs, their constants (12) and 15 numbers of places, vectors, forces and products.
+    """
+    return 24 * z.slots + 48 * z.disks + 27 * 8 * min(PIECE, _pairs(z)[1])
 
 
 def _run_bytes(case: DiskCase, whole: Sizes, z: Sizes) -> float:
     """Motion, ledger and record of the stepped scene, its pairs, and the fields of a snapshot of the whole one."""
     moving = motion_bytes(z.slots) + ledger_bytes(z.slots) + record_bytes(len(case.monitor), 256, 6, z.supported)
     moving += 8 * z.slots * case.output.peaks
-    snapshot = (48 + 24 * case.output.stress) * whole.disks if case.output.snapshots else 0.0
+    snapshot = 48.0 * whole.disks
     if not _has_history(case):
         pairs = 13 * z.contacts  # for the strain energy
         steady = 24 * (z.disks + z.slots) * bool(case.load)
     else:
-        pairs = pairs_bytes(z) + 34 * _pairs(z)[0] * bool(case.output.snapshots)  # forces, to count contacts
+        pairs = pairs_bytes(z)
+        snapshot += 34 * _pairs(z)[0]  # forces, to count contacts
         steady = 24 * (z.disks + z.slots) + 24 * z.disks  # with the velocity at the change of law
     settled = 2 * 24 * z.disks * (case.static is not None)  # datum and balancing forces
-    return moving + snapshot + pairs + steady + settled
+    if case.output.stress:
+        snapshot = max(snapshot, 24 * z.disks + stress_bytes(z))
+    return moving + snapshot * bool(case.output.snapshots) + pairs + steady + settled
 
 
 def _settling_bytes(case: DiskCase, z: Sizes) -> float:
-    """Of a static stage: masses of its own, pairs under any law, loads, forces and their temporaries (3, n)."""
-    listing = 24 * z.disks + listing_bytes(z)
-    moving = motion_bytes(z.slots) + 24 * z.disks + pairs_bytes(z) + 24 * (3 * z.disks + 3 * z.slots)
-    return max(listing, moving + record_bytes(len(case.monitor), 256, 6, z.supported))
+    """Of a static stage: masses of its own, pairs under any law, and at its end loads, forces and stresses."""
+    loads = 24 * (3 * z.disks + z.slots)  # those of the case and of the stage, also in slots, and those of contacts
+    moving = motion_bytes(z.slots) + pairs_bytes(z) + loads + stress_bytes(z)
+    return 24 * z.disks + max(listing_bytes(z), moving + record_bytes(0, 256, 6, z.supported))
 
 
 def _pairs(z: Sizes) -> tuple[float, float]:

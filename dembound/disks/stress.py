@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from dembound.disks.body import DiskBody
+from dembound.disks.memory import PIECE
 from dembound.disks.part import DiskPart
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import REFERENCE, push
@@ -12,9 +13,6 @@ from dembound.kernels.tables import Contacts, Limits
 
 UNYIELDING = Limits(friction=0.0, tension=np.inf, cohesion=np.inf, tan_fa=0.0, geometry=REFERENCE)
 """Under the elastic law there are no strength and friction limits."""
-
-PIECE = 2**18
-"""Number of pairs evaluated at once: this limits the additional memory in large scenes."""
 
 
 def part_stress(scene: DiskBody, part: DiskPart, displacement: np.ndarray) -> np.ndarray:
