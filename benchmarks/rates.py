@@ -1,4 +1,4 @@
-"""How fast disks are stepped, packed and run, what memory that takes, and how much of the machine it is.
+"""How fast disks are stepped, packed and run, and how much of the machine that is.
 
     python benchmarks/rates.py [--sections steps copies ...] [--threads 1 2] [--json results/benchmarks/rates.json]
 
@@ -8,7 +8,6 @@ steps     particle-steps per second of shipped cases under the elastic law and b
           compiled loop alone, and all of `Simulation.advance`; share of the bandwidth of an array copy measured beside
 copies    the same for 1 to 100 copies of a brick
 sizes     the same for 1e4 to 1e6 particles, with --large also 4e6
-memory    largest memory of whole runs by their number of particles
 commands  CPU seconds of whole commands, after each has run once
 packing   CPU seconds of packing a brick
 
@@ -191,33 +190,6 @@ def _command(*arguments: str | Path) -> list[str | Path]:
     return [sys.executable, "-m", "dembound", *arguments]
 
 
-def memory(options: argparse.Namespace) -> list[dict[str, Any]]:
-    """Whole runs of few steps with two snapshots, each in a new process."""
-    rows = []
-    with tempfile.TemporaryDirectory() as folder:
-        for across in [*SIZES, *([LARGE] if options.large else [])]:
-            case = Path(folder, f"bar_{across}.toml")
-            case.write_text(
-                bar("B", across, 5).replace("duration = 1.0", "duration = 0.01") + "[output]\nsnapshots=2\n"
-            )
-            if not rows:
-                whole(_command("run", case), Path(folder), {"PYTHONPATH": str(ROOT)})  # packs and compiles
-            usage = whole(_command("run", case), Path(folder), {"PYTHONPATH": str(ROOT)})
-            rows.append({"count": across * 5 * 432, "megabytes": usage.memory / 1e6, "cpu": usage.cpu})
-    for row, before in zip(rows[1:], rows, strict=False):
-        more = row["count"] - before["count"]
-        row["bytes_each"] = f"{1e6 * (row['megabytes'] - before['megabytes']) / more:.0f}"
-    rows[0]["bytes_each"] = "–"
-    columns = {
-        "particles": "{count:,}",
-        "largest memory, MB": "{megabytes:.0f}",
-        "bytes per particle added": "{bytes_each}",
-        "CPU s": "{cpu:.1f}",
-    }
-    show("Memory of a whole run", columns, rows)
-    return rows
-
-
 def commands(options: argparse.Namespace) -> list[dict[str, Any]]:
     """Whole commands in new processes, each run once before."""
     rows = []
@@ -254,7 +226,6 @@ SECTIONS: dict[str, Callable[[argparse.Namespace], list[dict[str, Any]]]] = {
     "steps": steps,
     "copies": copies,
     "sizes": sizes,
-    "memory": memory,
     "commands": commands,
     "packing": packing,
 }

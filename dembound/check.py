@@ -4,7 +4,9 @@ import time
 
 from dembound.casefile import Case
 from dembound.casefile.messages import counted
+from dembound.machine import memory_here
 from dembound.motion.kind import Plan
+from dembound.motion.memory import has_in_words, in_words
 from dembound.motion.proposals import proposals
 from dembound.motion.silence import silent_rule
 from dembound.motion.simulation import Simulation
@@ -27,11 +29,17 @@ def _run_facts(planned: Plan) -> dict[str, str]:
         "time step": f"{planned.time_step:.4g} s, {planned.time_step / planned.step_limit:.3f} of the limit "
         f"{planned.step_limit:.6g} s",
         "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s{_until_silent(planned)}",
-        "memory": f"{scene.bytes / 1e6:.3g} MB",
+        "memory": f"{in_words(scene.largest_memory)} at most{_here()}",
         "estimated time": f"{duration_in_words(_estimate(planned))} {_threads_in_words(scene.threads)}"
         f"{planned.kind.not_estimated(scene.case)}",
     }
     return facts | ({"reduced": "; ".join(scene.reduced)} if scene.reduced else {})
+
+
+def _here() -> str:
+    """The memory of this machine, where it is known."""
+    here = memory_here()
+    return "" if here is None else f"; {has_in_words(here)}"
 
 
 def _until_silent(planned: Plan) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from dembound.bar.banded import is_stable, largest_stable_step
+from dembound.bar.memory import run_bytes
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.bar import BarCase
 from dembound.methods.bonds import Bonds, Rod
@@ -132,6 +133,6 @@ class BarBody(Scene):
         return self.supports.node[self.supports.prescribed & (self.supports.component == 0)]
 
     @property
-    def bytes(self) -> int:
-        """Memory of state (9 numbers a node), masses, springs, work space (10), bonds and their breaks (3m)."""
-        return 8 * self.count * (9 + 10 + 3 * self.case.method.largest_horizon)
+    def largest_memory(self) -> float:
+        """Largest memory (bytes) of a run."""
+        return run_bytes(self.case)

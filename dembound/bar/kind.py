@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.bar.facts import bar_facts
+from dembound.bar.memory import run_bytes
 from dembound.bar.mesh import VIEW_SCRIPT, bar_mesh
 from dembound.bar.outcome import bar_outcome
 from dembound.bar.scene import BarScene, build_bar
@@ -46,6 +47,10 @@ class Bars(Kind[BarCase, BarScene]):
     def build(self, case: BarCase) -> BarScene:
         """Its nodes and what supports them."""
         return build_bar(case)
+
+    def expected_memory(self, case: BarCase) -> float:
+        """From the number of nodes and the method."""
+        return run_bytes(case)
 
     def choose_step(self, scene: BarScene) -> tuple[float, float]:
         """Time step and stability limit (s)."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.bar.body import BarBody
+from dembound.bar.memory import must_fit_here
 from dembound.bar.part import BarPart
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.bar import BarCase
@@ -26,7 +27,8 @@ class BarScene(BarBody):
 
 
 def build_bar(case: BarCase) -> BarScene:
-    """Place a bar's nodes and support them."""
+    """Place a bar's nodes and support them; raises CaseError when a run needs more memory than there is."""
+    must_fit_here(case)
     bar = case.bar
     rod = Rod(bar.cells + 1, bar.length / bar.cells, bar.area, bar.modulus, bar.breaking_stretch)
     positions = np.zeros((rod.count, 2))

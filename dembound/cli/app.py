@@ -16,6 +16,7 @@ import typer
 
 from dembound.cli.console import err, escape_unprintable, out
 from dembound.errors import CONTROL, CaseError, DemboundError, UnusableTypeWarning
+from dembound.machine import give_back_at_once
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -175,6 +176,7 @@ logging.getLogger("dembound").setLevel(logging.INFO)
 
 def main() -> None:
     """Run the command line; every failure a user can cause is one message and its exit code."""
+    give_back_at_once()
     gc.set_threshold(COLLECT_EVERY)
     atexit.register(gc.freeze)  # else everything is searched once more at the end
     escape_unprintable()

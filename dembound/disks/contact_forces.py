@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dembound.disks.memory import PIECE
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, SLID, push
 from dembound.kernels.tables import Contacts, Limits
@@ -12,9 +13,6 @@ from dembound.motion.layout import Layout
 
 UNYIELDING = Limits(friction=0.0, tension=np.inf, cohesion=np.inf, tan_fa=0.0, geometry=REFERENCE)
 """Under the elastic law there are no strength and friction limits."""
-
-PIECE = 2**18
-"""Number of pairs evaluated at once: this limits the additional memory in large scenes."""
 
 
 class Piece(NamedTuple):

@@ -30,7 +30,7 @@ The list is renewed once a particle has moved by half of it.
 
 @dataclass(frozen=True)
 class Pairs:
-    """Pairs: first, second (b,) particles, image (b, 2) whole periods between them, contact_type (b,)."""
+    """Pairs: first, second (b,) particles, image (b, 2) int8 whole periods between them, contact_type (b,)."""
 
     first: np.ndarray
     second: np.ndarray
@@ -170,48 +170,61 @@ class ContactList:
     def search(self, displacement: np.ndarray) -> None:
         """List the pairs anew for displacements (3, n): add near pairs, remove distant ones without bond."""
         self.note_cracks()
-        moved, radii = displacement[:2, self.nodes].T, self.assembly.radii
-        here = self.assembly.positions + moved
-        if not np.isfinite(here).all():
+        moved = displacement[:2, self.nodes].T
+        if not np.isfinite(moved).all():
             return  # the `Watch` of the run raises the error
-        count, state, contact_type = len(radii), self.of("state"), self.of("contact_type")
-        old_first, old_second = self.pairs
-        near, image = near_pairs(here, radii, self.skin, self.periods)
-        vectors = moved[old_second] - moved[old_first] + self._constants[contact_type, :2]
-        gap = np.hypot(*vectors.T) - radii[old_first] - radii[old_second]
-        kept = (state == INTACT) | (gap <= self.skin)
-        if self._held is not None:
-            kept[self.find(*self._held)[1]] = True
-        keys = pair_keys(old_first[kept], old_second[kept], self.image[kept], count)
-        fresh = ~np.isin(pair_keys(near[:, 0], near[:, 1], image, count), keys)
-        first, second = near[fresh].T
-        between = self.assembly.positions[second] - self.assembly.positions[first]
-        vectors = between + image[fresh] * [length or 0.0 for length in self.periods]
-        constants = self.ground.law.pair_constants(
-            self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
-        )
-        constants, row_of_new = shared_constants(constants, self.skin)
+        kept = self._remaining(moved)
+        met, constants = self._met(moved, kept)
         # rows of earlier searches that are still in use are moved up to follow those of the brick
         own = len(self.bonds)
-        used, row = np.unique(contact_type[kept], return_inverse=True)
+        used, row = np.unique(self.of("contact_type")[kept], return_inverse=True)
         extra = used >= own
         place = used.astype(np.int64)
         place[extra] = own + np.arange(np.count_nonzero(extra))
         self._constants = np.vstack([self.bonds, self._constants[used[extra]], constants])
+        first, second = self.pairs
         pairs = Pairs(
-            np.concatenate([old_first[kept], first]),
-            np.concatenate([old_second[kept], second]),
-            np.concatenate([self.image[kept], image[fresh]]),
-            np.concatenate([place[row], own + np.count_nonzero(extra) + row_of_new]),
+            np.concatenate([first[kept], met.first]),
+            np.concatenate([second[kept], met.second]),
+            np.concatenate([self.image[kept], met.image]),
+            np.concatenate([place[row], own + np.count_nonzero(extra) + met.contact_type]),
         )
+        del first, second, row
         self._list(
             pairs,
-            np.concatenate([state[kept], np.full(len(first), NONE, dtype=np.uint8)]),
-            np.concatenate([self.of("shear")[kept], np.zeros(len(first))]),
-            np.concatenate([self.of("slip")[kept], np.zeros(len(first))]),
-            np.concatenate([self.of("cracked")[kept], np.full(len(first), -1)]),
+            np.concatenate([self.of("state")[kept], np.full(len(met.first), NONE, dtype=np.uint8)]),
+            np.concatenate([self.of("shear")[kept], np.zeros(len(met.first))]),
+            np.concatenate([self.of("slip")[kept], np.zeros(len(met.first))]),
+            np.concatenate([self.of("cracked")[kept], np.full(len(met.first), -1)]),
         )
         self._set_origin(displacement[:2, self.nodes])
+
+    def _remaining(self, moved: np.ndarray) -> np.ndarray:
+        """Which pairs (b,) bool remain listed when particles have moved (m, 2) m: intact, near or held ones."""
+        radii, (first, second) = self.assembly.radii, self.pairs
+        vectors = moved[second] - moved[first] + self._constants[self.of("contact_type"), :2]
+        kept = (self.of("state") == INTACT) | (np.hypot(*vectors.T) - radii[first] - radii[second] <= self.skin)
+        if self._held is not None:
+            kept[self.find(*self._held)[1]] = True
+        return kept
+
+    def _met(self, moved: np.ndarray, kept: np.ndarray) -> tuple[Pairs, np.ndarray]:
+        """Near pairs that are not among those kept (b,) bool, for particles that have moved (m, 2) m.
+
+        Their types are rows of constants (p, 12), which are returned too.
+        """
+        positions, radii = self.assembly.positions, self.assembly.radii
+        near, image = near_pairs(positions + moved, radii, self.skin, self.periods)
+        first, second = (particles[kept] for particles in self.pairs)
+        keys = pair_keys(first, second, self.image[kept], len(radii))
+        fresh = ~np.isin(pair_keys(near[:, 0], near[:, 1], image, len(radii)), keys)
+        (first, second), image = near[fresh].T, image[fresh]
+        vectors = positions[second] - positions[first] + image * [length or 0.0 for length in self.periods]
+        constants = self.ground.law.pair_constants(
+            self.ground.moduli, radii[first], radii[second], vectors, bonded=False, locked_in=self.locked_in
+        )
+        constants, row_of = shared_constants(constants, self.skin)
+        return Pairs(first, second, image, row_of), constants
 
     def take_over_subset(self, other: "ContactList", kept: np.ndarray) -> None:
         """Copy the pairs, with their history, from a list of more particles, of which this list has `kept` (m,)."""
@@ -291,11 +304,11 @@ class ContactList:
         return self.arrays.force[:, self.live].T
 
     def images(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-        """Whole periods (b, 2) that a pair's vector goes beyond the difference of its positions."""
+        """Whole periods (b, 2) int8 that a pair's vector goes beyond the difference of its positions."""
         inside = self.assembly.positions[second] - self.assembly.positions[first]
         periods = np.broadcast_to([length or 0.0 for length in self.periods], inside.shape)
         wraps = np.divide(vectors - inside, periods, out=np.zeros_like(inside), where=periods > 0.0)
-        return np.rint(wraps).astype(np.int64)
+        return np.rint(wraps).astype(np.int8)
 
     def freshly_torn(self) -> np.ndarray:
         """Particles (m,) bool with a bond that has broken since cracks were last recorded."""
@@ -349,7 +362,7 @@ class ContactList:
         place: np.ndarray | None = None,
     ) -> None:
         """Give the pairs their places, and list the contact ends of each particle."""
-        first, second = self._slot[pairs.first], self._slot[pairs.second]
+        first, second = (self._slot[particles].astype(np.int32) for particles in (pairs.first, pairs.second))
         in_rows = np.full(len(first), -1)
         if self._plan is not None:
             in_rows = self._plan.place(pairs.first, pairs.second, pairs.contact_type)
@@ -361,7 +374,7 @@ class ContactList:
         self.live = np.concatenate([in_rows[:shared], places + np.arange(len(order) - shared)])
         count, begin, stop = places + len(order) - shared, self._slots.start, self._slots.stop
         owner = np.concatenate([first, second])
-        end = np.concatenate([2 * self.live, 2 * self.live + 1])
+        end = np.concatenate([2 * self.live, 2 * self.live + 1]).astype(np.uint32)
         start = np.zeros(stop + 1, dtype=np.uint32)
         np.cumsum(np.bincount(owner - begin, minlength=stop - begin), out=start[begin + 1 :])
 
@@ -384,7 +397,7 @@ class ContactList:
             place=np.zeros((count, 2)) if place is None else placed(place[order]),
             force=np.zeros((4, count)),
             start=start,
-            end=end[np.lexsort((end, owner))].astype(np.uint32),
+            end=end[np.lexsort((end, owner))],
         )
         if self._plan is not None:
             self._list_rows(in_rows[:shared], owner, end)
@@ -396,7 +409,7 @@ class ContactList:
         others = end >= 2 * self._plan.count
         order = np.lexsort((end[others], owner[others]))
         slot, start = np.unique(owner[others][order], return_index=True)
-        self.strays = slot, np.append(start, len(order)), end[others][order].astype(np.uint32)
+        self.strays = slot, np.append(start, len(order)), end[others][order]
         self.extra = np.zeros((3, self.layout.count))
 
 

@@ -11,6 +11,7 @@ from dembound.casefile.types import LAWS
 from dembound.disks.breaks import first_break
 from dembound.disks.contact_mesh import contact_mesh
 from dembound.disks.facts import disk_facts
+from dembound.disks.memory import expected_bytes
 from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
 from dembound.disks.outcome import disk_outcome
 from dembound.disks.reduction import reduced
@@ -50,6 +51,10 @@ class Disks(Kind[DiskCase, DiskScene]):
         scene = build(case)
         _ = scene.steady_load, scene.ground.material_tensor
         return scene
+
+    def expected_memory(self, case: DiskCase) -> float:
+        """From the numbers of disks and contacts to expect."""
+        return expected_bytes(case)
 
     def choose_step(self, scene: DiskScene) -> tuple[float, float]:
         """Time step and stability limit (s)."""

@@ -68,7 +68,7 @@ def plan_rows(assembly: Assembly) -> RowPlan:
     regular = tile[:, 1] * across + tile[:, 0] if along_x else tile[:, 0] * up + tile[:, 1]
     copy = np.choose(closing, [regular, tile[:, 0], tile[:, 1], 0])
     short, long = (across, up) if along_x else (up, across)
-    columns = np.array([_columns(short, long), -(-across // LANES), -(-up // LANES), 1])
+    columns = np.array([columns_of(short, long), -(-across // LANES), -(-up // LANES), 1])
     kinds, group = np.unique(closing, return_inverse=True)
     brick_rows, row = np.unique(
         group * (assembly.brick_particle.max() + 1) + assembly.brick_particle, return_inverse=True
@@ -85,7 +85,7 @@ def plan_rows(assembly: Assembly) -> RowPlan:
     )
 
 
-def _columns(short: int, long: int) -> int:
+def columns_of(short: int, long: int) -> int:
     """Columns for so many copies along the shorter and the longer side."""
     least = -(-short * long // LANES)
     even = -(-long // LANES) * short

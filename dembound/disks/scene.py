@@ -15,6 +15,7 @@ from dembound.disks.contacts import plain_contacts
 from dembound.disks.edges import edge_without, edges_beside_column, find_edges
 from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive
+from dembound.disks.memory import Sizes, must_fit_here, run_bytes
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.stress import particle_stress
 from dembound.disks.system import DiskSystem
@@ -54,21 +55,24 @@ class DiskScene(DiskBody):
         return DiskSystem(self, time_step)
 
     @property
-    def bytes(self) -> int:
-        """Memory of the particle, contact and state arrays, those before an excavation included."""
-        state = 9 * 8 * self.layout.count  # u, its successor and v
-        step = 2 * 8 * (self.count + self.layout.count)  # mass, inertia and their mobilities
-        arrays = (*(array for rows in self.rows for array in rows), *vars(self.assembly).values(), self.layout.slot)
-        before = 0 if self.before is None else self.before.bytes
-        return before + state + step + sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
+    def largest_memory(self) -> float:
+        """Largest memory (bytes) of a run of it, or of the scene it is stepped in place of."""
+        before = None if self.before is None else Sizes.of(self.before)
+        return run_bytes(self.case, [Sizes.of(scene) for scene in self.chain], before)
+
+    @property
+    def chain(self) -> "tuple[DiskScene, ...]":
+        """The scene of the case, and the smaller ones in its place, down to this one."""
+        return (self,)
 
 
 def build(case: DiskCase) -> DiskScene:
     """Build the scene of a case: pack, tile, make holes and add supports.
 
     Raises PackingError when the brick cannot be made or no particle remains, CaseError when no particle of a side
-    remains.
+    remains, or when a run needs more memory than there is.
     """
+    must_fit_here(case)
     ground = ground_of(case)
     periodic = (case.side("left").is_periodic, case.side("bottom").is_periodic)
     body = tile(ground.brick, case.packing.copies, periodic)

@@ -82,9 +82,9 @@ class SmallerScene(DiskScene):
         return np.unique(self.like[self.of.tracked])
 
     @property
-    def bytes(self) -> int:
-        """Memory of its arrays and of the larger scene, whose stability limit is that of the step."""
-        return super().bytes + self.of.bytes
+    def chain(self) -> tuple[DiskScene, ...]:
+        """The scene of the case, and the smaller ones in its place, down to this one."""
+        return (*self.of.chain, self)
 
 
 def supports_at(place: np.ndarray, table: Supports, share: np.ndarray) -> Supports:

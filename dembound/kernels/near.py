@@ -19,13 +19,13 @@ def near_pairs(positions, radii, gap, periods):
     """All pairs of disks whose gap is at most `gap` (m), also through periodic sides, each once.
 
     positions (n, 2), radii (n,) in m; periods (2,) m, 0.0 along an axis that is not periodic. Disks may be outside the
-    period, but only images from −1 to 1 are found. Returns pairs (b, 2) int64 and images (b, 2) int64, sorted by first
+    period, but only images from −1 to 1 are found. Returns pairs (b, 2) int32 and images (b, 2) int8, sorted by first
     disk, second disk and image: the vector is x_j + images·periods − x_i, with i < j, or with i = j and the image after
     (0, 0).
     """
     count = len(radii)
     if count == 0:
-        return np.empty((0, 2), np.int64), np.empty((0, 2), np.int64)
+        return np.empty((0, 2), np.int32), np.empty((0, 2), np.int8)
     # NumPy is slow along the first axis
     low = np.array([positions[:, 0].min(), positions[:, 1].min()])
     high = np.array([positions[:, 0].max(), positions[:, 1].max()])
@@ -37,7 +37,7 @@ def near_pairs(positions, radii, gap, periods):
         room = found
         first, codes = np.empty(room, np.int64), np.empty(room, np.int64)
         found = search(positions, radii, gap, periods, low, high, width, shape, order, start, first, codes)
-    pairs, images = np.empty((found, 2), np.int64), np.empty((found, 2), np.int64)
+    pairs, images = np.empty((found, 2), np.int32), np.empty((found, 2), np.int8)
     unpack(first, codes, pairs, images)
     return pairs, images
 

@@ -76,7 +76,7 @@ class Ledger(Tracker):
         self._time_step = run.time_step
         self._interval, self._last = interval, last
         self._unit, self._weight = run.scene.energy_unit, run.scene.weight
-        self._inertia = run.scene.layout.spread(np.stack([run.scene.mass, run.scene.mass, run.scene.inertia]))
+        self._mass, self._inertia = (run.scene.layout.spread(of) for of in (run.scene.mass, run.scene.inertia))
         self._first = run.system.stored(run.state.u)
         self._most = 0.0, 0.0  # supplied by boundaries and loads, largest values so far
         self._begun: _Begun | None = None
@@ -104,7 +104,8 @@ class Ledger(Tracker):
             u = state.u - run.time_step * state.v
             before = state.layout.spread(state.switch_velocity)
             balancing = system.balancing_work(u)
-        before *= self._inertia
+        before[:2] *= self._mass
+        before[2] *= self._inertia
         before *= state.v
         kinetic = 0.5 * float(np.sum(_by_node(before, state)))
         contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))

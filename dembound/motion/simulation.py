@@ -7,15 +7,13 @@ import numpy as np
 from dembound.kernels import loop, tables
 from dembound.motion.clock import Clock
 from dembound.motion.layout import aligned_zeros
+from dembound.motion.memory import DRIVEN_BYTES
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
 from dembound.motion.state import State
 from dembound.motion.supports import NodeSupports
 from dembound.motion.threads import threads_for
 from dembound.motion.trackers import Records, Tracker, Watch
-
-DRIVEN_BYTES = 64e6
-"""Largest memory for the drives of a block; with many driven nodes blocks are shorter."""
 
 
 class Simulation:
@@ -81,6 +79,11 @@ class Simulation:
         """Add trackers to the run; they are part of its state."""
         self.trackers += trackers
         self.state.owners |= {tracker.name: tracker for tracker in trackers}
+
+    def forget_trackers(self) -> None:
+        """Remove all trackers after the run, some of which refer to it: its arrays are then removed with it."""
+        self.trackers.clear()
+        self.state.owners.clear()
 
     @property
     def time(self) -> float:

@@ -83,8 +83,11 @@ class State:
         if self.top.size:
             self.top[self.layout.slot] = values
 
-    def arrays(self) -> dict[str, np.ndarray]:
-        """Copies of all arrays, by name; a run continued from them in another process gives the same bits."""
+    def arrays(self, *, copies: bool = True) -> dict[str, np.ndarray]:
+        """All arrays, by name; a run continued from them in another process gives the same bits.
+
+        copies : that remain as they are while this run goes on; otherwise some are those of the run.
+        """
         arrays = {name: getattr(self, name) for name in _ARRAYS}
         arrays |= {f"work/{name}": self.work[:, column] for column, name in enumerate(WORK)}
         arrays["step"] = np.array(self.step)
@@ -92,7 +95,7 @@ class State:
         arrays["laws/step"] = np.array([step for _, step in self.laws], dtype=np.int64)
         for owner, kept in self.owners.items():
             arrays |= {f"{owner}/{name}": values for name, values in kept.memory().items()}
-        return {name: np.array(values) for name, values in arrays.items()}
+        return {name: np.array(values) for name, values in arrays.items()} if copies else arrays
 
     def take(self, arrays: Arrays) -> None:
         """Restore what `arrays` has returned in another run of the same case."""

@@ -1,5 +1,6 @@
 """The base of all packing tables."""
 
+import math
 from abc import ABC, abstractmethod
 from typing import Annotated, ClassVar, Self
 
@@ -28,6 +29,10 @@ PRESSURE = 8e-3
 # Below, a frictionless packing is nearly unstable and does not come to rest; above, overlaps reach a tenth of the
 # diameter and are no longer contacts.
 PRESSURES = (5e-4, 0.1)
+
+SOLID, CONTACTS, MOST_CONTACTS = 0.85, 2.23, 3.0
+"""Solid fraction and contacts for each disk of random packings; between neighbours in a plane there are at most three.
+"""
 
 
 class Packing(Table, ABC):
@@ -64,6 +69,20 @@ class Packing(Table, ABC):
         assert self.size is not None
         width, height = (round(whole / part) for whole, part in zip(self.size, self.brick_size, strict=True))
         return width, height
+
+    @property
+    def expected_disks(self) -> float:
+        """Number of disks expected, for the memory a case needs: random ones fill 0.85 of the area, see `first_count`.
+
+        Those that close a frame are not counted.
+        """
+        width, height = self.extent
+        return SOLID * width * height / (math.pi * self.radius**2)
+
+    @property
+    def expected_contacts(self) -> float:
+        """Contacts for each disk that are expected, for the same purpose."""
+        return CONTACTS
 
     @property
     def extent(self) -> tuple[float, float]:
@@ -116,6 +135,17 @@ class DensePacking(Packing):
     def brick_size(self) -> tuple[float, float]:
         """Width and height of one brick in metres."""
         return self.brick
+
+    @property
+    def expected_disks(self) -> float:
+        """The same for radii that are uniform within their range."""
+        smallest, largest = radius_range(self.radius, self.radius_ratio)
+        return super().expected_disks * self.radius**2 * 3.0 / (smallest**2 + smallest * largest + largest**2)
+
+    @property
+    def expected_contacts(self) -> float:
+        """More where gaps are bonded."""
+        return MOST_CONTACTS if self.bond_gap > 0.0 else CONTACTS
 
     @property
     def largest_radius(self) -> float:

@@ -27,7 +27,8 @@ def near_pairs(
     """
     from dembound.kernels import near
 
-    return near.near_pairs(positions, radii, reach, box)
+    pairs, images = near.near_pairs(positions, radii, reach, box)
+    return pairs.astype(np.int64), images.astype(np.int64)
 
 
 def listed(

@@ -20,6 +20,17 @@ class Square(Packing):
         """The cell of one disk, in metres."""
         return 2.0 * self.radius, 2.0 * self.radius
 
+    @property
+    def expected_disks(self) -> float:
+        """One to a cell."""
+        across, up = self.copies
+        return float(across) * up
+
+    @property
+    def expected_contacts(self) -> float:
+        """To the right and above."""
+        return 2.0
+
     def pack(self, contact_modulus: float) -> Brick:
         """One disk in the middle of its cell, touching its own images to the right and above.
 

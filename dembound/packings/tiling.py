@@ -38,7 +38,9 @@ class Assembly:
     loose: int = 0
 
     def part(self, disks: slice) -> "Assembly":
-        """A range of the disks as a separate assembly; it has no contacts with other disks."""
+        """A range of the disks as a separate assembly, itself if it is of all; it has no contacts with other disks."""
+        if disks == slice(0, len(self.radii)):
+            return self
         chosen = (self.pairs[:, 0] >= disks.start) & (self.pairs[:, 0] < disks.stop)
         return replace(
             self,

@@ -102,7 +102,7 @@ class Checkpoints(Tracker):
     def write(self, run: Run, *, durable: bool = True) -> None:
         """Write a checkpoint now."""
         if self._path is not None:
-            Checkpoint(self._facts(run, durable), run.state.arrays()).write(self._path, durable=durable)
+            Checkpoint(self._facts(run, durable), run.state.arrays(copies=False)).write(self._path, durable=durable)
             self._written = time.monotonic()
 
 

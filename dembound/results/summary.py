@@ -41,7 +41,7 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
         "seconds": dict(seconds),
         "threads": scene.threads,
         "particle_steps_per_second": scene.count * state.step / seconds["step"],
-        "memory_bytes": scene.bytes,
+        "memory_bytes": round(scene.largest_memory),
         "laws": [{"law": name, "from": step * run.time_step} for name, step in state.laws],
         "cracks": _count_cracks(record),
         "energy": _describe_energy(record),

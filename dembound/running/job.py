@@ -1,6 +1,5 @@
 """Runs one case, from its tables or a checkpoint to a folder of results."""
 
-import gc
 import json
 import math
 from collections.abc import Mapping
@@ -29,12 +28,6 @@ from dembound.results.vtk import write_vtu
 from dembound.running.planning import about, plan, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
 from dembound.running.unfinished import Unfinished, find_unfinished
-
-LARGE = 1e8
-"""Bytes of a scene from which on it is removed from memory at once after the run; this takes some tenths of a second.
-
-Files and pictures are made from the record alone.
-"""
 
 SECTIONS = ("import", "compile", "build", "settle", "step", "record", "export", "pictures")
 """The parts of a run whose time is measured, in the order of the summary."""
@@ -114,9 +107,7 @@ class _Job:
                 if self.found is not None:
                     self.found.copy_to(partial)
                 summary = self._record(planned, partial)
-                if summary["memory_bytes"] > LARGE:
-                    del planned
-                    gc.collect()
+                del planned  # files and pictures are made from the record alone
                 self._export(partial)
                 summary |= {"wall_time": sum(clock.seconds.values()), "seconds": clock.seconds}
                 with replacing(partial / "summary.json") as part:
@@ -143,6 +134,7 @@ class _Job:
         summary = summarise(planned, simulation, record, self.clock.seconds)
         summary |= kind.summarise(planned.scene, simulation, beginning, record)
         warnings += _passed_on(kind.warnings_after(planned.scene, summary, record), self.progress)
+        simulation.forget_trackers()
         resumed = [] if self.found is None else self.found.resumed
         return summary | {"warnings": warnings, "resumed": resumed}
 

@@ -5,6 +5,7 @@ import pytest
 from dembound.bar.facts import bar_facts
 from dembound.check import check, duration_in_words
 from dembound.disks.facts import disk_facts
+from dembound.motion.memory import in_words
 from dembound.running import plan, warnings_before
 
 
@@ -15,7 +16,7 @@ def test_facts_are_those_of_the_run_and_of_the_scene(bar) -> None:
 
     assert facts["steps"] == "100 for 0.01 s"
     assert facts["time step"] == f"0.0001 s, {1e-4 / planned.step_limit:.3f} of the limit {planned.step_limit:.6g} s"
-    assert facts["memory"] == f"{planned.stepped.bytes / 1e6:.3g} MB"
+    assert facts["memory"].startswith(f"{in_words(planned.stepped.largest_memory)} at most")
     assert facts["reduced"] == "rows: 2 identical rows are stepped as one, 20 of 40 disks"
     assert facts["estimated time"] == "less than 1 s with 1 thread"
     own = disk_facts(planned.scene)

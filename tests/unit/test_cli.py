@@ -27,6 +27,7 @@ from dembound.casefile.bar import BarCase
 from dembound.cli.app import Side
 from dembound.cli.progress import Lines, progress_of
 from dembound.kinds import load
+from dembound.machine import Memory
 from dembound.motion.simulation import Simulation
 from dembound.plot import style
 from dembound.running import plan
@@ -462,6 +463,20 @@ def test_keys_can_be_set_and_results_named(dembound, written, tmp_path) -> None:
 def test_bad_settings_are_bad_input(dembound, written, tmp_path, setting: str) -> None:
     assert dembound("run", written(), "--set", setting).code == 2
     assert not (tmp_path / "results").exists()
+
+
+@pytest.mark.parametrize("name", ["check", "run", "packing"])
+def test_a_case_larger_than_the_machine_is_refused_with_both_numbers(
+    dembound, written, tmp_path, name, monkeypatch
+) -> None:
+    monkeypatch.setattr("dembound.motion.memory.memory_here", lambda: Memory(8e9, 6e9))
+    large = written("large", {"packing.size": [1e4, 1e4]})
+    answer = dembound(name, large)
+
+    assert answer.code == 2
+    sizes = r"need about [\d.e+]+ GB of memory, this machine has 8 GB, 6 GB of it free\n"
+    assert re.fullmatch(rf"(large: )?packing\.size: \S+ disks {sizes}", answer.err)
+    assert files(tmp_path) == {"large.toml"}
 
 
 def test_more_threads_than_cores_are_refused(dembound, written) -> None:

@@ -153,11 +153,3 @@ def test_held_ends_do_not_vibrate(spalling) -> None:
 
     # one node of m = ρAΔx on two springs EA/Δx: ω² = 2c²/Δx²
     assert scene.step_limit() == pytest.approx(2.0 / np.sqrt(2.0 * 1000.0**2 / 0.5**2), rel=8 * EPS)
-
-
-def test_bytes_grow_with_nodes_and_horizon(spalling) -> None:
-    small, fine = build_bar(spalling()), build_bar(spalling({"bar.spacing": 0.0125}))
-    wide = build_bar(spalling({"method.horizon": 6}))
-
-    assert fine.bytes / small.bytes == pytest.approx(81 / 41, rel=1e-12)
-    assert wide.bytes > small.bytes > small.count * 8 * 9

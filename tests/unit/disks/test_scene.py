@@ -88,13 +88,6 @@ def test_masses_are_those_of_the_bricks_particles(random_scene: DiskScene) -> No
     )
 
 
-def test_a_scene_takes_little_memory(bar) -> None:
-    # what the scene promises for every 2D pattern: 1 kB per particle, far from the smallest scenes' overhead
-    for changes in ({"packing.size": [50.0, 50.0]}, RANDOM):
-        scene = build(bar(changes))
-        assert 0 < scene.bytes <= 1000 * scene.count
-
-
 def test_a_monitor_is_the_nearest_particle(bar) -> None:
     places = {"low": [0.1, 0.1], "middle": [6.2, 4.9], "high": [12.0, 10.0]}
     scene = build(bar({**RANDOM, "monitor": [{"name": n, "position": p} for n, p in places.items()]}))

@@ -1,0 +1,45 @@
+"""The largest memory of a run of a bar, from its numbers of nodes n and of bond lengths m."""
+
+from dembound.casefile.bar import BarCase
+from dembound.motion.memory import largest, ledger_bytes, must_fit, record_bytes
+
+
+def must_fit_here(case: BarCase) -> None:
+    """Raise CaseError if a run of a case needs more memory than is free here; nothing is built for this."""
+    must_fit(run_bytes(case), "bar.spacing", f"{case.bar.cells + 1:,} nodes")
+
+
+def run_bytes(case: BarCase) -> float:
+    """Largest memory (bytes) of a run; temporary arrays are those of the largest moment of a stage."""
+    nodes, lengths = case.bar.cells + 1.0, max(case.method.largest_horizon, 1)
+    run = scene_bytes(nodes) + bonds_bytes(nodes, lengths) + motion_bytes(nodes) + ledger_bytes(nodes)
+    run += record_bytes(len(case.monitor), 2048, 7, sum(load.nodes for load in case.load) + 2.0)
+    if case.output.snapshots:
+        run += damage_bytes(nodes, lengths)
+    step = scene_bytes(nodes) + bonds_bytes(nodes, lengths) + 4 * 8 * (lengths + 1) * nodes  # bands of the stiffness
+    return largest({"step": step, "run": run, "export": export_bytes(case, nodes)}, case)
+
+
+def scene_bytes(nodes: float) -> float:
+    """Of a scene: places, volumes, masses, inertia, slots (48 n)."""
+    return 48 * nodes
+
+
+def bonds_bytes(nodes: float, lengths: int) -> float:
+    """Of springs with their limits (33 n), bonds, their stiffness and the steps they broke in (24 m n), work space."""
+    return (33 + 24 * lengths + 16) * nodes
+
+
+def motion_bytes(nodes: float) -> float:
+    """Of u, its successor and v, of which only the first of three rows is moved, and both mobilities (16 n)."""
+    return (24 + 8 + 8 + 16) * nodes
+
+
+def damage_bytes(nodes: float, lengths: int) -> float:
+    """Of the damage of nodes in a snapshot: families (32 m n), volumes, factors and what is whole, by pair (90 m n)."""
+    return (32 + 90) * lengths * nodes
+
+
+def export_bytes(case: BarCase, nodes: float) -> float:
+    """Of a snapshot as a file for ParaView, when the scene is gone, as for disks."""
+    return 290 * nodes if case.output.snapshots else 0.0

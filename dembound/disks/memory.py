@@ -1,0 +1,208 @@
+"""The largest memory of a run of disks, from the numbers of its disks and contacts.
+
+Bytes are counted from the shapes of arrays, for n disks in s slots with b contacts; the history-dependent law lists p
+pairs, in q places. Temporary arrays are those of the largest moment of a stage. Zeros that are never written to take
+no memory: steady forces without loads, work space for contacts that are computed one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.types import LAWS
+from dembound.kernels.lanes import LANES
+from dembound.motion.memory import largest, ledger_bytes, motion_bytes, must_fit, record_bytes
+
+if TYPE_CHECKING:
+    from dembound.disks.scene import DiskScene
+
+PIECE = 2**18
+"""Number of pairs whose stresses are evaluated at once: this limits the temporary arrays of large scenes."""
+
+NEAR = 1.08
+"""Listed pairs over contacts: those with a gap below `contacts.SKIN` are listed, too. In random bricks 1.07 to 1.08."""
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Numbers of disks, of the slots that hold them, of contacts, and of lines of the support table.
+
+    in_rows : whether copies of a disk stand side by side, see layout.py.
+    """
+
+    disks: float
+    slots: float
+    contacts: float
+    supported: float
+    in_rows: bool
+
+    @classmethod
+    def expected(cls, case: DiskCase) -> Sizes:
+        """Those of a case that has not been built, without its holes: of random bricks within some 3 %."""
+        from dembound.disks.layout import LEAST_FILL
+        from dembound.disks.row_plan import columns_of
+
+        packing = case.packing
+        across, up = packing.copies
+        disks = packing.expected_disks
+        lanes = LANES * columns_of(min(across, up), max(across, up)) / (across * up)  # slots for each disk
+        in_rows = across * up > 1 and lanes * LEAST_FILL <= 1.0
+        if any(table.needs_column for table in case.boundary.values()):
+            disks *= 1.0 + 1.0 / across
+        everywhere = any(load.wave is not None and load.position is None for load in case.load)
+        width, height = packing.extent
+        lengths = {"left": height, "right": height, "bottom": width, "top": width}
+        sides = sum(3.0 * lengths[side] / (2.0 * packing.radius) for side in case.boundary)  # three components each
+        return cls(
+            disks=disks,
+            slots=disks * lanes if in_rows else disks,
+            contacts=disks * packing.expected_contacts,
+            supported=min(3.0 * disks if everywhere else sides, 3.0 * disks),
+            in_rows=in_rows,
+        )
+
+    @classmethod
+    def of(cls, scene: DiskScene) -> Sizes:
+        """Those of a scene."""
+        return cls(
+            disks=scene.count,
+            slots=scene.layout.count,
+            contacts=len(scene.assembly.pairs),
+            supported=len(scene.supports),
+            in_rows=not scene.layout.is_plain,
+        )
+
+
+def must_fit_here(case: DiskCase) -> None:
+    """Raise CaseError if a run of a case needs more memory than is free here; nothing is built for this."""
+    key = "packing.size" if case.packing.size is not None else "packing.bricks"
+    must_fit(expected_bytes(case), key, f"{Sizes.expected(case).disks:.3g} disks")
+
+
+def expected_bytes(case: DiskCase) -> float:
+    """Largest memory (bytes) of a run of a case, computed without building it."""
+    expected = Sizes.expected(case)
+    excavated = any(hole.stage == "after" for hole in case.hole)
+    return run_bytes(case, [expected], expected if excavated else None)
+
+
+def run_bytes(case: DiskCase, scenes: Sequence[Sizes], before: Sizes | None = None) -> float:
+    """Largest memory (bytes) of a run.
+
+    scenes : that of the case, and the smaller ones in its place, the last of which is stepped; before : the scene
+    before an excavation.
+    """
+    whole, stepped = scenes[0], scenes[-1]
+    built = sum(scene_bytes(case, z) for z in ([*scenes] if before is None else [*scenes, before]))
+    stages = {"build": scene_bytes(case, before or whole) + building_bytes(before or whole)}
+    stages["export"] = export_bytes(case, whole)
+    stages["run"] = built + _run_bytes(case, whole, stepped)
+    if case.static is not None:
+        kept = 0.0 if before is None else pairs_bytes(before)  # from which the excavated body begins
+        stages["settle"] = built + kept + _settling_bytes(case, before or whole)
+    elif _has_history(case):
+        stages["list"] = built + listing_bytes(stepped)
+    return largest(stages, case)
+
+
+def scene_bytes(case: DiskCase, z: Sizes) -> float:
+    """Of a scene: positions, radii, twins and tiles (36 n), its slots, mass, inertia and part of a cell; its contacts.
+
+    Pairs and types (12 b), for the kernels one by one 4 n + 16 b; in rows the node of each slot. Steady loads (3, n).
+    """
+    rows = 8 * z.slots if z.in_rows else 4 * z.disks + 16 * z.contacts
+    return (36 + 8 + 24 + 24 * bool(case.load)) * z.disks + 12 * z.contacts + rows
+
+
+def building_bytes(z: Sizes) -> float:
+    """Temporary arrays as contacts are sorted: columns and lanes (24 n), ends of contacts with their keys (66 b)."""
+    return 24 * z.disks + 66 * z.contacts
+
+
+def pairs_bytes(z: Sizes) -> float:
+    """Of the list of pairs with a history.
+
+    In q places 37 bytes of numbers, types and states, and forces (4, q); by pair its place, image and two ends (18 p);
+    by slot the ends, arms and origin (28 s); cells (8 n); in rows also where disks stand (24 n).
+    """
+    pairs, places = _pairs(z)
+    rows = 24 * z.disks if z.in_rows else 0.0
+    return (37 + 32) * places + 18 * pairs + 28 * z.slots + 8 * z.disks + rows
+
+
+def listing_bytes(z: Sizes) -> float:
+    """As pairs are listed anew: the old list without forces (55 p), the new one with the arrays it is sorted by.
+
+    These are the pairs and their history (51 p), sorted (24 p) with places and owners (24 p), the order of the ends
+    with work space (24 p), and the new arrays (37 q).
+    """
+    pairs, places = _pairs(z)
+    rows = 24 * z.disks if z.in_rows else 0.0
+    return (55 + 51 + 24 + 24 + 24) * pairs + 37 * places + 28 * z.slots + 8 * z.disks + rows
+
+
+def export_bytes(case: DiskCase, z: Sizes) -> float:
+    """Of a snapshot as a file for ParaView, when the scene is gone.
+
+    Particles and fields as read (84 n), points and vertices with offsets and types (52 n), fields in single precision
+    with their temporaries (72 n), bytes and text of the largest array (80 n); with stress 72 n more, with the number
+    of contacts 12 n.
+    """
+    more = 72 * case.output.stress + 12 * _has_history(case) + 12 * case.output.peaks
+    return (84 + 52 + 72 + 80 + more) * z.disks if case.output.snapshots else 0.0
+
+
+def stress_bytes(z: Sizes) -> float:
+    """Of stresses: displacements in slots, moments and their quotient (3, n), and a piece of the pairs.
+
+    For each of its pairs, their constants (12) and 15 numbers of places, vectors, forces and products.
+    """
+    return 24 * z.slots + 48 * z.disks + 27 * 8 * min(PIECE, _pairs(z)[1])
+
+
+def checkpoint_bytes(z: Sizes, *, history: bool) -> float:
+    """Of a checkpoint: displacements and velocities by disk (48 n), and the columns of the pairs with their forces.
+
+    The columns are numbers, types, images and states (12 p), shear, slip and step (24 p), and forces (32 p).
+    """
+    return 48 * z.disks + (68 * _pairs(z)[0] if history else 0.0)
+
+
+def _run_bytes(case: DiskCase, whole: Sizes, z: Sizes) -> float:
+    """Motion, ledger and record of the stepped scene, its pairs, and the fields of a snapshot of the whole one."""
+    moving = motion_bytes(z.slots) + ledger_bytes(z.slots) + record_bytes(len(case.monitor), 256, 6, z.supported)
+    moving += 8 * z.slots * case.output.peaks
+    snapshot = 48.0 * whole.disks
+    if not _has_history(case):
+        pairs = 13 * z.contacts  # for the strain energy
+        steady = 24 * (z.disks + z.slots) * bool(case.load)
+    else:
+        pairs = pairs_bytes(z)
+        snapshot += 34 * _pairs(z)[0]  # forces, to count contacts
+        steady = 24 * (z.disks + z.slots) + 24 * z.disks  # with the velocity at the change of law
+    settled = 2 * 24 * z.disks * (case.static is not None)  # datum and balancing forces
+    if case.output.stress:
+        snapshot = max(snapshot, 24 * z.disks + stress_bytes(z))
+    checkpoint = checkpoint_bytes(z, history=_has_history(case)) if case.run.checkpoint > 0.0 else 0.0
+    kept = max(snapshot * bool(case.output.snapshots), checkpoint)
+    return moving + kept + pairs + steady + settled
+
+
+def _settling_bytes(case: DiskCase, z: Sizes) -> float:
+    """Of a static stage: masses of its own, pairs under any law, and at its end loads, forces and stresses."""
+    loads = 24 * (3 * z.disks + z.slots)  # those of the case and of the stage, also in slots, and those of contacts
+    moving = motion_bytes(z.slots) + pairs_bytes(z) + loads + stress_bytes(z)
+    return 24 * z.disks + max(listing_bytes(z), moving + record_bytes(0, 256, 6, z.supported))
+
+
+def _pairs(z: Sizes) -> tuple[float, float]:
+    """Numbers of listed pairs and of places for them."""
+    pairs = NEAR * z.contacts
+    return pairs, pairs * z.slots / z.disks
+
+
+def _has_history(case: DiskCase) -> bool:
+    return LAWS[case.material.law].has_history

@@ -1,0 +1,69 @@
+"""The memory a run needs, and the refusal of one that this machine does not have.
+
+The largest memory of a run is that of its largest stage: the program, plus the arrays of the stage, counted from their
+shapes. What a stage needs beyond the arrays that remain is the temporary arrays of its largest moment.
+"""
+
+from dembound.casefile import Case
+from dembound.errors import CaseError
+from dembound.machine import Memory, memory_here
+
+PROGRAM, PICTURES = 215e6, 280e6
+"""Bytes of the interpreter, packages and compiled code during the steps of a run, and once pictures are drawn.
+
+These two are measured, with Python 3.11 on Linux; they differ by some 10 % between versions of the packages. The first
+run after an installation also compiles, which takes up to 250 MB more.
+"""
+
+DRIVEN_BYTES = 64e6
+"""Largest memory for the drives of a block; with many driven nodes blocks are shorter."""
+
+F = 8.0
+"""Bytes of a double, and of an int64."""
+
+
+def motion_bytes(slots: float) -> float:
+    """Of a simulation: u, its successor and v (3, slots), both mobilities."""
+    return (9 + 2) * F * slots
+
+
+def ledger_bytes(slots: float) -> float:
+    """Of an energy ledger: mass and inertia, and u and v (3, slots) at the beginning of an entry."""
+    return (2 + 6) * F * slots
+
+
+def record_bytes(monitors: int, block: int, width: int, lines: float) -> float:
+    """Of what is kept for a block of steps: twice the record (block, monitors, width), and the drives of supports.
+
+    lines : of the support table, one for each component of a supported node. The nodes have six columns, and the drives
+    (block, lines), twice, of shorter blocks where there are many.
+    """
+    return 2.0 * F * block * width * monitors + 6 * F * lines + 2.0 * min(DRIVEN_BYTES, F * block * lines)
+
+
+def largest(stages: dict[str, float], case: Case) -> float:
+    """Bytes of the program in the largest stage of a run, stages : bytes of the arrays of each but its pictures."""
+    need = PROGRAM + max(stages.values())
+    return max(need, PICTURES) if case.output.pictures else need
+
+
+def must_fit(need: float, key: str, things: str) -> None:
+    """Raise CaseError if a run needs more memory (bytes) than is free here.
+
+    key : of the case, which determines the number of things; things : their number in words.
+    """
+    here = memory_here()
+    if here is not None and need > here.free:
+        raise CaseError([f"{key}: {things} need about {in_words(need)} of memory, {has_in_words(here)}"])
+
+
+def has_in_words(here: Memory) -> str:
+    """The memory of this machine as text."""
+    return f"this machine has {in_words(here.total)}, {in_words(here.free)} of it free"
+
+
+def in_words(size: float) -> str:
+    """Bytes as text, in MB, GB or TB with three digits."""
+    if size < 999.5e6:
+        return f"{size / 1e6:.0f} MB"
+    return f"{size / 1e9:.3g} GB" if size < 999.5e9 else f"{size / 1e12:.3g} TB"

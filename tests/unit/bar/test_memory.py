@@ -1,0 +1,37 @@
+"""The memory of a bar is counted from its nodes and bonds."""
+
+import pytest
+
+from dembound.bar import memory as bar_memory
+from dembound.bar.scene import build_bar
+from dembound.errors import CaseError
+from dembound.machine import Memory
+from dembound.motion import memory
+
+
+def test_bonds_are_the_sum_of_their_arrays(spalling) -> None:
+    bonds = build_bar(spalling({"bar.spacing": 0.001})).system(1e-9).parts[0].bonds
+    kept = [bonds.spring, bonds.spring_limit, bonds.spring_broken, bonds.triggers, bonds._most_carried]
+    kept += [bonds.bond, bonds.bond_broken, bonds._rows]
+    lengths, nodes = bonds.bond.shape
+
+    work = 16 * nodes  # of the kernels
+    # there is a spring less than nodes
+    assert bar_memory.bonds_bytes(nodes, lengths) == pytest.approx(work + sum(each.nbytes for each in kept), rel=0.01)
+
+
+def test_memory_grows_with_nodes_lengths_of_bonds_and_snapshots(spalling) -> None:
+    def need(**changes) -> float:
+        return bar_memory.run_bytes(spalling({"bar.spacing": 1e-6, "output.snapshots": 2, **changes}))
+
+    assert need() > need(**{"bar.spacing": 2e-6})
+    assert need(**{"method.horizon": 6}) > need()
+    assert need(**{"output.snapshots": 0}) < need()
+
+
+def test_a_bar_too_large_is_refused_before_its_nodes_are_placed(spalling, monkeypatch) -> None:
+    monkeypatch.setattr(memory, "memory_here", lambda: Memory(300e6, 250e6))
+    case = spalling({"bar.spacing": 1e-6})
+
+    with pytest.raises(CaseError, match=r"^bar.spacing: 1,000,001 nodes need about \d+ MB of memory, this machine "):
+        build_bar(case)

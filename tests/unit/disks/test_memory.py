@@ -1,0 +1,104 @@
+"""Memory is counted from the shapes of arrays, and numbers of disks and contacts are known before a scene is built."""
+
+import pytest
+
+from dembound.disks import layout
+from dembound.disks.memory import Sizes, expected_bytes, pairs_bytes, run_bytes, scene_bytes
+from dembound.disks.scene import build
+from dembound.errors import CaseError
+from dembound.machine import Memory
+from dembound.motion import memory
+from dembound.packings import random_brick
+
+RANDOM = {"pattern": "B", "bricks": [20, 4], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+FRAMED = {**RANDOM, "pattern": "C", "edge_radius": 0.25}
+PATTERNS = {
+    "A": {"pattern": "A", "size": [40.0, 10.0], "radius": 0.25},
+    "B": RANDOM,
+    "C": FRAMED,
+    "two": {**RANDOM, "bricks": [2, 1], "brick": [8.0, 8.0]},
+}
+FREE = {"monitor": [], "wave": {}, "boundary": {}}
+
+
+@pytest.fixture(params=PATTERNS)
+def scene(bar, request):
+    return build(bar({**FREE, "packing": PATTERNS[request.param]}))
+
+
+def test_sizes_are_known_before_the_scene_is_built(scene) -> None:
+    expected, sizes = Sizes.expected(scene.case), Sizes.of(scene)
+
+    # bricks of 80 disks have a few more or less than the mean of large ones, and regular rows have fewer contacts
+    assert expected.disks == pytest.approx(sizes.disks, rel=0.15)
+    assert expected.slots / expected.disks == pytest.approx(sizes.slots / sizes.disks, rel=0.15)
+    assert expected.contacts / expected.disks == pytest.approx(sizes.contacts / sizes.disks, rel=0.17)
+    assert expected.in_rows == sizes.in_rows
+
+
+def test_the_lines_of_supports_are_known_before_the_scene_is_built(bar) -> None:
+    sides = {"left": {"type": "fixed"}, "bottom": {"type": "viscous"}, "right": {"type": "viscous"}}
+    scene = build(bar({**FREE, "packing": PATTERNS["A"], "boundary": sides, "motion.held": []}))
+
+    # three components of fixed disks and of none more of viscous ones, whose rotation is free
+    assert Sizes.of(scene).supported <= Sizes.expected(scene.case).supported <= 1.6 * Sizes.of(scene).supported
+
+
+@pytest.mark.parametrize("in_rows", [True, False])
+def test_a_scene_is_the_sum_of_its_arrays(bar, monkeypatch, in_rows) -> None:
+    monkeypatch.setattr(layout, "LEAST_FILL", 0.3 if in_rows else 9.0)
+    scene = build(bar({**FREE, "packing": {**RANDOM, "bricks": [40, 10]}}))
+    body, rows, places = scene.assembly, scene.rows[0], scene.layout
+    arrays = [body.positions, body.radii, body.brick_particle, body.tile, body.pairs, body.contact_type, places.slot]
+    arrays += [scene.mass, scene.inertia, scene.cell_fraction]
+    arrays += [places.node] if in_rows else [rows.start, rows.neighbour, rows.contact_type]
+
+    # rows that are shared by all copies, 40 times as few, are not counted
+    assert scene_bytes(scene.case, Sizes.of(scene)) == pytest.approx(sum(each.nbytes for each in arrays), rel=1e-3)
+
+
+@pytest.mark.parametrize("in_rows", [True, False])
+def test_pairs_are_the_sum_of_their_arrays(bar, monkeypatch, in_rows) -> None:
+    monkeypatch.setattr(layout, "LEAST_FILL", 0.3 if in_rows else 9.0)
+    scene = build(bar({**FREE, "packing": {**RANDOM, "bricks": [40, 10]}, "material.law": "linearpbond"}))
+    (pairs,) = scene.contact_lists().values()
+    kept, stored = pairs.arrays, ("first", "second", "contact_type", "state", "shear", "slip", "cracked", "force")
+    arrays = [getattr(kept, name) for name in stored] + [kept.start, kept.end, pairs.live, pairs.image]
+    arrays += [pairs.arms, pairs.origin, pairs.cells.member]
+    if in_rows:
+        plan = pairs._plan.plan
+        arrays += [plan.row, plan.column, plan.lane]
+
+    # numbers of listed pairs differ between bricks
+    assert pairs_bytes(Sizes.of(scene)) == pytest.approx(sum(each.nbytes for each in arrays), rel=0.04)
+
+
+def test_what_is_recorded_counts(bar) -> None:
+    def need(**changes) -> float:
+        alone = {"output.pictures": False, "run.checkpoint": 0.0}
+        case = bar({**FREE, "packing": {**RANDOM, "bricks": [4000, 100]}, **alone, **changes})
+        return expected_bytes(case)
+
+    assert need(**{"output.snapshots": 1}) == need(**{"output.snapshots": 9}) > need(**{"output.snapshots": 0})
+    assert need(**{"output.snapshots": 0, "run.checkpoint": 300.0}) > need(**{"output.snapshots": 0})
+    assert need(**{"output.stress": True}) > need()
+    assert need(**{"output.peaks": True}) > need()
+    assert need(**{"material.law": "linearpbond"}) > 1.4 * need()
+
+
+def test_a_scene_too_large_is_refused_before_its_brick_is_packed(bar, monkeypatch) -> None:
+    monkeypatch.setattr(memory, "memory_here", lambda: Memory(8e9, 6e9))
+    monkeypatch.setattr(random_brick, "load_or_pack", None)  # a call would raise a TypeError
+    case = bar({**FREE, "packing": {**RANDOM, "bricks": [1000, 1000]}})
+
+    with pytest.raises(CaseError, match=r"^packing.bricks: 6.84e\+07 disks need about [\d.]+ GB of memory, this "):
+        build(case)
+
+
+def test_both_scenes_of_an_excavation_count(bar) -> None:
+    case = bar({**FREE, "packing": RANDOM})
+    one = Sizes(1e7, 1e7, 2.2e7, 0.0, in_rows=True)
+
+    added = run_bytes(case, [one], before=one) - run_bytes(case, [one])
+    assert added == pytest.approx(scene_bytes(case, one), rel=1e-12)
+    assert run_bytes(case, [one, one]) - run_bytes(case, [one]) == pytest.approx(scene_bytes(case, one), rel=1e-12)

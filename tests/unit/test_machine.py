@@ -1,0 +1,90 @@
+"""The memory of a machine is read as its system reports it, within the limits of containers."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from dembound.machine import Memory, memory_here
+
+GIB = 2.0**30
+
+
+@pytest.fixture
+def root(tmp_path):
+    """Writes the files of a Linux machine of 8 GiB, 6 GiB of them free, and others given by name."""
+
+    def make(**files: str) -> Path:
+        known = {"proc/meminfo": "MemTotal: 8388608 kB\nMemFree: 9 kB\nMemAvailable: 6291456 kB\nHugePages_Total: 0\n"}
+        for name, text in {**known, **files}.items():
+            path = tmp_path / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+        return tmp_path
+
+    return make
+
+
+def group(folder: str, limit: float, usage: float, dropped: float) -> dict[str, str]:
+    """The files of a control group of version 2."""
+    at = f"sys/fs/cgroup/{folder}"
+    numbers = f"anon 7\ninactive_file {dropped:.0f}\n"
+    return {f"{at}memory.max": f"{limit:.0f}", f"{at}memory.current": f"{usage:.0f}", f"{at}memory.stat": numbers}
+
+
+def test_a_machine_without_containers(root) -> None:
+    assert memory_here(root()) == Memory(8.0 * GIB, 6.0 * GIB)
+
+
+def test_a_group_without_a_limit_is_that_of_the_machine(root) -> None:
+    files = {"proc/self/cgroup": "0::/\n", "sys/fs/cgroup/memory.max": "max\n", "sys/fs/cgroup/memory.current": "5\n"}
+
+    assert memory_here(root(**files)) == Memory(8.0 * GIB, 6.0 * GIB)
+
+
+def test_the_group_of_a_process_or_one_around_it_limits_its_memory(root) -> None:
+    files = {"proc/self/cgroup": "0::/job/step\n", **group("job/step/", 9.0 * GIB, GIB, 0.0)}
+    files |= group("job/", 4.0 * GIB, 2.0 * GIB, 0.5 * GIB)
+
+    # pages of files that nobody uses are dropped when others need them: 4 − 2 + 0.5
+    assert memory_here(root(**files)) == Memory(4.0 * GIB, 2.5 * GIB)
+
+
+def test_the_first_version_of_the_interface(root) -> None:
+    at = "sys/fs/cgroup/memory/box"
+    files = {"proc/self/cgroup": "9:name=systemd:/\n4:memory:/box\n1:cpu:/other\n"}
+    files |= {f"{at}/memory.limit_in_bytes": f"{3 * 2**30}", f"{at}/memory.usage_in_bytes": f"{2**30}"}
+    files |= {f"{at}/memory.stat": f"inactive_file 5\ntotal_inactive_file {2**29}\n"}
+
+    assert memory_here(root(**files)) == Memory(3.0 * GIB, 2.5 * GIB)
+
+
+def test_this_machine_has_memory() -> None:
+    here = memory_here()
+
+    assert here is None or 0.0 < here.free <= here.total
+
+
+RELEASED = """
+import resource
+import numpy as np
+from pathlib import Path
+from dembound.machine import give_back_at_once
+give_back_at_once()
+def held():
+    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
+np.ones(4_000_000)  # 32 MB: by default the system's library would now keep the pages of all smaller arrays
+before = held()
+arrays = [np.ones(250_000) for _ in range(32)]  # 2 MB each
+last = np.ones(1000)
+del arrays
+print(held() - before)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the C library is that of Linux")
+def test_pages_of_removed_arrays_are_given_back() -> None:
+    left = int(subprocess.run([sys.executable, "-c", RELEASED], capture_output=True, text=True, check=True).stdout)
+
+    assert left < 8e6  # of 64 MB
