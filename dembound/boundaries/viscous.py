@@ -49,8 +49,8 @@ class Dashpots(Boundary):
         return {**super().describe(edge, medium), "half_mass": self.half_mass}
 
     def dampings(self, edge: Edge, medium: BoundaryMedium) -> np.ndarray:
-        """Dashpot constants βρcD (2, k) in N·s/m of the edge's particles along x and y (Z eq. 4)."""
-        return np.outer(medium.impedances(self.beta_p, self.beta_s, edge.axis), edge.diameters)
+        """Dashpot constants βρcD (2, k) in N·s/m of the edge's particles along x and y (Z eq. 4); D : their widths."""
+        return np.outer(medium.impedances(self.beta_p, self.beta_s, edge.axis), edge.widths)
 
 
 class Viscous(Dashpots):

@@ -266,7 +266,8 @@ def _edges(scene: DiskScene, number: np.ndarray, beyond: np.ndarray) -> dict[str
         kept = ~beyond[edge.nodes]
         if kept.any():
             nodes = number[edge.nodes[kept]]
-            edges[side] = Edge(side, nodes, edge.positions[kept], edge.diameters[kept], edge.length)
+            shares = np.broadcast_to(edge.shares, kept.shape)[kept]
+            edges[side] = Edge(side, nodes, edge.positions[kept], edge.diameters[kept], edge.length, shares)
     return edges
 
 

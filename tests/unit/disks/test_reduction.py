@@ -63,6 +63,14 @@ def test_rows_that_move_identically_are_stepped_as_one(scene, changes) -> None:
     assert row.reduced == ("rows: 4 identical rows are stepped as one, 20 of 80 disks",)
 
 
+@pytest.mark.parametrize("more", [{"boundary.right": SPRINGS}, load(region=[2.0, 0.0, 4.0, 2.0], force=[1e6, 0.0])])
+def test_half_cells_along_the_rows_have_half_of_all_forces(scene, more) -> None:
+    row = reduced(scene({"boundary.bottom": HALF_CELLS, "boundary.top": HALF_CELLS, **more})).scene
+
+    assert isinstance(row, OneRow)
+    assert row.weight == pytest.approx(3.0, rel=1e-15)
+
+
 @pytest.mark.parametrize(
     "changes",
     [
@@ -77,7 +85,6 @@ def test_rows_that_move_identically_are_stepped_as_one(scene, changes) -> None:
         {"boundary.bottom": {"type": "viscous", "beta_s": 1e-9}},
         {"boundary.bottom": SPRINGS | {"alpha_n": 0.0}},
         {"boundary.bottom": {"type": "fixed"}},
-        {"boundary.bottom": HALF_CELLS, "boundary.top": HALF_CELLS},  # the dashpots at their ends are whole
         {"boundary.right": {"type": "viscoelastic", "source": [0.0, 1.0]}},
         S_INPUT,  # the outer rows have one contact less that resists their rotation
         S_INPUT | {"motion.held": []},
