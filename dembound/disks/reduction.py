@@ -59,14 +59,30 @@ def reduced(scene: DiskScene) -> Reduction[DiskScene]:
     """
     case = scene.case
     refused = settled_refused(never_elastic_again(case)) if case.reduce.settled else ()
-    reason = _never_smaller(scene)
-    if not reason and case.reduce.rows:
-        scene, _ = _first_of(rows_of(scene), scene)
+    if case.reduce.rows:
+        scene, _ = one_of_rows(scene)
     if case.reduce.symmetry:
-        if not reason:
-            scene, reason = _halved(scene)
+        scene, reason = one_half(scene)
         refused = (f"reduce.symmetry: not applied: {reason}", *refused) if reason else refused
     return Reduction(scene, refused)
+
+
+def one_of_rows(scene: DiskScene) -> tuple[DiskScene, str]:
+    """One of the identical rows of a scene; the scene itself, and why, if it has none."""
+    if reason := _never_smaller(scene):
+        return scene, reason
+    return _first_of(_rows_of(scene), scene)
+
+
+def one_half(scene: DiskScene) -> tuple[DiskScene, str]:
+    """One half of a scene or a quarter; the scene itself, and why neither mirror line is one, if there is no half."""
+    if reason := _never_smaller(scene):
+        return scene, reason
+    reasons = []
+    for axis in range(2):
+        scene, reason = _first_of(halves(scene, axis), scene)
+        reasons.append(reason)
+    return scene, "; ".join(reasons) if all(reasons) else ""
 
 
 def _never_smaller(scene: DiskScene) -> str:
@@ -77,25 +93,19 @@ def _never_smaller(scene: DiskScene) -> str:
         return "a static stage is computed for the whole scene"
     if scene.seam is not None:
         sides = " and ".join(side for side in SIDES if scene.case.side(side).needs_column)
-        return f"the free-field column of {sides} has no mirror image"
+        return f"the body is stepped with the free-field column of {sides}"
     return ""
 
 
-def rows_of(scene: DiskScene) -> Iterator[SmallerScene]:
-    """The middle rows of bricks of a scene along each axis, first the axis with fewer rows."""
+def _rows_of(scene: DiskScene) -> Iterator[SmallerScene | str]:
+    """The middle rows of bricks of a scene along each axis, first the axis with fewer rows; or why there is none."""
     copies = scene.assembly.copies
     for axis in np.argsort(copies, kind="stable").tolist():
-        if copies[axis] > 1 and (row := one_row(scene, axis)) is not None:
-            yield row
-
-
-def _halved(scene: DiskScene) -> tuple[DiskScene, str]:
-    """One half of a scene or a quarter; itself, and why neither of the two mirror lines is one, if there is no half."""
-    reasons = []
-    for axis in range(2):
-        scene, reason = _first_of(halves(scene, axis), scene)
-        reasons.append(reason)
-    return scene, "; ".join(reasons) if all(reasons) else ""
+        if copies[axis] > 1:
+            row = one_row(scene, axis)
+            yield f"rows along {'yx'[axis]} differ in their disks" if row is None else row
+        else:
+            yield f"there is a single row of bricks along {'yx'[axis]}"
 
 
 def _first_of(candidates: Iterable[SmallerScene | str], scene: DiskScene) -> tuple[DiskScene, str]:

@@ -71,7 +71,7 @@ class SmallerScene(DiskScene):
 
     def differs(self, what: str) -> str:
         """In words, that something of the larger scene, in the plural, is not as in this one."""
-        return f"the {what} differ"
+        raise NotImplementedError
 
     def widened(self, name: str, values: np.ndarray) -> np.ndarray:
         """Values (m, …) of its disks as those of all disks of the case; name : of the quantity."""

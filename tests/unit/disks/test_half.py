@@ -75,7 +75,7 @@ DRIVEN = f"the waves and loads with a wave {NOT}{{lacking}}"
         ('under material.law = "linearpbond" contacts may open', {"material.law": "linearpbond"}),
         ("a static stage is computed for the whole scene", {"static.stress": [-1e6, -1e6, 0.0], "load": []}),
         (
-            "the free-field column of left and right has no mirror image",
+            "the body is stepped with the free-field column of left and right",
             {"boundary.left": {"type": "free_field"}, "boundary.right": {"type": "free_field"}},
         ),
     ],
