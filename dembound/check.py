@@ -33,7 +33,8 @@ def _run_facts(planned: Plan) -> dict[str, str]:
         "estimated time": f"{duration_in_words(_estimate(planned))} {_threads_in_words(scene.threads)}"
         f"{planned.kind.not_estimated(scene.case)}",
     }
-    return facts | ({"reduced": "; ".join(scene.reduced)} if scene.reduced else {})
+    reductions = {"reduced": "; ".join(scene.reduced), "not reduced": "; ".join(planned.refused)}
+    return facts | {name: words for name, words in reductions.items() if words}
 
 
 def _here() -> str:

@@ -21,7 +21,6 @@ class Boundary(Table):
     is_free : whether no forces act on the side.
     is_periodic : whether the side is connected to the opposite side.
     is_mirror : whether the side is a mirror plane.
-    is_artificial : whether it stands in for ground or rock beyond it, so that it may be farther away.
     needs_column : whether the side needs a free-field column, which moves with the waves of the ground.
     beyond_dashpots : text for reports, naming what `dashpots_alone` leaves out.
     """
@@ -31,7 +30,6 @@ class Boundary(Table):
     is_free: ClassVar[bool] = False
     is_periodic: ClassVar[bool] = False
     is_mirror: ClassVar[bool] = False
-    is_artificial: ClassVar[bool] = False
     needs_column: ClassVar[bool] = False
     beyond_dashpots: ClassVar[str] = ""
 
@@ -66,6 +64,11 @@ class Boundary(Table):
     def factors(self) -> Mapping[Motion, float]:
         """The factors β of the side's dashpots: kind of wave -> β; by default it has none."""
         return {}
+
+    @property
+    def is_artificial(self) -> bool:
+        """Whether the side stands in for ground or rock beyond it, so that it may be farther away; by default not."""
+        return False
 
     @property
     def half_cells(self) -> bool:

@@ -4,6 +4,7 @@ from typing import ClassVar, Literal
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
+from dembound.table import quantity
 
 
 class Fixed(Boundary):
@@ -11,9 +12,15 @@ class Fixed(Boundary):
 
     for_bars: ClassVar[bool] = True
     for_static: ClassVar[bool] = True
-    is_artificial: ClassVar[bool] = True
 
     type: Literal["fixed"]
+
+    artificial: bool = quantity(True, unit="1", help="whether ground or rock goes on beyond the side")
+
+    @property
+    def is_artificial(self) -> bool:
+        """The value of artificial."""
+        return self.artificial
 
     def prescribed(self, normal_axis: int) -> tuple[int, ...]:
         """All three components."""

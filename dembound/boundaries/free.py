@@ -3,6 +3,7 @@
 from typing import ClassVar, Literal
 
 from dembound.boundaries.boundary import Boundary
+from dembound.table import quantity
 
 
 class Free(Boundary):
@@ -13,3 +14,10 @@ class Free(Boundary):
     is_free: ClassVar[bool] = True
 
     type: Literal["free"] = "free"
+
+    artificial: bool = quantity(False, unit="1", help="whether ground or rock goes on beyond the side")
+
+    @property
+    def is_artificial(self) -> bool:
+        """The value of artificial."""
+        return self.artificial

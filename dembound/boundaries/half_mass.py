@@ -3,9 +3,15 @@
 The end disk of a chain has its whole mass, so it extends half a diameter beyond the position of its dashpot, and
 reflects |R| = tan(qa/4) of a wave. With half the mass it reflects tan²(qa/4). A row of such disks is half a row of the
 lattice. So the contacts between them, which resist the rotation of the disks under S waves, are half contacts, too.
+
+The last disk of such a row, at a corner, is also a particle of the side across. There only half of its diameter is
+inside the scene, so that dashpots, springs and mirror contacts of that side are halved as well: the row has the
+impedance ρcD/2. With whole ones a side across of N disks between two sides of half cells has N/(N − 1) times the
+impedance of the scene and reflects −1/(2N − 1) of a P wave.
 """
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,6 +29,15 @@ def mass_factor(count: int, edges: Mapping[str, Edge], boundary: Mapping[str, Bo
     for edge in half_edges(edges, boundary):
         factor[edge.nodes] *= 0.5
     return factor
+
+
+def with_shares(count: int, edges: Mapping[str, Edge], boundary: Mapping[str, Boundary]) -> dict[str, Edge]:
+    """The sides of `count` particles with their shares: a half for those in a row of half cells of another side."""
+    shared = {}
+    for side, edge in edges.items():
+        others = {name: other for name, other in edges.items() if name != side}
+        shared[side] = replace(edge, shares=mass_factor(count, others, boundary)[edge.nodes])
+    return shared
 
 
 def half_edges(edges: Mapping[str, Edge], boundary: Mapping[str, Boundary]) -> Iterator[Edge]:

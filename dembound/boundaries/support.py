@@ -64,7 +64,8 @@ class BoundaryMedium:
 class Edge:
     """One side of the scene: the exposed particles and the length of the side.
 
-    side left, right, bottom or top; nodes (k,) particle indices; positions (k, 2) m; diameters (k,) m; length m.
+    side left, right, bottom or top; nodes (k,) particle indices; positions (k, 2) m; diameters (k,) m; length m;
+    shares (k,) of the particles' diameters that are inside the scene, see half_mass.py.
     """
 
     side: str
@@ -72,11 +73,17 @@ class Edge:
     positions: np.ndarray
     diameters: np.ndarray
     length: float
+    shares: np.ndarray | float = 1.0
 
     @property
     def axis(self) -> int:
         """Axis of the normal: 0 for left and right, 1 for bottom and top."""
         return normal_axis(self.side)
+
+    @property
+    def widths(self) -> np.ndarray:
+        """(k,) m of the side on which the forces of the medium beyond act through each particle."""
+        return self.diameters * self.shares
 
     @property
     def diameter_sum_ratio(self) -> float:

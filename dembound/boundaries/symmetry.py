@@ -13,7 +13,7 @@ class Symmetry(Boundary):
     the elongation between the two is 2u_n, their bond bends by 2θ, and as both rotate by opposite angles the contact
     does not shear. With k_n and k_b the normal and bending stiffness of contact and bond, the force of the image is
     −2k_n·u_n and its moment −2k_b·θ. This is exact where the edge disks form one row, as in pattern A; elsewhere each
-    disk has its own mirror plane.
+    disk has its own mirror plane. A disk that another side cuts in half has half a contact with its image.
     """
 
     is_mirror: ClassVar[bool] = True
@@ -23,5 +23,5 @@ class Symmetry(Boundary):
     def support(self, edge: Edge, medium: BoundaryMedium, waves: Waves, supports: SupportBuilder) -> None:
         """A spring on the normal motion and one on the rotation of every edge particle."""
         normal, bending = medium.mirror_stiffness(edge.diameters)
-        supports.add(edge.nodes, edge.axis, stiffness=2.0 * normal)
-        supports.add(edge.nodes, 2, stiffness=2.0 * bending)
+        supports.add(edge.nodes, edge.axis, stiffness=2.0 * edge.shares * normal)
+        supports.add(edge.nodes, 2, stiffness=2.0 * edge.shares * bending)

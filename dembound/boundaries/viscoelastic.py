@@ -64,13 +64,13 @@ class Springs(Boundary):
         }
 
     def stiffnesses(self, edge: Edge, medium: BoundaryMedium) -> np.ndarray:
-        """Spring constants αGD/L (2, k) in N/m of the edge's particles along x and y.
+        """Spring constants αGD/L (2, k) in N/m of the edge's particles along x and y; D : their widths.
 
         Raises CaseError when the source lies in one of these particles.
         """
         along_normal, across = self.alpha_n, self.alpha_s
         factors = [along_normal, across] if edge.axis == 0 else [across, along_normal]
-        return np.outer(factors, self.shear_modulus(medium) * edge.diameters / self.distances(edge))
+        return np.outer(factors, self.shear_modulus(medium) * edge.widths / self.distances(edge))
 
     def stiffest(self, side: str, extent: tuple[float, float]) -> Boundary:
         """The same side with the distance of the source from the nearest point of the side."""

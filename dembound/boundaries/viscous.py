@@ -20,8 +20,6 @@ from dembound.table import quantity
 class Dashpots(Boundary):
     """A side with dashpots: their two calibration factors, and whether the particles have half their mass."""
 
-    is_artificial: ClassVar[bool] = True
-
     beta_p: float = quantity(1.0, unit="1", help="factor of the P dashpots, along the side's normal", ge=0.0)
     beta_s: float = quantity(1.0, unit="1", help="factor of the S dashpots, across the side's normal", ge=0.0)
     half_mass: bool = quantity(False, unit="1", help="whether the side's particles are half cells")
@@ -30,6 +28,11 @@ class Dashpots(Boundary):
     def factors(self) -> Mapping[Motion, float]:
         """The factors of P and of S waves."""
         return {"p": self.beta_p, "s": self.beta_s}
+
+    @property
+    def is_artificial(self) -> bool:
+        """Always, as dashpots stand in for the medium beyond."""
+        return True
 
     @property
     def half_cells(self) -> bool:
@@ -49,8 +52,8 @@ class Dashpots(Boundary):
         return {**super().describe(edge, medium), "half_mass": self.half_mass}
 
     def dampings(self, edge: Edge, medium: BoundaryMedium) -> np.ndarray:
-        """Dashpot constants βρcD (2, k) in N·s/m of the edge's particles along x and y (Z eq. 4)."""
-        return np.outer(medium.impedances(self.beta_p, self.beta_s, edge.axis), edge.diameters)
+        """Dashpot constants βρcD (2, k) in N·s/m of the edge's particles along x and y (Z eq. 4); D : their widths."""
+        return np.outer(medium.impedances(self.beta_p, self.beta_s, edge.axis), edge.widths)
 
 
 class Viscous(Dashpots):

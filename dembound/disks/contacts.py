@@ -121,23 +121,27 @@ class ContactList:
         """Set the pairs to the state of the elastic law at displacements (3, n), without any slip or with that kept."""
         kernel.start_from_displacements(self.layout.spread(displacement), self.arrays, self.keeps_slip)
 
-    def settled_slip(self, displacement: np.ndarray) -> np.ndarray | None:
+    def settled_slip(self, displacement: np.ndarray) -> np.ndarray | str:
         """The slip, in the places of `arrays`, with which the elastic law holds again at displacements (3, n).
 
-        None where it does not: a contact that was closed at the start is open or slides, one that was open is closed,
-        or a bond is broken. Where shear is counted along the path, its difference from that of small displacements
-        becomes slip.
+        The reason in words where it does not: a contact that was closed at the start is open or slides, one that was
+        open is closed, or a bond is broken. Where shear is counted along the path, its difference from that of small
+        displacements becomes slip.
         """
         state, own = self.of("state"), self.of("contact_type") < 2 * len(self.ground.brick.pairs)
-        if np.count_nonzero(own) < len(self.assembly.pairs) or ((state == TENSION) | (state == SHEAR)).any():
-            return None
+        if ((state == TENSION) | (state == SHEAR)).any():
+            return "a bond broke in the static stage"
+        if np.count_nonzero(own) < len(self.assembly.pairs):
+            return "disks that touched at the start are far apart"
         now, u = self.arrays, self.layout.spread(displacement)
         small = now._replace(shear=now.shear.copy(), slip=now.slip.copy())
         kernel.start_from_displacements(u, small, True)
         along_path = (self.limits.geometry == UPDATED) | (now.state != INTACT)
         touch, rest = now.constants[now.contact_type][:, [3, 2]].T
         small.slip[:] += np.where(along_path & (touch >= rest), small.shear - now.shear, 0.0)
-        return small.slip if kernel.slack(u, small, self.limits, True) > 0.0 else None
+        if kernel.slack(u, small, self.limits, True) > 0.0:
+            return small.slip
+        return "after the static stage a contact has opened or closed or slides, or a bond is at its strength"
 
     def use_elastic_law_with(self, slip: np.ndarray) -> None:
         """Keep a slip, see `settled_slip`, under the elastic law."""

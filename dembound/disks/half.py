@@ -18,7 +18,7 @@ from dembound.disks.body import parts_of
 from dembound.disks.contacts import plain_contacts
 from dembound.disks.layout import lay_out
 from dembound.disks.scene import DiskScene
-from dembound.disks.smaller import SmallerScene, supports_at
+from dembound.disks.smaller import DRIVES, LOADS, SmallerScene, supports_at
 from dembound.disks.system import DiskSystem
 from dembound.kernels.contacts import REFERENCE, strain_energy
 from dembound.kernels.tables import Contacts
@@ -54,10 +54,16 @@ class HalfScene(SmallerScene):
     @property
     def saved(self) -> str:
         """The mirror line, and the number of disks that need not be stepped."""
-        name, at = "xy"[self.axis], _middle(self.of, self.axis)
         motion = "an antisymmetric" if self.antisymmetric else "a symmetric"
         disks = f"{self.count:,} of {self.of.count:,} disks"
-        return f"symmetry: one half of {motion} scene about {name} = {at:g} m is stepped, {disks}"
+        return f"symmetry: one half of {motion} scene about {_line(self.of, self.axis)} is stepped, {disks}"
+
+    def differs(self, what: str) -> str:
+        """In words, that something of the larger scene, in the plural, has no mirror images."""
+        lacking = (
+            " (antisymmetric ones need disks on this line)" if len(self.across) and what in (LOADS, DRIVES) else ""
+        )
+        return f"{_not_mirrored(self.of, self.axis, what)}{lacking}"
 
     @cached_property
     def cell_fraction(self) -> np.ndarray:
@@ -140,16 +146,19 @@ class HalfSystem(DiskSystem):
         return self.scene.elastic_stress(displacement)
 
 
-def halves(scene: DiskScene, axis: int) -> Iterator[HalfScene]:
-    """The half of a scene across an axis for symmetric motion, and that for antisymmetric motion, if there are any.
+def halves(scene: DiskScene, axis: int) -> Iterator[HalfScene | str]:
+    """The half of a scene across an axis for symmetric motion, and that for antisymmetric motion; or why there is none.
 
     The disks, the contacts across the line and those along it are mirror images of each other. Whether everything else
     is remains to be checked (reduction.py).
     """
-    if ("left", "bottom")[axis] not in scene.edges:  # periodic: there are two lines
+    if (side := ("left", "bottom")[axis]) not in scene.edges:
+        is_periodic = scene.case.side(side).is_periodic
+        yield f"{'xy'[axis]} is periodic" if is_periodic else f"one of identical rows along {'yx'[axis]} is stepped"
         return
     mirrored = _mirrored(scene, axis)
     if mirrored is None:
+        yield _not_mirrored(scene, axis, "disks")
         return
     own = np.arange(scene.count)
     beyond = (scene.positions[:, axis] > _middle(scene, axis)) & (mirrored != own)
@@ -158,24 +167,23 @@ def halves(scene: DiskScene, axis: int) -> Iterator[HalfScene]:
     on_line = mirrored == own
     crossing = crossing[~(on_line[first] | on_line[second])[crossing]]  # those of disks on the line are images
     if (mirrored[first[crossing]] != second[crossing]).any():
+        yield _not_mirrored(scene, axis, "contacts")
         return
     for antisymmetric in (False,) if len(crossing) else (False, True):
-        half = _half(scene, axis, antisymmetric, mirrored, beyond, crossing)
-        if half is not None:
-            yield half
+        yield _half(scene, axis, antisymmetric, mirrored, beyond, crossing)
 
 
 def _half(
     scene: DiskScene, axis: int, antisymmetric: bool, mirrored: np.ndarray, beyond: np.ndarray, across: np.ndarray
-) -> HalfScene | None:
-    """One half; mirrored, beyond (n,): image of each disk, and those left out; None if it has half contacts already."""
+) -> HalfScene | str:
+    """One half, or why not; mirrored, beyond (n,): image of each disk, and those left out; across (q,) contacts."""
     place = np.flatnonzero(~beyond)
     number = np.cumsum(~beyond) - 1
     like = number[np.where(beyond, mirrored, np.arange(scene.count))]
     on_line = mirrored[place] == place
     assembly = _with_half_contacts(scene, axis, scene.assembly.only(~beyond), on_line)
     if assembly is None:
-        return None
+        return f"contacts along {_line(scene, axis)} are half contacts already"
     share = np.where(on_line, 0.5, 1.0)
     fraction = share * scene.cell_fraction[place]
     still = on_line & (_signs(axis, antisymmetric) < 0.0)[:, None]
@@ -207,6 +215,16 @@ def _middle(scene: DiskScene, axis: int) -> float:
     """The coordinate (m) of the mirror line across an axis."""
     along = scene.positions[:, axis]
     return 0.5 * float(along.min() + along.max())
+
+
+def _line(scene: DiskScene, axis: int) -> str:
+    """The mirror line across an axis in words."""
+    return f"{'xy'[axis]} = {_middle(scene, axis):g} m"
+
+
+def _not_mirrored(scene: DiskScene, axis: int, what: str) -> str:
+    """In words, that something in the plural has no mirror images across an axis."""
+    return f"the {what} are not mirror-symmetric about {_line(scene, axis)}"
 
 
 def _signs(axis: int, antisymmetric: bool) -> np.ndarray:
@@ -248,7 +266,8 @@ def _edges(scene: DiskScene, number: np.ndarray, beyond: np.ndarray) -> dict[str
         kept = ~beyond[edge.nodes]
         if kept.any():
             nodes = number[edge.nodes[kept]]
-            edges[side] = Edge(side, nodes, edge.positions[kept], edge.diameters[kept], edge.length)
+            shares = np.broadcast_to(edge.shares, kept.shape)[kept]
+            edges[side] = Edge(side, nodes, edge.positions[kept], edge.diameters[kept], edge.length, shares)
     return edges
 
 

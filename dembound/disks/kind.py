@@ -24,7 +24,7 @@ from dembound.disks.summary import asked_stress, describe_static, summarise_disk
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
 from dembound.disks.wave_front import front_of
-from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Stage
+from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Reduction, Stage
 from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
@@ -60,7 +60,7 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Time step and stability limit (s)."""
         return choose_step(scene)
 
-    def reduced(self, scene: DiskScene) -> DiskScene:
+    def reduced(self, scene: DiskScene) -> Reduction[DiskScene]:
         """One of its rows or one half, from whose motion that of all disks follows."""
         return reduced(scene)
 

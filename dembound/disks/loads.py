@@ -12,15 +12,14 @@ from dembound.packings.tiling import Assembly
 def forces_of(load: Load, assembly: Assembly, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Particles (k,) a load acts on, and its forces on them (k, 2) N before the time factor.
 
-    mass (n,) kg. A force is shared in proportion to the disks' areas; an acceleration acts on each particle's mass.
+    mass (n,) kg. A force is shared in proportion to the masses, which are as the areas of the disks and halved for half
+    cells; an acceleration acts on each particle's mass.
     Raises CaseError if there is no particle.
     """
     nodes = _loaded(load, assembly)
-    if load.acceleration is not None:
-        share = mass[nodes]
-    else:
-        area = assembly.radii[nodes] ** 2
-        share = area / area.sum()
+    share = mass[nodes]
+    if load.acceleration is None:
+        share = share / share.sum()
     return nodes, share[:, None] * np.array(load.vector)
 
 

@@ -30,6 +30,10 @@ class OneRow(SmallerScene):
         rows = self.of.assembly.copies[self.axis]
         return f"rows: {rows:,} identical rows are stepped as one, {self.count:,} of {self.of.count:,} disks"
 
+    def differs(self, what: str) -> str:
+        """In words, that something of the rows, in the plural, is not the same in all of them."""
+        return f"rows along {'yx'[self.axis]} differ in their {what}"
+
 
 def one_row(scene: DiskScene, axis: int) -> OneRow | None:
     """The middle one of the rows of bricks that a scene has along an axis; None if they differ in their disks.

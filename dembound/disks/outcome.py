@@ -8,7 +8,7 @@ from dembound.results.reader import laws_in_words
 
 def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
     """Reductions, the static stage, changes of law, broken bonds and the energy error."""
-    facts = [*summary["reduced"]]
+    facts = [*summary["reduced"], *summary["not_reduced"]]
     if (static := summary["static"]) is not None:
         if (before := static["before"]) is not None:
             facts += _settled(before, "settled")

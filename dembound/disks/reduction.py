@@ -12,15 +12,28 @@ these exert forces. In the others there is exactly no motion. So a bar of a squa
 identical rows under P waves, which exert no force across or moment, but not under S waves.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from dembound.boundaries import SIDES
+from dembound.disks.elastic_again import never_elastic_again, settled_refused
 from dembound.disks.half import halves
 from dembound.disks.one_row import one_row
 from dembound.disks.scene import DiskScene
-from dembound.disks.smaller import SmallerScene
+from dembound.disks.smaller import (
+    COMPARED,
+    CONTACTS,
+    DASHPOTS,
+    DRIVES,
+    LOADS,
+    MASSES,
+    PRESCRIBED,
+    STRESSES,
+    SmallerScene,
+)
 from dembound.disks.stability import fill_forces
+from dembound.motion.kind import Reduction
 from dembound.motion.layout import aligned_zeros
 
 ROUNDING = 1e-12
@@ -37,53 +50,108 @@ MOTION, SUPPORT = "displacement", "support"
 ALL = slice(None)
 
 
-def reduced(scene: DiskScene) -> DiskScene:
+def reduced(scene: DiskScene) -> Reduction[DiskScene]:
     """The smallest scene from whose motion that of a scene follows, itself if there is no smaller one.
 
     One of its rows if all move identically, one half of a symmetric one, a quarter of one with two mirror lines. Only
-    under the elastic law, without a static stage, and without a free-field column.
+    under the elastic law, without a static stage, and without a free-field column. Why a scene has no half, and why the
+    elastic law can never follow on a static stage, is returned where the case asks for it.
     """
-    if scene.has_history or scene.case.static is not None or scene.seam is not None:
-        return scene
-    if scene.case.reduce.rows:
-        scene = _first_of(rows_of(scene), scene)
-    if scene.case.reduce.symmetry:
-        for axis in range(2):
-            scene = _first_of(halves(scene, axis), scene)
-    return scene
+    case = scene.case
+    refused = settled_refused(never_elastic_again(case)) if case.reduce.settled else ()
+    if case.reduce.rows:
+        scene, _ = one_of_rows(scene)
+    if case.reduce.symmetry:
+        scene, reason = one_half(scene)
+        refused = (f"reduce.symmetry: not applied: {reason}", *refused) if reason else refused
+    return Reduction(scene, refused)
 
 
-def rows_of(scene: DiskScene) -> Iterator[SmallerScene]:
-    """The middle rows of bricks of a scene along each axis, first the axis with fewer rows."""
+def one_of_rows(scene: DiskScene) -> tuple[DiskScene, str]:
+    """One of the identical rows of a scene; the scene itself, and why, if it has none."""
+    if reason := _never_smaller(scene):
+        return scene, reason
+    return _first_of(_rows_of(scene), scene)
+
+
+def one_half(scene: DiskScene) -> tuple[DiskScene, str]:
+    """One half of a scene or a quarter; the scene itself, and why neither mirror line is one, if there is no half."""
+    if reason := _never_smaller(scene):
+        return scene, reason
+    reasons = []
+    for axis in range(2):
+        scene, reason = _first_of(halves(scene, axis), scene)
+        reasons.append(reason)
+    return scene, "; ".join(reasons) if all(reasons) else ""
+
+
+def _never_smaller(scene: DiskScene) -> str:
+    """Why a scene has to be stepped as a whole whatever its symmetry; empty if it may be reduced."""
+    if scene.has_history:
+        return f'under material.law = "{scene.case.material.law}" contacts may open, slide and break anywhere'
+    if scene.case.static is not None:
+        return "a static stage is computed for the whole scene"
+    if scene.seam is not None:
+        sides = " and ".join(side for side in SIDES if scene.case.side(side).needs_column)
+        return f"the body is stepped with the free-field column of {sides}"
+    return ""
+
+
+def _rows_of(scene: DiskScene) -> Iterator[SmallerScene | str]:
+    """The middle rows of bricks of a scene along each axis, first the axis with fewer rows; or why there is none."""
     copies = scene.assembly.copies
     for axis in np.argsort(copies, kind="stable").tolist():
-        if copies[axis] > 1 and (row := one_row(scene, axis)) is not None:
-            yield row
+        if copies[axis] > 1:
+            row = one_row(scene, axis)
+            yield f"rows along {'yx'[axis]} differ in their disks" if row is None else row
+        else:
+            yield f"there is a single row of bricks along {'yx'[axis]}"
 
 
-def _first_of(smaller: Iterator[SmallerScene], scene: DiskScene) -> DiskScene:
-    """The first of some smaller scenes from whose motion that of a scene follows, otherwise the scene itself."""
-    return next((small for small in smaller if represents_all(small)), scene)
+def _first_of(candidates: Iterable[SmallerScene | str], scene: DiskScene) -> tuple[DiskScene, str]:
+    """The first of some smaller scenes from whose motion that of a scene follows, otherwise the scene itself and why.
+
+    Instead of a smaller scene there may be the reason why there is none. Of several reasons the one is returned that
+    was found last in the order of `difference`, as that scene came closest.
+    """
+    reasons = []
+    for small in candidates:
+        if isinstance(small, str):
+            reasons.append((0, small))
+            continue
+        if (what := difference(small)) is None:
+            return small, ""
+        reasons.append((COMPARED.index(what), small.differs(what)))
+    return scene, max(reasons, default=(0, ""))[1]
 
 
-def represents_all(small: SmallerScene) -> bool:
-    """Whether the larger scene moves as this one, in displacements, energies and, if needed, stresses."""
-    if not _are_driven_alike(small, _driven(small.of)):  # most scenes are refused here, at little cost
-        return False
+def difference(small: SmallerScene) -> str | None:
+    """What of `COMPARED` is different in the larger scene, so that it does not move as this one; None if nothing is.
+
+    It moves as this one in displacements, energies and, if needed, stresses.
+    """
+    if what := _difference_outside(small, _driven(small.of)):  # most scenes are refused here, at little cost
+        return what
     moves, (of_whole, of_small) = _motions(small)
     masses = np.bincount(small.like, small.of.mass) / small.mass
-    return (
-        _are_alike(small, MOTION, of_whole, of_small, moves)
-        and _are_driven_alike(small, moves)
-        and np.ptp(masses) <= ROUNDING * masses.max()
-        and (not small.case.output.stress or _are_alike(small, "stress", *_stresses(small, moves)))
-    )
+    if not _are_alike(small, MOTION, of_whole, of_small, moves):
+        return CONTACTS
+    if what := _difference_outside(small, moves):
+        return what
+    if np.ptp(masses) > ROUNDING * masses.max():
+        return MASSES
+    if small.case.output.stress and not _are_alike(small, "stress", *_stresses(small, moves)):
+        return STRESSES
+    return None
 
 
-def _are_driven_alike(small: SmallerScene, components: np.ndarray) -> bool:
-    """Whether everything from outside acts on components (3,) bool of all disks as on those that represent them."""
+def _difference_outside(small: SmallerScene, components: np.ndarray) -> str | None:
+    """What from outside acts on components (3,) bool of a disk in another way than on the one that represents it."""
     pairs = zip(_from_outside(small.of), _from_outside(small), strict=True)
-    return all(_are_alike(small, name, whole, own, components) for (name, whole), (_, own) in pairs)
+    for (what, name, whole), (_, _, own) in pairs:
+        if not _are_alike(small, name, whole, own, components):
+            return what
+    return None
 
 
 def _are_alike(
@@ -143,13 +211,14 @@ def _inertia(scene: DiskScene) -> np.ndarray:
     return np.stack([scene.mass, scene.mass, scene.inertia])
 
 
-def _from_outside(scene: DiskScene) -> Iterator[tuple[str, np.ndarray]]:
-    """Everything that acts on each component, name and (3, n), per unit of mass: loads, dashpots, drives by signal.
+def _from_outside(scene: DiskScene) -> Iterator[tuple[str, str, np.ndarray]]:
+    """Everything that acts on each component: what it is, name of the quantity, (3, n) per unit of mass.
 
-    Also where velocities are prescribed, and drives that are velocities. Equal signals count as one.
+    Loads, dashpots, drives by signal; where velocities are prescribed, and drives that are velocities. Equal signals
+    count as one.
     """
     table, inertia = scene.supports, _inertia(scene)
-    yield MOTION, scene.steady_load / inertia
+    yield LOADS, MOTION, scene.steady_load / inertia
 
     def of_all(rows: np.ndarray | slice, values: np.ndarray) -> np.ndarray:
         spread = np.zeros((3, scene.count))
@@ -157,13 +226,13 @@ def _from_outside(scene: DiskScene) -> Iterator[tuple[str, np.ndarray]]:
         return spread
 
     every, mass = slice(None), inertia[table.component, table.node]
-    yield SUPPORT, of_all(every, table.prescribed)
-    yield SUPPORT, of_all(every, table.damping / mass)
+    yield PRESCRIBED, SUPPORT, of_all(every, table.prescribed)
+    yield DASHPOTS, SUPPORT, of_all(every, table.damping / mass)
     drive = table.drive / np.where(table.prescribed, 1.0, mass)[table.drive_row]
     number = np.array([table.signals.index(signal) for signal in table.signals], dtype=np.int64)[table.drive_signal]
     for signal in range(len(table.signals)):
         chosen = number == signal
-        yield MOTION, of_all(table.drive_row[chosen], drive[chosen])
+        yield DRIVES, MOTION, of_all(table.drive_row[chosen], drive[chosen])
 
 
 def _stresses(small: SmallerScene, moves: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.boundaries import Periodic
-from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
+from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor, with_shares
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
@@ -97,6 +97,7 @@ def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Ma
         edges = edges_beside_column(assembly, seam, edges)
     assembly, seam = with_half_contacts(case, ground.brick, assembly, seam, edges)
     count = len(assembly.radii)
+    edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(assembly, ground, parts_of(count, seam), mass_factor(count, edges, case.boundary))
     return DiskScene(
         case=case,

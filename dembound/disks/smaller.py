@@ -8,6 +8,12 @@ import numpy as np
 from dembound.boundaries.support import Supports
 from dembound.disks.scene import DiskScene
 
+LOADS, PRESCRIBED, DASHPOTS, DRIVES = "steady loads", "held and driven disks", "dashpots", "waves and loads with a wave"
+CONTACTS, MASSES, STRESSES = "contacts and springs", "masses", "stresses"
+
+COMPARED = (LOADS, PRESCRIBED, DASHPOTS, DRIVES, CONTACTS, MASSES, STRESSES)
+"""What must be the same in a smaller scene, in the order in which it is compared."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class SmallerScene(DiskScene):
@@ -62,6 +68,10 @@ class SmallerScene(DiskScene):
     def weight(self) -> float:  # type: ignore[override]  # 1 for other scenes
         """Mass of the scene of the case over its own."""
         return self.of.weight * float(self.of.mass.sum() / self.mass.sum())
+
+    def differs(self, what: str) -> str:
+        """In words, that something of the larger scene, in the plural, is not as in this one."""
+        raise NotImplementedError
 
     def widened(self, name: str, values: np.ndarray) -> np.ndarray:
         """Values (m, …) of its disks as those of all disks of the case; name : of the quantity."""

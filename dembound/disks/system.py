@@ -12,6 +12,7 @@ from dembound.disks.balance import Balance
 from dembound.disks.body import DiskBody
 from dembound.disks.contact_forces import contact_columns, pieces
 from dembound.disks.contacts import ContactList, plain_contacts
+from dembound.disks.elastic_again import elastic_again, never_elastic_again, settled_refused
 from dembound.disks.layout import with_supports
 from dembound.disks.part import DiskPart, FreeFieldSeam
 from dembound.disks.rotation import turned_as_a_whole, turns_freely
@@ -50,7 +51,7 @@ class DiskSystem(System):
     Attributes
     ----------
     balance : the forces that balance those in a settled body; None for a body as built or settling. is_elastic_again :
-    whether the elastic law is used again after a static stage that left it.
+    whether the elastic law is used again after a static stage that left it; refused : why not where it is asked for.
     """
 
     parts: tuple[DiskPart, ...]
@@ -97,9 +98,10 @@ class DiskSystem(System):
         # a locked-in stress also acts through the seam of a free field, but not under the elastic law
         through = bool(self.ties) and scene.case.material.locked_in is not None and not self._settling
         has_history = start is not None and start.has_history
-        if has_history and not through and not self._settling and scene.case.reduce.settled:
-            self.is_elastic_again = self._returns_to_elastic(state.datum)
-            has_history = not self.is_elastic_again
+        if has_history and not self._settling and scene.case.reduce.settled and not never_elastic_again(scene.case):
+            reason = elastic_again(self.contacts.values(), state.datum)
+            self.is_elastic_again, has_history = reason == "", reason != ""
+            self.refused = settled_refused(reason)
         if start is not None and not self._settling:
             springs = scene.supports.springs_at(state.datum)
             resting = self._resting_force(state.datum, has_history=has_history)
@@ -202,18 +204,6 @@ class DiskSystem(System):
         self.balance = Balance.recalled(self.scene, kept) if kept else None
         self._watch_breaks()
         self._follow()
-
-    def _returns_to_elastic(self, datum: np.ndarray) -> bool:
-        """Whether nothing is open or slides in the body at rest at the datum (3, n), which is then elastic again."""
-        if not self.scene.case.material.elastic_start:
-            return False
-        found = [(pairs, pairs.settled_slip(datum)) for pairs in self.contacts.values()]
-        slips = [(pairs, slip) for pairs, slip in found if slip is not None]
-        if len(slips) < len(found):
-            return False
-        for pairs, slip in slips:
-            pairs.use_elastic_law_with(slip)
-        return True
 
     def _resting_force(self, datum: np.ndarray, *, has_history: bool) -> np.ndarray:
         """Contact forces (3, n) of the body at rest at the datum."""

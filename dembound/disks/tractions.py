@@ -43,7 +43,7 @@ class Tractions:
         self._follow = limits_of(scene.case.material).geometry == UPDATED
 
     def forces(self, displacement: np.ndarray) -> np.ndarray:
-        """Forces (3, n) N at displacements (3, n), by the particles' share of their side's diameters.
+        """Forces (3, n) N at displacements (3, n), by the share of the particles' widths in their side's diameters.
 
         With the updated geometry they rotate with their side. Small additional forces cancel the torque that results
         from uneven and strained sides.
@@ -57,7 +57,7 @@ class Tractions:
             turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
             sign = 1.0 if side in ("right", "top") else -1.0
             pull = turn @ np.array([xx, xy] if edge.axis == 0 else [xy, yy]) * sign * edge.length
-            force[:2, edge.nodes] += pull[:, None] * edge.diameters / edge.diameters.sum()
+            force[:2, edge.nodes] += pull[:, None] * edge.widths / edge.diameters.sum()
         loaded = np.unique(np.concatenate([edge.nodes for edge in self.scene.edges.values()]))
         return _without_torque(force, self.scene.assembly.positions + moved[:2].T, loaded)
 

@@ -70,6 +70,7 @@ def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pul
         finish_all(laws, v, body, nodes, work)
         work[1, 5] = work[0, 5] + turned
         work[0, 5] += turned + turning_work(turning, v, body.step)
+        log.supplied[0] = max(log.supplied[0], work[1, 0])
         here, there = there, here
         if breaks > 0:
             done = step + 1

@@ -190,7 +190,7 @@ class Log(NamedTuple):
     particles; peaks : (q, 3, 2) smallest and largest velocity so far. top_speed : (n,) largest speed so far, m/s, or
     (0,) if not asked for. work : (2, 6) J done on the body by supports, taken by damping, friction and cracks, added by
     a change of method, done by the change of follower forces as they rotate, column by column; row 0 up to the half
-    step reached, row 1 up to the last whole step.
+    step reached, row 1 up to the last whole step. supplied : (1,) J, the largest work of supports so far, at any step.
     """
 
     probes: np.ndarray
@@ -199,6 +199,7 @@ class Log(NamedTuple):
     peaks: np.ndarray
     top_speed: np.ndarray
     work: np.ndarray
+    supplied: np.ndarray
 
 
 class Links(NamedTuple):

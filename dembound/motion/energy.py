@@ -28,7 +28,8 @@ class Entry:
     kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
     of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
     and driven loads; damping, friction, crack, dissipated by them; law_switch, added by a change of method or law;
-    error, stored and dissipated energy minus supplied energy. For a bar in J.
+    supplied, the kinetic energy at the start plus the largest values so far of outside, at any step, and of load, at
+    any entry; error, stored and dissipated energy minus what came in. For a bar in J.
     """
 
     time: float
@@ -42,6 +43,7 @@ class Entry:
     friction: float
     crack: float
     law_switch: float
+    supplied: float
     error: float
 
 
@@ -78,6 +80,7 @@ class Ledger(Tracker):
         self._unit, self._weight = run.scene.energy_unit, run.scene.weight
         self._mass, self._inertia = (run.scene.layout.spread(of) for of in (run.scene.mass, run.scene.inertia))
         self._first = run.system.stored(run.state.u)
+        self._came = 0.0  # kinetic energy at the start
         self._most = 0.0, 0.0  # supplied by boundaries and loads, largest values so far
         self._begun: _Begun | None = None
 
@@ -114,19 +117,26 @@ class Ledger(Tracker):
         outside += system.counted_outside(u)
         balance = turning + balancing
         error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - law_switch
-        energies = kinetic, contact, bond, load, balance, outside, damping, friction, crack, law_switch, error
+        supplied = self._supplied(kinetic, max(outside, float(state.supplied[0])), load)
+        energies = kinetic, contact, bond, load, balance, outside, damping, friction, crack, law_switch, supplied, error
         time = (state.step - 1) * run.time_step
         self.entries.append(Entry(time, *(self._weight * energy for energy in energies)))
         self._watch()
 
+    def _supplied(self, kinetic: float, outside: float, load: float) -> float:
+        """The most energy (J) supplied until an entry, from its kinetic energy, the largest work outside, and load."""
+        if not self.entries:
+            self._came = kinetic
+        self._most = max(self._most[0], outside), max(self._most[1], load)
+        return self._came + sum(self._most)
+
     def _watch(self) -> None:
         """Raise RunError if the run has gained energy that was not supplied, as with a step too large for its law."""
         first, last = self.entries[0], self.entries[-1]
-        self._most = max(self._most[0], last.outside), max(self._most[1], last.load)
-        came = first.kinetic + sum(self._most)
-        gained = last.error - first.error
+        came, gained = last.supplied, last.error - first.error
         stored = self._weight * sum(self._first)
-        if gained > GAIN * came + ROUNDING * (stored + last.kinetic + abs(last.outside)):
+        # the kinetic energy ½m v⁻·v⁺ of motion that changes its sign at every step is negative
+        if gained > GAIN * came + ROUNDING * (stored + abs(last.kinetic) + abs(last.outside)):
             raise RunError(
                 f"the run has gained {gained:.3g} {self._unit} without input until t = {last.time:g} s, when loads and "
                 f"boundaries had supplied {came:.3g} {self._unit} at most; take a smaller run.safety or run.time_step"
@@ -134,16 +144,17 @@ class Ledger(Tracker):
 
     @property
     def columns(self) -> np.ndarray:
-        """All entries, (k, 12), in the order of `Entry`."""
+        """All entries, (k, 13), in the order of `Entry`."""
         return np.array([astuple(entry) for entry in self.entries]).reshape(-1, len(fields(Entry)))
 
     def memory(self) -> Arrays:
-        """Entries, the largest supplied energies, and an entry that has begun."""
+        """Entries, the supplied energies, and an entry that has begun."""
         begun = self._begun or _Begun(np.zeros((3, 0)), np.zeros((3, 0)), 0.0, 0)
         return {
             "due": np.array(self.due),
             "entries": self.columns,
             "first": np.array(self._first),
+            "came": np.array(self._came),
             "most": np.array(self._most),
             "has_begun": np.array(self._begun is not None),
             "u": begun.u,
@@ -157,7 +168,7 @@ class Ledger(Tracker):
         self.due = int(memory["due"])
         self.entries = [Entry(*row) for row in memory["entries"].tolist()]
         self._first = tuple(memory["first"].tolist())
-        self._most = tuple(memory["most"].tolist())
+        self._came, self._most = float(memory["came"]), tuple(memory["most"].tolist())
         begun = _Begun(memory["u"].copy(), memory["before"].copy(), float(memory["balancing"]), int(memory["laws"]))
         self._begun = begun if memory["has_begun"] else None
         self._drop_end()

@@ -33,10 +33,22 @@ OnLook = Callable[[int, float], None]
 
 
 @dataclass(frozen=True)
+class Reduction(Generic[S]):
+    """The scene that is stepped in place of another one.
+
+    scene : the smaller scene, or the same where no reduction applies.
+    refused : the reductions that the case asks for and that cannot be made, each in a line with the reason.
+    """
+
+    scene: S
+    refused: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Plan:
     """A case before its first step: the scene, the time step and its limit (s), the number of steps.
 
-    stepped : the scene whose motion is computed, the scene itself or a smaller one, see `Kind.reduced`.
+    stepped : the scene whose motion is computed, the scene itself or a smaller one, and refused : see `Reduction`.
     regular_steps : steps from which intervals of ledger and snapshots are found: those of the run as it was begun.
     """
 
@@ -47,6 +59,7 @@ class Plan:
     step_limit: float
     steps: int
     regular_steps: int
+    refused: tuple[str, ...] = ()
 
 
 class Finding(NamedTuple):
@@ -134,9 +147,9 @@ class Kind(ABC, Generic[C, S]):
     def choose_step(self, scene: S) -> tuple[float, float]:
         """Time step to run with and the stability limit (s); raises CaseError for a given step above the limit."""
 
-    def reduced(self, scene: S) -> S:
+    def reduced(self, scene: S) -> Reduction[S]:
         """A smaller scene, from whose motion that of a scene follows; by default the scene itself."""
-        return scene
+        return Reduction(scene)
 
     @abstractmethod
     def begin(self, scene: S, time_step: float, on_look: OnLook, stages: Stages | None = None) -> Beginning:

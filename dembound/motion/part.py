@@ -83,7 +83,10 @@ class System:
     ----------
     steady : (3, n) N and N·m, all steady forces that kernels add, or (3, 0) for none.
     turning : those of them that rotate with their sides; None if there are none.
+    refused : laws of less cost that the case asks for and that cannot be used, each in a line with the reason.
     """
+
+    refused: tuple[str, ...] = ()
 
     def __init__(self, parts: Sequence[Part], ties: Sequence[Tie], load: np.ndarray) -> None:
         self.parts, self.ties = tuple(parts), tuple(ties)

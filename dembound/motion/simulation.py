@@ -156,7 +156,8 @@ class Simulation:
             load = state.layout.spread(load) if load.size else load
             turning = None if turning is None else turning.in_slots(state.layout.slot)
         body = tables.Body(self._mobility, self._inverse_inertia, self.scene.free, load, self._damp, self.time_step)
-        log = tables.Log(self._probe_slots, record, self._tracked_slots, state.peaks, state.top, state.work)
+        probes, tracked = self._probe_slots, self._tracked_slots
+        log = tables.Log(probes, record, tracked, state.peaks, state.top, state.work, state.supplied)
         done, why = loop.advance(
             state.u,
             self._u_next,

@@ -36,7 +36,8 @@ class State:
     datum : (3, n) displacement at the start.
     peaks : (q, 3, 2) smallest and largest velocity so far of the nodes of all edges, one edge after the other.
     top : (slots,) m/s, largest speed so far; (0,) unless the case asks for it.
-    work : (2, 6) J, in the columns `WORK`; see kernels.tables.Log.
+    work : (2, 6) J, in the columns `WORK`; supplied : (1,) J, the largest work of supports so far; see
+        kernels.tables.Log.
     step : steps done.
     laws : name of each law used and its first step.
     switch_velocity : (3, n) velocity half a step before the history-dependent law began; (3, 0) under another law.
@@ -50,6 +51,7 @@ class State:
     peaks: np.ndarray
     top: np.ndarray
     work: np.ndarray = field(default_factory=lambda: np.zeros((2, len(WORK))))
+    supplied: np.ndarray = field(default_factory=lambda: np.zeros(1))
     step: int = 0
     laws: list[tuple[str, int]] = field(default_factory=list)
     switch_velocity: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))
@@ -108,8 +110,8 @@ class State:
             kept.recall(within(arrays, owner))
 
 
-_ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_velocity")
-"""What of a state is arrays of nodes."""
+_ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_velocity", "supplied")
+"""The arrays of a state that are saved as they are."""
 
 
 def within(arrays: Arrays, owner: str) -> dict[str, np.ndarray]:

@@ -170,17 +170,17 @@ def laws_of(file: h5py.File) -> list[tuple[str, float]]:
 def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
     """The energy ledger of an open record: its columns (k,) by name, time in s and energies in J per metre (a bar: J).
 
-    One more column, relative_error, is the error over the supplied energy: the kinetic energy at the start plus the
-    largest energies that boundaries with driven loads, and steady loads, have each supplied up to any time. The work of
-    the forces that balance a settled stress and the energy absorbed by boundaries are not included, as both also grow
-    in an unstable run.
+    One more column, relative_error, is the error over the energy supplied in the whole run: the kinetic energy at the
+    start plus the largest energies that boundaries with driven loads, and steady loads, have each supplied up to any
+    time. The work of the forces that balance a settled stress and the energy absorbed by boundaries are not included,
+    as both also grow in an unstable run.
 
     Raises CaseError when there is no entry.
     """
     columns = {name: dataset[:] for name, dataset in file.get("energy", {}).items()}
     if not columns or len(columns["time"]) == 0:
         raise CaseError([f"{file.filename}: has no entries in its energy ledger"])
-    scale = float(columns["kinetic"][0] + max(columns["outside"].max(), 0.0) + max(columns["load"].max(), 0.0))
+    scale = float(columns["supplied"][-1])
     columns["relative_error"] = columns["error"] / scale if scale > 0.0 else np.zeros_like(columns["error"])
     return columns
 

@@ -47,6 +47,7 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
         "energy": _describe_energy(record),
         "monitors": _describe_monitors(record),
         "reduced": [*scene.reduced, *run.system.saved(state), *_fields_left_out(planned)],
+        "not_reduced": [*planned.refused, *run.system.refused],
     }
 
 

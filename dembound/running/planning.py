@@ -37,9 +37,9 @@ def plan(case: Case, clock: Clock | None = None) -> Plan:
         if steps > MOST_STEPS:
             asked = f"takes {steps:.3g} steps of {time_step:.3g} s"
             raise CaseError([f"run.duration: {asked}, must take no more than {MOST_STEPS:g}"])
-        stepped = kind.reduced(scene)
+        reduction = kind.reduced(scene)
     count = max(1, int(np.ceil(steps - 1e-9)))
-    return Plan(kind, scene, stepped, time_step, limit, count, count)
+    return Plan(kind, scene, reduction.scene, time_step, limit, count, count, reduction.refused)
 
 
 @contextmanager

@@ -157,7 +157,7 @@ def calibrate(
         method=method,
         kind="input" if table.waves else "absorbing",
         incident=pulse.peak(),
-        shortened=[*shortened, *reduced(scene).reduced, *left_out],
+        shortened=[*shortened, *reduced(scene).scene.reduced, *left_out],
         particles=scene.count,
     )
     if method == "homogenised":
@@ -196,7 +196,7 @@ def _next_beta(found: Calibration) -> float:
 
 def _pass(scene: DiskScene, time_step: float, found: Calibration, pulse: Cosine) -> tuple[float, int]:
     """M_out of one run (m/s) and its number of steps."""
-    simulation = Simulation(reduced(scene), time_step)
+    simulation = Simulation(reduced(scene).scene, time_step)
     due = pulse.peak_time() + (0.0 if found.kind == "input" else _travel(scene, found.side, found.motion))
     simulation.run(int(np.ceil((due + AFTER * pulse.period) / time_step)))
     peaks = simulation.edge_peaks(found.side)[:, axis_of_motion(found.side, found.motion), 1]

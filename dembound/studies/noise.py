@@ -143,9 +143,12 @@ def _of_ledger(ledger: Ledger) -> list[float]:
     Kinetic and stored energy, with the potential of forces that balance a locked-in stress and what boundaries have
     taken, without what a change of law has added.
     """
-    _, kinetic, contact, bond, _, balance, outside, _, _, _, law_switch, _ = ledger.columns.T
-    energy = kinetic + contact + bond - balance - outside - law_switch
-    return (1.0 + (energy[1:] - energy[1]) / kinetic[0]).tolist() if len(energy) > 1 else []
+    first, *others = ledger.entries
+    energy = [
+        entry.kinetic + entry.contact + entry.bond - entry.balance - entry.outside - entry.law_switch
+        for entry in others
+    ]
+    return [1.0 + (each - energy[0]) / first.kinetic for each in energy]
 
 
 class Look(Every):

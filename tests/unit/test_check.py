@@ -23,6 +23,8 @@ def test_facts_are_those_of_the_run_and_of_the_scene(bar) -> None:
     assert {name: fact for name, fact in facts.items() if name in own} == own
     assert set(facts) - set(own) == {"time step", "steps", "memory", "estimated time", "reduced"}
     assert "reduced" not in check(bar({"reduce.rows": False}))[0]
+    asked = check(bar({"reduce.settled": True}))[0]
+    assert asked["not reduced"] == 'reduce.settled: not applied: material.law = "elastic" is used from the start'
     assert len(warnings) > 0
     assert warnings == warnings_before(planned)
 

@@ -84,9 +84,10 @@ def test_half_cells_along_the_bar(lab, height, held, assert_same):
     assert_same(case_of(lab, size=(20.0, height), held=held, boundary=boundary), int(2.0 * height))
 
 
-def test_dashpots_on_two_rows_of_half_cells(lab, assert_same):
+@pytest.mark.parametrize("height", [1.0, 4.0])
+def test_dashpots_on_rows_of_half_cells(lab, height, assert_same):
     boundary = {"left": INPUT_P, "right": "viscous", "bottom": WEIGHTLESS, "top": WEIGHTLESS}
-    assert_same(case_of(lab, size=(20.0, 1.0), boundary=boundary), 2)
+    assert_same(case_of(lab, size=(20.0, height), boundary=boundary), int(2.0 * height))
 
 
 def test_springs_at_both_ends(lab, assert_same):

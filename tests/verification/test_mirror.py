@@ -7,10 +7,13 @@ from scipy.spatial import cKDTree
 WIDTH, HEIGHT = 5.0, 4.0
 
 
+@pytest.mark.parametrize("half_cells", [False, True])
 @pytest.mark.parametrize(("side", "axis"), [("left", 0), ("right", 0), ("bottom", 1), ("top", 1)])
-def test_half_a_body_with_its_mirror_is_the_whole(lab, side, axis):
-    half = lab.scene("A", (WIDTH, HEIGHT), held=(), material={"fric": 0.5}, boundary={side: "symmetry"})
-    whole = lab.scene("A", (WIDTH * (2 - axis), HEIGHT * (1 + axis)), held=(), material={"fric": 0.5})
+def test_half_a_body_with_its_mirror_is_the_whole(lab, side, axis, half_cells):
+    across = {("top", "right")[axis]: {"type": "viscous", "half_mass": True}} if half_cells else {}
+    words = {"held": (), "material": {"fric": 0.5}}
+    half = lab.scene("A", (WIDTH, HEIGHT), boundary={side: "symmetry", **across}, **words)
+    whole = lab.scene("A", (WIDTH * (2 - axis), HEIGHT * (1 + axis)), boundary=across, **words)
     u = np.random.default_rng(3).uniform(-1e-3, 1e-3, (3, half.count))
     force = lab.forces(half, u)
     table = half.supports

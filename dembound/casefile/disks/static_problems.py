@@ -19,6 +19,9 @@ def static_problems(
     for side in static.boundary:
         if (table := boundaries.get(side)) and table.is_periodic:
             yield f"static.boundary.{side}: is not allowed, as boundary.{side} is periodic"
+    for side, own in static.boundary.items():
+        if own and "artificial" in own.model_fields_set:
+            yield f"static.boundary.{side}.artificial: is of no use in the static stage; give it to boundary.{side}"
     if static.stress is not None:
         sides = [table for table in boundaries.values() if table]
         for trait, name in (("is_periodic", "periodic"), ("needs_column", "free-field")):

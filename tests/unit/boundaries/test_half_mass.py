@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.boundaries import Fixed, Viscoelastic, ViscoelasticInput, Viscous, ViscousInput
-from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor
+from dembound.boundaries.half_mass import half_contacts, half_edges, mass_factor, with_shares
 from dembound.boundaries.support import Edge
 
 
@@ -40,6 +40,14 @@ def test_a_side_that_is_no_edge_halves_nothing() -> None:
 
 
 HALF = Viscous(type="viscous", half_mass=True)
+
+
+def test_a_corner_has_half_its_width_on_the_side_across() -> None:
+    def widths(boundary: dict) -> dict[str, list[float]]:
+        return {side: edge.widths.tolist() for side, edge in with_shares(5, EDGES, boundary).items()}
+
+    assert widths({"left": HALF}) == {"left": [1.0, 1.0], "right": [1.0, 1.0], "top": [0.5, 1.0]}
+    assert widths({"left": HALF, "top": HALF}) == {"left": [1.0, 0.5], "right": [1.0, 0.5], "top": [0.5, 1.0]}
 
 
 def test_the_sides_of_half_cells_are_those_that_ask_for_it() -> None:

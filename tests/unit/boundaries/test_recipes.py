@@ -1,6 +1,7 @@
 """Each boundary type fills the rows its formula says, on upright and on level sides."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from dembound.boundaries import (
     Boundary,
     Fixed,
     Free,
+    FreeField,
     Periodic,
     Roller,
     Symmetry,
@@ -242,3 +244,41 @@ def test_a_driven_side_must_name_a_wave(kind: type[Velocity | ViscousInput | Vis
     }[kind]
     with pytest.raises(ValidationError, match="names no wave"):
         kind(type=name, **springs)
+
+
+SHARES = np.array([0.5, 1.0])
+
+INCOMING = {"wave_p": "push", "wave_s": "shake"}
+
+
+@pytest.mark.parametrize("side", ["left", "top"])
+@pytest.mark.parametrize(
+    "table",
+    [
+        Viscous(type="viscous"),
+        ViscousInput(type="viscous_input", **INCOMING),
+        Viscoelastic(type="viscoelastic", distance=10.0),
+        ViscoelasticInput(type="viscoelastic_input", distance=10.0, **INCOMING),
+        FreeField(type="free_field"),
+        Symmetry(type="symmetry"),
+    ],
+)
+def test_a_particle_with_half_its_width_inside_has_half_of_all_forces(table: Boundary, side: str) -> None:
+    whole, part = SupportBuilder(), SupportBuilder()
+    edge = Edge(side, np.array([5, 6]), POSITIONS, DIAMETERS, 1.5)
+    table.support(edge, MEDIUM, WAVES, whole)
+    table.support(replace(edge, shares=SHARES), MEDIUM, WAVES, part)
+    expected, found = whole.table(), part.table()
+
+    share = SHARES[expected.node - 5]
+    for name in ("damping", "follow", "stiffness"):
+        np.testing.assert_allclose(getattr(found, name), share * getattr(expected, name), rtol=1e-15)
+    np.testing.assert_allclose(found.drive, share[expected.drive_row] * expected.drive, rtol=1e-15)
+
+
+def test_motion_that_is_prescribed_does_not_depend_on_widths() -> None:
+    edge = Edge("left", np.array([5, 6]), POSITIONS, DIAMETERS, 1.5, SHARES)
+    builder = SupportBuilder()
+    Velocity(type="velocity", wave_p="shake").support(edge, MEDIUM, WAVES, builder)
+
+    assert column(builder.table(), "push", 0).tolist() == [30.0, 30.0]

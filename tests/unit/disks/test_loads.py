@@ -29,13 +29,13 @@ def row() -> Assembly:
     )
 
 
-def test_a_force_is_shared_by_the_disks_areas(row: Assembly) -> None:
-    load = Load(name="a", force=(13.0, -26.0), region=(1.5, -1.0, 3.5, 1.0))
+def test_a_force_is_shared_by_the_masses(row: Assembly) -> None:
+    load = Load(name="a", force=(5.0, -10.0), region=(1.5, -1.0, 3.5, 1.0))
     nodes, forces = forces_of(load, row, MASS)
 
-    # areas as 4 to 9
+    # masses as 2 to 3
     assert nodes.tolist() == [1, 2]
-    np.testing.assert_allclose(forces, [[4.0, -8.0], [9.0, -18.0]], rtol=1e-15)
+    np.testing.assert_allclose(forces, [[2.0, -4.0], [3.0, -6.0]], rtol=1e-15)
 
 
 def test_an_acceleration_acts_on_every_mass(row: Assembly) -> None:

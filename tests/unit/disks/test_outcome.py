@@ -4,13 +4,17 @@ from dembound.disks.outcome import disk_outcome
 
 
 def test_only_what_applies_is_told() -> None:
-    elastic = {"reduced": [], "static": None, "has_history": False, "laws": [{"law": "elastic", "from": 0.0}]}
+    elastic = {"static": None, "has_history": False, "laws": [{"law": "elastic", "from": 0.0}]}
+    elastic |= {"reduced": [], "not_reduced": []}
     quiet = {"has_history": True, "cracks": {"tension": 0, "shear": 0}, "energy": {"relative_error": 0.0}}
     settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0, "before": None, "asked": None, "column": None}
     stage = "settled in 3,100 steps to a force ratio of 9.8e-06"
 
     assert disk_outcome(elastic) == []
-    assert disk_outcome(elastic | {"reduced": ["rows: 2 as one"]}) == ["rows: 2 as one"]
+    assert disk_outcome(elastic | {"reduced": ["rows: 2 as one"], "not_reduced": ["no half"]}) == [
+        "rows: 2 as one",
+        "no half",
+    ]
     assert disk_outcome(elastic | {"static": settled}) == [stage]
     assert disk_outcome(elastic | quiet) == ["elastic law all through"]
     broken = {"cracks": {"tension": 1200, "shear": 30}, "static": settled | {"cracks": 1100}}

@@ -103,7 +103,7 @@ class Stepped:
         everyone = np.arange(self.count)
         record, peaks = np.empty((len(self.push), self.count, 6)), np.zeros((self.count, 3, 2))
         top_speed, work = np.zeros(self.count), np.zeros((2, 6))
-        return body, supports, tables.Log(everyone, record, everyone, peaks, top_speed, work)
+        return body, supports, tables.Log(everyone, record, everyone, peaks, top_speed, work, np.zeros(1))
 
 
 @pytest.fixture

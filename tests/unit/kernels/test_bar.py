@@ -133,7 +133,8 @@ class Run:
         supports = self.outside.table(self.drag)
         supports = supports._replace(drive=supports.drive[number : number + steps])
         nobody = np.zeros(0, dtype=np.int64)
-        log = tables.Log(np.arange(COUNT), self.record[number:], nobody, np.zeros((0, 3, 2)), self.top_speed, self.work)
+        peaks, supplied = np.zeros((0, 3, 2)), np.zeros(1)
+        log = tables.Log(np.arange(COUNT), self.record[number:], nobody, peaks, self.top_speed, self.work, supplied)
         u_next = np.zeros_like(self.u)
         return advance(self.u, u_next, self.v, number, (self.arrays,), (), None, body, supports, log)
 

@@ -132,7 +132,9 @@ class Following:
             self.nodes, self.inertia / STEP, keep, mobility, self.stiffness, prescribed, drive, self.twin, self.follow
         )
         body = tables.Body(np.zeros(7), np.zeros(7), np.ones(3), np.zeros((3, 0)), self.damp, STEP)
-        log = tables.Log(nobody, np.zeros((1, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 6)))
+        log = tables.Log(
+            nobody, np.zeros((1, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 6)), np.zeros(1)
+        )
         return supports, body, log
 
     def expected(self) -> tuple[np.ndarray, np.ndarray]:

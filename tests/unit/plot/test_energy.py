@@ -14,7 +14,7 @@ def test_every_column_that_is_not_zero_is_a_line(cracked_run):
     drawn = {line.get_label(): line for line in upper.lines}
     with h5py.File(cracked_run) as file:
         ledger = {name: values[:] for name, values in file["energy"].items()}
-    assert ledger.keys() == {"time", "error", *COLUMNS}
+    assert ledger.keys() == {"time", "supplied", "error", *COLUMNS}
     largest = {name: np.abs(ledger[name]).max() for name in COLUMNS}
     for name, label in COLUMNS.items():
         if largest[name] > NEGLIGIBLE * max(largest.values()):
@@ -23,7 +23,7 @@ def test_every_column_that_is_not_zero_is_a_line(cracked_run):
     assert np.any(ledger["kinetic"])
     assert not np.any(ledger["damping"])
     (error,) = lower.lines
-    np.testing.assert_array_equal(error.get_ydata(), ledger["error"] / ledger["outside"].max())
+    np.testing.assert_array_equal(error.get_ydata(), ledger["error"] / ledger["supplied"][-1])
 
 
 def test_units_and_the_name_are_told(cracked_run):

@@ -149,11 +149,12 @@ def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> Non
             "boundaries",
             "monitors",
         ),
-        *("laws", "static", "cracks", "energy", "keys", "reduced", "resumed", "warnings"),
+        *("laws", "static", "cracks", "energy", "keys", "reduced", "not_reduced", "resumed", "warnings"),
     }
     assert (found["name"], found["particles"], found["contacts"]) == ("bar", 40, 2 * 19 + 20)
     assert found["duration"] == pytest.approx(found["steps"] * found["time_step"], rel=1e-15)
     assert found["reduced"] == ["rows: 2 identical rows are stepped as one, 20 of 40 disks"]
+    assert found["not_reduced"] == []
     assert found["particle_steps_per_second"] == pytest.approx(20 * found["steps"] / found["seconds"]["step"])
     # by hand: ρc_p² shared by contact and bond; rounding and a solve with one unknown
     assert found["packing"]["C11"] == pytest.approx(2.5e9, rel=1e-12)

@@ -66,6 +66,16 @@ def test_all_is_at_its_place_on_its_particles(field, pattern) -> None:
     assert source == pytest.approx((3.25 + shift[0], 2.25 + shift[1]), rel=1e-12)
 
 
+@pytest.mark.parametrize("side", ["fixed", "roller", "free"])
+def test_other_sides_move_where_the_case_calls_them_artificial(bar, side) -> None:
+    def width(**keys) -> float:
+        changes = {"boundary.left": GRIP, "boundary.right": {"type": side, **keys}, "run.duration": 0.05}
+        return extended(bar(changes)).case.packing.extent[0]
+
+    assert width(artificial=False) == 10.0 < width(artificial=True)
+    assert width() == width(artificial=side != "free")
+
+
 def test_sides_that_are_physical_stay(bar) -> None:
     found = extended(bar({"boundary.left": GRIP, "run.duration": 0.05}))
     tall = extended(bar({"motion.held": ["x"], "boundary": {"bottom": GRIP, "top": {"type": "viscous"}}, **{}}))

@@ -76,7 +76,11 @@ def test_stages_are_equal_when_their_tables_are() -> None:
             [f'static.boundary.left.type: is "viscous", must be one of {SIDES}'],
         ),
         ("boundary.left = {}", [f"static.boundary.left.type: is missing, must be one of {SIDES}"]),
-        (side("top", "free") + "x = 1\n", ["static.boundary.top.x: unknown key; allowed: type"]),
+        (side("top", "free") + "x = 1\n", ["static.boundary.top.x: unknown key; allowed: type, artificial"]),
+        (
+            side("top", "fixed") + "artificial = false\n",
+            ["static.boundary.top.artificial: is of no use in the static stage; give it to boundary.top"],
+        ),
         (
             "damp = 2\n" + side("left", "wall") + side("top", "wall"),
             [
