@@ -216,11 +216,7 @@ def _side_numbers(scene: DiskBody, sides: dict[str, np.ndarray]) -> tuple[np.nda
     They are the particles of the sides, and at a free field those with contacts beyond it.
     """
     pushed = dict(sides)
-    if scene.seam is not None:
-        left = scene.assembly.positions[scene.seam.node, 0] < 0.5 * scene.size[0]
-        for side, near in (("left", left), ("right", ~left)):
-            if scene.case.side(side).needs_column and side in sides:
-                pushed[side] = np.union1d(sides[side], scene.seam.node[near])
+    pushed |= {side: np.union1d(sides[side], near) for side, near in scene.tied.items() if side in sides}
     node = np.unique(np.concatenate([np.zeros(0, np.int64), *pushed.values()]))
     number = np.full((2, len(node)), -1)
     for k, nodes in enumerate(pushed.values()):

@@ -149,6 +149,16 @@ class Scene(ABC):
         """(q,) the nodes of all edges, one edge after the other."""
         return np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in self.edges.values())])
 
+    @property
+    def sides(self) -> dict[str, Edge]:
+        """The sides whose forces are recorded, by name; by default the edges."""
+        return dict(self.edges)
+
+    @property
+    def tied(self) -> Mapping[str, np.ndarray]:
+        """Nodes (k,) on which ties act, by the side they belong to; by default none."""
+        return {}
+
     def side_peaks(self, side: str, peaks: np.ndarray) -> np.ndarray:
         """Smallest and largest velocity (k, 3, 2) of the nodes of a side of the whole scene.
 

@@ -10,7 +10,8 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             of each in the whole run
     histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle,
                             position, wanted
-    boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2)
+    boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2); of the
+                            side as a whole, without a free-field column, time (k,), displacement (k, 3), force (k, 2)
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
                             under a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
                             and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
@@ -60,6 +61,11 @@ HISTORY = (
     ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
     ("velocity", (3,), "f8", VELOCITY_UNIT),
 )
+SIDE_HISTORY = (
+    ("time", (), "f8", "s"),
+    ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
+    ("force", (2,), "f8", "N/m"),
+)
 CRACKS = (
     ("time", (), "f8", "s"),
     ("position", (2,), "f8", "m"),
@@ -101,8 +107,11 @@ class Recorder:
         self.scene = run.scene.whole
         self.ledger = ledger
         self.stride = max(1, round(interval / run.time_step))
+        measured = [] if run.sides is None else run.sides.names
+        self._sides = {name: number for number, name in enumerate(measured) if name in self.scene.edges}
         self._times: list[np.ndarray] = []
         self._samples: list[np.ndarray] = []
+        self._side_samples: list[np.ndarray] = []
         self._broken: list[Cracks] = []
         self._store = CommittedFile(path, "w" if counts is None else "a")
         self.file = h5py.File(self._store, "w" if counts is None else "a")
@@ -111,6 +120,7 @@ class Recorder:
         else:
             self._cut(counts)
         self._histories = [dict(self.file["histories"][name]) for name in self.scene.monitors]
+        self._side_histories = [dict(self.file["boundaries"][name]) for name in self._sides]
         self._cracks, self._laws = dict(self.file["cracks"]), dict(self.file["laws"])
         self._energy = dict(self.file.get("energy", {}))
         for stage in stages if counts is None else ():
@@ -138,7 +148,7 @@ class Recorder:
         The ledger's entry of the last step, which may be the last of this run only, is not included.
         """
         return {
-            "histories": len(self._histories[0]["time"]) if self._histories else 0,
+            "histories": max((len(each["time"]) for each in self._histories + self._side_histories), default=0),
             "cracks": len(self._cracks["time"]),
             "energy": 0 if self.ledger is None else self.ledger.regular_entries,
             "laws": len(self._laws["time"]),
@@ -152,8 +162,10 @@ class Recorder:
         rows = np.arange(-begun % self.stride, len(record), self.stride)
         self._times.append((begun + rows) * step)
         self._samples.append(self.run.scene.observed(record[rows]))
+        if self._sides:
+            self._side_samples.append(self.run.side_record[rows])
         self._broken.append(self.run.system.take_cracks(state.step))
-        kept = sum(samples.nbytes for samples in self._samples)
+        kept = sum(samples.nbytes for samples in self._samples + self._side_samples)
         if time.monotonic() - self._written >= KEPT_SECONDS:
             self.flush()
         elif kept >= KEPT_BYTES:
@@ -216,6 +228,8 @@ class Recorder:
         for name, history in self.file["histories"].items():
             if name in self.scene.monitors:
                 _cut(history, counts["histories"])
+        for name in self._sides:
+            _cut({column: self.file["boundaries"][name][column] for column, *_ in SIDE_HISTORY}, counts["histories"])
         for name in ("cracks", "energy", "laws"):
             _cut(self.file[name], counts[name])
         for number in list(self.file["snapshots"])[counts["snapshots"] :]:
@@ -280,18 +294,28 @@ class Recorder:
             write(group, "position", scene.positions[edge.nodes], "m")
             write(group, "diameter", edge.diameters, "m")
             write(group, "peak_velocity", np.zeros((len(edge.nodes), 3, 2)), VELOCITY_UNIT)
+            if side in self._sides:
+                group.attrs["body_length"] = scene.sides[side].length
+                force = "N" if scene.energy_unit == "J" else "N/m"  # as energies
+                make(group, [(*column[:3], force if column[0] == "force" else column[3]) for column in SIDE_HISTORY])
 
     def _append_kept(self) -> None:
         """Write samples and cracks that are kept in memory."""
         if self._times:
             times, samples = np.concatenate(self._times), np.concatenate(self._samples)
-            self._times, self._samples = [], []
+            sides = np.concatenate(self._side_samples) if self._sides else np.zeros((0, 0, 5))
+            self._times, self._samples, self._side_samples = [], [], []
             for index, history in enumerate(self._histories):
                 extend(history["time"], times)
                 extend(history["displacement"], samples[:, index, :3])
                 extend(history["velocity"], samples[:, index, 3:6])
                 if "stress" in history:
                     extend(history["stress"], samples[:, index, 6])
+            for name, history in zip(self._sides, self._side_histories, strict=True):
+                index = self._sides[name]
+                extend(history["time"], times)
+                extend(history["displacement"], sides[:, index, :3])
+                extend(history["force"], sides[:, index, 3:])
         self._append_cracks(joined(self._broken), self.run.time_step)
         self._broken = []
 
@@ -329,7 +353,7 @@ class Recorder:
             self.file["particles/peak_velocity"][...] = speed
 
 
-def _cut(group: h5py.Group, count: int) -> None:
-    """Remove rows from the end of all datasets of a group."""
+def _cut(group: Mapping[str, h5py.Dataset], count: int) -> None:
+    """Remove rows from the end of datasets."""
     for dataset in group.values():
         dataset.resize(count, axis=0)
