@@ -19,60 +19,97 @@ PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED = range(6)
 
 
 @njit(**FAST, forceinline=True)
-def _needed(c, lines, constants, push, across):
-    """Force (N) that prescribed motion takes, without that of ties."""
+def _needed(c, lines, constants, old, new, push, across):
+    """Of prescribed motion, without ties, the sums of `_of_batch`."""
     force = 0.0
+    power = 0.0
+    before = 0.0
     for e in range(lines.size):
         s = U(lines[e])
-        force += constants[e] * (push[c, s] - across[s, c])
-    return force
+        f = constants[e] * (push[c, s] - across[s, c])
+        force += f
+        power += f * 0.5 * (old[c, s] + new[c, s])
+        before += f * old[c, s]
+    return force, power, before, 0.0
 
 
 @njit(**FAST, forceinline=True)
 def _dashpots(c, lines, constants, old, new, incident):
-    """Force (N) of dashpots through which a wave of the velocity `incident` (m/s) enters."""
+    """The same of dashpots through which a wave of the velocity `incident` (m/s) enters.
+
+    Of a mean velocity v they absorb C(v − v_i)², the power of the outgoing wave, and C v_i² comes in.
+    """
     force = 0.0
+    before = 0.0
+    absorbed = 0.0
+    constant = 0.0
     for e in range(lines.size):
         s = U(lines[e])
-        force += constants[e] * (2.0 * incident - 0.5 * (old[c, s] + new[c, s]))
-    return force
+        out = 0.5 * (old[c, s] + new[c, s]) - incident
+        f = constants[e] * (incident - out)
+        force += f
+        before += f * old[c, s]
+        absorbed += constants[e] * out * out
+        constant += constants[e]
+    return force, constant * incident * incident - absorbed, before, absorbed
 
 
 @njit(**FAST, forceinline=True)
 def _following(c, lines, constants, follow, old, new, followed, incident):
-    """Force (N) of dashpots on velocities relative to those of twins, followed (k, 3) m/s."""
+    """The same of dashpots on velocities relative to those of twins, followed (k, 3) m/s."""
     force = 0.0
+    power = 0.0
+    before = 0.0
+    absorbed = 0.0
     for e in range(lines.size):
         s = U(lines[e])
-        force += constants[e] * (2.0 * incident - 0.5 * (old[c, s] + new[c, s])) + follow[e] * followed[s, c]
-    return force
+        mean = 0.5 * (old[c, s] + new[c, s])
+        f = constants[e] * (2.0 * incident - mean) + follow[e] * followed[s, c]
+        out = mean - followed[s, c] - incident
+        force += f
+        power += f * mean
+        before += f * old[c, s]
+        absorbed += constants[e] * out * out
+    return force, power, before, absorbed
 
 
 @njit(**FAST, forceinline=True)
 def _springs(c, lines, constants, nodes, u):
-    """Force (N) of springs at displacements u (3, n)."""
+    """The same of springs at displacements u (3, n), whose energy follows from these: the force alone."""
     force = 0.0
     for e in range(lines.size):
         force -= constants[e] * u[c, U(nodes[U(lines[e])])]
-    return force
+    return force, 0.0, 0.0, 0.0
 
 
 @njit(**FAST, forceinline=True)
-def _tied(c, lines, constants, across):
-    """Force (N) through seams."""
+def _driven(c, lines, constants, old, new, signal):
+    """The same of forces constants·signal."""
     force = 0.0
+    power = 0.0
+    before = 0.0
     for e in range(lines.size):
-        force += constants[e] * across[U(lines[e]), c]
-    return force
+        s = U(lines[e])
+        f = constants[e] * signal
+        force += f
+        power += f * 0.5 * (old[c, s] + new[c, s])
+        before += f * old[c, s]
+    return force, power, before, 0.0
 
 
 @njit(**FAST, forceinline=True)
-def _total(values):
-    """The sum of values (e,)."""
-    total = 0.0
-    for e in range(values.size):
-        total += values[e]
-    return total
+def _tied(c, lines, constants, old, new, across):
+    """The same of seams."""
+    force = 0.0
+    power = 0.0
+    before = 0.0
+    for e in range(lines.size):
+        s = U(lines[e])
+        f = constants[e] * across[s, c]
+        force += f
+        power += f * 0.5 * (old[c, s] + new[c, s])
+        before += f * old[c, s]
+    return force, power, before, 0.0
 
 
 @njit(**_REORDERED)
@@ -94,15 +131,35 @@ def _steady(c, sides, o, load):
 
 
 @njit(**FAST, forceinline=True)
+def _of_batch(b, c, signal, lines, constants, u, supports, across, followed, moved, sides):
+    """Sums over batch b of component c: force (N), power (W), power with velocities before the step, and power that
+    is absorbed.
+    """
+    kind = sides.kind[b]
+    old, new = moved[0], moved[1]
+    if kind == PRESCRIBED:
+        return _needed(c, lines, constants, old, new, moved[2], across)
+    if kind == DASHPOT:
+        return _dashpots(c, lines, constants, old, new, signal)
+    if kind == FOLLOWING:
+        follow = sides.follow[sides.start[b] : sides.start[b + 1]]
+        return _following(c, lines, constants, follow, old, new, followed, signal)
+    if kind == SPRING:
+        return _springs(c, lines, constants, supports.nodes, u)
+    if kind == DRIVE:
+        return _driven(c, lines, constants, old, new, signal)
+    return _tied(c, lines, constants, old, new, across)
+
+
+@njit(**FAST, forceinline=True)
 def note_sides(step, u, supports, across, followed, moved, body, sides):
-    """Write displacements and forces of all sides in this step to row `step` of sides.record.
+    """Write displacements and forces of all sides in this step to row `step` of sides.record, and add up their work.
 
     u : (3, n) displacements before the step; across (k, 3) N forces of ties and followed (k, 3) m/s mean velocities of
     twins in the step; moved (3, 3, k) velocities of the supported nodes before and after it, and all forces on them
     from outside.
     """
-    record = sides.record
-    old, new, push = moved[0], moved[1], moved[2]
+    record, work = sides.record, sides.work
     for o in range(record.shape[1]):
         first, last = U(sides.member_start[o]), U(sides.member_start[o + 1])
         members = sides.member[first:last]
@@ -111,23 +168,31 @@ def note_sides(step, u, supports, across, followed, moved, body, sides):
             record[step, o, c] = _mean(u[c], members, sides.weight[c, first:last]) if moves else 0.0
         for c in range(2):
             record[step, o, 3 + c] = _steady(c, sides, o, body.load)
+            work[1, o, c] = work[0, o, c]
     for b in range(sides.kind.size):
-        kind, c = sides.kind[b], U(sides.component[b])
+        c, o = U(sides.component[b]), sides.side[b]
         first, last = U(sides.start[b]), U(sides.start[b + 1])
-        lines, constants = sides.line[first:last], sides.constant[first:last]
-        signal = sides.signals[step, sides.signal[b]] if sides.signal[b] >= 0 else 0.0
-        if c == 2:
-            continue
-        if kind == PRESCRIBED:
-            force = _needed(c, lines, constants, push, across)
-        elif kind == DASHPOT:
-            force = _dashpots(c, lines, constants, old, new, signal)
-        elif kind == FOLLOWING:
-            force = _following(c, lines, constants, sides.follow[first:last], old, new, followed, signal)
-        elif kind == SPRING:
-            force = _springs(c, lines, constants, supports.nodes, u)
-        elif kind == DRIVE:
-            force = signal * _total(constants)
-        else:
-            force = _tied(c, lines, constants, across)
-        record[step, sides.side[b], U(3) + c] += sides.sign[b] * force
+        signal = sides.sign[b] * sides.signals[step, sides.signal[b]] if sides.signal[b] >= 0 else 0.0
+        force, power, before, absorbed = _of_batch(
+            b,
+            c,
+            signal,
+            sides.line[first:last],
+            sides.constant[first:last],
+            u,
+            supports,
+            across,
+            followed,
+            moved,
+            sides,
+        )
+        if c < 2:
+            record[step, o, U(3) + c] += sides.sign[b] * force
+        came = power + absorbed
+        half = (
+            came if sides.kind[b] == DASHPOT else before + absorbed
+        )  # so that all of dashpots without a wave is absorbed
+        work[1, o, 0] += 0.5 * body.step * half
+        work[1, o, 1] += 0.5 * body.step * (half - before)
+        work[0, o, 0] += body.step * came
+        work[0, o, 1] += body.step * absorbed

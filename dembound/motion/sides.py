@@ -43,36 +43,40 @@ class NodeSides:
 
     Attributes
     ----------
-    names : of the sides, in the order of the record.
+    names : of the sides, in the order of the record. has_loads : whether loads follow a wave.
     """
 
     def __init__(self, scene: Scene, supports: NodeSupports) -> None:
         whole = scene.whole
         self._sides = whole.sides
         self.names = list(self._sides)
+        self.has_loads = _has_loads(whole)
         self._like = scene.widened("node", np.arange(scene.count))
         self._signs = scene.widened("displacement", np.ones((scene.count, 3)))
+        self._still = scene.still_in_whole
         self._scene, self._whole, self._nodes = scene, whole, supports.nodes
         self._members: list[tuple[np.ndarray, np.ndarray]] = []
         self._origin: tuple[np.ndarray, np.ndarray] | None = None
         for edge in self._sides.values():
             self._members.append(self._mean(edge))
         self._bearers = _bearers(list(self._sides.values()))
-        self._table = self._laid_out(list(self._batches()))
+        batches = list(self._batches())
+        self._springs = [batch for batch in batches if batch.kind == kinds.SPRING]
+        self._table = self._laid_out(batches)
 
     def sampled(self, times: np.ndarray) -> np.ndarray:
         """Values (steps, q) of the signals of the support table at `times` (steps,) s."""
         columns = [signal(times) for signal in self._whole.supports.signals]
         return np.stack([np.zeros(len(times)), *columns], axis=1)[:, 1:].copy()
 
-    def table(self, signals: np.ndarray, system: System, record: np.ndarray) -> tables.Sides:
-        """The arrays for steps with these signals (steps, q); record (steps, s, 5) receives what they measure."""
+    def table(self, signals: np.ndarray, system: System, record: np.ndarray, work: np.ndarray) -> tables.Sides:
+        """The arrays for steps with these signals (steps, q); record (steps, s, 5) and work (2, s, 2) are filled."""
         arrays: dict[str, np.ndarray] = {"offset": np.zeros((len(self.names), 2))}
         if system.turning is not None:  # then steady forces are loads and rotated balancing forces
             arrays |= self._bearing() | {"offset": self._borne(-system.load)}
         elif system.balancing_force is not None:
             arrays["offset"] = self._borne(system.balancing_force)
-        return self._table._replace(signals=signals, record=record, **arrays)
+        return self._table._replace(signals=signals, record=record, work=work, **arrays)
 
     def origin(self, datum: np.ndarray) -> np.ndarray:
         """Mean displacement (s, 3) of every side at the start, displacements (3, n)."""
@@ -83,6 +87,14 @@ class NodeSides:
     def _mean_of(self, displacement: np.ndarray) -> np.ndarray:
         """Mean displacement (s, 3) of every side at displacements (3, n)."""
         return np.array([(weight * displacement[:, node]).sum(axis=1) for node, weight in self._members]).reshape(-1, 3)
+
+    def stored(self, displacement: np.ndarray) -> np.ndarray:
+        """Energy (s,) J in the springs of every side at displacements (3, n)."""
+        stored = np.zeros(len(self.names))
+        for batch in self._springs:
+            stretch = displacement[batch.component, self._nodes[batch.line]]
+            stored[batch.side] += 0.5 * float(np.sum(batch.constant * stretch**2))
+        return stored
 
     def _borne(self, force: np.ndarray) -> np.ndarray:
         """Parts (s, 2) N of steady forces (3, n) N that belong to each side."""
@@ -163,7 +175,7 @@ class NodeSides:
         line = np.searchsorted(self._nodes, stepped).clip(max=max(0, len(self._nodes) - 1))
         is_there = self._nodes[line] == stepped if len(self._nodes) else np.zeros(len(node), dtype=np.bool_)
         for of in (1.0, -1.0):
-            chosen = is_there & (sign == of)
+            chosen = is_there & (sign == of) & ~self._still[node, component]
             if chosen.any():
                 lines, element = np.unique(line[chosen], return_inverse=True)
                 sums = (np.bincount(element, values[chosen], len(lines)) for values in (constant, follow))
@@ -192,6 +204,13 @@ class NodeSides:
             weight=np.concatenate([np.zeros((3, 0)), *(weight for _, weight in self._members)], axis=1),
             bearer_start=np.zeros(len(nodes) + 1, dtype=np.int64),
         )
+
+
+def _has_loads(scene: Scene) -> bool:
+    """Whether forces on a scene that are not of its sides follow a wave."""
+    shares = scene.supports.shares
+    of_sides = 0 if shares is None else int(np.count_nonzero(shares.signal >= 0))
+    return bool(len(scene.supports.drive_row) > of_sides)
 
 
 def _bearers(edges: list[Edge]) -> list[tuple[np.ndarray, np.ndarray]]:

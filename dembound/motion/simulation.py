@@ -77,6 +77,8 @@ class Simulation:
         self._supports = NodeSupports(scene, self.system.ties, time_step)
         self.sides = NodeSides(scene, self._supports) if watches_sides else None
         self.side_record = np.empty((0, 0, 5))
+        if self.sides is not None:
+            self.state.side_work = np.zeros((2, len(self.sides.names), 2))
         self._mobility, self._inverse_inertia = (layout.spread(time_step / of) for of in (scene.mass, scene.inertia))
         for mobility in (self._mobility, self._inverse_inertia):
             mobility[self._supports.slots] = 0.0  # these are moved by the support table
@@ -156,7 +158,7 @@ class Simulation:
             remaining = supports._replace(drive=supports.drive[done:])
             measured = tables.NO_SIDES
             if self.sides is not None:
-                measured = self.sides.table(signals[done:], self.system, side_record[done:])
+                measured = self.sides.table(signals[done:], self.system, side_record[done:], self.state.side_work)
             done += self._advance_under_one_law(record[done:], remaining, measured)
 
     def _advance_under_one_law(self, record: np.ndarray, supports: tables.Supports, sides: tables.Sides) -> int:

@@ -37,6 +37,7 @@ class State:
     peaks : (q, 3, 2) smallest and largest velocity so far of the nodes of all edges, one edge after the other.
     top : (slots,) m/s, largest speed so far; (0,) unless the case asks for it.
     work : (2, 6) J, in the columns `WORK`; see kernels.tables.Log.
+    side_work : (2, s, 2) J that came in through every side and that its dashpots absorbed; see kernels.tables.Sides.
     step : steps done.
     laws : name of each law used and its first step.
     switch_velocity : (3, n) velocity half a step before the history-dependent law began; (3, 0) under another law.
@@ -50,6 +51,7 @@ class State:
     peaks: np.ndarray
     top: np.ndarray
     work: np.ndarray = field(default_factory=lambda: np.zeros((2, len(WORK))))
+    side_work: np.ndarray = field(default_factory=lambda: np.zeros((2, 0, 2)))
     step: int = 0
     laws: list[tuple[str, int]] = field(default_factory=list)
     switch_velocity: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))
@@ -105,7 +107,7 @@ class State:
             kept.recall(within(arrays, owner))
 
 
-_ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_velocity")
+_ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_velocity", "side_work")
 """What of a state is arrays of nodes."""
 
 

@@ -17,6 +17,7 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
                             on each particle; attribute time
     energy/                 time and the columns of `motion.energy.Entry`, (k,) each
+    energy/sides/<side>/    the columns of `motion.energy.SideEntry`, (k,) each
     cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
                             displacements, positions count from the start of the run
     laws/                   name (l,) of each law or method used and time (l,) it began at
@@ -37,11 +38,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.motion.cracks import Cracks, joined
-from dembound.motion.energy import Entry, Ledger
+from dembound.motion.energy import Entry, Ledger, SideEntry
 from dembound.motion.kind import Stage, StalledError
 from dembound.motion.trackers import Run
 from dembound.results.committed import CommittedFile
-from dembound.results.datasets import extend, make, write
+from dembound.results.datasets import datasets_of, extend, make, write
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -122,7 +123,7 @@ class Recorder:
         self._histories = [dict(self.file["histories"][name]) for name in self.scene.monitors]
         self._side_histories = [dict(self.file["boundaries"][name]) for name in self._sides]
         self._cracks, self._laws = dict(self.file["cracks"]), dict(self.file["laws"])
-        self._energy = dict(self.file.get("energy", {}))
+        self._energy = datasets_of(self.file["energy"]) if ledger is not None else {}
         for stage in stages if counts is None else ():
             self._append_cracks(stage.cracks, 0.0)  # before the run began
         self.flush()
@@ -216,6 +217,9 @@ class Recorder:
             unit = self.scene.energy_unit
             columns = [(field.name, (), "f8", "s" if field.name == "time" else unit) for field in fields(Entry)]
             make(self.file.create_group("energy"), columns)
+            for side in self.ledger.side_names:
+                group = self.file.create_group(f"energy/sides/{side}")
+                make(group, [(name, (), "f8", unit) for name in SideEntry._fields])
         self._make_laws()
         self.file.create_group("snapshots")
         for stage in stages:
@@ -231,7 +235,9 @@ class Recorder:
         for name in self._sides:
             _cut({column: self.file["boundaries"][name][column] for column, *_ in SIDE_HISTORY}, counts["histories"])
         for name in ("cracks", "energy", "laws"):
-            _cut(self.file[name], counts[name])
+            _cut(datasets_of(self.file[name]), counts[name])
+        for side in self.file.get("energy/sides", {}).values():
+            _cut(side, counts["energy"])
         for number in list(self.file["snapshots"])[counts["snapshots"] :]:
             del self.file["snapshots"][number]
         self.file.attrs["complete"] = False
@@ -332,9 +338,13 @@ class Recorder:
         """Write the new entries of the ledger."""
         if self.ledger is None:
             return
-        columns = self.ledger.columns[len(self._energy["time"]) :]
+        written = len(self._energy["time"])
+        columns, sides = self.ledger.columns[written:], self.ledger.side_columns[written:]
         for field, column in zip(fields(Entry), columns.T, strict=True):
             extend(self._energy[field.name], column)
+        for side, values in zip(self.ledger.side_names, np.moveaxis(sides, 1, 0), strict=True):
+            for name, column in zip(SideEntry._fields, values.T, strict=True):
+                extend(self.file[f"energy/sides/{side}/{name}"], column)
 
     def _append_laws(self) -> None:
         """Write the laws that are new."""
