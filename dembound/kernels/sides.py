@@ -132,9 +132,7 @@ def _steady(c, sides, o, load):
 
 @njit(**FAST, forceinline=True)
 def _of_batch(b, c, signal, lines, constants, u, supports, across, followed, moved, sides):
-    """Sums over batch b of component c: force (N), power (W), power with velocities before the step, and power that
-    is absorbed.
-    """
+    """Force (N) of batch b on component c, its power (W), that with velocities before the step, and absorbed power."""
     kind = sides.kind[b]
     old, new = moved[0], moved[1]
     if kind == PRESCRIBED:
