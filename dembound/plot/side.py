@@ -50,9 +50,10 @@ def plot_side(runs: Sequence[Path], side: str, quantity: str) -> Figure:
             label = f"{name}, {LINES[quantity][component]}"
             panels[0].plot(history.time / unit.seconds, values[:, component], label=label, gid=label, **style)
             if strained and component == 0 and history.strain is not None:
-                panels[1].plot(100.0 * history.strain, values[:, 0], gid=f"{label}, by strain", **style)
+                panels[1].plot(100.0 * history.strain, values[:, 0], label=label, gid=label, **style)
     panels[0].set_xlabel(unit.label)
-    panels[0].set_ylabel("mean stress, tension positive (MPa)" if quantity == "stress" else "mean displacement (m)")
+    for panel in panels:
+        panel.set_ylabel("mean stress, tension positive (MPa)" if quantity == "stress" else "mean displacement (m)")
     if strained:
         panels[1].set_xlabel("strain to the opposite side, extension positive (%)")
     figure.suptitle(f"{quantity.capitalize()} of the {side} side", fontsize=11)
