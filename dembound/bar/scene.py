@@ -62,7 +62,9 @@ def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge]) -> Supports:
     """The support table: rows of both ends, of all loads, and the attenuation of the nodes they act on."""
     builder = SupportBuilder(held=HELD)
     for side, table in case.boundary.items():
+        builder.side = side
         table.support(edges[side], bar_medium(case), case.wave, builder)
+    builder.side = ""
     for load in case.load:
         nodes = np.arange(load.nodes) if load.side == "left" else np.arange(rod.count - load.nodes, rod.count)
         share = rod.volumes[nodes] / rod.volumes[nodes].sum()

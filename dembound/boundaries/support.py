@@ -80,6 +80,10 @@ class Edge:
         """Axis of the normal: 0 for left and right, 1 for bottom and top."""
         return normal_axis(self.side)
 
+    def only(self, chosen: np.ndarray, length: float) -> "Edge":
+        """Some of its particles, chosen (k,) bool, on a part of the side of this length (m)."""
+        return Edge(self.side, self.nodes[chosen], self.positions[chosen], self.diameters[chosen], length)
+
     @property
     def widths(self) -> np.ndarray:
         """(k,) m of the side on which the forces of the medium beyond act through each particle."""
@@ -92,12 +96,41 @@ class Edge:
 
 
 @dataclass(frozen=True)
+class Shares:
+    """What each side adds to the rows of a support table: a rows as added by sides, see `SupportBuilder.add`.
+
+    Attributes
+    ----------
+    side : (a,) the side's index in `sides`; call : (a,) number of the call that added it, with which all rows of a call
+    have the component and the signal in common.
+    node, component, damping, follow, stiffness, prescribed, drive : (a,) as given; damping, follow, stiffness and drive
+    are zero where a prescribed row has replaced them, and of several prescribed rows only one is listed.
+    signal : (a,) index of the signal of the drive, −1 for none; incident : (a,) bool, whether it is the velocity of a
+    wave that enters through the dashpot.
+    sides : their names.
+    """
+
+    side: np.ndarray
+    call: np.ndarray
+    node: np.ndarray
+    component: np.ndarray
+    damping: np.ndarray
+    follow: np.ndarray
+    stiffness: np.ndarray
+    prescribed: np.ndarray
+    drive: np.ndarray
+    signal: np.ndarray
+    incident: np.ndarray
+    sides: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Supports:
     """The table: r rows, one per supported degree of freedom, and the d drives that act on them.
 
     Of rows: node; component (0 x, 1 y, 2 rotation); damping, follow N·s/m; stiffness N/m (N·m/rad of a rotation);
     prescribed bool. Of drives, any number to a row: drive_row; drive N (m/s where prescribed) per unit of signal;
-    drive_signal, the signal's index.
+    drive_signal, the signal's index. shares : what each side adds to the rows; None in a table made from another one.
     """
 
     node: np.ndarray
@@ -110,6 +143,7 @@ class Supports:
     drive: np.ndarray
     drive_signal: np.ndarray
     signals: tuple[Signal, ...] = ()
+    shares: Shares | None = None
 
     def __len__(self) -> int:
         return len(self.node)
@@ -137,11 +171,19 @@ class Supports:
 
 @dataclass
 class SupportBuilder:
-    """Collects the rows of all sides and merges them into one table."""
+    """Collects the rows of all sides and merges them into one table.
+
+    Attributes
+    ----------
+    held : components without motion, whose rows are left out.
+    side : the side whose rows are added next; empty for those of loads.
+    """
 
     held: tuple[int, ...] = ()
+    side: str = ""
     _rows: list[dict[str, np.ndarray]] = field(default_factory=list)
     _signals: list[Signal] = field(default_factory=list)
+    _sides: list[str] = field(default_factory=list)
 
     def add(
         self,
@@ -153,15 +195,20 @@ class SupportBuilder:
         stiffness: float | np.ndarray = 0.0,
         drive: float | np.ndarray = 0.0,
         signal: Signal | None = None,
+        incident: Signal | None = None,
         prescribed: bool = False,
     ) -> None:
         """Add one row per node, each node once, for one component; numbers or arrays (k,).
 
-        Rows added to the same degree of freedom become one, with all their drives. Held components are left out.
+        incident : velocity of a wave that enters through the dashpot, by a force 2·damping·incident (Z eq. 6); in place
+        of drive and signal. Rows added to the same degree of freedom become one, with all their drives. Held components
+        are left out.
         """
         if component in self.held or len(nodes) == 0:
             return
         index = -1
+        if incident is not None:
+            signal, drive = incident, 2.0 * damping
         if signal is not None:
             index = len(self._signals)
             self._signals.append(signal)
@@ -174,14 +221,23 @@ class SupportBuilder:
             "prescribed": prescribed,
             "drive": drive,
             "signal": index,
+            "incident": incident is not None,
+            "side": self._number_of_side(),
+            "call": len(self._rows),
         }
         self._rows.append({name: np.broadcast_to(value, np.shape(nodes)) for name, value in columns.items()})
+
+    def _number_of_side(self) -> int:
+        """The present side's index, −1 for loads."""
+        if self.side and self.side not in self._sides:
+            self._sides.append(self.side)
+        return self._sides.index(self.side) if self.side else -1
 
     def table(self) -> Supports:
         """Merge rows on the same degree of freedom and sort them by node.
 
         Dampings, stiffnesses and drives add; a prescribed row replaces all others, of two prescribed rows the moving
-        one wins, and of two moving ones the first.
+        one wins, of two moving ones the first, and of two at rest that of the side along whose normal it is.
         """
         node, component, signal = (self._column(name, np.int64) for name in ("node", "component", "signal"))
         damping, follow, stiffness, drive = (
@@ -189,7 +245,8 @@ class SupportBuilder:
         )
         prescribed = self._column("prescribed", np.bool_)
         unique, row_of = np.unique(3 * node + component, return_inverse=True)
-        kept = ~_outranked(row_of, len(unique), prescribed, signal >= 0)
+        side = self._column("side", np.int64)
+        kept = ~_outranked(row_of, len(unique), prescribed, signal >= 0, self._is_along_normal(side, component))
         driven = kept & (signal >= 0)
         return Supports(
             node=unique // 3,
@@ -202,21 +259,43 @@ class SupportBuilder:
             drive=drive[driven],
             drive_signal=signal[driven],
             signals=tuple(self._signals),
+            shares=self._shares(np.flatnonzero(kept & (side >= 0))),
         )
+
+    def _shares(self, kept: np.ndarray) -> Shares:
+        """Those of the rows added by sides that are kept (a,)."""
+        columns = {
+            name: self._column(name, kind)[kept]
+            for kind, names in (
+                (np.int64, ("side", "call", "node", "component", "signal")),
+                (np.float64, ("damping", "follow", "stiffness", "drive")),
+                (np.bool_, ("prescribed", "incident")),
+            )
+            for name in names
+        }
+        return Shares(**columns, sides=tuple(self._sides))
+
+    def _is_along_normal(self, side: np.ndarray, component: np.ndarray) -> np.ndarray:
+        """Whether the component of each row is along its side's normal; all (a,)."""
+        axes = np.array([normal_axis(name) for name in self._sides] + [-1])  # the last one is that of index −1
+        return axes[side] == component
 
     def _column(self, name: str, kind: type[np.generic]) -> np.ndarray:
         """One column of all rows added so far."""
         return np.concatenate([np.zeros(0, kind), *(rows[name] for rows in self._rows)]).astype(kind)
 
 
-def _outranked(row_of: np.ndarray, count: int, prescribed: np.ndarray, moving: np.ndarray) -> np.ndarray:
+def _outranked(
+    row_of: np.ndarray, count: int, prescribed: np.ndarray, moving: np.ndarray, along_normal: np.ndarray
+) -> np.ndarray:
     """Which added rows are replaced by another row on the same degree of freedom; all (a,), bool except row_of."""
     rank = prescribed * (1 + moving.astype(int))
     best = np.zeros(count, dtype=int)
     np.maximum.at(best, row_of, rank)
     outranked = rank < best[row_of]
-    # of several equally ranked prescriptions keep the first
+    # of several equally ranked prescriptions keep the first, of those at rest the first along a normal
     leading = np.flatnonzero((rank > 0) & ~outranked)
+    leading = leading[np.argsort((~along_normal & ~moving)[leading], kind="stable")]
     _, first = np.unique(row_of[leading], return_index=True)
     outranked[np.delete(leading, first)] = True
     return outranked

@@ -137,9 +137,14 @@ class ViscoelasticInput(Dashpots, Springs, Driven):
         dampings, stiffnesses = self.dampings(edge, medium), self.stiffnesses(edge, medium)
         for component, name in enumerate(self.waves_by_axis(edge.axis)):
             damping, stiffness = dampings[component], stiffnesses[component]
-            supports.add(edge.nodes, component, damping=damping, stiffness=stiffness)
+            supports.add(
+                edge.nodes,
+                component,
+                damping=damping,
+                stiffness=stiffness,
+                incident=waves[name].velocity if name else None,
+            )
             if name:
-                supports.add(edge.nodes, component, drive=2.0 * damping, signal=waves[name].velocity)
                 supports.add(edge.nodes, component, drive=stiffness, signal=waves[name].displacement)
 
     def dashpots_alone(self) -> ViscousInput:

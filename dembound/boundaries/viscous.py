@@ -84,6 +84,5 @@ class ViscousInput(Dashpots, Driven):
         """The absorbing dashpots, plus the force that introduces the incident wave."""
         names = self.waves_by_axis(edge.axis)
         for component, damping in enumerate(self.dampings(edge, medium)):
-            supports.add(edge.nodes, component, damping=damping)
-            if name := names[component]:
-                supports.add(edge.nodes, component, drive=2.0 * damping, signal=waves[name].velocity)
+            name = names[component]
+            supports.add(edge.nodes, component, damping=damping, incident=waves[name].velocity if name else None)

@@ -77,7 +77,11 @@ def plot(
         list[str] | None, typer.Option(metavar="NAME", help="Show this monitor only. May be repeated.")
     ] = None,
     boundary: Annotated[
-        Side | None, typer.Option(help="Show this side's diameters and peak velocities instead.")
+        Side | None,
+        typer.Option(
+            help="Show this side's diameters and peak velocities instead; with --quantity stress or displacement that "
+            "of the side as a whole."
+        ),
     ] = None,
     energy: Annotated[bool, typer.Option("--energy", help="Show the energy ledger of one run instead.")] = False,
     field: Annotated[
@@ -109,13 +113,15 @@ def plot(
     from dembound.plot.convergence import plot_convergence
     from dembound.plot.energy import plot_energy
     from dembound.plot.histories import plot_histories
+    from dembound.plot.side import plot_side
     from dembound.plot.style import save
     from dembound.plot.table import write_lines
 
     files = [results_file(path) for path in results]
     kind = _common_kind(files)
     pictures = {"--field": field, "--energy": energy, "--boundary": boundary}
-    _one_picture(pictures, {"--quantity": quantity, "--component": component, "--monitor": monitor}, kind)
+    choices = {"--quantity": None if boundary else quantity, "--component": component, "--monitor": monitor}
+    _one_picture(pictures, choices, kind)
     for option in ("--field", "--energy"):
         if pictures[option] and len(files) > 1:
             raise CaseError([f"{option}: shows one run, name one"])
@@ -129,6 +135,8 @@ def plot(
         figure = kind_of_record(files[0]).field_picture(files[0], field.value, snapshot)
     elif energy:
         figure = plot_energy(files[0])
+    elif boundary is not None and quantity is not None:
+        figure = plot_side(files, boundary.value, quantity.value)
     elif boundary is not None:
         figure = plot_boundary(files, boundary.value)
     else:

@@ -33,7 +33,7 @@ class Balance:
 
     Attributes
     ----------
-    force : (3, n) N and N·m, in the directions of the datum.
+    force : (3, n) N and N·m, in the directions of the datum. datum : (3, n), as given.
     followers : arrays with which the kernels rotate them.
     """
 
@@ -42,19 +42,20 @@ class Balance:
     ) -> None:
         self.force = force
         self.followers = _followers(scene, force, steady, datum, across)
-        self._scene, self._steady, self._datum, self._across = scene, steady, datum, across
+        self.datum = datum
+        self._scene, self._steady, self._across = scene, steady, across
         self._of_ended = 0.0
         self._ended = np.zeros(scene.count, dtype=np.bool_)
         self._torn = np.zeros(scene.count, dtype=np.bool_)
 
     def work(self, displacement: np.ndarray) -> float:
         """Work (J) done up to displacements (3, n), without that of their rotation, which the kernels count."""
-        return self._of_ended + float(np.sum(self.force * (displacement - self._datum)))
+        return self._of_ended + float(np.sum(self.force * (displacement - self.datum)))
 
     def memory(self) -> Arrays:
         """All arrays that change during a run, by name."""
-        kept = {name: getattr(self, f"_{name}") for name in (*_FIXED, *_EVOLVING)}
-        kept |= {"force": self.force, "of_ended": np.array(self._of_ended)}
+        kept = {name: getattr(self, f"_{name}") for name in ("steady", "across", *_EVOLVING)}
+        kept |= {"datum": self.datum, "force": self.force, "of_ended": np.array(self._of_ended)}
         return kept | {f"follower_{name}": getattr(self.followers, name) for name in _FOLLOWING}
 
     @classmethod
@@ -106,7 +107,7 @@ class Balance:
         for part in parts:
             change[:, part.nodes] += self._borne_by_the_rest(change, part.nodes)
         # the force of the last step acted until half a step before the present displacements
-        self._of_ended -= float(np.sum(change * (displacement - 0.5 * step * velocity - self._datum)))
+        self._of_ended -= float(np.sum(change * (displacement - 0.5 * step * velocity - self.datum)))
         self.force += change
         load += change
         share = _shares(followers.side)
@@ -133,7 +134,7 @@ class Balance:
         node = node[(node >= body.start) & (node < body.stop) & ~self._ended[node]]
         if len(node) < 2:
             return borne
-        places = self._scene.assembly.positions.T + self._datum[:2]
+        places = self._scene.assembly.positions.T + self.datum[:2]
         middle = places[:, node].mean(axis=1, keepdims=True)
         arm, lost = places - middle, change[:, body]
         x, y = arm[:, body]
@@ -216,11 +217,7 @@ def _side_numbers(scene: DiskBody, sides: dict[str, np.ndarray]) -> tuple[np.nda
     They are the particles of the sides, and at a free field those with contacts beyond it.
     """
     pushed = dict(sides)
-    if scene.seam is not None:
-        left = scene.assembly.positions[scene.seam.node, 0] < 0.5 * scene.size[0]
-        for side, near in (("left", left), ("right", ~left)):
-            if scene.case.side(side).needs_column and side in sides:
-                pushed[side] = np.union1d(sides[side], scene.seam.node[near])
+    pushed |= {side: np.union1d(sides[side], near) for side, near in scene.tied.items() if side in sides}
     node = np.unique(np.concatenate([np.zeros(0, np.int64), *pushed.values()]))
     number = np.full((2, len(node)), -1)
     for k, nodes in enumerate(pushed.values()):

@@ -10,6 +10,7 @@ import numpy as np
 from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.contacts import ContactList
 from dembound.disks.layout import Rows
 from dembound.disks.loads import steady
@@ -112,6 +113,30 @@ class DiskBody(Scene):
     def twin(self) -> np.ndarray | None:
         """(n,) twin of each particle in the free-field column, for those of the column themselves; None without it."""
         return None if self.seam is None else self.seam.twin
+
+    @cached_property
+    def sides(self) -> dict[str, Edge]:  # type: ignore[override]  # computed once
+        """The edges of the body, and of its free-field column those of bottom and top, as ``bottom.free_field``."""
+        if self.seam is None:
+            return dict(self.edges)
+        sides = {}
+        for side, edge in self.edges.items():
+            beside = edge.nodes < self.seam.count
+            width = self.seam.width if edge.axis == 1 else 0.0
+            sides[side] = edge.only(~beside, edge.length - width)
+            if beside.any():
+                sides[f"{side}{FREE_FIELD}"] = edge.only(beside, width)
+        return sides
+
+    @cached_property
+    def tied(self) -> dict[str, np.ndarray]:  # type: ignore[override]  # computed once
+        """Particles (k,) with contacts across a free-field side, by this side."""
+        if self.seam is None:
+            return {}
+        node = self.seam.node
+        left = self.assembly.positions[node, 0] < 0.5 * self.size[0]
+        near = {"left": node[left], "right": node[~left]}
+        return {side: nodes for side, nodes in near.items() if self.case.side(side).needs_column}
 
     @property
     def damp(self) -> float:

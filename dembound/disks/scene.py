@@ -209,9 +209,10 @@ def _supports(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges:
     builder = SupportBuilder(held=ground.held)
     for side, table in case.boundary.items():
         if side in edges:
-            edge = edges[side]
+            edge, builder.side = edges[side], side
             table.support(edge, boundary_medium(case, ground, edge.axis), case.wave, builder)
     factor = mass_factor(len(assembly.radii), edges, case.boundary)
+    builder.side = ""
     drive(case, assembly, ground.mass[assembly.brick_particle] * factor, builder)
     return builder.table()
 

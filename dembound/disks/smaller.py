@@ -73,6 +73,11 @@ class SmallerScene(DiskScene):
         """In words, that something of the larger scene, in the plural, is not as in this one."""
         raise NotImplementedError
 
+    @property
+    def still_in_whole(self) -> np.ndarray:
+        """Components (N, 3) of the disks of the case in which its symmetry allows no motion and no force."""
+        return self.of.widened("still", self.still.T[self.like]) | self.of.still_in_whole
+
     def widened(self, name: str, values: np.ndarray) -> np.ndarray:
         """Values (m, …) of its disks as those of all disks of the case; name : of the quantity."""
         return self.of.widened(name, self.of_all(name, values))

@@ -192,6 +192,18 @@ class DiskSystem(System):
         """Work (J) up to displacements (3, slots) of forces that balance a settled stress, without their rotation."""
         return 0.0 if self.balance is None else self.balance.work(self.scene.layout.gather(u))
 
+    def spring_shift(self, u: np.ndarray) -> float:
+        """Work (J) up to displacements (3, slots) of the part of the balancing forces that shifts springs to rest."""
+        if self.balance is None:
+            return 0.0
+        moved = self.scene.layout.gather(u) - self.balance.datum
+        return float(np.sum(self.scene.supports.springs_at(self.balance.datum) * moved))
+
+    @property
+    def balancing_force(self) -> np.ndarray | None:
+        """Forces (3, n) N and N·m that balance a settled stress, without their rotation; None if there are none."""
+        return None if self.balance is None else self.balance.force
+
     def memory(self) -> Arrays:
         """All arrays that change during a run except the motion, by name."""
         balance = {} if self.balance is None else self.balance.memory()

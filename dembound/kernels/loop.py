@@ -19,6 +19,7 @@ from dembound.kernels.law import (
     turn,
     turning_work,
 )
+from dembound.kernels.sides import note_sides
 from dembound.kernels.step import copy, copy_component, move_supported, note_after, note_before, note_top_speeds
 
 
@@ -36,16 +37,16 @@ def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
         if body.free[c] == 0.0:
             copy_component(u, u_next, c)
     k = supports.nodes.size
-    pulled, followed = np.zeros((k, 3)), np.zeros((k, 3))
-    done, why = _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed)
+    pulled, followed, moved = np.zeros((k, 3)), np.zeros((k, 3)), np.zeros((3, 3, k))
+    done, why = _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed, moved)
     if done % 2 == 1:
         copy(u_next, u)
     return done, why
 
 
 @njit(**FAST)
-def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed):
-    """The steps themselves, with work space (k, 3) of the supported nodes; the last displacements may be in u_next."""
+def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed, moved):
+    """The steps themselves, with work space of the k supported nodes; the last displacements may be in u_next."""
     steps = supports.drive.shape[0]
     nodes, work = supports.nodes, log.work
     here, there = u, u_next
@@ -63,7 +64,9 @@ def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pul
         note_before(step, here, v, log.probes, log.record, supports.twin, followed)
         note_all(laws, step, here, log)
         move_all(laws, here, there, v, body, nodes)
-        move_supported(step, here, v, there, pulled, followed, supports, body, work)
+        move_supported(step, here, v, there, pulled, followed, supports, body, work, moved)
+        if log.sides.record.shape[1] > 0:
+            note_sides(step, here, supports, pulled, followed, moved, body, log.sides)
         note_after(step, v, log.probes, log.record, log.tracked, log.peaks)
         if log.top_speed.size > 0:
             note_top_speeds(v, log.top_speed)

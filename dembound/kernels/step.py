@@ -96,12 +96,13 @@ def note_before(step, u, v, probes, record, twin, followed):
 
 
 @njit(**FAST)
-def move_supported(step, u, v, u_next, across, followed, supports, body, work):
+def move_supported(step, u, v, u_next, across, followed, supports, body, work, moved):
     """Move the supported nodes by a step, once all other particles have; u_next contains the new displacements.
 
     For the supported nodes it contains their contact forces and steady loads before the call. across (k, 3) are the
     forces through seams, whose work counts as that of the outside; followed (k, 3) half the velocity of the nodes'
-    twins before the step. work (2, 6) is advanced.
+    twins before the step and receives the mean of that before and after it. work (2, 6) is advanced; moved (3, 3, k)
+    receives the velocities before and after the step, and the forces from outside.
     """
     nodes, inertia, keep, mobility, stiffness, prescribed, drives, twin, follow = supports
     drive = drives[step]
@@ -119,12 +120,16 @@ def move_supported(step, u, v, u_next, across, followed, supports, body, work):
             if body.damp > 0.0 and mobility[s, c] > 0.0:  # without dashpots, so that it equals that of the twin
                 drag = -body.damp * abs(total) * np.sign(before)
             if twin[s] >= 0:
-                total += follow[s, c] * (followed[s, c] + 0.5 * v[U(c), U(twin[s])])
+                followed[s, c] += 0.5 * v[U(c), U(twin[s])]
+                total += follow[s, c] * followed[s, c]
             w = keep[s, c] * before + mobility[s, c] * (total + drag) + prescribed[s, c] * drive[s, c]
             w = 0.0 if abs(w) <= REST else w
             v[U(c), i] = w
             u_next[U(c), i] = u[U(c), i] + body.step * w
             push = inertia[s, c] * (w - before) - force - drag
+            moved[U(0), U(c), s] = before
+            moved[U(1), U(c), s] = w
+            moved[U(2), U(c), s] = push
             done += 0.5 * push * (before + w)
             half += 0.5 * push * before
             damped -= 0.5 * drag * (before + w)

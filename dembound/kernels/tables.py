@@ -182,6 +182,72 @@ class Supports(NamedTuple):
     follow: np.ndarray
 
 
+class Sides(NamedTuple):
+    """Forces on s sides of a body in b batches of e elements, and their m members; see sides.py.
+
+    A batch has elements of one kind on one component, of one side. kind, side, component, sign, signal : (b,), sign −1
+    where the forces are those on an image; signal the column of signals (steps, q) that drives it, −1 for none.
+    start : (b + 1,) elements of each batch in line (e,), the line of each in the support table; constant (e,), by kind:
+    N of forces needed over those of the nodes stepped; N·s/m of dashpots, twice; N/m of springs, from rest 0; N per
+    unit of signal; N of ties over those on the nodes stepped; follow (e,) N·s/m.
+    member_start : (s + 1,) members of each side in member (m,), nodes; weight (3, m) of their displacements in the
+    mean, sign of images included. offset : (s, 2) N, added to the force on each side. bearer_start : (s + 1,) nodes of
+    each side in bearer (q,) whose steady forces are added too, times share (2, q); none if these do not change.
+    record : (steps, s, 5) mean displacement, m and rad, and force, N, at the start of each step. work : (2, s, 2) J
+    that came in and were absorbed, without springs; row 0 up to the half step reached, row 1 up to the last whole step.
+    """
+
+    kind: np.ndarray
+    side: np.ndarray
+    component: np.ndarray
+    sign: np.ndarray
+    signal: np.ndarray
+    signals: np.ndarray
+    start: np.ndarray
+    line: np.ndarray
+    constant: np.ndarray
+    follow: np.ndarray
+    member_start: np.ndarray
+    member: np.ndarray
+    weight: np.ndarray
+    offset: np.ndarray
+    bearer_start: np.ndarray
+    bearer: np.ndarray
+    share: np.ndarray
+    record: np.ndarray
+    work: np.ndarray
+
+    @classmethod
+    def none(cls) -> "Sides":
+        """Of no side."""
+        number, value = np.zeros(0, dtype=np.int64), np.zeros(0)
+        return cls(
+            kind=number,
+            side=number,
+            component=number,
+            sign=value,
+            signal=number,
+            signals=np.zeros((0, 0)),
+            start=np.zeros(1, dtype=np.int64),
+            line=number,
+            constant=value,
+            follow=value,
+            member_start=np.zeros(1, dtype=np.int64),
+            member=number,
+            weight=np.zeros((3, 0)),
+            offset=np.zeros((0, 2)),
+            bearer_start=np.zeros(1, dtype=np.int64),
+            bearer=number,
+            share=np.zeros((2, 0)),
+            record=np.zeros((0, 0, 5)),
+            work=np.zeros((2, 0, 2)),
+        )
+
+
+NO_SIDES = Sides.none()
+"""Where sides are not recorded."""
+
+
 class Log(NamedTuple):
     """The record of every step.
 
@@ -191,6 +257,7 @@ class Log(NamedTuple):
     (0,) if not asked for. work : (2, 6) J done on the body by supports, taken by damping, friction and cracks, added by
     a change of method, done by the change of follower forces as they rotate, column by column; row 0 up to the half
     step reached, row 1 up to the last whole step. supplied : (1,) J, the largest work of supports so far, at any step.
+    sides : what is recorded of the sides.
     """
 
     probes: np.ndarray
@@ -200,6 +267,7 @@ class Log(NamedTuple):
     top_speed: np.ndarray
     work: np.ndarray
     supplied: np.ndarray
+    sides: Sides = NO_SIDES
 
 
 class Links(NamedTuple):

@@ -27,9 +27,10 @@ class Entry:
 
     kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
     of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
-    and driven loads; damping, friction, crack, dissipated by them; law_switch, added by a change of method or law;
-    supplied, the kinetic energy at the start plus the largest values so far of outside, at any step, and of load, at
-    any entry; error, stored and dissipated energy minus what came in. For a bar in J.
+    and driven loads; loads, the part of it that is of the loads; damping, friction, crack, dissipated by them;
+    law_switch, added by a change of method or law; supplied, the kinetic energy at the start plus the largest values so
+    far of outside, at any step, and of load, at any entry; error, stored and dissipated energy minus what came in. In J
+    for a bar.
     """
 
     time: float
@@ -39,12 +40,28 @@ class Entry:
     load: float
     balance: float
     outside: float
+    loads: float
     damping: float
     friction: float
     crack: float
     law_switch: float
     supplied: float
     error: float
+
+
+class SideEntry(NamedTuple):
+    """What one side has done since the start, energies as of `Entry`.
+
+    The work from outside is the sum over the sides of came_in − absorbed − stored, plus that of the loads.
+
+    came_in : energy of waves that enter through dashpots, ∫Σ C v_i² dt; work of prescribed motion, of the ground beyond
+    a free-field side and of waves on springs, which may be negative. absorbed : energy that leaves through dashpots,
+    ∫Σ C (v − v_i)² dt. stored : in springs.
+    """
+
+    came_in: float
+    absorbed: float
+    stored: float
 
 
 class _Begun(NamedTuple):
@@ -74,6 +91,8 @@ class Ledger(Tracker):
 
     def __init__(self, run: Run, interval: int, last: int = NEVER) -> None:
         self.entries: list[Entry] = []
+        self.sides: list[np.ndarray] = []
+        self.side_names = [] if run.sides is None else run.sides.names
         self.due = run.state.step
         self._time_step = run.time_step
         self._interval, self._last = interval, last
@@ -114,13 +133,20 @@ class Ledger(Tracker):
         contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))
         load = float(np.sum(system.load * (_by_node(u, state) - state.datum))) if system.load.any() else 0.0
         outside, damping, friction, crack, law_switch, turning = (float(work) for work in state.work[1])
-        outside += system.counted_outside(u)
-        balance = turning + balancing
+        shift = system.spring_shift(u)
+        outside += system.counted_outside(u) + shift
+        balance = turning + balancing - shift
+        sides = np.column_stack([state.side_work[1], self._in_springs(run, u)])
+        loads = 0.0
+        if run.sides is not None and run.sides.has_loads:
+            loads = outside - float(np.sum(sides @ (1.0, -1.0, -1.0))) / self._weight
         error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - law_switch
         supplied = self._supplied(kinetic, max(outside, float(state.supplied[0])), load)
-        energies = kinetic, contact, bond, load, balance, outside, damping, friction, crack, law_switch, supplied, error
+        stored = kinetic, contact, bond, load, balance, outside, loads
+        energies = *stored, damping, friction, crack, law_switch, supplied, error
         time = (state.step - 1) * run.time_step
         self.entries.append(Entry(time, *(self._weight * energy for energy in energies)))
+        self.sides.append(sides)
         self._watch()
 
     def _supplied(self, kinetic: float, outside: float, load: float) -> float:
@@ -129,6 +155,13 @@ class Ledger(Tracker):
             self._came = kinetic
         self._most = max(self._most[0], outside), max(self._most[1], load)
         return self._came + sum(self._most)
+
+    def _in_springs(self, run: Run, u: np.ndarray) -> np.ndarray:
+        """Energy (s,) J in the springs of every side at displacements (3, slots), of a settled body since the start."""
+        if run.sides is None:
+            return np.zeros(0)
+        moved = run.state.layout.gather(u) - run.state.datum
+        return run.sides.stored(moved)
 
     def _watch(self) -> None:
         """Raise RunError if the run has gained energy that was not supplied, as with a step too large for its law."""
@@ -147,12 +180,18 @@ class Ledger(Tracker):
         """All entries, (k, 13), in the order of `Entry`."""
         return np.array([astuple(entry) for entry in self.entries]).reshape(-1, len(fields(Entry)))
 
+    @property
+    def side_columns(self) -> np.ndarray:
+        """The same of every side, (k, s, 3), in the order of `SideEntry`."""
+        return np.array(self.sides).reshape(len(self.sides), len(self.side_names), 3)
+
     def memory(self) -> Arrays:
         """Entries, the supplied energies, and an entry that has begun."""
         begun = self._begun or _Begun(np.zeros((3, 0)), np.zeros((3, 0)), 0.0, 0)
         return {
             "due": np.array(self.due),
             "entries": self.columns,
+            "sides": self.side_columns,
             "first": np.array(self._first),
             "came": np.array(self._came),
             "most": np.array(self._most),
@@ -167,6 +206,7 @@ class Ledger(Tracker):
         """Restore what `memory` has returned in another run of the same case."""
         self.due = int(memory["due"])
         self.entries = [Entry(*row) for row in memory["entries"].tolist()]
+        self.sides = list(memory["sides"])
         self._first = tuple(memory["first"].tolist())
         self._came, self._most = float(memory["came"]), tuple(memory["most"].tolist())
         begun = _Begun(memory["u"].copy(), memory["before"].copy(), float(memory["balancing"]), int(memory["laws"]))
@@ -190,6 +230,7 @@ class Ledger(Tracker):
         if past == 0 or last >= self._last:
             return
         self._begun = None
+        del self.sides[self.regular_entries :]
         del self.entries[self.regular_entries :]
         self.due = min(last - past + self._interval, self._last)
 

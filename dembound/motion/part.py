@@ -131,6 +131,15 @@ class System:
         """Work (J) up to displacements (3, slots) of forces that balance a settled stress, without their rotation."""
         return 0.0
 
+    def spring_shift(self, u: np.ndarray) -> float:
+        """Work (J) up to displacements (3, slots) of the part of the balancing forces that shifts springs to rest."""
+        return 0.0
+
+    @property
+    def balancing_force(self) -> np.ndarray | None:
+        """Forces (3, n) N and N·m that balance a settled stress, without their rotation; None if there are none."""
+        return None
+
     def saved(self, state: State) -> tuple[str, ...]:
         """In words, what was saved by a law that takes less computing, a line each."""
         return ()

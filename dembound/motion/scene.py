@@ -130,6 +130,11 @@ class Scene(ABC):
         """Values (n, …) of its nodes as those of the nodes of the whole scene; name : of the quantity in records."""
         return values
 
+    @property
+    def still_in_whole(self) -> np.ndarray:
+        """Components (N, 3) of the nodes of the whole scene in which its symmetry allows no motion and no force."""
+        return np.zeros((self.whole.count, 3), dtype=np.bool_)
+
     def observed(self, record: np.ndarray) -> np.ndarray:
         """The record (k, p, 6 or 7) of the p monitors of the whole scene, from that of the nodes in `monitors`."""
         return record
@@ -148,6 +153,16 @@ class Scene(ABC):
     def tracked(self) -> np.ndarray:
         """(q,) the nodes of all edges, one edge after the other."""
         return np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in self.edges.values())])
+
+    @property
+    def sides(self) -> dict[str, Edge]:
+        """The sides whose forces are recorded, by name; by default the edges."""
+        return dict(self.edges)
+
+    @property
+    def tied(self) -> Mapping[str, np.ndarray]:
+        """Nodes (k,) on which ties act, by the side they belong to; by default none."""
+        return {}
 
     def side_peaks(self, side: str, peaks: np.ndarray) -> np.ndarray:
         """Smallest and largest velocity (k, 3, 2) of the nodes of a side of the whole scene.

@@ -10,6 +10,7 @@ from dembound.motion.layout import aligned_zeros
 from dembound.motion.memory import DRIVEN_BYTES
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
+from dembound.motion.sides import NodeSides
 from dembound.motion.state import State
 from dembound.motion.supports import NodeSupports
 from dembound.motion.threads import threads_for
@@ -28,12 +29,14 @@ class Simulation:
     datum : (3, n) displacements at which they are at rest; by default zero.
     damp : local damping coefficient; by default the scene's.
     clock : counts the seconds of stepping and of trackers, under "step" and "record".
+    watches_sides : whether forces and displacements of the sides are measured.
 
     Attributes
     ----------
     state : all arrays that change during the run.
     trackers : those that are called during the run; at first a `Watch`, which all runs should have. stopped : whether a
-    tracker has ended the run.
+    tracker has ended the run. sides : those that are measured; None for none. side_record : (steps, s, 5) mean
+    displacement, since the start, and force of every side before each of the last steps, see kernels.tables.Sides.
     """
 
     def __init__(
@@ -46,6 +49,7 @@ class Simulation:
         datum: np.ndarray | None = None,
         damp: float | None = None,
         clock: Clock | None = None,
+        watches_sides: bool = False,
     ) -> None:
         self.scene = scene
         self.time_step = time_step
@@ -69,6 +73,10 @@ class Simulation:
         self._u_next = aligned_zeros(3, layout.count)
         self._damp = scene.damp if damp is None else damp
         self._supports = NodeSupports(scene, self.system.ties, time_step)
+        self.sides = NodeSides(scene, self._supports) if watches_sides else None
+        self.side_record = np.empty((0, 0, 5))
+        if self.sides is not None:
+            self.state.side_work = np.zeros((2, len(self.sides.names), 2))
         self._mobility, self._inverse_inertia = (layout.spread(time_step / of) for of in (scene.mass, scene.inertia))
         for mobility in (self._mobility, self._inverse_inertia):
             mobility[self._supports.slots] = 0.0  # these are moved by the support table
@@ -133,22 +141,30 @@ class Simulation:
     def _advance_to(self, step: int) -> np.ndarray:
         """Advance to a step; returns the record of the probes, see `advance`."""
         record = np.empty((step - self.state.step, len(self.probes), self.scene.record_width))
+        self.side_record = np.empty((len(record), 0 if self.sides is None else len(self.sides.names), 5))
         at_once = max(1, int(DRIVEN_BYTES / (24 * max(1, len(self._supports.nodes)))))
         with threads_for(self.scene.count):
             for first in range(0, len(record), at_once):
-                self._advance(record[first : first + at_once])
+                self._advance(record[first : first + at_once], self.side_record[first : first + at_once])
+        if self.sides is not None:
+            self.side_record[..., :3] -= self.sides.origin(self.state.datum)
         record[..., :3] -= self.state.datum[:, self.probes].T
         return record
 
-    def _advance(self, record: np.ndarray) -> None:
+    def _advance(self, record: np.ndarray, side_record: np.ndarray) -> None:
         """Do as many steps as the record (k, p, 6 or 7) has rows, with changes of law if necessary."""
-        supports = self._supports.table((self.state.step + np.arange(len(record))) * self.time_step)
+        times = (self.state.step + np.arange(len(record))) * self.time_step
+        supports = self._supports.table(times)
+        signals = np.zeros((0, 0)) if self.sides is None else self.sides.sampled(times)
         done = 0
         while done < len(record):
             remaining = supports._replace(drive=supports.drive[done:])
-            done += self._advance_under_one_law(record[done:], remaining)
+            measured = tables.NO_SIDES
+            if self.sides is not None:
+                measured = self.sides.table(signals[done:], self.system, side_record[done:], self.state.side_work)
+            done += self._advance_under_one_law(record[done:], remaining, measured)
 
-    def _advance_under_one_law(self, record: np.ndarray, supports: tables.Supports) -> int:
+    def _advance_under_one_law(self, record: np.ndarray, supports: tables.Supports, sides: tables.Sides) -> int:
         """Do as many of these steps as the laws in use, with their pairs or bonds, are valid; returns their number."""
         state, system = self.state, self.system
         load, turning = system.steady, system.turning
@@ -157,7 +173,7 @@ class Simulation:
             turning = None if turning is None else turning.in_slots(state.layout.slot)
         body = tables.Body(self._mobility, self._inverse_inertia, self.scene.free, load, self._damp, self.time_step)
         probes, tracked = self._probe_slots, self._tracked_slots
-        log = tables.Log(probes, record, tracked, state.peaks, state.top, state.work, state.supplied)
+        log = tables.Log(probes, record, tracked, state.peaks, state.top, state.work, state.supplied, sides)
         done, why = loop.advance(
             state.u,
             self._u_next,

@@ -38,6 +38,7 @@ class State:
     top : (slots,) m/s, largest speed so far; (0,) unless the case asks for it.
     work : (2, 6) J, in the columns `WORK`; supplied : (1,) J, the largest work of supports so far; see
         kernels.tables.Log.
+    side_work : (2, s, 2) J that came in through every side and that its dashpots absorbed; see kernels.tables.Sides.
     step : steps done.
     laws : name of each law used and its first step.
     switch_velocity : (3, n) velocity half a step before the history-dependent law began; (3, 0) under another law.
@@ -52,6 +53,7 @@ class State:
     top: np.ndarray
     work: np.ndarray = field(default_factory=lambda: np.zeros((2, len(WORK))))
     supplied: np.ndarray = field(default_factory=lambda: np.zeros(1))
+    side_work: np.ndarray = field(default_factory=lambda: np.zeros((2, 0, 2)))
     step: int = 0
     laws: list[tuple[str, int]] = field(default_factory=list)
     switch_velocity: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))
@@ -110,7 +112,7 @@ class State:
             kept.recall(within(arrays, owner))
 
 
-_ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_velocity", "supplied")
+_ARRAYS = ("displacement", "velocity", "datum", "peaks", "top_speed", "switch_velocity", "supplied", "side_work")
 """The arrays of a state that are saved as they are."""
 
 

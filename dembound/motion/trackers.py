@@ -9,6 +9,7 @@ from dembound.errors import RunError
 from dembound.motion.clock import Clock
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
+from dembound.motion.sides import NodeSides
 from dembound.motion.state import Arrays, State
 
 NEVER = 2**62
@@ -16,7 +17,11 @@ NEVER = 2**62
 
 
 class Run(Protocol):
-    """Data of a run that trackers use: scene, parts, state, time step (s), clock; setting `stopped` ends the run."""
+    """Data of a run that trackers use: scene, parts, state, time step (s), clock; setting `stopped` ends the run.
+
+    sides : those whose forces are measured, None for none; side_record : (steps, s, 5) of the last steps, see
+    `Simulation`.
+    """
 
     scene: Scene
     system: System
@@ -24,6 +29,8 @@ class Run(Protocol):
     time_step: float
     clock: Clock
     stopped: bool
+    sides: NodeSides | None
+    side_record: np.ndarray
 
     @property
     def time(self) -> float:

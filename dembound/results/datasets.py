@@ -55,6 +55,11 @@ def make(group: h5py.Group, columns: Columns) -> dict[str, h5py.Dataset]:
     return kept
 
 
+def datasets_of(group: h5py.Group) -> dict[str, h5py.Dataset]:
+    """The datasets of a group by name, without those of groups in it."""
+    return {name: item for name, item in group.items() if hasattr(item, "dtype")}
+
+
 def extend(dataset: h5py.Dataset, values: np.ndarray) -> None:
     """Append rows to a dataset."""
     if len(values) == 0:

@@ -12,6 +12,7 @@ import numpy as np
 
 from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.results.committed import CommittedFile, log_of
+from dembound.results.datasets import datasets_of
 
 if TYPE_CHECKING:
     import h5py
@@ -177,12 +178,18 @@ def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
 
     Raises CaseError when there is no entry.
     """
-    columns = {name: dataset[:] for name, dataset in file.get("energy", {}).items()}
+    columns = {name: item[:] for name, item in datasets_of(file["energy"]).items()} if "energy" in file else {}
     if not columns or len(columns["time"]) == 0:
         raise CaseError([f"{file.filename}: has no entries in its energy ledger"])
     scale = float(columns["supplied"][-1])
     columns["relative_error"] = columns["error"] / scale if scale > 0.0 else np.zeros_like(columns["error"])
     return columns
+
+
+def side_energies_of(file: h5py.File) -> dict[str, dict[str, np.ndarray]]:
+    """Of every side of an open record energies (k,) that came in, were absorbed, and are stored in springs."""
+    sides = file.get("energy/sides", {})
+    return {side: {name: dataset[:] for name, dataset in group.items()} for side, group in sides.items()}
 
 
 def record_names(paths: Sequence[Path]) -> list[str]:

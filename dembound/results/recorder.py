@@ -10,13 +10,15 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             case asks for it peak_velocity (n,), the largest speed of each in the whole run
     histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle,
                             position, wanted
-    boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2)
+    boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2); of the
+                            side as a whole, without a free-field column, time (k,), displacement (k, 3), force (k, 2)
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
                             of a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
                             and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
                             on each particle; attribute time; of disks, if the case asks for them, contacts/ with the
                             columns of `disks.contact_forces.contact_columns`
     energy/                 time and the columns of `motion.energy.Entry`, (k,) each
+    energy/sides/<side>/    the columns of `motion.energy.SideEntry`, (k,) each
     cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
                             displacements, positions count from the start of the run
     laws/                   name (l,) of each law or method used and time (l,) it began at
@@ -37,11 +39,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.motion.cracks import Cracks, joined
-from dembound.motion.energy import Entry, Ledger
+from dembound.motion.energy import Entry, Ledger, SideEntry
 from dembound.motion.kind import Stage, StalledError
 from dembound.motion.trackers import Run
 from dembound.results.committed import FORMAT, CommittedFile
-from dembound.results.datasets import describe, extend, make, text, write
+from dembound.results.datasets import datasets_of, describe, extend, make, text, write
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -63,6 +65,11 @@ HISTORY = (
     ("time", (), "f8", "s"),
     ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
     ("velocity", (3,), "f8", VELOCITY_UNIT),
+)
+SIDE_HISTORY = (
+    ("time", (), "f8", "s"),
+    ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
+    ("force", (2,), "f8", "N/m"),
 )
 CRACKS = (
     ("time", (), "f8", "s"),
@@ -105,8 +112,11 @@ class Recorder:
         self.scene = run.scene.whole
         self.ledger = ledger
         self.stride = max(1, round(interval / run.time_step))
+        measured = [] if run.sides is None else run.sides.names
+        self._sides = {name: number for number, name in enumerate(measured) if name in self.scene.edges}
         self._times: list[np.ndarray] = []
         self._samples: list[np.ndarray] = []
+        self._side_samples: list[np.ndarray] = []
         self._broken: list[Cracks] = []
         self._store = CommittedFile(path, "w" if counts is None else "a")
         self.file = h5py.File(self._store, "w" if counts is None else "a", libver=FORMAT)
@@ -151,7 +161,7 @@ class Recorder:
         The ledger's entry of the last step, which may be the last of this run only, is not included.
         """
         return {
-            "histories": len(self._histories[0]["time"]) if self._histories else 0,
+            "histories": max((len(each["time"]) for each in self._histories + self._side_histories), default=0),
             "cracks": len(self._cracks["time"]),
             "energy": 0 if self.ledger is None else self.ledger.regular_entries,
             "laws": len(self._laws["time"]),
@@ -161,8 +171,9 @@ class Recorder:
     def _find_datasets(self) -> None:
         """The datasets that grow; searching one in the file takes as long as extending it."""
         self._histories = [dict(self.file["histories"][name]) for name in self.scene.monitors]
+        self._side_histories = [dict(self.file["boundaries"][name]) for name in self._sides]
         self._cracks, self._laws = dict(self.file["cracks"]), dict(self.file["laws"])
-        self._energy = dict(self.file.get("energy", {}))
+        self._energy = datasets_of(self.file["energy"]) if self.ledger is not None else {}
 
     def append(self, record: np.ndarray) -> None:
         """Take every stride-th of the last steps; record : of the probes, see `Simulation.advance`."""
@@ -171,8 +182,10 @@ class Recorder:
         rows = np.arange(-begun % self.stride, len(record), self.stride)
         self._times.append((begun + rows) * step)
         self._samples.append(self.run.scene.observed(record[rows]))
+        if self._sides:
+            self._side_samples.append(self.run.side_record[rows])
         self._broken.append(self.run.system.take_cracks(state.step))
-        kept = sum(samples.nbytes for samples in self._samples)
+        kept = sum(samples.nbytes for samples in self._samples + self._side_samples)
         if time.monotonic() - self._written >= KEPT_SECONDS:
             self.flush()
         elif kept >= KEPT_BYTES:
@@ -233,6 +246,9 @@ class Recorder:
             unit = self.scene.energy_unit
             columns = [(field.name, (), "f8", "s" if field.name == "time" else unit) for field in fields(Entry)]
             make(self.file.create_group("energy"), columns)
+            for side in self.ledger.side_names:
+                group = self.file.create_group(f"energy/sides/{side}")
+                make(group, [(name, (), "f8", unit) for name in SideEntry._fields])
         self._make_laws()
         self.file.create_group("snapshots")
         for stage in stages:
@@ -245,8 +261,12 @@ class Recorder:
         for name, history in self.file["histories"].items():
             if name in self.scene.monitors:
                 _cut(history, counts["histories"])
+        for name in self._sides:
+            _cut({column: self.file["boundaries"][name][column] for column, *_ in SIDE_HISTORY}, counts["histories"])
         for name in ("cracks", "energy", "laws"):
-            _cut(self.file[name], counts[name])
+            _cut(datasets_of(self.file[name]), counts[name])
+        for side in self.file.get("energy/sides", {}).values():
+            _cut(side, counts["energy"])
         for number in list(self.file["snapshots"])[counts["snapshots"] :]:
             del self.file["snapshots"][number]
         self.file.attrs["complete"] = False
@@ -303,18 +323,28 @@ class Recorder:
             write(group, "position", scene.positions[edge.nodes], "m")
             write(group, "diameter", edge.diameters, "m")
             write(group, "peak_velocity", np.zeros((len(edge.nodes), 3, 2)), VELOCITY_UNIT)
+            if side in self._sides:
+                group.attrs["body_length"] = scene.sides[side].length
+                force = "N" if scene.energy_unit == "J" else "N/m"  # as energies
+                make(group, [(*column[:3], force if column[0] == "force" else column[3]) for column in SIDE_HISTORY])
 
     def _append_kept(self) -> None:
         """Write samples and cracks that are kept in memory."""
         if self._times:
             times, samples = np.concatenate(self._times), np.concatenate(self._samples)
-            self._times, self._samples = [], []
+            sides = np.concatenate(self._side_samples) if self._sides else np.zeros((0, 0, 5))
+            self._times, self._samples, self._side_samples = [], [], []
             for index, history in enumerate(self._histories):
                 extend(history["time"], times)
                 extend(history["displacement"], samples[:, index, :3])
                 extend(history["velocity"], samples[:, index, 3:6])
                 if "stress" in history:
                     extend(history["stress"], samples[:, index, 6])
+            for name, history in zip(self._sides, self._side_histories, strict=True):
+                index = self._sides[name]
+                extend(history["time"], times)
+                extend(history["displacement"], sides[:, index, :3])
+                extend(history["force"], sides[:, index, 3:])
         self._append_cracks(joined(self._broken), self.run.time_step)
         self._broken = []
 
@@ -331,9 +361,13 @@ class Recorder:
         """Write the new entries of the ledger."""
         if self.ledger is None:
             return
-        columns = self.ledger.columns[len(self._energy["time"]) :]
+        written = len(self._energy["time"])
+        columns, sides = self.ledger.columns[written:], self.ledger.side_columns[written:]
         for field, column in zip(fields(Entry), columns.T, strict=True):
             extend(self._energy[field.name], column)
+        for side, values in zip(self.ledger.side_names, np.moveaxis(sides, 1, 0), strict=True):
+            for name, column in zip(SideEntry._fields, values.T, strict=True):
+                extend(self.file[f"energy/sides/{side}/{name}"], column)
 
     def _append_laws(self) -> None:
         """Write the laws that are new."""
@@ -352,7 +386,7 @@ class Recorder:
             self.file["particles/peak_velocity"][...] = speed
 
 
-def _cut(group: h5py.Group, count: int) -> None:
-    """Remove rows from the end of all datasets of a group."""
+def _cut(group: Mapping[str, h5py.Dataset], count: int) -> None:
+    """Remove rows from the end of datasets."""
     for dataset in group.values():
         dataset.resize(count, axis=0)

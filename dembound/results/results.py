@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from dembound.errors import CaseError, RecordError
-from dembound.results.reader import datasets_in, energy_of, laws_of, open_record, reading, text_of
+from dembound.results.reader import datasets_in, energy_of, laws_of, open_record, reading, side_energies_of, text_of
 
 
 class Arrays(Mapping[str, np.ndarray]):
@@ -60,7 +60,8 @@ class Results:
     attributes : name, kind, time_step, steps, size … of the run, see docs/results.md.
     particles : reference positions and the like, one row per particle (of a bar, node).
     histories : of every monitor ``time`` (k,), ``displacement`` and ``velocity`` (k, 3), of a bar ``stress`` (k,).
-    boundaries : of every side its particles and their peak velocities.
+    boundaries : of every side its particles and their peak velocities, and of the side as a whole ``time`` (k,), mean
+    ``displacement`` (k, 3) and ``force`` (k, 2).
     snapshots : in the order of time: ``displacement``, ``velocity`` (n, 3) and more; ``attributes["time"]`` in s.
     cracks : ``time``, ``position``, ``particles``, ``shear`` of the bonds that broke.
 
@@ -110,6 +111,12 @@ class Results:
         """The columns (k,) of the energy ledger, and ``relative_error``; raises CaseError where there is none."""
         with open_record(self._record) as file:
             return energy_of(file)
+
+    @property
+    def side_energies(self) -> dict[str, dict[str, np.ndarray]]:
+        """Of every side ``came_in``, ``absorbed`` and ``stored``, (k,) at the times of the energy ledger."""
+        with open_record(self._record) as file:
+            return side_energies_of(file)
 
     def _arrays(self, file: h5py.File, name: str) -> dict[str, Arrays]:
         """The groups within a group of the record."""

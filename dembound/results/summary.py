@@ -10,7 +10,7 @@ import numpy as np
 
 from dembound.motion.kind import Plan
 from dembound.motion.trackers import Run
-from dembound.results.reader import energy_of, open_record
+from dembound.results.reader import energy_of, open_record, side_energies_of
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ def summarise(planned: Plan, run: Run, record: Path, seconds: Mapping[str, float
         "laws": [{"law": name, "from": step * run.time_step} for name, step in state.laws],
         "cracks": _count_cracks(record),
         "energy": _describe_energy(record),
+        "sides": _describe_sides(record),
         "monitors": _describe_monitors(record),
         "reduced": [*scene.reduced, *run.system.saved(state), *_fields_left_out(planned)],
         "not_reduced": [*planned.refused, *run.system.refused],
@@ -88,6 +89,21 @@ def _describe_energy(record: Path) -> dict[str, float]:
         columns = energy_of(file)
     last = {name: float(column[-1]) for name, column in columns.items()}
     return last | {"relative_error": float(np.abs(columns["relative_error"]).max())}
+
+
+def _describe_sides(record: Path) -> dict[str, Any]:
+    """Energies of every side at the end of the run; `absorbed_share` is over all that came in through any side.
+
+    That is the sum of the largest energy that came in through each up to any time; null if nothing came in.
+    """
+    with open_record(record) as file:
+        sides = side_energies_of(file)
+    came = sum(max(0.0, float(columns["came_in"].max(initial=0.0))) for columns in sides.values())
+    return {
+        side: {name: float(column[-1]) for name, column in columns.items()}
+        | {"absorbed_share": float(columns["absorbed"][-1]) / came if came > 0.0 else None}
+        for side, columns in sides.items()
+    }
 
 
 def _describe_monitors(record: Path) -> dict[str, Any]:

@@ -84,6 +84,7 @@ def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Si
         system=beginning.system,
         datum=beginning.datum,
         clock=clock,
+        watches_sides=True,
     )
     if scene.case.run.until == "silent":
         simulation.track(Silence(silent_rule(planned.scene, planned.kind.sources(planned.scene)), planned.time_step))

@@ -221,7 +221,7 @@ def test_forces_end_on_what_has_broken_away_and_there_alone(scene) -> None:
 def test_what_is_left_of_the_sides_turns_by_its_own_rotation(scene) -> None:
     body = scene()
     parts, (balance, steady) = parts_of(body), balance_of(body)
-    datum, debris = balance._datum, [at(body, 0.25, 0.25), at(body, 2.25, 0.75)]
+    datum, debris = balance.datum, [at(body, 0.25, 0.25), at(body, 2.25, 0.75)]
     isolate(parts, debris)
     balance.end_on_debris(parts, datum.copy(), np.zeros((3, body.count)), STEP, steady + balance.force)
 
@@ -273,7 +273,7 @@ def test_the_work_goes_on_from_where_forces_end(scene) -> None:
     body = scene()
     rng, parts, (balance, steady) = np.random.default_rng(6), parts_of(body), balance_of(body)
     debris = {3: [at(body, 0.25, 0.25)], 8: [at(body, 1.75, 1.75), at(body, 1.25, 1.25)]}
-    u, v, load = balance._datum.copy(), np.zeros((3, body.count)), steady + balance.force
+    u, v, load = balance.datum.copy(), np.zeros((3, body.count)), steady + balance.force
     whole = turning = 0.0
     worst = []
     for number in range(14):
@@ -320,8 +320,8 @@ def test_what_keeps_coming_through_a_seam_is_taken_off(scene) -> None:
     kept = np.where(beside, balance.force, 0.0), np.where(beside, before, 0.0)
     np.testing.assert_allclose(*(resultants(body, force) for force in kept), rtol=0.0, atol=1e-12)
     # the force of the last step acted until half a step before u
-    lost = np.sum((balance.force - before) * (u - 0.5 * STEP * v - balance._datum))
-    expected = np.sum(balance.force * (u - balance._datum)) - lost
+    lost = np.sum((balance.force - before) * (u - 0.5 * STEP * v - balance.datum))
+    expected = np.sum(balance.force * (u - balance.datum)) - lost
     # some 400 terms of size 1
     assert balance.work(u) == pytest.approx(expected, rel=0.0, abs=1e-12)
     # what has ended does not end again

@@ -166,7 +166,9 @@ def test_a_dashpot_follows_its_twin_at_the_middle_of_the_step_supported_or_not(d
     note_before(0, model.u, v, log.probes, log.record, supports.twin, followed)
     v[:, model.free_ones] = model.after[:, model.free_ones]  # the free ones move first
     u_next[:, model.nodes] = (model.force - model.across).T  # where the contacts' forces wait
-    move_supported(0, model.u, v, u_next, model.across, followed, supports, body, log.work)
+    move_supported(
+        0, model.u, v, u_next, model.across, followed, supports, body, log.work, np.zeros((3, 3, len(supports.nodes)))
+    )
     expected, work = model.expected()
 
     # some ten operations on numbers of size 1 to 10

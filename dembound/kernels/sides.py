@@ -1,0 +1,196 @@
+"""Forces on the body through its sides, and the mean displacement of each side.
+
+The support table adds up the rows of all sides; here they are taken apart again into elements, each one dashpot,
+spring, drive, prescribed motion or seam at one component of one supported node. Elements are summed one after the
+other, so that the sums have the same bits for any number of threads.
+"""
+
+from typing import Any
+
+from numba import njit
+
+from dembound.kernels.common import FAST, FASTMATH, U
+
+_REORDERED: Any = FAST | {"fastmath": FASTMATH | {"reassoc"}}
+"""Compiler options of sums whose order of terms depends on their number alone."""
+
+PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED = range(6)
+"""Kinds of elements, see `tables.Sides`."""
+
+
+@njit(**FAST, forceinline=True)
+def _needed(c, lines, constants, old, new, push, across):
+    """Of prescribed motion, without ties, the sums of `_of_batch`."""
+    force = 0.0
+    power = 0.0
+    before = 0.0
+    for e in range(lines.size):
+        s = U(lines[e])
+        f = constants[e] * (push[c, s] - across[s, c])
+        force += f
+        power += f * 0.5 * (old[c, s] + new[c, s])
+        before += f * old[c, s]
+    return force, power, before, 0.0
+
+
+@njit(**FAST, forceinline=True)
+def _dashpots(c, lines, constants, old, new, incident):
+    """The same of dashpots through which a wave of the velocity `incident` (m/s) enters.
+
+    Of a mean velocity v they absorb C(v − v_i)², the power of the outgoing wave, and C v_i² comes in.
+    """
+    force = 0.0
+    before = 0.0
+    absorbed = 0.0
+    constant = 0.0
+    for e in range(lines.size):
+        s = U(lines[e])
+        out = 0.5 * (old[c, s] + new[c, s]) - incident
+        f = constants[e] * (incident - out)
+        force += f
+        before += f * old[c, s]
+        absorbed += constants[e] * out * out
+        constant += constants[e]
+    return force, constant * incident * incident - absorbed, before, absorbed
+
+
+@njit(**FAST, forceinline=True)
+def _following(c, lines, constants, follow, old, new, followed, incident):
+    """The same of dashpots on velocities relative to those of twins, followed (k, 3) m/s."""
+    force = 0.0
+    power = 0.0
+    before = 0.0
+    absorbed = 0.0
+    for e in range(lines.size):
+        s = U(lines[e])
+        mean = 0.5 * (old[c, s] + new[c, s])
+        f = constants[e] * (2.0 * incident - mean) + follow[e] * followed[s, c]
+        out = mean - followed[s, c] - incident
+        force += f
+        power += f * mean
+        before += f * old[c, s]
+        absorbed += constants[e] * out * out
+    return force, power, before, absorbed
+
+
+@njit(**FAST, forceinline=True)
+def _springs(c, lines, constants, nodes, u):
+    """The same of springs at displacements u (3, n), whose energy follows from these: the force alone."""
+    force = 0.0
+    for e in range(lines.size):
+        force -= constants[e] * u[c, U(nodes[U(lines[e])])]
+    return force, 0.0, 0.0, 0.0
+
+
+@njit(**FAST, forceinline=True)
+def _driven(c, lines, constants, old, new, signal):
+    """The same of forces constants·signal."""
+    force = 0.0
+    power = 0.0
+    before = 0.0
+    for e in range(lines.size):
+        s = U(lines[e])
+        f = constants[e] * signal
+        force += f
+        power += f * 0.5 * (old[c, s] + new[c, s])
+        before += f * old[c, s]
+    return force, power, before, 0.0
+
+
+@njit(**FAST, forceinline=True)
+def _tied(c, lines, constants, old, new, across):
+    """The same of seams."""
+    force = 0.0
+    power = 0.0
+    before = 0.0
+    for e in range(lines.size):
+        s = U(lines[e])
+        f = constants[e] * across[s, c]
+        force += f
+        power += f * 0.5 * (old[c, s] + new[c, s])
+        before += f * old[c, s]
+    return force, power, before, 0.0
+
+
+@njit(**_REORDERED)
+def _mean(u, members, weights):
+    """Sum of displacements u (n,) of members (m,) with weights (m,), in an order that depends on m alone."""
+    total = 0.0
+    for m in range(members.size):
+        total += weights[m] * u[U(members[m])]
+    return total
+
+
+@njit(**FAST, forceinline=True)
+def _steady(c, sides, o, load):
+    """Steady force (N) on side o: its offset, and shares of the load (3, n) N."""
+    force = sides.offset[o, c]
+    for m in range(sides.bearer_start[o], sides.bearer_start[o + 1]):
+        force += sides.share[c, m] * load[c, U(sides.bearer[m])]
+    return force
+
+
+@njit(**FAST, forceinline=True)
+def _of_batch(b, c, signal, lines, constants, u, supports, across, followed, moved, sides):
+    """Force (N) of batch b on component c, its power (W), that with velocities before the step, and absorbed power."""
+    kind = sides.kind[b]
+    old, new = moved[0], moved[1]
+    if kind == PRESCRIBED:
+        return _needed(c, lines, constants, old, new, moved[2], across)
+    if kind == DASHPOT:
+        return _dashpots(c, lines, constants, old, new, signal)
+    if kind == FOLLOWING:
+        follow = sides.follow[sides.start[b] : sides.start[b + 1]]
+        return _following(c, lines, constants, follow, old, new, followed, signal)
+    if kind == SPRING:
+        return _springs(c, lines, constants, supports.nodes, u)
+    if kind == DRIVE:
+        return _driven(c, lines, constants, old, new, signal)
+    return _tied(c, lines, constants, old, new, across)
+
+
+@njit(**FAST, forceinline=True)
+def note_sides(step, u, supports, across, followed, moved, body, sides):
+    """Write displacements and forces of all sides in this step to row `step` of sides.record, and add up their work.
+
+    u : (3, n) displacements before the step; across (k, 3) N forces of ties and followed (k, 3) m/s mean velocities of
+    twins in the step; moved (3, 3, k) velocities of the supported nodes before and after it, and all forces on them
+    from outside.
+    """
+    record, work = sides.record, sides.work
+    for o in range(record.shape[1]):
+        first, last = U(sides.member_start[o]), U(sides.member_start[o + 1])
+        members = sides.member[first:last]
+        for c in range(3):
+            moves = body.free[c] != 0.0
+            record[step, o, c] = _mean(u[c], members, sides.weight[c, first:last]) if moves else 0.0
+        for c in range(2):
+            record[step, o, 3 + c] = _steady(c, sides, o, body.load)
+            work[1, o, c] = work[0, o, c]
+    for b in range(sides.kind.size):
+        c, o = U(sides.component[b]), sides.side[b]
+        first, last = U(sides.start[b]), U(sides.start[b + 1])
+        signal = sides.sign[b] * sides.signals[step, sides.signal[b]] if sides.signal[b] >= 0 else 0.0
+        force, power, before, absorbed = _of_batch(
+            b,
+            c,
+            signal,
+            sides.line[first:last],
+            sides.constant[first:last],
+            u,
+            supports,
+            across,
+            followed,
+            moved,
+            sides,
+        )
+        if c < 2:
+            record[step, o, U(3) + c] += sides.sign[b] * force
+        came = power + absorbed
+        half = (
+            came if sides.kind[b] == DASHPOT else before + absorbed
+        )  # so that all of dashpots without a wave is absorbed
+        work[1, o, 0] += 0.5 * body.step * half
+        work[1, o, 1] += 0.5 * body.step * (half - before)
+        work[0, o, 0] += body.step * came
+        work[0, o, 1] += body.step * absorbed

@@ -1,0 +1,247 @@
+"""The sides of a run: their mean displacements, and the forces from outside on their nodes.
+
+Sides are those of the scene of the case. Of a smaller scene that is stepped in place of it, each node represents
+several, and the forces on these are computed from the motion of the one; where they are mirror images, forces and
+displacements have the other sign.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.boundaries.support import Edge, Shares
+from dembound.kernels import sides as kinds
+from dembound.kernels import tables
+from dembound.motion.part import System
+from dembound.motion.scene import Scene
+from dembound.motion.supports import NodeSupports
+
+
+class _Batch(NamedTuple):
+    """Elements of one kind and component of one side, see `tables.Sides`; lines of the support table (e,)."""
+
+    kind: int
+    side: int
+    component: int
+    sign: float
+    signal: int
+    line: np.ndarray
+    constant: np.ndarray
+    follow: np.ndarray
+
+
+class NodeSides:
+    """The sides of a scene for the kernels.
+
+    Parameters
+    ----------
+    scene : the scene that is stepped.
+    supports : its support table.
+
+    Attributes
+    ----------
+    names : of the sides, in the order of the record. has_loads : whether loads follow a wave.
+    """
+
+    def __init__(self, scene: Scene, supports: NodeSupports) -> None:
+        whole = scene.whole
+        self._sides = whole.sides
+        self.names = list(self._sides)
+        self.has_loads = _has_loads(whole)
+        self._like = scene.widened("node", np.arange(scene.count))
+        self._signs = scene.widened("displacement", np.ones((scene.count, 3)))
+        self._still = scene.still_in_whole
+        self._scene, self._whole, self._nodes = scene, whole, supports.nodes
+        self._members: list[tuple[np.ndarray, np.ndarray]] = []
+        self._origin: tuple[np.ndarray, np.ndarray] | None = None
+        for edge in self._sides.values():
+            self._members.append(self._mean(edge))
+        self._bearers = _bearers(list(self._sides.values()))
+        batches = list(self._batches())
+        self._springs = [batch for batch in batches if batch.kind == kinds.SPRING]
+        self._table = self._laid_out(batches)
+
+    def sampled(self, times: np.ndarray) -> np.ndarray:
+        """Values (steps, q) of the signals of the support table at `times` (steps,) s."""
+        columns = [signal(times) for signal in self._whole.supports.signals]
+        return np.stack([np.zeros(len(times)), *columns], axis=1)[:, 1:].copy()
+
+    def table(self, signals: np.ndarray, system: System, record: np.ndarray, work: np.ndarray) -> tables.Sides:
+        """The arrays for steps with these signals (steps, q); record (steps, s, 5) and work (2, s, 2) are filled."""
+        arrays: dict[str, np.ndarray] = {"offset": np.zeros((len(self.names), 2))}
+        if system.turning is not None:  # then steady forces are loads and rotated balancing forces
+            arrays |= self._bearing() | {"offset": self._borne(-system.load)}
+        elif system.balancing_force is not None:
+            arrays["offset"] = self._borne(system.balancing_force)
+        return self._table._replace(signals=signals, record=record, work=work, **arrays)
+
+    def origin(self, datum: np.ndarray) -> np.ndarray:
+        """Mean displacement (s, 3) of every side at the start, displacements (3, n)."""
+        if self._origin is None or self._origin[0] is not datum:
+            self._origin = datum, self._mean_of(datum)
+        return self._origin[1]
+
+    def _mean_of(self, displacement: np.ndarray) -> np.ndarray:
+        """Mean displacement (s, 3) of every side at displacements (3, n)."""
+        return np.array([(weight * displacement[:, node]).sum(axis=1) for node, weight in self._members]).reshape(-1, 3)
+
+    def stored(self, displacement: np.ndarray) -> np.ndarray:
+        """Energy (s,) J in the springs of every side at displacements (3, n)."""
+        stored = np.zeros(len(self.names))
+        for batch in self._springs:
+            stretch = displacement[batch.component, self._nodes[batch.line]]
+            stored[batch.side] += 0.5 * float(np.sum(batch.constant * stretch**2))
+        return stored
+
+    def _borne(self, force: np.ndarray) -> np.ndarray:
+        """Parts (s, 2) N of steady forces (3, n) N that belong to each side."""
+        return np.array([(share * force[:2, node]).sum(axis=1) for node, share in self._bearers])
+
+    def _bearing(self) -> dict[str, np.ndarray]:
+        """The same for the kernels, see `tables.Sides`."""
+        slot = self._scene.layout.slot
+        return {
+            "bearer_start": np.cumsum([0, *(len(node) for node, _ in self._bearers)]),
+            "bearer": np.concatenate([slot[node] for node, _ in self._bearers]),
+            "share": np.concatenate([share for _, share in self._bearers], axis=1),
+        }
+
+    def _mean(self, edge: Edge) -> tuple[np.ndarray, np.ndarray]:
+        """Nodes (m,) whose displacements, with weights (3, m), have the mean of a side; by share of its diameters."""
+        node, member = np.unique(self._like[edge.nodes], return_inverse=True)
+        share = (edge.diameters / edge.diameters.sum())[:, None] * self._signs[edge.nodes]
+        return node, np.stack([np.bincount(member, column, len(node)) for column in share.T])
+
+    def _batches(self) -> Iterator[_Batch]:
+        """All batches, side by side."""
+        for number, (name, edge) in enumerate(self._sides.items()):
+            if self._whole.supports.shares is not None:
+                yield from self._of_supports(number, edge, self._whole.supports.shares)
+            if name in self._whole.tied:
+                node = self._whole.tied[name]
+                for component in range(3):
+                    one = np.ones(len(node))
+                    yield from self._split(kinds.TIED, number, component, -1, node, one)
+
+    def _of_supports(self, number: int, edge: Edge, shares: Shares) -> Iterator[_Batch]:
+        """The batches of one side: what it adds to the rows of the support table."""
+        if edge.side not in shares.sides:
+            return
+        own = (shares.side == shares.sides.index(edge.side)) & np.isin(shares.node, edge.nodes)
+        for call in np.unique(shares.call[own]):
+            rows = np.flatnonzero(own & (shares.call == call))
+            node, component = shares.node[rows], int(shares.component[rows[0]])
+            signal, incident = int(shares.signal[rows[0]]), bool(shares.incident[rows[0]])
+            damping, follow, stiffness = shares.damping[rows], shares.follow[rows], shares.stiffness[rows]
+            at = (kinds.PRESCRIBED, number, component, signal)
+            if shares.prescribed[rows].any():
+                needed = shares.prescribed[rows]
+                yield from self._split(*at, node[needed], self._times(component, node[needed]))
+                continue
+            through = signal if incident else -1
+            if follow.any():
+                yield from self._split(kinds.FOLLOWING, number, component, through, node, damping, follow)
+            elif damping.any():
+                yield from self._split(kinds.DASHPOT, number, component, through, node, damping)
+            if stiffness.any():
+                yield from self._split(kinds.SPRING, number, component, -1, node, stiffness)
+            if signal >= 0 and not incident:
+                yield from self._split(kinds.DRIVE, number, component, signal, node, shares.drive[rows])
+
+    def _times(self, component: int, node: np.ndarray) -> np.ndarray:
+        """Mass, or moment of inertia, of nodes (k,) of the whole scene over that of the node stepped in their place."""
+        whole, own = ((each.inertia if component == 2 else each.mass) for each in (self._whole, self._scene))
+        return whole[node] / own[self._like[node]]
+
+    def _split(
+        self,
+        kind: int,
+        number: int,
+        component: int,
+        signal: int,
+        node: np.ndarray,
+        constant: np.ndarray,
+        follow: np.ndarray | None = None,
+    ) -> Iterator[_Batch]:
+        """Elements at nodes (k,) of the whole scene with constants (k,) as batches of lines of the support table.
+
+        Nodes of which a smaller scene supports none have no force on them.
+        """
+        follow = np.zeros(len(node)) if follow is None else follow
+        stepped, sign = self._like[node], self._signs[node, component]
+        line = np.searchsorted(self._nodes, stepped).clip(max=max(0, len(self._nodes) - 1))
+        is_there = self._nodes[line] == stepped if len(self._nodes) else np.zeros(len(node), dtype=np.bool_)
+        for of in (1.0, -1.0):
+            chosen = is_there & (sign == of) & ~self._still[node, component]
+            if chosen.any():
+                lines, element = np.unique(line[chosen], return_inverse=True)
+                sums = (np.bincount(element, values[chosen], len(lines)) for values in (constant, follow))
+                yield _Batch(kind, number, component, of, signal, lines, *sums)
+
+    def _laid_out(self, batches: list[_Batch]) -> tables.Sides:
+        """All batches and members in one table."""
+
+        def column(name: str, kind: type[np.generic]) -> np.ndarray:
+            return np.array([getattr(batch, name) for batch in batches], dtype=kind)
+
+        def elements(name: str, kind: type[np.generic]) -> np.ndarray:
+            return np.concatenate([np.zeros(0, kind), *(getattr(batch, name) for batch in batches)]).astype(kind)
+
+        slot = self._scene.layout.slot
+        nodes = [slot[node] for node, _ in self._members]
+        return tables.NO_SIDES._replace(
+            **{name: column(name, np.int64) for name in ("kind", "side", "component", "signal")},
+            sign=column("sign", np.float64),
+            start=np.cumsum([0, *(len(batch.line) for batch in batches)]),
+            line=elements("line", np.int64),
+            constant=elements("constant", np.float64),
+            follow=elements("follow", np.float64),
+            member_start=np.cumsum([0, *(len(node) for node in nodes)]),
+            member=np.concatenate([np.zeros(0, np.int64), *nodes]),
+            weight=np.concatenate([np.zeros((3, 0)), *(weight for _, weight in self._members)], axis=1),
+            bearer_start=np.zeros(len(nodes) + 1, dtype=np.int64),
+        )
+
+
+def _has_loads(scene: Scene) -> bool:
+    """Whether forces on a scene that are not of its sides follow a wave."""
+    shares = scene.supports.shares
+    of_sides = 0 if shares is None else int(np.count_nonzero(shares.signal >= 0))
+    return bool(len(scene.supports.drive_row) > of_sides)
+
+
+def _bearers(edges: list[Edge]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Of each side nodes (q,) and the shares (2, q) of the steady forces on them, along x and y, that belong to it.
+
+    The force on a node of several sides is the sum of what each side would exert with the mean traction of its other
+    nodes, which are on no other side, and of a rest, which belongs to the side along whose normal it is. Under a
+    uniform stress there is no rest.
+    """
+    node = np.unique(np.concatenate([np.zeros(0, np.int64), *(edge.nodes for edge in edges)]))
+    on = np.array([np.isin(node, edge.nodes) for edge in edges]).reshape(len(edges), len(node))
+    diameter = np.zeros(len(node))
+    for edge in edges:
+        diameter[np.searchsorted(node, edge.nodes)] = edge.diameters
+    alone = on & (on.sum(axis=0) == 1)
+    traction = alone / np.maximum((alone * diameter).sum(axis=1), np.finfo(float).tiny)[:, None]
+    share = np.stack([_of_rest(on, np.array([edge.axis == axis for edge in edges])) for axis in range(2)], axis=1)
+    for sides in np.unique(on[:, on.sum(axis=0) > 1], axis=1).T:
+        width = diameter[(on == sides[:, None]).all(axis=0)].sum()
+        if alone[sides].any(axis=1).all():
+            for axis in range(2):
+                rest = _of_rest(sides[:, None], np.array([edge.axis == axis for edge in edges]))
+                share[:, axis] += width * (sides[:, None] * traction - rest * traction[sides].sum(axis=0))
+    return [(node[(of != 0.0).any(axis=0)], of[:, (of != 0.0).any(axis=0)]) for of in share]
+
+
+def _of_rest(on: np.ndarray, across: np.ndarray) -> np.ndarray:
+    """Shares (s, q) of a component of forces on nodes of some sides, on (s, q): of those it is along the normal of.
+
+    across : (s,) bool, sides with such a normal. Where there is none, all sides share it equally.
+    """
+    chosen = on & across[:, None]
+    chosen = np.where(chosen.any(axis=0), chosen, on)
+    return chosen / chosen.sum(axis=0)

@@ -1,0 +1,65 @@
+"""The sides of a run: whose is a force at a corner, and what is measured of bars and of unwatched runs."""
+
+import numpy as np
+
+from dembound.boundaries.support import Edge, SupportBuilder
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
+from dembound.motion.sides import _bearers
+from dembound.motion.simulation import Simulation
+
+
+def edge(side: str, nodes: list[int], diameters: list[float]) -> Edge:
+    return Edge(side, np.array(nodes), np.zeros((len(nodes), 2)), np.array(diameters), sum(diameters))
+
+
+def borne(edges: list[Edge], force: np.ndarray) -> np.ndarray:
+    """Forces (s, 2) of every side, of forces (2, n) on nodes."""
+    return np.array([(share * force[:, node]).sum(axis=1) for node, share in _bearers(edges)])
+
+
+LEFT, BOTTOM = edge("left", [0, 1, 2], [1.0, 2.0, 3.0]), edge("bottom", [2, 3, 4], [3.0, 1.0, 1.0])
+
+
+def test_a_uniform_stress_is_taken_apart_at_a_corner() -> None:
+    stress = np.array([[-3.0, 0.5], [0.5, -7.0]])
+    force = np.zeros((2, 5))
+    for each, outward in ((LEFT, [-1.0, 0.0]), (BOTTOM, [0.0, -1.0])):
+        force[:, each.nodes] += np.outer(stress @ outward, each.diameters)
+    np.testing.assert_allclose(borne([LEFT, BOTTOM], force), [[18.0, -3.0], [-2.5, 35.0]], rtol=1e-14)
+
+
+def test_the_rest_at_a_corner_is_of_the_side_along_whose_normal_it_is() -> None:
+    force = np.zeros((2, 5))
+    force[:, 2] = [10.0, 20.0]
+    np.testing.assert_allclose(borne([LEFT, BOTTOM], force), [[10.0, 0.0], [0.0, 20.0]], rtol=0.0, atol=1e-14)
+
+
+def test_two_opposite_sides_with_the_same_nodes_share_equally() -> None:
+    sides = [edge("bottom", [0, 1], [1.0, 1.0]), edge("top", [0, 1], [1.0, 1.0])]
+    np.testing.assert_array_equal(borne(sides, np.array([[4.0, 0.0], [0.0, 2.0]])), [[2.0, 1.0]] * 2)
+
+
+def test_a_component_held_by_two_sides_is_of_that_along_whose_normal_it_is() -> None:
+    for order in (("left", "bottom"), ("bottom", "left")):
+        builder = SupportBuilder()
+        for builder.side in order:
+            for component in range(2):
+                builder.add(np.array([7]), component, prescribed=True)
+        shares = builder.table().shares
+        assert shares is not None
+        found = {int(c): shares.sides[s] for s, c in zip(shares.side, shares.component, strict=True)}
+        assert found == {0: "left", 1: "bottom"}
+
+
+def test_a_run_measures_sides_only_if_it_is_asked_to(bar) -> None:
+    scene = build(bar())
+    step = choose_step(scene)[0]
+    unwatched, watched = Simulation(scene, step), Simulation(scene, step, watches_sides=True)
+    for each in (unwatched, watched):
+        each.run(20)
+    assert unwatched.sides is None
+    assert watched.sides is not None
+    assert unwatched.side_record.shape[1:] == (0, 5)
+    assert watched.side_record.shape[1:] == (len(watched.sides.names), 5)
+    assert np.array_equal(unwatched.state.u, watched.state.u)

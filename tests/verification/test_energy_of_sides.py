@@ -1,0 +1,183 @@
+"""What comes in through each side and what it absorbs add up to the work from outside, exactly."""
+
+import numpy as np
+import pytest
+
+from dembound.disks.reduction import reduced
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
+from dembound.disks.static import settle
+from dembound.disks.system import DiskSystem
+from dembound.kinds import with_changes
+from dembound.motion.energy import Ledger
+from dembound.motion.simulation import Simulation
+
+PULSE = {"type": "cosine", "amplitude": 0.5, "period": 0.02}
+IN = {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}
+GRIP = {"type": "velocity", "wave_s": "pulse"}
+FIELD = {side: "free_field" for side in ("left", "right")}
+EPS = np.finfo(float).eps
+STEPS = 400
+
+
+def ledger_of(scene, start=None, steps: int = STEPS, time_step: float | None = None) -> Ledger:
+    """The ledger of some steps, an entry every twenty."""
+    step = time_step or choose_step(scene)[0]
+    rest = {} if start is None else {"system": DiskSystem(scene, step, start), "datum": start.displacement}
+    simulation = Simulation(scene, step, watches_sides=True, **rest)
+    ledger = Ledger(simulation, 20)
+    simulation.track(ledger)
+    simulation.run(steps + 1)
+    return ledger
+
+
+def column(ledger: Ledger, name: str) -> np.ndarray:
+    return np.array([getattr(entry, name) for entry in ledger.entries])
+
+
+def net(ledger: Ledger) -> np.ndarray:
+    """Σ (came_in − absorbed − stored) of all entries."""
+    return (ledger.side_columns @ (1.0, -1.0, -1.0)).sum(axis=1)
+
+
+def closes(ledger: Ledger) -> None:
+    """To the rounding of sums of so many steps, each by ε of the largest of what is added and subtracted."""
+    size = np.abs(ledger.side_columns).sum(axis=1).max()
+    assert size > 1.0
+    np.testing.assert_allclose(net(ledger), column(ledger, "outside"), rtol=0.0, atol=STEPS * EPS * size)
+
+
+@pytest.mark.parametrize(
+    "boundary",
+    [
+        {"left": IN, "bottom": "viscous", "right": "fixed"},
+        {"bottom": {"type": "viscoelastic_input", "wave_p": "pulse", "distance": 3.0}, "top": "symmetry"},
+        {"bottom": GRIP, "left": {"type": "viscoelastic", "distance": 5.0}, "top": "roller"},
+        {"bottom": IN} | FIELD,
+        {"bottom": GRIP} | FIELD,
+    ],
+)
+@pytest.mark.parametrize("damp", [0.0, 0.2])
+def test_sides_are_all_of_the_outside(lab, boundary, damp):
+    scene = lab.scene("B", (20.0, 10.0), held=(), boundary=boundary, wave=PULSE, material={"damp": damp})
+    ledger = ledger_of(scene)
+    closes(ledger)
+    assert not column(ledger, "loads").any()
+    assert (ledger.side_columns[:, :, 1] >= -1e-3 * np.abs(ledger.side_columns).max()).all()
+
+
+def test_sides_are_all_of_the_outside_of_settled_ground(lab):
+    """Springs are stretched from where the ground rests."""
+    scene = lab.scene(
+        "B",
+        (10.0, 10.0),
+        held=(),
+        boundary={
+            "left": {"type": "viscoelastic", "distance": 5.0},
+            "bottom": {"type": "viscoelastic_input", "wave_p": "pulse", "distance": 9.0},
+        },
+        wave=PULSE,
+        load=[{"acceleration": [0.0, -9.81]}],
+        static={"boundary": {"left": {"type": "roller"}, "bottom": {"type": "fixed"}}},
+    )
+    ledger = ledger_of(scene, settle(scene).start)
+    closes(ledger)
+    stored = ledger.side_columns[:, :, 2]
+    assert (stored >= 0.0).all()
+    assert (stored[0] == 0.0).all()
+    assert stored.max() > 0.0
+
+
+def test_loads_are_the_rest(lab):
+    """A pulse of a load with Σ F·v Δt done by hand, at the velocities at whole steps."""
+    load = [{"position": [5.0, 5.0], "force": [1e6, 0.0], "wave": "pulse"}]
+    scene = lab.scene("B", (10.0, 10.0), held=(), boundary={"left": "viscous"}, wave=PULSE, load=load)
+    step = choose_step(scene)[0]
+    (node,) = np.unique(scene.supports.node[scene.supports.drive_row])
+    simulation = Simulation(scene, step, [node], watches_sides=True)
+    ledger = Ledger(simulation, 100)
+    simulation.track(ledger)
+    record = simulation.advance(101)
+    force = 1e6 * scene.case.wave["pulse"].velocity(step * np.arange(101))
+    power = force * record[:, 0, 3]
+    done = step * (power[:-1].sum() + 0.5 * force[-1] * (record[-1, 0, 3]))
+    # the last half step is at the velocity before it, not at the mean: a Δt/2 of the mean velocity's change
+    assert ledger.entries[-1].loads == pytest.approx(done, rel=0.01)
+    assert ledger.side_columns[-1, 0, 1] > 0.0
+    assert ledger.entries[-1].loads > ledger.side_columns[-1, 0, 1]
+
+
+def test_a_matched_bar_lets_in_the_wave_and_absorbs_it(rock):
+    """At Courant number 1 nothing is reflected: ∫ ρcA v² dt comes in at the left end and is absorbed at the right one.
+
+    The integral by the sum over steps, as waves are sampled there; the ends are exact for finite differences.
+    """
+    length = 1e-4
+    scene = rock.scene(
+        {"type": "finite_difference"},
+        boundary={"left": {"type": "viscous_input", "wave_p": "pulse"}, "right": {"type": "viscous"}},
+        wave=rock.triangle(length),
+    )
+    step = rock.step(scene, 1.0)
+    steps = 2 * int(1.0 / rock.speed / step)
+    ledger = ledger_of(scene, steps=steps, time_step=step)
+    wave = scene.case.wave["pulse"].velocity(step * np.arange(steps))
+    energy = rock.density * rock.speed * scene.rod.section * step * np.sum(wave**2)
+    (came_left, out_left, _), (came_right, out_right, _) = ledger.side_columns[-1]
+    assert came_left == pytest.approx(energy, rel=1e-12)
+    assert came_right == 0.0
+    assert out_right == pytest.approx(energy, rel=1e-9)
+    assert abs(out_left) < 1e-9 * energy
+
+
+@pytest.mark.parametrize("beta", [0.5, 3.0])
+def test_a_mismatched_end_absorbs_all_but_the_reflected_part(rock, beta):
+    """R = (1 − β)/(1 + β) of the velocity returns, so R² of the energy, which the matched left end then absorbs."""
+    scene = rock.scene(
+        {"type": "finite_difference"},
+        boundary={"left": {"type": "viscous_input", "wave_p": "pulse"}, "right": {"type": "viscous", "beta_p": beta}},
+        wave=rock.triangle(1e-4),
+    )
+    step = rock.step(scene, 1.0)
+    ledger = ledger_of(scene, steps=int(3.0 / rock.speed / step), time_step=step)
+    left, right = ledger.side_columns[-1]
+    back = ((1.0 - beta) / (1.0 + beta)) ** 2
+    assert right[1] / left[0] == pytest.approx(1.0 - back, rel=1e-9)
+    assert left[1] / left[0] == pytest.approx(back, rel=1e-9)
+
+
+ACROSS, ALONG = {"type": "viscous_input", "wave_p": "pulse"}, {"type": "viscous_input", "wave_s": "pulse"}
+DASHPOTS = dict.fromkeys(("left", "right"), "viscous")
+
+
+@pytest.mark.parametrize(
+    ("width", "held", "boundary"),
+    [
+        (10.0, ("y",), {"left": ACROSS, "right": "viscous"}),  # one row of ten
+        (10.0, (), DASHPOTS | {"bottom": ACROSS}),  # a symmetric half
+        (10.5, (), DASHPOTS | {"bottom": ALONG, "top": "viscous"}),  # an antisymmetric half, with halves of disks
+        (10.5, (), DASHPOTS | {"bottom": GRIP, "top": "fixed"}),
+    ],
+)
+def test_reduced_scenes_have_the_sides_of_the_whole(lab, width, held, boundary):
+    """Forces, displacements and energies, within rounding of the motion, ε·u/Δt of velocities per step."""
+    case = lab.case("A", (width, 5.0), held=held, boundary=boundary, wave=PULSE)
+    found = []
+    for keeps in (True, False):
+        changed = with_changes(case, {"reduce.rows": keeps, "reduce.symmetry": keeps})
+        whole = build(changed)
+        scene = reduced(whole)
+        assert (scene.count < whole.count) == keeps
+        simulation = Simulation(scene, choose_step(whole)[0], watches_sides=True)
+        ledger = Ledger(simulation, 20)
+        simulation.track(ledger)
+        simulation.run(201)
+        found.append((simulation.sides.names, simulation.side_record[-1], ledger.side_columns, ledger))
+    (names, record, columns, ledger), (of_all, of_whole, whole_columns, _) = found
+    assert names == of_all
+    for part in (slice(0, 3), slice(3, 5)):
+        size_of = np.abs(of_whole[:, part]).max()
+        assert size_of > 0.0
+        np.testing.assert_allclose(record[:, part], of_whole[:, part], rtol=0.0, atol=1e-10 * size_of)
+    np.testing.assert_allclose(columns, whole_columns, rtol=0.0, atol=1e-10 * np.abs(whole_columns).max())
+    closes(ledger)
