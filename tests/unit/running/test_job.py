@@ -149,11 +149,7 @@ def test_the_summary_is_plain_json_with_the_run_in_numbers(bar, tmp_path) -> Non
             "boundaries",
             "monitors",
         ),
-<<<<<<< HEAD
         *("laws", "static", "cracks", "energy", "keys", "reduced", "not_reduced", "resumed", "sides", "warnings"),
-=======
-        *("laws", "static", "cracks", "energy", "sides", "reduced", "resumed", "warnings"),
->>>>>>> s4_sides
     }
     assert (found["name"], found["particles"], found["contacts"]) == ("bar", 40, 2 * 19 + 20)
     assert found["duration"] == pytest.approx(found["steps"] * found["time_step"], rel=1e-15)
