@@ -49,6 +49,8 @@ class TemporalFile:
         self._parts: list[tuple[int, int, int]] = []
         self._cells: tuple[bytes, dict[str, int]] = b"", {}
         self._tables: dict[str, list[float]] = defaultdict(list)
+        self._rows: dict[str, int] = defaultdict(int)  # so far, written or kept
+        self._kept: dict[str, list[np.ndarray]] = defaultdict(list)
 
     def append(self, time: float, mesh: meshio.Mesh) -> None:
         """Append a mesh at a time in s."""
@@ -62,7 +64,9 @@ class TemporalFile:
         self._tables["Values"].append(time)
 
     def finish(self) -> None:
-        """Write sizes and tables, without which the file cannot be read."""
+        """Write what is kept, sizes and tables, without which the file cannot be read."""
+        for name in list(self._kept):
+            self._write(name)
         for name, sizes in zip(PART_SIZES, zip(*self._parts, strict=True), strict=True):
             self._root[name] = np.array(sizes, dtype=np.int64)
         steps = self._root.create_group("Steps")
@@ -96,15 +100,23 @@ class TemporalFile:
         return self._begun[name][1]
 
     def _extend(self, name: str, values: np.ndarray) -> int:
-        """Append values to a dataset; returns the row at which they begin."""
+        """Append values to a dataset; returns the row at which they begin. Small ones are written several at once."""
+        begin, kept = self._rows[name], self._kept[name]
+        kept.append(values)
+        self._rows[name] += len(values)
+        if sum(each.nbytes for each in kept) >= CHUNK_BYTES:
+            self._write(name)
+        return begin
+
+    def _write(self, name: str) -> None:
+        """Write the values that are kept of a dataset."""
+        values = np.concatenate(self._kept.pop(name))
         width = values.shape[1:]
         if name not in self._root:
             chunks = (chunk_rows(width, values.dtype, CHUNK_BYTES, len(values)), *width)
             shape, most = (0, *width), (None, *width)
             self._root.create_dataset(name, shape, values.dtype, chunks=chunks, maxshape=most)
-        begin = len(self._root[name])
         extend(self._root[name], values)
-        return begin
 
 
 @contextmanager

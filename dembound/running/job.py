@@ -20,7 +20,7 @@ from dembound.results.folder import Folder
 from dembound.results.interrupts import Interrupts
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.kept_stages import KeptStages
-from dembound.results.reader import replacing
+from dembound.results.reader import replacing, trust
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
@@ -131,6 +131,7 @@ class _Job:
         record, kind = partial / "run.h5", planned.kind
         warnings = _passed_on(warnings_before(planned), self.progress)
         simulation, beginning = self._simulate(planned, partial)
+        trust(record)
         summary = summarise(planned, simulation, record, self.clock.seconds)
         summary |= kind.summarise(planned.scene, simulation, beginning, record)
         warnings += _passed_on(kind.warnings_after(planned.scene, summary, record), self.progress)
