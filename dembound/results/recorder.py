@@ -1,40 +1,16 @@
 """The recorder: writes a run to one HDF5 file. Pictures, VTU files and reports are made only from that file.
 
-Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit``)::
-
-    /                       attributes: case, name, kind ("disks", "bar"), version, size, time_step, step_limit, steps,
-                            complete; of disks seed, of a bar density, section, wave_speed, attenuation, loaded,
-                            the end that is, and ends, the types of the left and the right one
-    particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
-                            column (n,), whether it belongs to a free-field column, of a bar's nodes volume (n,); if the
-                            case asks for it peak_velocity (n,), the largest speed of each in the whole run
-    histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle,
-                            position, wanted
-    boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2); of the
-                            side as a whole, without a free-field column, time (k,), displacement (k, 3), force (k, 2)
-    snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
-                            of a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
-                            and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
-                            on each particle; attribute time; of disks, if the case asks for them, contacts/ with the
-                            columns of `disks.contact_forces.contact_columns`
-    energy/                 time and the columns of `motion.energy.Entry`, (k,) each
-    energy/sides/<side>/    the columns of `motion.energy.SideEntry`, (k,) each
-    cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
-                            displacements, positions count from the start of the run
-    laws/                   name (l,) of each law or method used and time (l,) it began at
-    static/ attributes: results of the static stage, if there was one; displacement (n, 3) at its end static/before/ the
-    same before an excavation, of the particles that are left by it
+Its layout is described in `new_record`.
 """
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -43,40 +19,17 @@ from dembound.motion.energy import Entry, Ledger, SideEntry
 from dembound.motion.kind import Stage, StalledError
 from dembound.motion.trackers import Run
 from dembound.results.committed import FORMAT, CommittedFile
-from dembound.results.datasets import datasets_of, describe, extend, make, text, write
-from dembound.version import __version__
+from dembound.results.datasets import datasets_of, describe, extend, text, write
+from dembound.results.new_record import DISPLACEMENT_UNIT, SIDE_HISTORY, VELOCITY_UNIT, begin_record, header_of
 
 if TYPE_CHECKING:
     import h5py
-
-DISPLACEMENT_UNIT = "m, m, rad"
-VELOCITY_UNIT = "m/s, m/s, rad/s"
 
 KEPT_BYTES, KEPT_SECONDS = 2**20, 10.0
 """Samples and cracks are kept in memory until the samples have this size, or for this long.
 
 Thousands of small writes take longer than all steps of a small scene.
 """
-
-LONGEST_NAME = 64
-"""Bytes of the name of a law."""
-
-HISTORY = (
-    ("time", (), "f8", "s"),
-    ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
-    ("velocity", (3,), "f8", VELOCITY_UNIT),
-)
-SIDE_HISTORY = (
-    ("time", (), "f8", "s"),
-    ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
-    ("force", (2,), "f8", "N/m"),
-)
-CRACKS = (
-    ("time", (), "f8", "s"),
-    ("position", (2,), "f8", "m"),
-    ("particles", (2,), "i8", "1"),
-    ("shear", (), "?", "1"),
-)
 
 
 class Recorder:
@@ -129,7 +82,7 @@ class Recorder:
     def _begin(self, step_limit: float, stages: Sequence[Stage], counts: Mapping[str, int] | None) -> None:
         """Create all groups of a new file, or cut one to what is continued."""
         if counts is None:
-            self._create(step_limit, stages)
+            begin_record(self.file, self.run, step_limit, self._sides, self.ledger, stages)
         else:
             self._cut(counts)
         self._find_datasets()
@@ -232,30 +185,6 @@ class Recorder:
         self._append_cracks(stalled.cracks, self.run.time_step)
         write(list(self.file["snapshots"].values())[-1], "unbalanced", stalled.unbalanced, "N")
 
-    def _create(self, step_limit: float, stages: Sequence[Stage]) -> None:
-        """All groups of a new file."""
-        describe(self.file, self._header(step_limit))
-        group = self.file.create_group("particles")
-        for name, (values, unit) in self.scene.columns.items():
-            write(group, name, values, unit)
-        self._write_inputs()
-        self._make_histories()
-        self._write_boundaries()
-        make(self.file.create_group("cracks"), CRACKS)
-        if self.ledger is not None:
-            unit = self.scene.energy_unit
-            columns = [(field.name, (), "f8", "s" if field.name == "time" else unit) for field in fields(Entry)]
-            make(self.file.create_group("energy"), columns)
-            for side in self.ledger.side_names:
-                group = self.file.create_group(f"energy/sides/{side}")
-                make(group, [(name, (), "f8", unit) for name in SideEntry._fields])
-        self._make_laws()
-        self.file.create_group("snapshots")
-        for stage in stages:
-            group = self.file.require_group(stage.name)
-            describe(group, stage.facts)
-            write(group, "displacement", stage.displacement.T, DISPLACEMENT_UNIT)
-
     def _cut(self, counts: Mapping[str, int]) -> None:
         """Remove what was written after the state that the run continues from."""
         for name, history in self.file["histories"].items():
@@ -270,63 +199,8 @@ class Recorder:
         for number in list(self.file["snapshots"])[counts["snapshots"] :]:
             del self.file["snapshots"][number]
         self.file.attrs["complete"] = False
-        header = self._header(0.0)
+        header = header_of(self.run)
         describe(self.file, {name: header[name] for name in ("case", "keys")})  # it may run for longer
-
-    def _header(self, step_limit: float) -> dict[str, Any]:
-        """The attributes of the record."""
-        scene, case = self.scene, self.scene.case
-        return {
-            "name": case.name,
-            "title": case.title,
-            "case": case.text,
-            "keys": json.dumps(case.keys),
-            "version": __version__,
-            "time_step": self.run.time_step,
-            "step_limit": step_limit,
-            "size": scene.size,
-            "kind": scene.kind,
-            "complete": False,
-            **scene.attributes,
-        }
-
-    def _write_inputs(self) -> None:
-        """The texts of the files that the case refers to, with their paths in it."""
-        group = self.file.create_group("inputs")
-        for number, (path, content) in enumerate(self.scene.case.files.items()):
-            write(group, str(number), np.frombuffer(content.encode(), dtype=np.uint8), "UTF-8")
-            describe(group[str(number)], {"path": path})
-
-    def _make_histories(self) -> None:
-        """The groups of the monitors, with empty datasets."""
-        scene = self.scene
-        histories = self.file.create_group("histories", track_order=True)  # in the order of the case, not alphabetical
-        columns = HISTORY if scene.record_width <= 6 else (*HISTORY, ("stress", (), "f8", "Pa"))
-        for name, node in scene.monitors.items():
-            group = histories.create_group(name)
-            wanted = scene.places.get(name, scene.positions[node])  # a twin has no given position
-            describe(group, {"particle": node, "position": scene.positions[node], "wanted": wanted, "unit": "m"})
-            make(group, columns)
-
-    def _make_laws(self) -> None:
-        """Empty datasets of the laws and their first times."""
-        make(self.file.create_group("laws"), [("name", (), f"S{LONGEST_NAME}", ""), ("time", (), "f8", "s")])
-
-    def _write_boundaries(self) -> None:
-        """The sides; their peaks are written later."""
-        scene = self.scene
-        for side, edge in scene.edges.items():
-            group = self.file.create_group(f"boundaries/{side}")
-            group.attrs["length"] = edge.length
-            group.attrs["diameter_sum_ratio"] = edge.diameter_sum_ratio
-            write(group, "particle", edge.nodes, "1")
-            write(group, "position", scene.positions[edge.nodes], "m")
-            write(group, "diameter", edge.diameters, "m")
-            write(group, "peak_velocity", np.zeros((len(edge.nodes), 3, 2)), VELOCITY_UNIT)
-            if side in self._sides:
-                group.attrs["body_length"] = scene.sides[side].length
-                force = "N" if scene.energy_unit == "J" else "N/m"  # as energies
-                make(group, [(*column[:3], force if column[0] == "force" else column[3]) for column in SIDE_HISTORY])
 
     def _append_kept(self) -> None:
         """Write samples and cracks that are kept in memory."""

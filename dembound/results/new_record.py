@@ -1,0 +1,163 @@
+"""A new record: its groups and attributes, the datasets that do not change, and those that will grow, empty.
+
+Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit``)::
+
+    /                       attributes: name, title, case (its text), keys (all of them, as JSON), kind ("disks", "bar"),
+                            version, size, time_step, step_limit, steps, complete; of disks seed, of a bar density,
+                            section, wave_speed, attenuation, loaded, which of its ends is, and ends, their types
+    inputs/<number>         bytes of a file that the case refers to; attribute path
+    particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
+                            column (n,), whether it belongs to a free-field column, of a bar's nodes volume (n,); if the
+                            case asks for it peak_velocity (n,), the largest speed of each in the whole run
+    histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle,
+                            position, wanted
+    boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2); of the
+                            side as a whole, without a free-field column, time (k,), displacement (k, 3), force (k, 2)
+    snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
+                            of a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
+                            and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
+                            on each particle; attribute time; of disks, if the case asks for them, contacts/ with the
+                            columns of `disks.contact_forces.contact_columns`
+    energy/                 time and the columns of `motion.energy.Entry`, (k,) each
+    energy/sides/<side>/    the columns of `motion.energy.SideEntry`, (k,) each
+    cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
+                            displacements, positions count from the start of the run
+    laws/                   name (l,) of each law or method used and time (l,) it began at
+    static/                 attributes: results of the static stage, if there was one; displacement (n, 3) at its end
+    static/before/          the same before an excavation, of the particles that are left by it
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Sequence
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dembound.motion.energy import Entry, Ledger, SideEntry
+from dembound.motion.kind import Stage
+from dembound.motion.scene import Scene
+from dembound.motion.trackers import Run
+from dembound.results.datasets import describe, make, write
+from dembound.version import __version__
+
+if TYPE_CHECKING:
+    import h5py
+
+DISPLACEMENT_UNIT = "m, m, rad"
+VELOCITY_UNIT = "m/s, m/s, rad/s"
+
+LONGEST_NAME = 64
+"""Bytes of the name of a law."""
+
+HISTORY = (
+    ("time", (), "f8", "s"),
+    ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
+    ("velocity", (3,), "f8", VELOCITY_UNIT),
+)
+SIDE_HISTORY = (
+    ("time", (), "f8", "s"),
+    ("displacement", (3,), "f8", DISPLACEMENT_UNIT),
+    ("force", (2,), "f8", "N/m"),
+)
+LAWS = (("name", (), f"S{LONGEST_NAME}", ""), ("time", (), "f8", "s"))
+CRACKS = (
+    ("time", (), "f8", "s"),
+    ("position", (2,), "f8", "m"),
+    ("particles", (2,), "i8", "1"),
+    ("shear", (), "?", "1"),
+)
+
+
+def begin_record(
+    file: h5py.File,
+    run: Run,
+    step_limit: float,
+    sides: Collection[str],
+    ledger: Ledger | None,
+    stages: Sequence[Stage],
+) -> None:
+    """Write all groups of a new file.
+
+    run : to be recorded, of whose whole scene all nodes are written. step_limit : s. sides : those with histories.
+    ledger : its energy ledger, if it has one. stages : those before the run.
+    """
+    scene = run.scene.whole
+    describe(file, header_of(run) | {"step_limit": step_limit, "complete": False})
+    group = file.create_group("particles")
+    for name, (values, unit) in scene.columns.items():
+        write(group, name, values, unit)
+    _write_inputs(file, scene)
+    _make_histories(file, scene)
+    _write_boundaries(file, scene, sides)
+    make(file.create_group("cracks"), CRACKS)
+    if ledger is not None:
+        _make_energy(file, scene, ledger)
+    make(file.create_group("laws"), LAWS)
+    file.create_group("snapshots")
+    for stage in stages:
+        group = file.require_group(stage.name)
+        describe(group, stage.facts)
+        write(group, "displacement", stage.displacement.T, DISPLACEMENT_UNIT)
+
+
+def header_of(run: Run) -> dict[str, Any]:
+    """The attributes of the record of a run, apart from its step limit and whether it is complete."""
+    scene, case = run.scene.whole, run.scene.whole.case
+    return {
+        "name": case.name,
+        "title": case.title,
+        "case": case.text,
+        "keys": json.dumps(case.keys),
+        "version": __version__,
+        "time_step": run.time_step,
+        "size": scene.size,
+        "kind": scene.kind,
+        **scene.attributes,
+    }
+
+
+def _make_energy(file: h5py.File, scene: Scene, ledger: Ledger) -> None:
+    """Empty columns of the ledger, and of its sides."""
+    unit = scene.energy_unit
+    columns = [(field.name, (), "f8", "s" if field.name == "time" else unit) for field in fields(Entry)]
+    make(file.create_group("energy"), columns)
+    for side in ledger.side_names:
+        make(file.create_group(f"energy/sides/{side}"), [(name, (), "f8", unit) for name in SideEntry._fields])
+
+
+def _write_inputs(file: h5py.File, scene: Scene) -> None:
+    """The texts of the files that the case refers to, with their paths in it."""
+    group = file.create_group("inputs")
+    for number, (path, content) in enumerate(scene.case.files.items()):
+        write(group, str(number), np.frombuffer(content.encode(), dtype=np.uint8), "UTF-8")
+        describe(group[str(number)], {"path": path})
+
+
+def _make_histories(file: h5py.File, scene: Scene) -> None:
+    """The groups of the monitors, with empty datasets."""
+    histories = file.create_group("histories", track_order=True)  # in the order of the case, not alphabetical
+    columns = HISTORY if scene.record_width <= 6 else (*HISTORY, ("stress", (), "f8", "Pa"))
+    for name, node in scene.monitors.items():
+        group = histories.create_group(name)
+        wanted = scene.places.get(name, scene.positions[node])  # a twin has no given position
+        describe(group, {"particle": node, "position": scene.positions[node], "wanted": wanted, "unit": "m"})
+        make(group, columns)
+
+
+def _write_boundaries(file: h5py.File, scene: Scene, sides: Collection[str]) -> None:
+    """The sides; their peaks are written later."""
+    for side, edge in scene.edges.items():
+        group = file.create_group(f"boundaries/{side}")
+        group.attrs["length"] = edge.length
+        group.attrs["diameter_sum_ratio"] = edge.diameter_sum_ratio
+        write(group, "particle", edge.nodes, "1")
+        write(group, "position", scene.positions[edge.nodes], "m")
+        write(group, "diameter", edge.diameters, "m")
+        write(group, "peak_velocity", np.zeros((len(edge.nodes), 3, 2)), VELOCITY_UNIT)
+        if side in sides:
+            group.attrs["body_length"] = scene.sides[side].length
+            force = "N" if scene.energy_unit == "J" else "N/m"  # as energies
+            make(group, [(*column[:3], force if column[0] == "force" else column[3]) for column in SIDE_HISTORY])
