@@ -2,7 +2,7 @@
 
 Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit``)::
 
-    /                       attributes: name, title, case (its text), keys (all of them, as JSON), kind ("disks", "bar"),
+    /                       attributes: name, title, case (its text), keys (all, as JSON), kind ("disks", "bar"),
                             version, size, time_step, step_limit, steps, complete; of disks seed, of a bar density,
                             section, wave_speed, attenuation, loaded, which of its ends is, and ends, their types
     inputs/<number>         bytes of a file that the case refers to; attribute path
