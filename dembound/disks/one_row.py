@@ -25,6 +25,11 @@ class OneRow(SmallerScene):
     axis: int
 
     @property
+    def uniform_axes(self) -> tuple[int, ...]:
+        """Axes along which all of the scene of the case moves alike."""
+        return (*self.of.uniform_axes, self.axis)
+
+    @property
     def saved(self) -> str:
         """Number of rows, and of disks that need not be stepped."""
         rows = self.of.assembly.copies[self.axis]

@@ -50,6 +50,11 @@ class SmallerScene(DiskScene):
         return whole
 
     @property
+    def uniform_axes(self) -> tuple[int, ...]:
+        """Axes along which all of the scene of the case moves alike."""
+        return self.of.uniform_axes
+
+    @property
     def places_in_whole(self) -> np.ndarray:
         """(m,) a disk of the scene of the case that each disk moves as, in place and direction."""
         return self.of.places_in_whole[self.place]

@@ -60,7 +60,7 @@ def proposals(planned: Plan) -> dict[str, str]:
     scene = planned.scene
     if not scene.case.monitor or not (sources := planned.kind.sources(scene)):
         return {}
-    across = [axis for axis in (0, 1) if planned.stepped.size[axis] < scene.size[axis] or scene.size[axis] == 0.0]
+    across = [axis for axis in (0, 1) if axis in planned.stepped.uniform_axes or scene.size[axis] == 0.0]
     ground = Ground(
         planned,
         sources,

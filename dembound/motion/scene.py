@@ -122,6 +122,11 @@ class Scene(ABC):
         return self
 
     @property
+    def uniform_axes(self) -> tuple[int, ...]:
+        """Axes along which all of the whole scene moves alike, so that one row of it is stepped."""
+        return ()
+
+    @property
     def reduced(self) -> tuple[str, ...]:
         """In words, how this scene is smaller than the whole one, a line each."""
         return ()

@@ -166,7 +166,7 @@ def test_reduced_scenes_have_the_sides_of_the_whole(lab, width, held, boundary):
     for keeps in (True, False):
         changed = with_changes(case, {"reduce.rows": keeps, "reduce.symmetry": keeps})
         whole = build(changed)
-        scene = reduced(whole)
+        scene = reduced(whole).scene
         assert (scene.count < whole.count) == keeps
         simulation = Simulation(scene, choose_step(whole)[0], watches_sides=True)
         ledger = Ledger(simulation, 20)

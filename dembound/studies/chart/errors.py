@@ -38,7 +38,7 @@ class Reference:
 
     name : "exact", "extended" or "finest"; sentence : it in words. gauges : its histories for a choice and its outcome.
     until : s, time up to which histories are compared. findings : its numbers by name. own : number of the choice that
-    is the reference itself, None for another one.
+    is the reference itself, None for another one. caution : what these errors do not include, in words.
     """
 
     name: str
@@ -47,6 +47,7 @@ class Reference:
     until: float = math.inf
     findings: Mapping[str, float] = field(default_factory=dict)
     own: int | None = None
+    caution: str = ""
 
 
 @dataclass(frozen=True)

@@ -48,8 +48,12 @@ def reference_of(
             return _exact(exact_of(case))
         if any(key.startswith(SIDES) for choice in choices for key in choice.changes):
             most = AFFORDABLE * max(outcome.count for outcome in outcomes)
-            with suppress(CaseError):
+            try:
                 return _extended(case, choices, outcomes, finest, run, most)
+            except CaseError as error:
+                unseen = "errors of its sides are not seen"
+                sentence = f"{finest.sentence}; {unseen}"
+                return replace(finest, sentence=sentence, caution=f"{unseen}, as there is no extended scene: {error}")
     return finest
 
 

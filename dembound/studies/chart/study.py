@@ -75,7 +75,7 @@ class Charted:
     ----------
     case, reference, quantity : of the chart; work_unit : of the kind of body.
     lines : one for every choice. front : numbers of those on the Pareto front, the most accurate first.
-    left_out : a line for each choice that was not valid.
+    left_out : a line for each choice that was not valid, and for what the errors leave out.
     """
 
     case: Case
@@ -139,6 +139,8 @@ def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown
     _must_be_comparable(case, options)
     named = options.named if options.named is not None else from_table(case) or defaults(case)
     choices, left_out = choices_of(case, named)
+    if len(choices) == 1 and _wanted_reference(case, options) == "finest":
+        raise CaseError([f"--vary: {choices[0].name} is the only valid choice, which would be its own reference"])
     runs = _Runs(record_in(folder, resume), shown)
     outcomes = runs.all_of(choices, options.repeats or case.chart.repeats)
     if all(outcome.failure for outcome in outcomes):
@@ -147,8 +149,10 @@ def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown
     lines = [_line(choice, outcome, reference, options) for choice, outcome in zip(choices, outcomes, strict=True)]
     if not any(line.errors for line in lines):
         raise RunError("\n".join(dict.fromkeys(f"{line.outcome.failure}" for line in lines)))
-    charted = Charted(case, reference, options.wanted.quantity, kind_of(case).work_unit, lines, left_out)
-    judged = charted.judged
+    lines_out = [*left_out, reference.caution] if reference.caution else left_out
+    charted = Charted(case, reference, options.wanted.quantity, kind_of(case).work_unit, lines, lines_out)
+    if not (judged := charted.judged):
+        raise RunError(f"nothing is left to compare with the reference, {reference.sentence}, which is a choice itself")
     return replace(charted, front=[judged[k] for k in front([_point(lines[k]) for k in judged])])
 
 

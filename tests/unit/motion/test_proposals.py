@@ -113,3 +113,11 @@ def test_a_rock_bar(spalling) -> None:
     # precursor 10 (0.94 · 0.025²/8)^(1/3) = 0.419 m: half of 0.94 + 0.419 + 0.525 m, whole spacings
     assert found["smaller scene"] == "0.95 m instead of 4 m along x (right 3.05 m nearer): no echo before 0.00094 s"
     assert "shorter run" not in lines(case)  # a bar that may break
+
+
+def test_one_half_of_a_scene_needs_what_the_whole_needs(bar) -> None:
+    middle = {"load": [{"name": "blow", "force": [0.0, 1e5], "region": [29.0, 29.0, 31.0, 31.0], "wave": "pulse"}]}
+    found = [lines(bar({**SQUARE, **middle, "reduce.symmetry": symmetric})) for symmetric in (True, False)]
+
+    assert found[0] == found[1]
+    assert any("left" in line for line in found[0].values())

@@ -6,6 +6,7 @@ import pytest
 
 from dembound.errors import CaseError
 from dembound.plot.energy import COLUMNS, NEGLIGIBLE, plot_energy
+from dembound.results.datasets import datasets_of
 
 
 def test_every_column_that_is_not_zero_is_a_line(cracked_run):
@@ -13,8 +14,8 @@ def test_every_column_that_is_not_zero_is_a_line(cracked_run):
     upper, lower = figure.axes
     drawn = {line.get_label(): line for line in upper.lines}
     with h5py.File(cracked_run) as file:
-        ledger = {name: values[:] for name, values in file["energy"].items()}
-    assert ledger.keys() == {"time", "supplied", "error", *COLUMNS}
+        ledger = {name: values[:] for name, values in datasets_of(file["energy"]).items()}
+    assert ledger.keys() == {"time", "loads", "supplied", "error", *COLUMNS}
     largest = {name: np.abs(ledger[name]).max() for name in COLUMNS}
     for name, label in COLUMNS.items():
         if largest[name] > NEGLIGIBLE * max(largest.values()):

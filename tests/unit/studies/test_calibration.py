@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError, RunError
+from dembound.results.reader import text_of
 from dembound.studies import calibration as module
 from dembound.studies.calibration import calibrate
 
@@ -244,8 +245,8 @@ def test_the_passes_are_written_down(long_bar, tmp_path) -> None:
         assert file["beta"][:].tolist() == found.beta
         assert file["outgoing"][:].tolist() == found.outgoing
         assert file["ratio"][:].tolist() == found.ratio
-        assert file["outgoing"].attrs["unit"] == "m/s"
-        about = dict(file.attrs)
+        assert text_of(file["outgoing"].attrs["unit"]) == "m/s"
+        about = {key: text_of(value) if isinstance(value, bytes) else value for key, value in file.attrs.items()}
     assert (about["boundary"], about["wave"], about["kind"], about["method"]) == (
         "right",
         "p",

@@ -201,3 +201,9 @@ def test_the_record_and_the_table_have_all(charted, spalling, tmp_path) -> None:
         np.testing.assert_array_equal(gauge["velocity"][:], motion.velocity)
         assert file["reference"].attrs["spall place"] == pytest.approx(1.0 - 0.2 / 3.0)
         assert file.attrs["sentence"] == found.sentence
+
+
+def test_a_choice_is_not_compared_with_itself(charted, spalling, tmp_path) -> None:
+    with pytest.raises(CaseError, match="is the only valid choice, which would be its own reference"):
+        charted(spalling(), {"bar.spacing": [0.05]}, reference="finest")
+    assert not (tmp_path / "chart").exists()
