@@ -85,6 +85,20 @@ def require_sound(file: h5py.File) -> None:
             waiting += [item[name] for name in item]
 
 
+def require_readable(file: h5py.File) -> None:
+    """Read all numbers of a record, whose checksums are then compared; raises what h5py raises if they differ."""
+    import h5py
+
+    def read(name: str, item: h5py.Group | h5py.Dataset) -> None:
+        if isinstance(item, h5py.Dataset):
+            try:
+                item[()]
+            except OSError as error:
+                raise RecordError([f"{file.filename}: is damaged in {name}: {error}"]) from None
+
+    file.visititems(read)
+
+
 def text_of(value: str | bytes) -> str:
     """A text of a record, which may be of fixed length, that is, bytes in UTF-8."""
     return value.decode() if isinstance(value, bytes) else str(value)
@@ -106,6 +120,8 @@ def history_of(group: h5py.Group, quantity: str) -> tuple[np.ndarray, np.ndarray
     """Times (k,) in s and values (k, …) of a history; of an interrupted run up to where both were written."""
     time, values = group["time"][:], group[quantity][:]
     count = min(len(time), len(values))
+    if count == 0:
+        raise CaseError([f"{group.file.filename}: has no samples yet; a run that was interrupted can be resumed"])
     return time[:count], values[:count]
 
 

@@ -52,6 +52,6 @@ class Snapshots(Tracker):
         self._after(run.state.step)
 
     def take_last(self, run: Run) -> None:
-        """Write the scene at the end of a run that was ended early, unless it has just been written or none are kept."""
+        """Write the scene at the end of a run that was ended early, unless it was just written or none are kept."""
         if self._number > 0 and self._last < run.state.step:
             self.handle(run)

@@ -16,7 +16,7 @@ from dembound.motion.state import Arrays
 from dembound.results.checkpoint import FILE, Checkpoint, differences
 from dembound.results.folder import PARTIAL, Folder
 from dembound.results.kept_stages import FOLDER as STAGES
-from dembound.results.reader import open_record
+from dembound.results.reader import open_record, require_readable, text_of
 
 SILENCE = ("until", "silent_level", "silent_for")
 """Keys of ``[run]`` that end a run before its duration."""
@@ -85,19 +85,27 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
 
 
 def _case_of(facts: dict[str, Any], path: Path) -> Case:
-    """The case of a checkpoint.
+    """The case of a checkpoint, with the duration that the record has, which may be a later one.
 
-    Raises CaseError if it is not that of the record, or has other keys here than where it was written.
+    Raises CaseError if it is not that of the record, or has other keys here than where it was written, and RecordError
+    if the record is damaged.
     """
-    case = loads(facts["case"], name=facts["name"], files=facts["files"])
+    case, text = loads(facts["case"], name=facts["name"], files=facts["files"]), facts["case"]
     others = [("this installation", json.loads(json.dumps(case.keys)))]
     if facts["stage"] is None:
         with open_record(path / "run.h5") as record:
+            require_readable(record)
             others.append(("run.h5", json.loads(record.attrs["keys"])))
+            text = text_of(record.attrs["case"])
     for where, keys in others:
-        if different := differences(facts["keys"], keys):
+        if different := differences(_lasting_any_time(facts["keys"]), _lasting_any_time(keys)):
             raise CaseError([f"{path}: the case of {FILE} is not that of {where}", *different])
-    return case
+    return case if text == facts["case"] else loads(text, name=facts["name"], files=facts["files"])
+
+
+def _lasting_any_time(keys: dict[str, Any]) -> dict[str, Any]:
+    """The keys of a case without those that determine when its run ends."""
+    return keys | {"run": {key: value for key, value in keys["run"].items() if key not in (*SILENCE, "duration")}}
 
 
 def _lasting(case: Case, until: float) -> Case:

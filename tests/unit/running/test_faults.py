@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 import pytest
 
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RecordError
 from dembound.kinds import loads
 from dembound.results import recorder
 from dembound.results.folder import LOCK, OWN
@@ -258,6 +258,37 @@ def test_what_cannot_be_resumed_is_refused_with_the_reason(case, tmp_path) -> No
 
 def version_of_equal_length(found: re.Match) -> bytes:
     return found[1] + b"9" * (len(found[0]) - len(found[1]))
+
+
+def test_a_longer_run_that_ends_before_its_first_checkpoint_is_resumed(case, tmp_path, monkeypatch) -> None:
+    whole = history(run_case(loads(CASE.replace("0.02", "0.03"), name="bar"), tmp_path / "whole") / "run.h5")
+    folder = run_case(case, tmp_path)
+
+    class Ended(job.Checkpoints):
+        """Ends the run as a kill does, without a checkpoint."""
+
+        def observe(self, run, record) -> None:
+            raise SystemExit
+
+    monkeypatch.setattr(job, "Checkpoints", Ended)
+    with pytest.raises(SystemExit):
+        resume_case(folder, until=0.03)
+    monkeypatch.undo()
+    again = resume_case(tmp_path / "bar.partial")
+
+    assert np.array_equal(history(again / "run.h5"), whole)
+
+
+def test_a_damaged_record_is_not_continued(case, tmp_path) -> None:
+    folder = run_case(case, tmp_path)
+    with h5py.File(folder / "run.h5") as file:
+        place = file["snapshots/0001/velocity"].id.get_chunk_info(0).byte_offset
+    data = bytearray((folder / "run.h5").read_bytes())
+    data[place + 10] ^= 1
+    (folder / "run.h5").write_bytes(data)
+    with pytest.raises(RecordError, match=r"run\.h5: is damaged in snapshots/0001/velocity"):
+        resume_case(folder, until=0.03)
+    assert not (tmp_path / "bar.partial").exists()
 
 
 def test_a_checkpoint_of_another_version_is_refused(case, tmp_path, monkeypatch) -> None:
