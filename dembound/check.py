@@ -29,7 +29,7 @@ def _run_facts(planned: Plan) -> dict[str, str]:
         "time step": f"{planned.time_step:.4g} s, {planned.time_step / planned.step_limit:.3f} of the limit "
         f"{planned.step_limit:.6g} s",
         "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s{_until_silent(planned)}",
-        "memory": f"{in_words(scene.largest_memory)} at most{_here()}",
+        "memory": f"about {in_words(scene.largest_memory)} at its peak{_here()}",
         "estimated time": f"{duration_in_words(_estimate(planned))} {_threads_in_words(scene.threads)}"
         f"{planned.kind.not_estimated(scene.case)}",
     }

@@ -16,7 +16,7 @@ def test_facts_are_those_of_the_run_and_of_the_scene(bar) -> None:
 
     assert facts["steps"] == "100 for 0.01 s"
     assert facts["time step"] == f"0.0001 s, {1e-4 / planned.step_limit:.3f} of the limit {planned.step_limit:.6g} s"
-    assert facts["memory"].startswith(f"{in_words(planned.stepped.largest_memory)} at most")
+    assert facts["memory"].startswith(f"about {in_words(planned.stepped.largest_memory)} at its peak")
     assert facts["reduced"] == "rows: 2 identical rows are stepped as one, 20 of 40 disks"
     assert facts["estimated time"] == "less than 1 s with 1 thread"
     own = disk_facts(planned.scene)
