@@ -71,7 +71,7 @@ def numbers(record: Path) -> dict[str, bytes]:
     return found
 
 
-@pytest.mark.parametrize(("kills", "duration"), [(3, 0.4), pytest.param(50, 8.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("kills", "duration"), [(3, 0.4), pytest.param(50, 16.0, marks=pytest.mark.slow)])
 def test_a_run_that_is_killed_goes_on(tmp_path, kills, duration) -> None:
     for name in ("killed", "whole"):
         (tmp_path / f"{name}.toml").write_text(CASE.replace("duration = 0.4", f"duration = {duration}"))
