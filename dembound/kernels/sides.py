@@ -187,9 +187,8 @@ def note_sides(step, u, supports, across, followed, moved, body, sides):
         if c < 2:
             record[step, o, U(3) + c] += sides.sign[b] * force
         came = power + absorbed
-        half = (
-            came if sides.kind[b] == DASHPOT else before + absorbed
-        )  # so that all of dashpots without a wave is absorbed
+        # of dashpots without a wave all is absorbed, also in half a step
+        half = came if sides.kind[b] == DASHPOT else before + absorbed
         work[1, o, 0] += 0.5 * body.step * half
         work[1, o, 1] += 0.5 * body.step * (half - before)
         work[0, o, 0] += body.step * came

@@ -92,13 +92,24 @@ class Folder:
         return lock
 
     def finish(self) -> None:
-        """Replace the final folder; files in it that no run has written remain there."""
+        """Replace the final folder; files in it that no run has written remain there.
+
+        Of a process that has ended in between, the replaced folder may be left; its files are moved, too.
+        """
         if self.final.exists():
+            if self._old.is_dir():
+                self._take_replaced()
             self.final.rename(self._old)
         self.partial.rename(self.final)
         if self._old.is_dir():
-            _remove_own(self._old)
-            _move_all(self._old, self.final)
+            self._take_replaced()
+
+    def _take_replaced(self) -> None:
+        """Move what no run has written from the replaced folder to the final one; raises CaseError if it is there."""
+        _remove_own(self._old)
+        _move_all(self._old, self.final)
+        if self._old.is_dir():
+            raise CaseError([f"{self._old}: has files that {self.final} has, too; move or remove them"])
 
 
 def _remove_own(folder: Path, but: str = "") -> None:

@@ -144,6 +144,18 @@ def test_files_that_no_run_has_written_are_kept(case, tmp_path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["bar"]
 
 
+def test_a_folder_left_between_two_names_is_put_in_order(case, tmp_path) -> None:
+    folder = run_case(case, tmp_path)
+    for both in (True, False):  # the process had ended after, or before the new folder had its name
+        left = shutil.copytree(folder, tmp_path / "bar.replaced")
+        (left / f"notes{both}.txt").write_text("mine")
+        if not both:
+            shutil.rmtree(folder)
+        run_case(case, tmp_path)
+        assert (folder / f"notes{both}.txt").read_text() == "mine"
+        assert [path.name for path in tmp_path.iterdir()] == ["bar"]
+
+
 def test_every_file_of_a_run_is_known_as_its_own(case, tmp_path) -> None:
     folder = run_case(loads(CASE.replace("false", "true"), name="bar"), tmp_path)
     names = [path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()]
