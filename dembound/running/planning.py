@@ -20,6 +20,9 @@ MOST_STEPS = 1e11
 ENTRIES = 100
 """Entries of the energy ledger where the case does not give an interval."""
 
+SIDE_STEPS = 8
+"""Steps between two samples of the sides where the case does not give an interval."""
+
 
 def plan(case: Case, clock: Clock | None = None) -> Plan:
     """Build the scene and choose the step; the clock counts the time under "build".
@@ -84,11 +87,19 @@ def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Si
         system=beginning.system,
         datum=beginning.datum,
         clock=clock,
-        watches_sides=True,
+        side_stride=_steps_between_samples(planned),
     )
     if scene.case.run.until == "silent":
         simulation.track(Silence(silent_rule(planned.scene, planned.kind.sources(planned.scene)), planned.time_step))
     return simulation, Ledger(simulation, _steps_between_entries(planned), last=planned.steps - 1)
+
+
+def _steps_between_samples(planned: Plan) -> int:
+    """Steps from one sample of the sides to the next."""
+    output = planned.scene.case.output
+    if output.side_interval > 0.0:
+        return max(1, round(output.side_interval / planned.time_step))
+    return max(SIDE_STEPS, round(output.history_interval / planned.time_step))
 
 
 def _steps_between_entries(planned: Plan) -> int:
