@@ -7,23 +7,18 @@ linear solve and gives wave speeds without a dynamic run.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
+from dembound.disks.free_surface import Skin, skin_of
+from dembound.disks.homogenise import Continuum, homogenise
 from dembound.errors import CaseError
 from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
 from dembound.packings.brick import Brick
-
-if TYPE_CHECKING:
-    from scipy.sparse import csc_matrix
-
-GRADIENTS = ("xx", "yy", "xy", "yx")
-"""The four unit displacement gradients ∂u_a/∂b, in this order in every homogenised matrix."""
 
 LARGEST_OVERLAP = 0.1
 """Largest locked-in pressure over the contact modulus: the largest pressure at which bricks are packed."""
@@ -49,6 +44,7 @@ class PackedMaterial:
     moduli: Moduli
     law: Law
     held: tuple[int, ...] = ()
+    _continua: dict[tuple[int, ...], Continuum] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
     def stiffness(self) -> Stiffness:
@@ -79,21 +75,34 @@ class PackedMaterial:
             return 0.0
         first, second = self.brick.radii[self.brick.pairs].T
         bonds = self.law.stiffness(replace(self.moduli, emod=0.0), first, second, np.hypot(*self.brick.vectors.T))
-        alone = homogenise(self.brick, bonds, tuple(component for component in self.held if component == 2))
+        alone = homogenise(self.brick, bonds, tuple(component for component in self.held if component == 2)).tensor
         return min(float(alone[axis, axis] / self.material_tensor[axis, axis]) for axis in (0, 1))
 
-    @cached_property
+    @property
     def tensor(self) -> np.ndarray:
         """Homogenised stiffness (4, 4) Pa with the scene's held motions; see `homogenise`."""
-        return homogenise(self.brick, self.stiffness, self.held)
+        return self._continuum(self.held).tensor
 
-    @cached_property
+    @property
     def material_tensor(self) -> np.ndarray:
         """Homogenised stiffness (4, 4) Pa with both translations free, a property of the material."""
-        rotation_only = tuple(component for component in self.held if component == 2)
-        if rotation_only == self.held:
-            return self.tensor
-        return homogenise(self.brick, self.stiffness, rotation_only)
+        return self.continuum.tensor
+
+    @property
+    def continuum(self) -> Continuum:
+        """The continuum that the brick is equivalent to, with both translations free."""
+        return self._continuum(tuple(component for component in self.held if component == 2))
+
+    @cached_property
+    def skin(self) -> Skin:
+        """Depths of the continuum's free surfaces at bottom and top, see `skin_of`."""
+        return skin_of(self.brick, self.stiffness, self.material_tensor)
+
+    def _continuum(self, held: tuple[int, ...]) -> Continuum:
+        """The continuum with some components held, computed once."""
+        if held not in self._continua:
+            self._continua[held] = homogenise(self.brick, self.stiffness, held)
+        return self._continua[held]
 
     def wave_speeds(self, axis: int) -> tuple[float, float]:
         """c_p and c_s (m/s) of plane waves along x (axis 0) or y (1) in the scene, held motions included.
@@ -155,76 +164,3 @@ def nominal_moduli(material: Material) -> Moduli:
         assert material.pb_emod is not None
         emod, pb_emod = material.emod, material.pb_emod
     return Moduli(emod, pb_emod, material.kratio, material.pb_kratio, material.pb_rmul, material.fric)
-
-
-def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> np.ndarray:
-    """Stiffness (4, 4) Pa of the infinite tiling against the displacement gradients xx, yy, xy, yx.
-
-    The brick is strained by each unit mean gradient in turn while its particles relax periodically (rotations free
-    unless held): minimise ½ Σ k e² over the periodic displacements, a sparse linear solve. Entry [a, b] is the mean
-    stress conjugate to gradient a under unit gradient b. With free rotations xy and yx are the same shear, so C66 =
-    C[yx, yx]; c² = C/ρ for plane waves.
-
-    Raises CaseError when disks can move without resistance, as without bonds and friction.
-    """
-    from scipy.sparse import diags
-    from scipy.sparse.linalg import splu
-
-    motions, gradients = _elongations(brick, stiffness)
-    k = diags(np.concatenate([stiffness.normal, stiffness.shear, stiffness.bending]))
-    area = float(np.prod(brick.size))
-    unrelaxed = gradients.T @ (k @ gradients)
-    free = _free_columns(len(brick.radii), held)
-    if len(free) == 0:
-        return unrelaxed / area
-    motions = motions[:, free]
-    matrix = (motions.T @ k @ motions).tocsc()
-    load = motions.T @ (k @ gradients)
-    try:
-        solver = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    except RuntimeError:  # raised by SuperLU for a singular matrix
-        raise CaseError(["material: gives no stiffness to some motion; give bonds or friction"]) from None
-    return (unrelaxed - load.T @ solver.solve(load)) / area
-
-
-def _free_columns(count: int, held: tuple[int, ...]) -> np.ndarray:
-    """Unknowns of the periodic problem: no held components, and one disk fixed against rigid motion."""
-    free = np.ones((3, count), dtype=bool)
-    free[list(held)] = False
-    free[:2, 0] = False
-    return np.flatnonzero(free.ravel())
-
-
-def _elongations(brick: Brick, stiffness: Stiffness) -> tuple[csc_matrix, np.ndarray]:
-    """Normal, shear and bending elongations (3b) per unit particle motion (3n) and per unit mean gradient (4).
-
-    Particle motions are ordered all x, all y, all rotations. Rows are scaled as in the law: n·Δu,
-    t·Δu − l_iθ_i − l_jθ_j, θ_j − θ_i.
-    """
-    from scipy.sparse import coo_matrix
-
-    vectors = brick.vectors
-    count, contacts = len(brick.radii), len(vectors)
-    c, s = (vectors / np.hypot(*vectors.T)[:, None]).T
-    i, j = brick.pairs.T
-    row = np.arange(contacts)
-    entries = [
-        (row, j, c), (row, i, -c), (row, count + j, s), (row, count + i, -s),
-        (contacts + row, j, -s), (contacts + row, i, s),
-        (contacts + row, count + j, c), (contacts + row, count + i, -c),
-        (contacts + row, 2 * count + i, -stiffness.arm_i), (contacts + row, 2 * count + j, -stiffness.arm_j),
-        (2 * contacts + row, 2 * count + j, np.ones(contacts)),
-        (2 * contacts + row, 2 * count + i, -np.ones(contacts)),
-    ]  # fmt: skip
-    rows, columns, values = (np.concatenate(part) for part in zip(*entries, strict=True))
-    motions = coo_matrix((values, (rows, columns)), shape=(3 * contacts, 3 * count)).tocsc()
-    dx, dy = vectors.T
-    zero = np.zeros(contacts)
-    gradients = np.concatenate(
-        [
-            np.stack([c * dx, s * dy, c * dy, s * dx], axis=1),
-            np.stack([-s * dx, c * dy, -s * dy, c * dx], axis=1),
-            np.stack([zero] * 4, axis=1),
-        ]
-    )
-    return motions, gradients

@@ -190,7 +190,7 @@ def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> Bounda
 
     axis is that of the normal, 0 (x) or 1 (y): a packing may be stiffer along one than along the other.
     """
-    p_gradient, s_gradient = ((0, 3), (1, 2))[axis]  # of u_n and of u_s along the normal, see packed_material.GRADIENTS
+    p_gradient, s_gradient = ((0, 3), (1, 2))[axis]  # of u_n and of u_s along the normal, see homogenise.GRADIENTS
     p_speed, s_speed = case.material.p_wave_speed, case.material.s_wave_speed
     if p_speed is None:
         p_speed = float(np.sqrt(ground.material_tensor[p_gradient, p_gradient] / ground.density))

@@ -1,0 +1,156 @@
+"""The continuum that a periodic brick is equivalent to, from one linear solve.
+
+The brick is strained by each unit mean displacement gradient in turn while its particles relax periodically: the energy
+½ Σ k e² of all elongations e is minimised over the particles' motions beyond the mean gradient, the correctors χ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.laws import Stiffness
+from dembound.packings.brick import Brick
+from dembound.packings.tiling import Assembly
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_matrix, csr_matrix
+
+GRADIENTS = ("xx", "yy", "xy", "yx")
+"""The four unit displacement gradients ∂u_a/∂b, in this order in every homogenised matrix."""
+
+
+class Network(NamedTuple):
+    """Disks and the springs between them: pairs (b, 2), vectors (b, 2) m from the first disk to the second."""
+
+    disks: int
+    pairs: np.ndarray
+    vectors: np.ndarray
+    stiffness: Stiffness
+
+    @classmethod
+    def of_brick(cls, brick: Brick, stiffness: Stiffness) -> Network:
+        """The infinite tiling of a brick with these constants of its contacts."""
+        return cls(len(brick.radii), brick.pairs, brick.vectors, stiffness)
+
+    @classmethod
+    def of_assembly(cls, brick: Brick, stiffness: Stiffness, assembly: Assembly) -> Network:
+        """Copies of a brick."""
+        of = assembly.contact_type
+        constants = (stiffness.normal, stiffness.shear, stiffness.bending, stiffness.arm_i, stiffness.arm_j)
+        return cls(
+            len(assembly.radii), assembly.pairs, brick.vectors[of], Stiffness(*(values[of] for values in constants))
+        )
+
+    @property
+    def springs(self) -> np.ndarray:
+        """Constants (3b,) of the elongations: normal, shear, bending."""
+        return np.concatenate([self.stiffness.normal, self.stiffness.shear, self.stiffness.bending])
+
+    @property
+    def directions(self) -> tuple[np.ndarray, np.ndarray]:
+        """Components (b,) along x and y of the contacts' normals."""
+        c, s = (self.vectors / np.hypot(*self.vectors.T)[:, None]).T
+        return c, s
+
+    def motion_matrix(self) -> csr_matrix:
+        """Elongations (3b) per unit motion of the disks (3n): all x, all y, all rotations.
+
+        As in the law they are n·Δu, t·Δu − l_iθ_i − l_jθ_j and θ_j − θ_i.
+        """
+        from scipy.sparse import coo_matrix
+
+        count, contacts = self.disks, len(self.vectors)
+        c, s = self.directions
+        i, j = self.pairs.T.astype(np.int64)
+        row = np.arange(contacts)
+        entries = [
+            (row, j, c), (row, i, -c), (row, count + j, s), (row, count + i, -s),
+            (contacts + row, j, -s), (contacts + row, i, s),
+            (contacts + row, count + j, c), (contacts + row, count + i, -c),
+            (contacts + row, 2 * count + i, -self.stiffness.arm_i),
+            (contacts + row, 2 * count + j, -self.stiffness.arm_j),
+            (2 * contacts + row, 2 * count + j, np.ones(contacts)),
+            (2 * contacts + row, 2 * count + i, -np.ones(contacts)),
+        ]  # fmt: skip
+        rows, columns, values = (np.concatenate(part) for part in zip(*entries, strict=True))
+        return coo_matrix((values, (rows, columns)), shape=(3 * contacts, 3 * count)).tocsr()
+
+    def gradient_matrix(self) -> np.ndarray:
+        """Elongations (3b, 4) per unit mean gradient."""
+        c, s = self.directions
+        dx, dy = self.vectors.T
+        return np.concatenate(
+            [
+                np.stack([c * dx, s * dy, c * dy, s * dx], axis=1),
+                np.stack([-s * dx, c * dy, -s * dy, c * dx], axis=1),
+                np.zeros((len(dx), 4)),
+            ]
+        )
+
+    def relaxed(self, elongations: np.ndarray, held: tuple[int, ...] = ()) -> np.ndarray:
+        """Motions (3n, k) of least energy in addition to elongations (3b, k), with some components held.
+
+        Raises CaseError when disks can move without resistance, as without bonds and friction.
+        """
+        from scipy.sparse import diags
+        from scipy.sparse.linalg import splu
+
+        motion = np.zeros((3 * self.disks, elongations.shape[1]))
+        free = _free_columns(self.disks, held)
+        if len(free) == 0:
+            return motion
+        k = diags(self.springs)
+        ways = self.motion_matrix()[:, free]
+        matrix: csc_matrix = (ways.T @ k @ ways).tocsc()
+        try:
+            solver = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        except RuntimeError:  # raised by SuperLU for a singular matrix
+            raise CaseError(["material: gives no stiffness to some motion; give bonds or friction"]) from None
+        motion[free] = -solver.solve(ways.T @ (k @ elongations))
+        return motion
+
+
+@dataclass(frozen=True)
+class Continuum:
+    """The continuum that a brick is equivalent to.
+
+    Attributes
+    ----------
+    tensor : (4, 4) Pa, stiffness against the displacement gradients `GRADIENTS`: entry [a, b] is the mean stress
+    conjugate to gradient a under unit gradient b. With free rotations xy and yx are the same shear, so C66 = C[yx, yx];
+    c² = C/ρ for plane waves.
+    corrector : (3, n, 4) m and rad, motion of the brick's disks beyond the unit mean gradient; the mean of the
+    translations, weighted by the disks' areas, is zero.
+    """
+
+    tensor: np.ndarray
+    corrector: np.ndarray
+
+
+def homogenise(brick: Brick, stiffness: Stiffness, held: tuple[int, ...]) -> Continuum:
+    """The continuum of the infinite tiling of a brick; held : components (0 x, 1 y, 2 rotation) that do not move.
+
+    Raises CaseError when disks can move without resistance, as without bonds and friction.
+    """
+    network = Network.of_brick(brick, stiffness)
+    gradients = network.gradient_matrix()
+    motion = network.relaxed(gradients, held)
+    elongations = gradients + network.motion_matrix() @ motion
+    tensor = gradients.T @ (network.springs[:, None] * elongations) / float(np.prod(brick.size))
+    corrector = motion.reshape(3, network.disks, 4)
+    area = brick.radii**2 / np.sum(brick.radii**2)
+    for component in {0, 1} - set(held):
+        corrector[component] -= area @ corrector[component]
+    return Continuum(tensor, corrector)
+
+
+def _free_columns(count: int, held: tuple[int, ...]) -> np.ndarray:
+    """Unknowns of the periodic problem: no held components, and one disk fixed against rigid motion."""
+    free = np.ones((3, count), dtype=bool)
+    free[list(held)] = False
+    free[:2, 0] = False
+    return np.flatnonzero(free.ravel())
