@@ -11,6 +11,7 @@ import numpy as np
 
 from dembound.errors import PackingError
 from dembound.packings.brick import Brick
+from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly, tile
 
 APART = 2.0
@@ -74,7 +75,7 @@ def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[A
         raise PackingError(f"{np.count_nonzero(twin < 0)} disks of the body have no twin in the free-field column")
     count = len(column.radii)
     width = float(brick.size[0])
-    seam = _seam(brick, body, where, numbers, sides)
+    seam = _seam(brick, body, numbers, sides)
     joint = replace(
         body,
         positions=np.vstack([column.positions - [width + APART * brick.mean_diameter, 0.0], body.positions]),
@@ -99,50 +100,20 @@ def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[A
     )
 
 
-def _seam(
-    brick: Brick, body: Assembly, where: np.ndarray, numbers: np.ndarray, sides: tuple[str, ...]
-) -> dict[str, np.ndarray]:
+def _seam(brick: Brick, body: Assembly, numbers: np.ndarray, sides: tuple[str, ...]) -> dict[str, np.ndarray]:
     """Contacts of the body's disks with neighbours beyond its sides, sorted by disk, then contact, (e,) each.
 
-    where (n, 2) are the body's tiles; numbers (tile y, disk) the column's particles, −1 where there is none.
+    numbers (tile y, disk) are the column's particles, −1 where there is none.
     """
-    edge = np.flatnonzero((where[:, 0] == 0) | (where[:, 0] >= body.copies[0] - 1))
-    contact, second, owner = _incident(brick)
-    first_of, last_of = (np.searchsorted(owner, body.brick_particle[edge], way) for way in ("left", "right"))
-    many = last_of - first_of
-    node = np.repeat(edge, many)
-    entry = np.repeat(first_of, many) + np.arange(many.sum()) - np.repeat(np.cumsum(many) - many, many)
-    contact_type, second = contact[entry], second[entry]
-    other = np.where(second, brick.pairs[contact_type, 0], brick.pairs[contact_type, 1])
-    image = np.where(second[:, None], -brick.images[contact_type], brick.images[contact_type])
-    tile_there = where[node] + image
-    height = tile_there[:, 1]
+    cut = cut_contacts(brick, body, sides)
+    height = cut.tile[:, 1]
     standing = (height >= 0) & (height < len(numbers))
-    near = np.where(standing, numbers[np.where(standing, height, 0), other], -1)
-    out = {"left": tile_there[:, 0] < 0, "right": tile_there[:, 0] >= body.copies[0]}
-    absent = ~np.isin(_key(tile_there, other, brick), _key(where, body.brick_particle, brick))
-    beyond = (near >= 0) & absent & np.logical_or.reduce([out[side] for side in sides])
+    near = np.where(standing, numbers[np.where(standing, height, 0), cut.other], -1)
     columns = {
-        "node": node,
+        "node": cut.node,
         "neighbour": near,
-        "contact_type": contact_type,
-        "twin_is_second": second,
-        "image": image[:, 0],
+        "contact_type": cut.contact_type,
+        "twin_is_second": cut.is_second,
+        "image": cut.image[:, 0],
     }
-    return {name: values[beyond] for name, values in columns.items()}
-
-
-def _incident(brick: Brick) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Ends of the brick's contacts sorted by disk: contact (2b,), whether it is the second end (2b,), disk (2b,)."""
-    count = len(brick.pairs)
-    contact = np.tile(np.arange(count), 2)
-    second = np.repeat([False, True], count)
-    owner = brick.pairs.T.ravel()
-    order = np.lexsort((second, contact, owner))
-    return contact[order], second[order], owner[order]
-
-
-def _key(where: np.ndarray, particle: np.ndarray, brick: Brick) -> np.ndarray:
-    """One number for each disk of each tile; tiles (k, 2) from −1 on."""
-    tall = 2**31
-    return ((where[:, 0] + 1) * tall + where[:, 1] + 1) * len(brick.radii) + particle
+    return {name: values[near >= 0] for name, values in columns.items()}

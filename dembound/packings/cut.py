@@ -1,0 +1,95 @@
+"""The contacts that end at the sides of a body: those of the infinite tiling with disks beyond."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from dembound.packings.brick import Brick
+from dembound.packings.tiling import Assembly
+
+BEYOND = (("left", "right"), ("bottom", "top"))
+"""The sides at low and at high coordinates, along x and along y."""
+
+
+@dataclass(frozen=True, eq=False)
+class CutContacts:
+    """Contacts between disks of a body and disks beyond its sides, sorted by the body's disk, then by contact.
+
+    Attributes
+    ----------
+    node : (e,) int64, disk of the body.
+    contact_type : (e,) int64, the contact of the brick.
+    is_second : (e,) bool, whether the body's disk is the contact's second one.
+    other : (e,) int64, the disk of the brick that the one beyond is a copy of.
+    tile : (e, 2) int64, in which copy of the brick it is, counted as in the body.
+    image : (e, 2) int64, that copy less the one of the body's disk.
+    """
+
+    node: np.ndarray
+    contact_type: np.ndarray
+    is_second: np.ndarray
+    other: np.ndarray
+    tile: np.ndarray
+    image: np.ndarray
+
+    def only(self, chosen: np.ndarray) -> CutContacts:
+        """Some of them, chosen (e,) bool."""
+        return CutContacts(**{name: values[chosen] for name, values in vars(self).items()})
+
+    def vectors(self, brick: Brick) -> np.ndarray:
+        """Vectors (e, 2) m from the body's disk to the one beyond."""
+        return brick.vectors[self.contact_type] * np.where(self.is_second, -1.0, 1.0)[:, None]
+
+
+def cut_contacts(brick: Brick, body: Assembly, sides: Collection[str]) -> CutContacts:
+    """The contacts of a body with disks beyond these sides; where a disk is beyond two sides, both must be of them."""
+    where = body.tile.astype(np.int64)
+    contact, second, owner = _ends(brick)
+    # images are ±1 at most where bricks are as wide as two disks, so only the outer tiles have contacts beyond
+    reach = np.abs(brick.images).max(axis=0, initial=1)
+    outer = ((where < reach) | (where >= np.array(body.copies) - reach)).any(axis=1)
+    edge = np.flatnonzero(outer)
+    first_of, last_of = (np.searchsorted(owner, body.brick_particle[edge], way) for way in ("left", "right"))
+    many = last_of - first_of
+    entry = np.repeat(first_of, many) + np.arange(many.sum()) - np.repeat(np.cumsum(many) - many, many)
+    node, contact_type, is_second = np.repeat(edge, many), contact[entry], second[entry]
+    other = np.where(is_second, brick.pairs[contact_type, 0], brick.pairs[contact_type, 1])
+    image = np.where(is_second[:, None], -brick.images[contact_type], brick.images[contact_type])
+    found = CutContacts(node, contact_type, is_second, other, where[node] + image, image)
+    absent = ~np.isin(_key(found.tile, other, brick), _key(where, body.brick_particle, brick))
+    return found.only(absent & _is_beyond(found.tile, brick.edge_rows[other], body.copies, sides))
+
+
+def _is_beyond(tile: np.ndarray, closing: np.ndarray, copies: tuple[int, int], sides: Collection[str]) -> np.ndarray:
+    """Whether disks (e,) lie beyond some side, and only beyond such as are among these sides.
+
+    tile : (e, 2) in which copies of the brick they are; closing : (e, 2) bool, whether they are of its regular rows,
+    which close the frame of a body, and so belong to it beyond its last bricks.
+    """
+    beyond = np.zeros(len(tile), dtype=np.bool_)
+    allowed = np.ones(len(tile), dtype=np.bool_)
+    for axis, (low, high) in enumerate(BEYOND):
+        last = copies[axis] - 1 + closing[:, axis]
+        for side, out in ((low, tile[:, axis] < 0), (high, tile[:, axis] > last)):
+            beyond |= out
+            allowed &= ~out | (side in sides)
+    return beyond & allowed
+
+
+def _ends(brick: Brick) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Ends of the brick's contacts sorted by disk: contact (2b,), whether it is the second end (2b,), disk (2b,)."""
+    count = len(brick.pairs)
+    contact = np.tile(np.arange(count), 2)
+    second = np.repeat([False, True], count)
+    owner = brick.pairs.T.ravel()
+    order = np.lexsort((second, contact, owner))
+    return contact[order], second[order], owner[order]
+
+
+def _key(where: np.ndarray, particle: np.ndarray, brick: Brick) -> np.ndarray:
+    """One number for each disk of each tile; tiles (k, 2) from −2¹⁵ on."""
+    shift, tall = 2**15, 2**31
+    return ((where[:, 0] + shift) * tall + where[:, 1] + shift) * len(brick.radii) + particle

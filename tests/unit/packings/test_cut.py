@@ -1,0 +1,101 @@
+"""Contacts that end at the sides of a body, against those of a wider one."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from dembound.packings import Square
+from dembound.packings.brick import Brick
+from dembound.packings.cut import CutContacts, cut_contacts
+from dembound.packings.tiling import Assembly, tile
+
+OPEN = (False, False)
+MARGIN = 2
+"""Bricks on each side of the body in the wider one, which the cut at its own sides does not reach."""
+
+
+@pytest.fixture(params=["square", "random", "edged"])
+def brick(request) -> Brick:
+    if request.param == "square":
+        return Square(size=(1.0, 1.0), radius=0.5).pack(1e9)
+    return request.getfixturevalue(f"{request.param}_brick")
+
+
+def places(assembly: Assembly, shift: int = 0) -> list[tuple[int, int, int]]:
+    """Tile x, tile y and disk of the brick of every disk."""
+    return [
+        (int(x) - shift, int(y) - shift, int(disk))
+        for (x, y), disk in zip(assembly.tile, assembly.brick_particle, strict=True)
+    ]
+
+
+def beyond(place: tuple[int, int, int], brick: Brick, copies: tuple[int, int]) -> set[str]:
+    """The sides that a disk of the infinite tiling lies beyond; the regular rows close the frame at right and top."""
+    sides = set()
+    for axis, (low, high) in enumerate((("left", "right"), ("bottom", "top"))):
+        if place[axis] < 0:
+            sides.add(low)
+        if place[axis] > copies[axis] - (0 if brick.edge_rows[place[2], axis] else 1):
+            sides.add(high)
+    return sides
+
+
+def by_hand(brick: Brick, copies: tuple[int, int], sides: tuple[str, ...]) -> Counter:
+    """Place of the disk, place of the one beyond, contact, and which of its disks is in the body."""
+    body = set(places(tile(brick, copies, OPEN)))
+    wide = tile(brick, (copies[0] + 2 * MARGIN, copies[1] + 2 * MARGIN), OPEN)
+    where = places(wide, MARGIN)
+    found: Counter = Counter()
+    for pair, contact_type in zip(wide.pairs, wide.contact_type, strict=True):
+        for second, (here, there) in enumerate((pair, pair[::-1])):
+            out = beyond(where[there], brick, copies)
+            if where[here] in body and out and out <= set(sides):
+                found[where[here], where[there], int(contact_type), second] += 1
+    return found
+
+
+def listed(cut: CutContacts, body: Assembly) -> Counter:
+    """The same from the list."""
+    where = places(body)
+    return Counter(
+        (where[node], (int(x), int(y), int(other)), int(contact), int(second))
+        for node, (x, y), other, contact, second in zip(
+            cut.node, cut.tile, cut.other, cut.contact_type, cut.is_second, strict=True
+        )
+    )
+
+
+@pytest.mark.parametrize("copies", [(1, 1), (3, 2), (1, 4)])
+@pytest.mark.parametrize(
+    "sides", [("left", "right", "bottom", "top"), ("left", "right", "bottom"), ("left", "right"), ("bottom",)]
+)
+def test_every_contact_that_a_side_cuts_is_listed_once(brick, copies, sides) -> None:
+    body = tile(brick, copies, OPEN)
+    cut = cut_contacts(brick, body, sides)
+    expected = by_hand(brick, copies, sides)
+
+    assert expected
+    assert listed(cut, body) == expected
+
+
+def test_a_hole_cuts_no_contacts_of_the_sides(random_brick) -> None:
+    body = tile(random_brick, (3, 3), OPEN)
+    middle = np.abs(body.positions - 0.5 * body.size).max(axis=1) < 0.3 * body.size.min()
+    left, kept = body.without(middle)
+    sides = ("left", "right", "bottom", "top")
+    whole, hollow = cut_contacts(random_brick, body, sides), cut_contacts(random_brick, left, sides)
+
+    assert len(kept) < len(middle)
+    assert listed(hollow, left) == listed(whole, body)
+
+
+def test_vectors_point_outwards(random_brick) -> None:
+    body = tile(random_brick, (2, 2), OPEN)
+    cut = cut_contacts(random_brick, body, ("left", "bottom"))
+    ends = body.positions[cut.node] + cut.vectors(random_brick)
+    there = random_brick.positions[cut.other] + cut.tile * random_brick.size
+
+    np.testing.assert_allclose(ends, there, rtol=0.0, atol=1e-12 * body.size.max())
+    assert ((there < 0.0).any(axis=1)).all()
+    assert np.array_equal(cut.tile - cut.image, body.tile[cut.node])
