@@ -179,14 +179,14 @@ class FreeFieldSeam(Tie):
         layout = self.column.layout
         twin = layout.slot[self.seam.twin[self.nodes]]
         seam = Seam(twin, self.seam.start, self._neighbour, self._row, self._constants)
-        elastic.seam_forces(seam, layout.spread(displacement), force)
+        elastic.seam_forces(seam, layout.spread(displacement), np.zeros((3, 0)), force)
         return force.T
 
     def last_forces(self, contacts: ContactList) -> np.ndarray:
         """Forces and moments (3, k) on its nodes from the last forces of the column's pairs."""
         force = np.zeros((len(self.nodes), 3))
         ends = SeamEnds(self.seam.start, self.ends(contacts).astype(np.uint32), contacts.arrays.force)
-        bonded.seam_ends_forces(ends, np.zeros((3, 0)), force)
+        bonded.seam_ends_forces(ends, np.zeros((3, 0)), np.zeros((3, 0)), force)
         return force.T
 
     def ends(self, contacts: ContactList) -> np.ndarray:

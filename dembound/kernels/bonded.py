@@ -88,7 +88,7 @@ def finish(bonded, v, body, nodes, work):
 
 
 @njit(**FAST)
-def seam_ends_forces(seam, u, force):
+def seam_ends_forces(seam, u, v, force):
     """Add to force (k, 3) of the supported nodes the last forces on their twins across the seam."""
     for s in range(seam.start.size - 1):
         fx, fy, moment = ends_force(U(s), seam.force, seam.start, seam.end)

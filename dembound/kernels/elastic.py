@@ -78,7 +78,7 @@ def _fill(rows, u, force):
 
 
 @njit(**FAST)
-def seam_forces(seam, u, force):
+def seam_forces(seam, u, v, force):
     """Add to force (k, 3) of the supported nodes the forces on their twins across the seam."""
     twin, start, neighbour, contact_type, constants = seam
     for s in range(twin.size):

@@ -70,26 +70,29 @@ def finish(law, v, body, nodes, work):
 
 
 @generic
-def across(tie, u, force):
-    """Add to force (k, 3) the forces of a tie on the k supported nodes at displacements u (3, n)."""
+def across(tie, u, v, force):
+    """Add to force (k, 3) the forces of a tie on the k supported nodes at displacements u (3, n).
+
+    v : (3, n) velocities half a step earlier.
+    """
 
 
-def pull(ties, u, force):
-    """Fill force (k, 3) with the forces of all ties on the k supported nodes at displacements u (3, n)."""
+def pull(ties, u, v, force):
+    """Fill force (k, 3) with the forces of all ties on the k supported nodes, see `across`."""
     force[:] = 0.0
     for tie in ties:
-        across(tie, u, force)
+        across(tie, u, v, force)
 
 
 @overload(pull)
-def _pull(ties, u, force):
+def _pull(ties, u, v, force):
     if len(ties) == 0:
-        return lambda ties, u, force: None
+        return lambda ties, u, v, force: None
 
-    def pull_all(ties, u, force):
+    def pull_all(ties, u, v, force):
         force[:] = 0.0
         for tie in literal_unroll(ties):
-            across(tie, u, force)
+            across(tie, u, v, force)
 
     return pull_all
 

@@ -71,7 +71,7 @@ def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pul
             break
         turned = turn(turning, here, v, body.load, body.step)
         breaks = push_all(laws, here, there, v, number + step, body.step, work)
-        pull(ties, here, pulled)
+        pull(ties, here, v, pulled)
         note_before(step, here, v, log.probes, log.record, supports.twin, followed)
         note_all(laws, step, here, log)
         move_all(laws, here, there, v, body, nodes)

@@ -182,6 +182,36 @@ class Supports(NamedTuple):
     follow: np.ndarray
 
 
+class WallTies(NamedTuple):
+    """Half bonds between particles and the wall of a grid, t of them, by the e elements of N × N nodes; see wall.py.
+
+    start : (e + 1,) ties of each element. node : (e, N, N) its nodes, by row and column, and line, theirs in the support
+    table. particle, particle_line : (t,) of the particle; twin (t,) in the free-field column, −1 for none. along, up :
+    (N, t) values of the element's shape functions along x and y at the tie's point; along_slope, up_slope their
+    derivatives, 1/m. corrector : (3, 4, t) m and rad, motion of the bond's middle beyond that of the point per unit
+    gradient xx, yy, xy, yx. normal : (2, t) from the particle to the point; arm (t,) m. stiffness : (3, t) N/m, N/m and
+    N·m of the half bond. lag : η, s. field (6, t), row (2, t) : work space.
+    """
+
+    start: np.ndarray
+    node: np.ndarray
+    line: np.ndarray
+    particle: np.ndarray
+    particle_line: np.ndarray
+    twin: np.ndarray
+    along: np.ndarray
+    along_slope: np.ndarray
+    up: np.ndarray
+    up_slope: np.ndarray
+    corrector: np.ndarray
+    normal: np.ndarray
+    arm: np.ndarray
+    stiffness: np.ndarray
+    lag: float
+    field: np.ndarray
+    row: np.ndarray
+
+
 class Sides(NamedTuple):
     """Forces on s sides of a body in b batches of e elements, and their m members; see sides.py.
 

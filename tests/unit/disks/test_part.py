@@ -286,7 +286,7 @@ def test_rows_of_the_seam_stand_at_its_nodes_among_all_that_are_supported(scene,
     bundle = tie.bundle(supported)
     before = np.random.default_rng(4).uniform(-1.0, 1.0, (len(supported), 3))
     force = before.copy()
-    (elastic.seam_forces if law == ELASTIC else seam_ends_forces)(bundle, u, force)
+    (elastic.seam_forces if law == ELASTIC else seam_ends_forces)(bundle, u, u, force)
     expected = tie.elastic_forces(u) if law == ELASTIC else tie.last_forces(contacts)
     at = np.isin(supported, tie.nodes)
 

@@ -75,13 +75,13 @@ def test_the_elastic_laws_seam_forces_are_sums_over_the_twins_contacts(contacts:
 
     across = np.zeros((len(TWINS), 3))
     seam = tables.Seam(TWINS, contacts.start, contacts.neighbour, contacts.contact_type, constants)
-    seam_forces(seam, u, across)
+    seam_forces(seam, u, u, across)
 
     # sums of three forces of some ten
     np.testing.assert_allclose(across, summed(contacts, force), rtol=0.0, atol=1e-14)
     # they add to what is there
     both = already()
-    seam_forces(seam, u, both)
+    seam_forces(seam, u, u, both)
     assert np.array_equal(both, already() + across)
 
 
@@ -96,12 +96,12 @@ def test_the_seam_forces_of_pairs_with_a_memory_are_sums_over_the_twins_ends(con
 
     across, u = np.zeros((len(TWINS), 3)), np.full((3, PARTICLES), np.nan)
     seam = tables.SeamEnds(contacts.start, contacts.end, pairs.force)
-    seam_ends_forces(seam, u, across)
+    seam_ends_forces(seam, u, u, across)
 
     assert np.array_equal(across, summed(contacts, force))
     # they add to what is there
     both = already()
-    seam_ends_forces(seam, u, both)
+    seam_ends_forces(seam, u, u, both)
     assert np.array_equal(both, already() + across)
 
 
