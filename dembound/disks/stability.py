@@ -45,9 +45,7 @@ def _largest_eigenvalue(scene: DiskScene) -> float:
     moves = np.ones((3, scene.count), dtype=np.bool_)
     fixed = scene.supports.prescribed
     moves[scene.supports.component[fixed], scene.supports.node[fixed]] = False
-    return largest_eigenvalue(
-        scene.layout, scene.mass, scene.inertia, scene.free, moves, partial(fill_forces, scene)
-    )
+    return largest_eigenvalue(scene.layout, scene.mass, scene.inertia, scene.free, moves, partial(fill_forces, scene))
 
 
 def fill_forces(scene: DiskScene, u: np.ndarray, force: np.ndarray) -> None:

@@ -7,7 +7,6 @@ the same bits for any number of threads. Nodes have no rotation, no local dampin
 The work of elements that absorb is taken from the grid in full, the strain energy they hold included.
 """
 
-import numpy as np
 from numba import get_thread_id, njit, prange
 
 from dembound.kernels import lane_step

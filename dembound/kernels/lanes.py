@@ -112,7 +112,9 @@ def lane(values: np.ndarray, k: int) -> float:
     return float(values[int(k)])
 
 
-def combine(points: tuple, matrix: np.ndarray, given: np.ndarray, i: int, found: np.ndarray, j: int, stride: int) -> None:
+def combine(
+    points: tuple, matrix: np.ndarray, given: np.ndarray, i: int, found: np.ndarray, j: int, stride: int
+) -> None:
     """Multiply N groups of eight doubles by a matrix (N·N,), row by row.
 
     points : N numbers, of which only how many there are is used, which is known when a kernel is compiled. given, found
@@ -275,9 +277,7 @@ def _strided(builder: Any, first: Any, stride: Any, count: int) -> list[Any]:
 def _combination(adds: bool) -> Callable[..., None]:
     """The code of `combine`, or of `combine_more`: all groups are loaded before any is stored."""
 
-    def generate(
-        builder: Any, points: Any, matrix: Any, given: Any, i: Any, found: Any, j: Any, stride: Any
-    ) -> None:
+    def generate(builder: Any, points: Any, matrix: Any, given: Any, i: Any, found: Any, j: Any, stride: Any) -> None:
         count = points.type.count
         terms = [_load(builder, given, place) for place in _strided(builder, i, stride, count)]
         places, results = _strided(builder, j, stride, count), []

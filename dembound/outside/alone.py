@@ -8,9 +8,12 @@ import numpy as np
 
 from dembound.boundaries.support import Edge, SupportBuilder, Supports
 from dembound.casefile import Case
+from dembound.casefile.run import Run
 from dembound.motion.layout import Layout
+from dembound.motion.memory import motion_bytes
 from dembound.motion.part import System
-from dembound.motion.scene import FASTEST, Scene
+from dembound.motion.scene import Scene
+from dembound.motion.threads import thread_count_for
 from dembound.outside.body import GridBody
 from dembound.outside.part import GridPart
 
@@ -20,8 +23,7 @@ class GridScene(Scene):
 
     Parameters
     ----------
-    case : duration and output of the run; its other tables are not used.
-    body : elements, medium and layers.
+    body : elements, medium and layers, its first slot 0.
     supports : forces from outside on single nodes; by default none.
     load : (3, n) N, steady forces; by default none.
     """
@@ -31,10 +33,9 @@ class GridScene(Scene):
     record_width = 6
     block = 1000
 
-    def __init__(
-        self, case: Case, body: GridBody, supports: Supports | None = None, load: np.ndarray | None = None
-    ) -> None:
-        self.case, self.body = case, body
+    def __init__(self, body: GridBody, *, supports: Supports | None = None, load: np.ndarray | None = None) -> None:
+        self.case = Case(run=Run(duration=1.0), name="continuum")
+        self.body = body
         self.edges: Mapping[str, Edge] = {}
         self.monitors: Mapping[str, int] = {}
         self.supports = SupportBuilder().table() if supports is None else supports
@@ -83,14 +84,7 @@ class GridScene(Scene):
     @property
     def threads(self) -> int:
         """Threads its steps use."""
-        from dembound.motion.threads import thread_count_for
-
         return thread_count_for(self.count)
-
-    @property
-    def fastest(self) -> float:
-        """Speed (m/s) that no node can reach: the limit of the number range."""
-        return FASTEST
 
     @cached_property
     def layout(self) -> Layout:
@@ -99,8 +93,10 @@ class GridScene(Scene):
 
     @property
     def largest_memory(self) -> float:
-        """Bytes; not counted."""
-        return 0.0
+        """Bytes of its motion and its law."""
+        law = self.body.law(1.0)
+        arrays = (values for bundle in (*law, law) for values in bundle if isinstance(values, np.ndarray))
+        return motion_bytes(self.layout.count) + sum(values.nbytes for values in arrays)
 
     @property
     def attributes(self) -> dict[str, Any]:

@@ -79,7 +79,10 @@ class ElementBlocks:
 
     @cached_property
     def _shared(self) -> tuple[np.ndarray, int]:
-        """The nodes (s,) of rims that move, elastic ones first, those of one to four elements, and how many those are."""
+        """The nodes (s,) of rims that move, and how many of them are of elastic elements only, which come first.
+
+        Within each group they are sorted by the number of elements they belong to.
+        """
         count = np.zeros(self.mesh.count, dtype=np.int64)
         absorbing = np.zeros(self.mesh.count, dtype=np.bool_)
         rims = self._nodes[:, self.rim]

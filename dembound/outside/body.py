@@ -1,6 +1,6 @@
 """The continuum as a body: elements, medium and absorbing layer, with the masses and slots of its nodes."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numba
@@ -11,7 +11,7 @@ from dembound.kernels.grid import fill_forces
 from dembound.kernels.grid_tables import Absorber, Grid
 from dembound.motion.layout import aligned_zeros
 from dembound.outside.blocks import ElementBlocks, absorber_of, shape_of
-from dembound.outside.layer import Absorption
+from dembound.outside.layer import USUAL, Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Mesh
 
@@ -30,7 +30,7 @@ class GridBody:
 
     mesh: Mesh
     medium: Medium
-    absorption: Absorption = Absorption()
+    absorption: Absorption = USUAL
     added_mass: np.ndarray | float = 0.0
     first_slot: int = 0
 

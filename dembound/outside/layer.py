@@ -32,6 +32,10 @@ class Absorption:
     delay: float = 0.1
 
 
+USUAL = Absorption()
+"""Settings with which waves of all angles up to 60° are absorbed, and noise decays."""
+
+
 @dataclass(frozen=True)
 class Profile:
     """The layer at one side.
@@ -45,7 +49,7 @@ class Profile:
     thickness: float
     speed: float
     inner: float
-    settings: Absorption = Absorption()
+    settings: Absorption = USUAL
 
     @property
     def strongest(self) -> float:
@@ -76,7 +80,7 @@ class Profile:
         return self.settings.delay * step * q**2
 
     def expected_reflection(self, frequency: float, angle: float = 0.0, speed: float | None = None) -> float:
-        """|R| ≤ R0^(cos θ·g·c_p/c) of a plane wave of a frequency (Hz) at θ from the normal (degrees), in the continuum.
+        """|R| ≤ R0^(cos θ·g·c_p/c) of a plane wave of a frequency (Hz) at θ (degrees) from the normal, in a continuum.
 
         speed : c of the wave, m/s; by default c_p. g = ∫σ ω²/(ω² + α²)/∫σ over the depth. Elements add some 0.1 % if
         there are eight nodes to a wavelength.

@@ -25,6 +25,9 @@ class Around(NamedTuple):
         return (self.left, self.right) if axis == 0 else (self.bottom, self.top)
 
 
+NONE = Around()
+
+
 class Interpolation(NamedTuple):
     """How displacements at k points follow from those of nodes: Σ weight·u over node, both (k, N²)."""
 
@@ -55,7 +58,7 @@ class Mesh:
     cells: tuple[int, int]
     origin: tuple[float, float] = (0.0, 0.0)
     box: tuple[int, int, int, int] | None = None
-    layer: Around = Around()
+    layer: Around = NONE
     periodic: tuple[bool, bool] = (False, False)
 
     def __post_init__(self) -> None:
@@ -157,7 +160,9 @@ class Mesh:
     @cached_property
     def positions(self) -> np.ndarray:
         """(n, 2) m."""
-        return np.stack([self._line_places(a)[self.crossing[:, a]] for a in (0, 1)], axis=1) * self.element + self.origin
+        return (
+            np.stack([self._line_places(a)[self.crossing[:, a]] for a in (0, 1)], axis=1) * self.element + self.origin
+        )
 
     @property
     def size(self) -> np.ndarray:
@@ -225,6 +230,4 @@ class Mesh:
         local = 2.0 * (cell - self.elements[chosen]) - 1.0
         x, y = (self.rule.shape(local[:, a]) for a in (0, 1))
         count = len(local)
-        return Interpolation(
-            self.nodes[chosen].reshape(count, -1), (y[:, :, None] * x[:, None, :]).reshape(count, -1)
-        )
+        return Interpolation(self.nodes[chosen].reshape(count, -1), (y[:, :, None] * x[:, None, :]).reshape(count, -1))

@@ -27,7 +27,9 @@ class GridPart(Part):
     name = "continuum"
     law_name = "continuum"
 
-    def __init__(self, body: GridBody, time_step: float, *, first_node: int = 0, supported: np.ndarray | None = None) -> None:
+    def __init__(
+        self, body: GridBody, time_step: float, *, first_node: int = 0, supported: np.ndarray | None = None
+    ) -> None:
         self.body = body
         self.nodes = slice(first_node, first_node + body.count)
         self._law = body.law(time_step)

@@ -16,4 +16,6 @@ def step_limit(body: GridBody) -> float:
     layout = Layout(slot, body.blocks.end - body.first_slot)
     moves = np.stack([~body.mesh.held] * 2 + [np.zeros_like(body.mesh.held)])
     mass = body.mass_for_limit
-    return float(2.0 / np.sqrt(largest_eigenvalue(layout, mass, mass, np.array([1.0, 1.0, 0.0]), moves, body.fill_forces)))
+    return float(
+        2.0 / np.sqrt(largest_eigenvalue(layout, mass, mass, np.array([1.0, 1.0, 0.0]), moves, body.fill_forces))
+    )
