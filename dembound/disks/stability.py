@@ -1,33 +1,14 @@
 """The largest stable time step, from the largest eigenfrequency of the scene."""
 
+from functools import partial
+
 import numpy as np
 
 from dembound.disks.scene import DiskScene
-from dembound.errors import CaseError, RunError
+from dembound.errors import CaseError
 from dembound.kernels.contacts import CLOSING
 from dembound.kernels.elastic import contact_forces
-from dembound.kernels.lanczos import next_vector, work
-from dembound.motion.layout import aligned_zeros
-from dembound.motion.threads import threads_for
-
-TOLERANCE = 1e-3
-"""Relative residual at which the iteration for the eigenvalue ends.
-
-The residual is added to the eigenvalue, so the step is too small by at most 0.05 %. Lattices need it, as their largest
-eigenvalues are close to each other.
-"""
-
-LEAST, MOST = 40, 1000
-"""Smallest and largest number of iterations.
-
-With a random start, the eigenvalue found after k iterations for d components of motion is below 1 − ε of the largest
-one with a probability of at most 1.648 √d exp(−(2k − 1)√ε) (Kuczyński & Woźniakowski 1992, SIAM J. Matrix Anal. Appl.
-13(4), 1094–1122), whatever the matrix. A step of 0.9 of the limit found is unstable at ε = 1 − 0.9² = 0.19: after 40
-iterations with a probability below 2e-11 for ten million particles, d = 3e7.
-"""
-
-INVARIANT = 1e-12
-"""Size of the next vector, over the eigenvalue, below which it only has rounding errors: all eigenvalues are found."""
+from dembound.motion.eigenvalue import largest_eigenvalue
 
 OPENING = 0.75 / CLOSING
 """Largest ω² over 4/Δt² where contacts open and close: sin²(π/3), for first pushes multiplied by CLOSING.
@@ -60,54 +41,11 @@ def step_limit(scene: DiskScene, damp: float | None = None) -> float:
 
 
 def _largest_eigenvalue(scene: DiskScene) -> float:
-    """The largest eigenvalue of M⁻¹K (1/s²), too large by at most `TOLERANCE`.
-
-    Lanczos iteration with three vectors, 88 bytes a slot in all, without orthogonalising again: vectors only lose their
-    orthogonality once an eigenvalue has converged, which gives copies of it but none that are too large (Paige 1980,
-    Linear Algebra Appl. 34, 235–258). The vectors are not scaled to unit size, which would take another pass; their
-    sizes go into the factors of the next step. The start is random but fixed: the result is the same in every run.
-
-    An eigenvalue lies within the residual of the one found. That this is the largest one is not certain, but very
-    likely (`LEAST`).
-    """
-    u, size = _start(scene)
-    before, force = aligned_zeros(*u.shape), aligned_zeros(*u.shape)
-    mass, inertia = scene.layout.spread(scene.mass), scene.layout.spread(scene.inertia)
-    diagonal: list[float] = []
-    beside: list[float] = []  # the diagonal
-    size_before = 1.0
-    with threads_for(scene.count):
-        while size > 0.0 and len(diagonal) < MOST:
-            fill_forces(scene, u, force)
-            diagonal.append(-work(u, force) / size**2)
-            factors = -1.0 / size, diagonal[-1] / size, size / size_before
-            size_before = size
-            size = float(np.sqrt(next_vector(u, before, force, mass, inertia, scene.free, *factors)))
-            u, before = before, u
-            is_last = size <= INVARIANT * max(diagonal)
-            if is_last or len(diagonal) >= LEAST:
-                value, residual = _largest_of(diagonal, beside, size)
-                if is_last or residual <= TOLERANCE * value:
-                    return value + residual
-            beside.append(size)
-    if diagonal:
-        raise RunError(f"the stability limit was not found in {MOST} iterations")
-    return 0.0
-
-
-def _start(scene: DiskScene) -> tuple[np.ndarray, float]:
-    """Random displacements (3, slots) m and their size √⟨u, u⟩, zero for components that cannot move.
-
-    Times the root of the mass, all directions are equally likely. They are drawn particle by particle.
-    """
-    start = np.random.default_rng(0).standard_normal((3, scene.count))
-    start *= scene.free[:, None]
+    """The largest eigenvalue of M⁻¹K (1/s²), see `motion.eigenvalue`."""
+    moves = np.ones((3, scene.count), dtype=np.bool_)
     fixed = scene.supports.prescribed
-    start[scene.supports.component[fixed], scene.supports.node[fixed]] = 0.0
-    size = float(np.sqrt(sum(np.sum(row * row) for row in start)))
-    start[:2] /= np.sqrt(scene.mass)
-    start[2] /= np.sqrt(scene.inertia)
-    return scene.layout.spread(start), size
+    moves[scene.supports.component[fixed], scene.supports.node[fixed]] = False
+    return largest_eigenvalue(scene.layout, scene.mass, scene.inertia, scene.free, moves, partial(fill_forces, scene))
 
 
 def fill_forces(scene: DiskScene, u: np.ndarray, force: np.ndarray) -> None:
@@ -117,18 +55,6 @@ def fill_forces(scene: DiskScene, u: np.ndarray, force: np.ndarray) -> None:
     supports = scene.supports
     place = supports.component, scene.layout.slot[supports.node]
     force[place] = np.where(supports.prescribed, 0.0, force[place] - supports.stiffness * u[place])
-
-
-def _largest_of(diagonal: list[float], beside: list[float], size: float) -> tuple[float, float]:
-    """Largest eigenvalue of a symmetric tridiagonal matrix (k diagonal, k − 1 entries beside it), and its residual.
-
-    size : that of the vector after the last one, by whose share in the eigenvector the residual is found.
-    """
-    from scipy.linalg import eigh_tridiagonal
-
-    last = len(diagonal) - 1
-    value, vector = eigh_tridiagonal(diagonal, beside, select="i", select_range=(last, last))
-    return float(value[0]), size * abs(float(vector[last, 0]))
 
 
 def _loose_eigenvalue(scene: DiskScene) -> float:

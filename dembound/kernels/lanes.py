@@ -112,6 +112,26 @@ def lane(values: np.ndarray, k: int) -> float:
     return float(values[int(k)])
 
 
+def combine(
+    points: tuple, matrix: np.ndarray, given: np.ndarray, i: int, found: np.ndarray, j: int, stride: int
+) -> None:
+    """Multiply N groups of eight doubles by a matrix (N·N,), row by row.
+
+    points : N numbers, of which only how many there are is used, which is known when a kernel is compiled. given, found
+    : contiguous arrays (n,), in which the groups begin at i, i + stride, … and j, j + stride, …; both may be the same.
+    """
+    groups = int(stride) * np.arange(len(points))[:, None] + np.arange(LANES)
+    found[int(j) + groups] = matrix.reshape(len(points), -1) @ given[int(i) + groups]
+
+
+def combine_more(
+    points: tuple, matrix: np.ndarray, given: np.ndarray, i: int, found: np.ndarray, j: int, stride: int
+) -> None:
+    """The same added to what is in `found`."""
+    groups = int(stride) * np.arange(len(points))[:, None] + np.arange(LANES)
+    found[int(j) + groups] += matrix.reshape(len(points), -1) @ given[int(i) + groups]
+
+
 def _widened(builder: Any, number: Any) -> Any:
     """A double in all lanes."""
     one = builder.insert_element(ir.Constant(_DOUBLES, ir.Undefined), number, ir.Constant(ir.IntType(32), 0))
@@ -155,6 +175,8 @@ def _fits(given: Any, wanted: Any) -> bool:
         return given == lanes or isinstance(given, types.Float)
     if isinstance(wanted, types.Array):
         return isinstance(given, types.Array) and given.dtype == wanted.dtype and given.ndim == 1
+    if isinstance(wanted, types.UniTuple):
+        return isinstance(given, types.UniTuple) and given.dtype == wanted.dtype
     return bool(given == wanted)
 
 
@@ -178,6 +200,7 @@ def _intrinsic(function: Any, name: str, count: int) -> None:
     _compiled(function, lanes, *[lanes] * count)(call)
 
 
+_numbers = types.UniTuple(types.float64, 1)  # of any length
 _array, _bytes = types.Array(types.float64, 1, "C"), types.Array(types.uint8, 1, "C")
 
 for _operator, _in_place, _name in (
@@ -241,3 +264,37 @@ def _at_most(builder: Any, values: Any, limits: Any) -> Any:
 @_compiled(lane, types.float64, lanes, types.uint64)
 def _lane(builder: Any, values: Any, k: Any) -> Any:
     return builder.extract_element(values, k)
+
+
+def _strided(builder: Any, first: Any, stride: Any, count: int) -> list[Any]:
+    """So many indices from the first one on."""
+    places = [first]
+    for _ in range(count - 1):
+        places.append(builder.add(places[-1], stride))
+    return places
+
+
+def _combination(adds: bool) -> Callable[..., None]:
+    """The code of `combine`, or of `combine_more`: all groups are loaded before any is stored."""
+
+    def generate(builder: Any, points: Any, matrix: Any, given: Any, i: Any, found: Any, j: Any, stride: Any) -> None:
+        count = points.type.count
+        terms = [_load(builder, given, place) for place in _strided(builder, i, stride, count)]
+        places, results = _strided(builder, j, stride, count), []
+        for row, place in enumerate(places):
+            total = _load(builder, found, place) if adds else None
+            for column, term in enumerate(terms):
+                entry = builder.load(builder.gep(matrix, [ir.Constant(ir.IntType(64), row * count + column)]))
+                product = builder.fmul(_widened(builder, entry), term, flags=_FLAGS)
+                total = product if total is None else builder.fadd(total, product, flags=_FLAGS)
+            results.append(total)
+        for place, total in zip(places, results, strict=True):
+            _store(builder, found, place, total)
+
+    return generate
+
+
+for _function, _adds in ((combine, False), (combine_more, True)):
+    _compiled(_function, types.void, _numbers, _array, _array, types.uint64, _array, types.uint64, types.uint64)(
+        _combination(_adds)
+    )

@@ -18,6 +18,9 @@ from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import NEVER
+from dembound.outside.body import GridBody
+from dembound.outside.medium import Medium
+from dembound.outside.mesh import Around, Mesh
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.running import plan
@@ -248,5 +251,34 @@ def in_order() -> Callable[[DiskScene], DiskScene]:
     def make(scene: DiskScene) -> DiskScene:
         rows = (contact_rows(scene.assembly.part(part), scene.ground, part.start) for part in scene.parts.values())
         return replace(scene, slots=None, rows=tuple(rows))
+
+    return make
+
+
+ROCK = Medium(2500.0, c11=9e9, c22=7e9, c12=2e9, c66=3e9, c16=0.4e9, c26=-0.3e9)
+"""Without any symmetry."""
+
+
+@pytest.fixture
+def grid() -> Callable[..., GridBody]:
+    """Makes continua: elements of 3 × 2 m round a box of 2 × 1 of them that reaches the top, with other keys."""
+
+    def make(order: int = 4, medium: Medium = ROCK, first_slot: int = 0, **more: Any) -> GridBody:
+        mesh = Mesh.around(
+            (0.0, 0.0, 6.0, 2.0), (3.0, 2.0), order, margin=Around(1, 2, 1, 0), layer=Around(2, 2, 2, 0)
+        )
+        return GridBody(mesh=mesh, medium=medium, first_slot=first_slot, **more)
+
+    return make
+
+
+@pytest.fixture
+def noise() -> Callable[[GridBody], np.ndarray]:
+    """Makes random fields (3, n) of the nodes of a body that move, without rotation."""
+
+    def make(body: GridBody, seed: int = 0) -> np.ndarray:
+        field = np.random.default_rng(seed).standard_normal((3, body.count)) * ~body.mesh.held
+        field[2] = 0.0
+        return field
 
     return make

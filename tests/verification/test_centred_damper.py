@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from dembound.disks.stability import TOLERANCE, step_limit
+from dembound.disks.stability import step_limit
+from dembound.motion.eigenvalue import TOLERANCE
 from dembound.motion.simulation import Simulation
 
 SIDES = ("left", "right", "bottom", "top")

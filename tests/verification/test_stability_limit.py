@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from dembound.disks.stability import OPENING, TOLERANCE, step_limit
+from dembound.disks.stability import OPENING, step_limit
+from dembound.motion.eigenvalue import TOLERANCE
 from dembound.motion.simulation import Simulation
 from dembound.packings.brick import Brick
 

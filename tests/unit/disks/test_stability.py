@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from dembound.boundaries.support import SupportBuilder
-from dembound.disks import stability
+from dembound.motion import eigenvalue
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.stability import LEAST, OPENING, TOLERANCE, choose_step, step_limit
+from dembound.disks.stability import OPENING, choose_step, step_limit
+from dembound.motion.eigenvalue import LEAST, TOLERANCE
 from dembound.errors import CaseError, RunError
 
 MASS = 2500.0 * 0.5**2
@@ -80,7 +81,7 @@ def test_disks_without_contacts_do_not_vibrate(bar) -> None:
 
 def test_a_limit_that_is_not_found_in_time_is_an_error(bar, monkeypatch) -> None:
     scene = build(bar({**ONLY_X, "packing.size": [50.0, 5.0]}))
-    monkeypatch.setattr(stability, "MOST", LEAST)  # enough for scenes of few disks only
+    monkeypatch.setattr(eigenvalue, "MOST", LEAST)  # enough for scenes of few disks only
     with pytest.raises(RunError, match="was not found in 40 iterations"):
         step_limit(scene)
 

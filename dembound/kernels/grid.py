@@ -1,0 +1,245 @@
+"""The law of a grid of spectral elements, and its step of central differences.
+
+First every block of eight elements computes its forces, moves the nodes that no other element has, and stores its
+forces on the others. Then each of these sums the forces of its at most four elements, in a fixed order, and is moved:
+the same bits for any number of threads. Nodes have no rotation, no local damping, and stay at rest on outer edges.
+
+The work of elements that absorb is taken from the grid in full, the strain energy they hold included.
+"""
+
+from numba import get_thread_id, njit, prange
+
+from dembound.kernels import lane_step
+from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
+from dembound.kernels.elements import WITHIN, absorbing_forces, block_forces, gather
+from dembound.kernels.grid_tables import Grid
+from dembound.kernels.lanes import LANES, at_most, choose, lane, load, splat, store
+from dembound.kernels.law import is_law
+from dembound.kernels.step import kick
+
+_STEP = U(LANES)
+
+
+@njit(**WITHIN)
+def _sum(values):
+    """Sum over the lanes, in order."""
+    total = 0.0
+    for k in range(LANES):
+        total += lane(values, U(k))
+    return total
+
+
+@njit(**WITHIN)
+def _store_rim(shape, block, space, force):
+    """Store the forces in the first two fields of the work space on rim points."""
+    size = U(shape.weight.size) * _STEP
+    entry = U(2) * U(block) * U(shape.rim.size) * _STEP
+    for p in range(shape.rim.size):
+        i = U(shape.rim[p]) * _STEP
+        store(force, entry, load(space, i))
+        store(force, entry + _STEP, load(space, i + size))
+        entry += U(2) * _STEP
+
+
+@njit(**WITHIN)
+def _move_core(shape, blocks, block, space, u, v, body, u_next):
+    """Move the core nodes of a block by a step; returns Σ F·v⁻ and Σ F·v⁺ of those that are not supported."""
+    size = U(shape.weight.size) * _STEP
+    nothing = splat(0.0)
+    before, after = nothing, nothing
+    loaded = body.load.shape[1] > 0
+    slot = U(blocks.core_begin) + U(block) * U(shape.core.size) * _STEP
+    for p in range(shape.core.size):
+        i = U(shape.core[p]) * _STEP
+        mobility = load(body.mobility, slot)
+        held = at_most(mobility, 0.0)
+        for c in range(2):
+            own = load(space, i + U(c) * size)
+            force = own
+            if loaded:
+                force += load(body.load[c], slot)
+            was = load(v[c], slot)
+            now = lane_step.kick(was, force, body.free[c] * mobility)
+            before += choose(held, 0.0, own * was)
+            after += choose(held, 0.0, own * now)
+            store(v[c], slot, now)
+            store(u_next[c], slot, choose(held, force, load(u[c], slot) + body.step * now))
+        slot += _STEP
+    return before, after
+
+
+@njit(**FAST)
+def _move_blocks(points, shape, blocks, absorber, force, first, last, u, v, body, u_next, space, taken):
+    """Compute the forces of blocks first to last − 1, and move their core nodes."""
+    elastic = blocks.blocks - blocks.layers
+    for block in range(first, min(last, elastic)):
+        block_forces(points, shape, blocks, block, u, space)
+        _store_rim(shape, block, space, force)
+        _move_core(shape, blocks, block, space, u, v, body, u_next)
+    whole, half = splat(0.0), splat(0.0)
+    for block in range(max(first, elastic), last):
+        absorbing_forces(points, shape, blocks, absorber, block, u, v, space)
+        _store_rim(shape, block, space, force)
+        before, after = _move_core(shape, blocks, block, space, u, v, body, u_next)
+        half += before
+        whole += before + after
+    taken[0] = -0.5 * body.step * _sum(whole)
+    taken[1] = -0.5 * body.step * _sum(half)
+
+
+@njit(**WITHIN)
+def _sum_at(blocks, k, force):
+    """Force (x, y) of all elements on the k-th shared node, and of those that absorb."""
+    x = 0.0
+    y = 0.0
+    ax = 0.0
+    ay = 0.0
+    for e in range(blocks.start[k], blocks.start[k + U(1)]):
+        entry = blocks.entry[U(e)]
+        fx = force[U(entry)]
+        fy = force[U(entry) + _STEP]
+        x += fx
+        y += fy
+        if entry >= blocks.entry_layer:
+            ax += fx
+            ay += fy
+    return x, y, ax, ay
+
+
+@njit(**FAST)
+def _move_shared(blocks, force, first, last, u, v, body, u_next, taken):
+    """Sum the forces on shared nodes first to last − 1, and move them."""
+    half = 0.0
+    whole = 0.0
+    for n in range(first, last):
+        k = U(n)
+        i = U(blocks.shared_begin) + k
+        x, y, ax, ay = _sum_at(blocks, k, force)
+        if body.load.shape[1] > 0:
+            x += body.load[U(0), i]
+            y += body.load[U(1), i]
+        vx, vy = v[U(0), i], v[U(1), i]
+        before = ax * vx + ay * vy
+        half += before
+        whole += before
+        mobility = body.mobility[i]
+        if mobility == 0.0:  # supported: `finish` adds the rest of its work
+            u_next[U(0), i] = x
+            u_next[U(1), i] = y
+        else:
+            vx = kick(vx, x, body.free[0] * mobility, 0.0)
+            vy = kick(vy, y, body.free[1] * mobility, 0.0)
+            whole += ax * vx + ay * vy
+            v[U(0), i] = vx
+            v[U(1), i] = vy
+            u_next[U(0), i] = u[U(0), i] + body.step * vx
+            u_next[U(1), i] = u[U(1), i] + body.step * vy
+    taken[2] = -0.5 * body.step * whole
+    taken[3] = -0.5 * body.step * half
+
+
+@njit(**PARALLEL)
+def _move_all_blocks(points, shape, blocks, absorber, force, space, taken, u, v, body, u_next):
+    n = blocks.blocks
+    for chunk in prange(CHUNKS):
+        first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
+        own, result = space[get_thread_id()], taken[chunk]
+        _move_blocks(points, shape, blocks, absorber, force, first, last, u, v, body, u_next, own, result)
+
+
+@njit(**PARALLEL)
+def _move_all_shared(blocks, force, taken, u, v, body, u_next):
+    n = blocks.start.size - 1
+    for chunk in prange(CHUNKS):
+        first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
+        _move_shared(blocks, force, first, last, u, v, body, u_next, taken[chunk])
+
+
+@njit(**FAST)
+def move(grid, u, u_next, v, body, nodes):
+    """One step of all nodes, see law.move."""
+    points, shape, blocks, absorber, force, space, taken = grid
+    _move_all_blocks(points, shape, blocks, absorber, force, space, taken, u, v, body, u_next)
+    _move_all_shared(blocks, force, taken, u, v, body, u_next)
+
+
+@njit(**FAST)
+def finish(grid, v, body, nodes, work):
+    """Add to the ledger, as taken by damping, the work that elements which absorb have taken."""
+    if grid.blocks.layers == 0:
+        return
+    late = 0.0
+    begin = grid.blocks.shared_begin
+    for s in range(nodes.size):
+        i = U(nodes[s])
+        k = nodes[s] - begin
+        if grid.blocks.shared_layer - begin <= k < grid.blocks.start.size - 1:
+            _, _, ax, ay = _sum_at(grid.blocks, U(k), grid.force)
+            late += ax * v[U(0), i] + ay * v[U(1), i]
+    work[1, 1] += column_sum(grid.taken, 1) + column_sum(grid.taken, 3)
+    work[0, 1] += column_sum(grid.taken, 0) + column_sum(grid.taken, 2) - 0.5 * body.step * late
+
+
+is_law(Grid, move=move, finish=finish)
+
+
+@njit(**FAST)
+def _store_forces(points, shape, blocks, force, first, last, u, result, space):
+    """Store the elastic forces of blocks first to last − 1, those on core nodes in result (3, slots)."""
+    size = U(shape.weight.size) * _STEP
+    for block in range(first, last):
+        block_forces(points, shape, blocks, block, u, space)
+        _store_rim(shape, block, space, force)
+        slot = U(blocks.core_begin) + U(block) * U(shape.core.size) * _STEP
+        for p in range(shape.core.size):
+            i = U(shape.core[p]) * _STEP
+            store(result[0], slot, load(space, i))
+            store(result[1], slot, load(space, i + size))
+            slot += _STEP
+
+
+@njit(**PARALLEL)
+def _fill(points, shape, blocks, force, space, u, result):
+    n, m = blocks.blocks, blocks.start.size - 1
+    for chunk in prange(CHUNKS):
+        first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
+        _store_forces(points, shape, blocks, force, first, last, u, result, space[get_thread_id()])
+    for chunk in prange(CHUNKS):
+        for k in range(chunk * m // CHUNKS, (chunk + 1) * m // CHUNKS):
+            x, y, _, _ = _sum_at(blocks, U(k), force)
+            result[U(0), U(blocks.shared_begin + k)] = x
+            result[U(1), U(blocks.shared_begin + k)] = y
+
+
+@njit(**FAST)
+def fill_forces(grid, u, result):
+    """Fill result (3, slots) with the elastic forces (N) of all elements at displacements u; none on outer edges."""
+    _fill(grid.points, grid.shape, grid.blocks, grid.force, grid.space, u, result)
+
+
+@njit(**FAST)
+def _block_energies(points, shape, blocks, first, last, u, energy, space):
+    """Strain energies of blocks first to last − 1: −½Σ u·F."""
+    size = U(shape.weight.size) * _STEP
+    for block in range(first, last):
+        block_forces(points, shape, blocks, block, u, space)
+        gather(shape, blocks, block, u, space, 2)
+        doubled = splat(0.0)
+        for k in range(2 * shape.weight.size):
+            i = U(k) * _STEP
+            doubled += load(space, i) * load(space, i + U(2) * size)
+        energy[block] = -0.5 * _sum(doubled)
+
+
+@njit(**PARALLEL)
+def _energies(points, shape, blocks, space, u, energy):
+    n = energy.size
+    for chunk in prange(CHUNKS):
+        first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
+        _block_energies(points, shape, blocks, first, last, u, energy, space[get_thread_id()])
+
+
+@njit(**FAST)
+def strain_energies(grid, u, energy):
+    """Fill energy (blocks,) J with the strain energy of every block at displacements u (3, slots), without memories."""
+    _energies(grid.points, grid.shape, grid.blocks, grid.space, u, energy)

@@ -1,0 +1,1 @@
+"""An elastic continuum of spectral elements, with a layer that absorbs waves."""

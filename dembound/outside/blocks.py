@@ -1,0 +1,183 @@
+"""Blocks of eight elements for the kernels, and the slots of their nodes."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dembound.kernels.grid_tables import Absorber, Blocks, Shape
+from dembound.kernels.lanes import LANES
+from dembound.outside.layer import Absorption, Profile
+from dembound.outside.medium import Medium
+from dembound.outside.mesh import Mesh
+
+NO_ELEMENT = -1
+
+
+@dataclass(frozen=True, eq=False)
+class ElementBlocks:
+    """The elements of a mesh in blocks: first all elastic ones, then those that absorb along x, y, and both.
+
+    Attributes
+    ----------
+    mesh : the elements.
+    begin : slot of the first node; a multiple of eight is fastest.
+    """
+
+    mesh: Mesh
+    begin: int = 0
+
+    @cached_property
+    def _kinds(self) -> np.ndarray:
+        """(E,) 0 for an elastic element, 1, 2 or 3 for one that absorbs along x, y, or both."""
+        return self.mesh.absorbs @ np.array([1, 2])
+
+    @cached_property
+    def elements(self) -> np.ndarray:
+        """(B, 8) the elements of every block, −1 for none; those of a block are of one kind."""
+        blocks = []
+        for kind in range(4):
+            members = np.flatnonzero(self._kinds == kind)
+            padded = np.full(-(-len(members) // LANES) * LANES, NO_ELEMENT)
+            padded[: len(members)] = members
+            blocks.append(padded.reshape(-1, LANES))
+        return np.concatenate(blocks)
+
+    @cached_property
+    def kinds(self) -> np.ndarray:
+        """(B,) the kind of every block."""
+        return self._kinds[self.elements[:, 0]]
+
+    @property
+    def layers(self) -> int:
+        """Number of blocks that absorb, the last ones."""
+        return int(np.count_nonzero(self.kinds))
+
+    @cached_property
+    def _is_core(self) -> np.ndarray:
+        """(Q,) bool, the points that are inside an element."""
+        core = np.zeros((self.mesh.order + 1,) * 2, dtype=np.bool_)
+        core[1:-1, 1:-1] = True
+        return core.ravel()
+
+    @property
+    def core(self) -> np.ndarray:
+        """The points inside an element."""
+        return np.flatnonzero(self._is_core)
+
+    @property
+    def rim(self) -> np.ndarray:
+        """The points on its edges."""
+        return np.flatnonzero(~self._is_core)
+
+    @cached_property
+    def _nodes(self) -> np.ndarray:
+        """(B, Q, 8) the nodes of every block, −1 in lanes without an element."""
+        flat = self.mesh.nodes.reshape(len(self.mesh.nodes), -1)
+        nodes = np.where(self.elements[:, :, None] == NO_ELEMENT, -1, flat[self.elements])
+        return np.ascontiguousarray(nodes.transpose(0, 2, 1))
+
+    @cached_property
+    def _shared(self) -> tuple[np.ndarray, int]:
+        """The nodes (s,) of rims that move, and how many of them are of elastic elements only, which come first.
+
+        Within each group they are sorted by the number of elements they belong to.
+        """
+        count = np.zeros(self.mesh.count, dtype=np.int64)
+        absorbing = np.zeros(self.mesh.count, dtype=np.bool_)
+        rims = self._nodes[:, self.rim]
+        np.add.at(count, rims[rims >= 0], 1)
+        of_layers = rims[self.kinds > 0]
+        absorbing[of_layers[of_layers >= 0]] = True
+        shared = np.flatnonzero((count > 0) & ~self.mesh.held)
+        order = np.lexsort((shared, count[shared], absorbing[shared]))
+        return shared[order], int(np.count_nonzero(~absorbing[shared]))
+
+    @property
+    def shared_begin(self) -> int:
+        """Slot of the first shared node."""
+        return self.begin + len(self.elements) * len(self.core) * LANES
+
+    @cached_property
+    def slot(self) -> np.ndarray:
+        """(n,) the slot of every node: core nodes block by block, then shared nodes, then those at rest."""
+        slot = np.empty(self.mesh.count, dtype=np.int64)
+        core = self._nodes[:, self.core].ravel()
+        slot[core[core >= 0]] = self.begin + np.flatnonzero(core >= 0)
+        others = np.concatenate([self._shared[0], np.flatnonzero(self.mesh.held)])
+        slot[others] = self.shared_begin + np.arange(len(others))
+        return slot
+
+    @property
+    def end(self) -> int:
+        """The slot after the last one."""
+        return self.shared_begin + len(self._shared[0]) + int(np.count_nonzero(self.mesh.held))
+
+    @cached_property
+    def bundle(self) -> Blocks:
+        """The arrays for the kernels."""
+        nodes = self._nodes[:, self.rim]
+        unused = self.begin + LANES * len(self.core) * np.arange(len(nodes))[:, None, None] + np.arange(LANES)
+        shared, elastic = self._shared
+        start, entry = self._entries(nodes, shared)
+        return Blocks(
+            blocks=len(nodes),
+            layers=self.layers,
+            core_begin=self.begin,
+            rim_slot=np.where(nodes < 0, unused, self.slot[nodes]).astype(np.uint32).ravel(),
+            shared_begin=self.shared_begin,
+            shared_layer=self.shared_begin + elastic,
+            start=start,
+            entry=entry,
+            entry_layer=2 * (len(nodes) - self.layers) * nodes[0].size,
+        )
+
+    def _entries(self, nodes: np.ndarray, shared: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Where the forces on every shared node are stored, see `Blocks`; nodes (B, R, 8) of the rims."""
+        place = np.arange(nodes.size).reshape(nodes.shape)
+        place = 2 * place - place % LANES  # eight along x, then eight along y
+        rank = np.full(self.mesh.count + 1, -1)  # the last one is that of lanes without an element
+        rank[shared] = np.arange(len(shared))
+        owner = rank[nodes].ravel()
+        order = np.argsort(owner, kind="stable")
+        order = order[np.count_nonzero(owner < 0) :]
+        start = np.searchsorted(owner[order], np.arange(len(shared) + 1))
+        return start, place.ravel()[order].astype(np.uint32)
+
+
+def shape_of(mesh: Mesh, medium: Medium) -> Shape:
+    """What all elements have in common, for the kernels."""
+    rule, blocks = mesh.rule, ElementBlocks(mesh)
+    along = [2.0 / size * rule.derivative for size in mesh.element]
+    area = 0.25 * mesh.element[0] * mesh.element[1]
+    return Shape(
+        gradient_x=along[0].ravel(),
+        gradient_y=along[1].ravel(),
+        divergence_x=-along[0].T.ravel(),
+        divergence_y=-along[1].T.ravel(),
+        weight=area * np.outer(rule.weights, rule.weights).ravel(),
+        moduli=medium.moduli,
+        core=blocks.core,
+        rim=blocks.rim,
+    )
+
+
+def absorber_of(blocks: ElementBlocks, medium: Medium, settings: Absorption, step: float) -> Absorber:
+    """The layer's coefficients for time steps of `step` (s), and its memories at rest."""
+    mesh, count = blocks.mesh, blocks.mesh.order + 1
+    elements = blocks.elements[len(blocks.elements) - blocks.layers :]
+    columns = np.zeros((3, len(elements), 2, count, LANES))  # B, A and τ
+    for axis in (0, 1):
+        points = count - 1
+        lines = points * mesh.elements[elements, axis][:, None] + np.arange(count)[:, None]  # (L, N, 8)
+        depth = mesh.line_depth(axis)[lines % len(mesh.line_depth(axis))]
+        for side, thickness in zip((-1.0, 1.0), mesh.thickness(axis), strict=True):
+            if thickness > 0.0:
+                profile = Profile(thickness, medium.normal_speed(axis), mesh.inner, settings)
+                q = np.clip(side * depth, 0.0, 1.0)
+                values = profile.decay(q, step), profile.gain(q, step), profile.delay(q, step)
+                columns[:, :, axis] = np.where(side * depth > 0.0, values, columns[:, :, axis])
+    size = len(elements) * 4 * count**2 * LANES
+    decay, gain, delay = (column.ravel() for column in columns)
+    axes = blocks.kinds[len(blocks.kinds) - blocks.layers :].astype(np.int64)
+    return Absorber(axes, decay, gain, delay, np.zeros(size), np.zeros(size))

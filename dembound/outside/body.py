@@ -1,0 +1,88 @@
+"""The continuum as a body: elements, medium and absorbing layer, with the masses and slots of its nodes."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numba
+import numpy as np
+
+from dembound.kernels.common import CHUNKS
+from dembound.kernels.grid import fill_forces
+from dembound.kernels.grid_tables import Absorber, Grid
+from dembound.motion.layout import aligned_zeros
+from dembound.outside.blocks import ElementBlocks, absorber_of, shape_of
+from dembound.outside.layer import USUAL, Absorption
+from dembound.outside.medium import Medium
+from dembound.outside.mesh import Mesh
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GridBody:
+    """A continuum on a mesh, one metre thick.
+
+    Attributes
+    ----------
+    mesh, medium : its elements, and density and moduli.
+    absorption : settings of the layers of the mesh.
+    added_mass : (n,) kg on nodes, beyond that of the medium; by default none.
+    first_slot : slot of its first node in the scene; multiples of eight are fastest.
+    """
+
+    mesh: Mesh
+    medium: Medium
+    absorption: Absorption = USUAL
+    added_mass: np.ndarray | float = 0.0
+    first_slot: int = 0
+
+    @property
+    def count(self) -> int:
+        """Number of nodes n."""
+        return self.mesh.count
+
+    @cached_property
+    def mass(self) -> np.ndarray:
+        """(n,) kg."""
+        return self.medium.density * self.mesh.areas + self.added_mass
+
+    @cached_property
+    def mass_for_limit(self) -> np.ndarray:
+        """(n,) kg, less than the mass where the delay τ acts: M⁻¹K then bounds the time step with it.
+
+        With gradients of u + τv central differences are stable up to ω²(Δt² + 2τΔt) = 4, so that ω² counts 1 + 2τ/Δt
+        times.
+        """
+        q = self.mesh.depth.max(axis=1)
+        return self.mass / (1.0 + 2.0 * self.absorption.delay * q**2)
+
+    @cached_property
+    def blocks(self) -> ElementBlocks:
+        """The elements in blocks, and the slots of the nodes."""
+        return ElementBlocks(self.mesh, self.first_slot)
+
+    def bundle(self, absorber: Absorber) -> Grid:
+        """The arrays of its law."""
+        shape, blocks = shape_of(self.mesh, self.medium), self.blocks.bundle
+        space = 6 * len(shape.weight) * 8
+        return Grid(
+            points=tuple(self.mesh.rule.points.tolist()),
+            shape=shape,
+            blocks=blocks,
+            absorber=absorber,
+            force=aligned_zeros(2 * len(blocks.rim_slot)),
+            space=aligned_zeros(numba.config.NUMBA_NUM_THREADS, space),  # type: ignore[attr-defined]
+            taken=np.zeros((CHUNKS, 4)),
+        )
+
+    def law(self, time_step: float) -> Grid:
+        """The arrays of its law for time steps Δt (s), its layers at rest."""
+        return self.bundle(absorber_of(self.blocks, self.medium, self.absorption, time_step))
+
+    @cached_property
+    def _elastic(self) -> Grid:
+        """The law without its layers' memories."""
+        nothing = np.zeros(0)
+        return self.bundle(Absorber(np.zeros(0, dtype=np.int64), *[nothing] * 5))
+
+    def fill_forces(self, u: np.ndarray, force: np.ndarray) -> None:
+        """Fill force (3, slots) of its nodes with elastic forces (N) at displacements u, zero on outer edges."""
+        fill_forces(self._elastic, u, force)

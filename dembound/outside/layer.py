@@ -1,0 +1,93 @@
+"""The absorbing layer: a convolutional perfectly matched layer with a complex frequency shift (CFS-PML).
+
+In a layer of thickness L a derivative along its normal is divided by s = κ + σ/(α + iω), at depth q = 0 … 1 of L with
+
+    κ = 1,  σ = σ0 q²,  σ0 = 3 c_p ln(1/R0)/(2L),  α = α0 (1 − q),  α0 = 0.3 c_p/(2 L_inner)
+
+(Roden & Gedney 2000, Microw. Opt. Technol. Lett. 27, 334–339; Komatitsch & Martin 2007, Geophysics 72, SM155–SM167,
+eqs 24 to 27). In time ∂u becomes ∂u/κ + ψ with a memory ψ ← Bψ + A∂u at every step,
+
+    B = exp(−(σ/κ + α)Δt),  A = σ(B − 1)/(κ(σ + κα)).
+
+With spectral elements this alone grows slowly. It decays if gradients are those of u + τv, with τ = kΔt q².
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Absorption:
+    """Settings of a layer.
+
+    Attributes
+    ----------
+    reflection : R0, amplitude that a P wave keeps on its way through the layer and back at normal incidence, in the
+        continuum. shift : α0 over c_p/(2 L_inner). delay : k, see above; 0 grows in long runs.
+    """
+
+    reflection: float = 1e-4
+    shift: float = 0.3
+    delay: float = 0.1
+
+
+USUAL = Absorption()
+"""Settings with which waves of all angles up to 60° are absorbed, and noise decays."""
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The layer at one side.
+
+    Attributes
+    ----------
+    thickness : L, m. speed : c_p along its normal, m/s. inner : L_inner, m, the larger side of what lies within all
+    layers. settings : of the layer.
+    """
+
+    thickness: float
+    speed: float
+    inner: float
+    settings: Absorption = USUAL
+
+    @property
+    def strongest(self) -> float:
+        """σ0 (1/s), at the outer edge."""
+        return -1.5 * self.speed * float(np.log(self.settings.reflection)) / self.thickness
+
+    def damping(self, q: np.ndarray) -> np.ndarray:
+        """σ (1/s) at depths q of the thickness, any shape."""
+        return self.strongest * q**2
+
+    def shift(self, q: np.ndarray) -> np.ndarray:
+        """α (1/s) at depths q."""
+        return self.settings.shift * 0.5 * self.speed / self.inner * (1.0 - q)
+
+    def decay(self, q: np.ndarray, step: float) -> np.ndarray:
+        """B at depths q for time steps of `step` (s)."""
+        return np.exp(-(self.damping(q) + self.shift(q)) * step)
+
+    def gain(self, q: np.ndarray, step: float) -> np.ndarray:
+        """A at depths q for time steps of `step` (s)."""
+        damping = self.damping(q)
+        total = damping + self.shift(q)
+        moved = np.expm1(-total * step)
+        return np.divide(damping * moved, total, out=np.zeros_like(total), where=total > 0.0)
+
+    def delay(self, q: np.ndarray, step: float) -> np.ndarray:
+        """τ (s) at depths q for time steps of `step` (s)."""
+        return self.settings.delay * step * q**2
+
+    def expected_reflection(self, frequency: float, angle: float = 0.0, speed: float | None = None) -> float:
+        """|R| ≤ R0^(cos θ·g·c_p/c) of a plane wave of a frequency (Hz) at θ (degrees) from the normal, in a continuum.
+
+        speed : c of the wave, m/s; by default c_p. g = ∫σ ω²/(ω² + α²)/∫σ over the depth. Elements add some 0.1 % if
+        there are eight nodes to a wavelength.
+        """
+        x, weights = np.polynomial.legendre.leggauss(40)
+        q, omega = 0.5 * (1.0 + x), 2.0 * np.pi * frequency
+        passed = omega**2 / (omega**2 + self.shift(q) ** 2)
+        share = float(np.sum(weights * self.damping(q) * passed) / np.sum(weights * self.damping(q)))
+        slower = 1.0 if speed is None else self.speed / speed
+        return float(self.settings.reflection ** (np.cos(np.radians(angle)) * share * slower))

@@ -1,0 +1,85 @@
+"""The part of a continuum."""
+
+import numpy as np
+
+from dembound.kernels.grid import strain_energies
+from dembound.kernels.grid_tables import Grid
+from dembound.motion.cracks import NO_CRACKS, Cracks
+from dembound.motion.part import Part
+from dembound.motion.state import Arrays, State
+from dembound.outside.body import GridBody
+from dembound.outside.fields import stress
+
+
+class GridPart(Part):
+    """A continuum under its law (kernels/grid.py).
+
+    Parameters
+    ----------
+    body : elements, medium and layers. time_step : Δt in s.
+    first_node : number of its first node in the scene.
+    supported : (k,) its nodes, numbered from 0, that the support table or ties move.
+
+    Raises ValueError if a supported node lies inside an element that absorbs, whose energy could not be accounted for,
+    or on an outer edge, which is at rest.
+    """
+
+    name = "continuum"
+    law_name = "continuum"
+
+    def __init__(
+        self, body: GridBody, time_step: float, *, first_node: int = 0, supported: np.ndarray | None = None
+    ) -> None:
+        self.body = body
+        self.nodes = slice(first_node, first_node + body.count)
+        self._law = body.law(time_step)
+        self._refuse(np.zeros(0, dtype=np.int64) if supported is None else supported)
+
+    def _refuse(self, supported: np.ndarray) -> None:
+        """Raise ValueError for supported nodes that cannot be."""
+        mesh = self.body.mesh
+        inside = mesh.nodes[mesh.absorbs.any(axis=1), 1:-1, 1:-1]
+        for nodes, where in ((inside, "inside an element that absorbs"), (np.flatnonzero(mesh.held), "on a held edge")):
+            if np.isin(supported, nodes).any():
+                raise ValueError(f"a supported node is {where}")
+
+    def law(self) -> Grid:
+        """The arrays of the law."""
+        return self._law
+
+    def react(self, why: int, steps: int, state: State) -> None:
+        """Nothing: its law is the same throughout."""
+
+    def stored(self, u: np.ndarray) -> tuple[float, float]:
+        """Strain energy (J) of all elements at displacements (3, slots), those that absorb without their memories."""
+        return float(np.sum(self._energies(u))), 0.0
+
+    def counted_as_damping(self, u: np.ndarray) -> float:
+        """Strain energy (J) of the elements that absorb, which kernels count as taken."""
+        return float(np.sum(self._energies(u)[len(self.body.blocks.elements) - self.body.blocks.layers :]))
+
+    def _energies(self, u: np.ndarray) -> np.ndarray:
+        """Strain energy (B,) J of every block."""
+        energy = np.empty(self._law.blocks.blocks)
+        strain_energies(self._law, u, energy)
+        return energy
+
+    def take_cracks(self, steps: int) -> Cracks:
+        """None: it does not break."""
+        return NO_CRACKS
+
+    def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
+        """Stress (m, 3) σ_xx, σ_yy, σ_xy, tension positive, and whether a node is in an absorbing layer."""
+        own = displacement[:2, self.nodes]
+        inside = (self.body.mesh.depth > 0.0).any(axis=1)
+        return {"stress": (stress(self.body, own), "Pa"), "absorbs": (inside.astype(float), "1")}
+
+    def memory(self) -> Arrays:
+        """The memories of the layers."""
+        absorber = self._law.absorber
+        return {"strain_memory": absorber.strain_memory, "force_memory": absorber.force_memory}
+
+    def recall(self, memory: Arrays) -> None:
+        """Restore what `memory` has returned in another run of the same case."""
+        for name, values in self.memory().items():
+            values[:] = memory[name]

@@ -1,0 +1,160 @@
+"""Kernels of spectral elements against their equations, written down element by element with NumPy."""
+
+import numpy as np
+import pytest
+
+from dembound.boundaries.support import SupportBuilder
+from dembound.motion.simulation import Simulation
+from dembound.outside.alone import GridScene
+from dembound.outside.body import GridBody
+from dembound.outside.gll import ORDERS
+from dembound.outside.layer import Profile
+from dembound.outside.part import GridPart
+
+STEP = 1e-4
+"""About half of the stable one of elements of 3 × 2 m of order 4."""
+
+
+class Plain:
+    """The law of a continuum: gradients, stresses and nodal forces of all elements, memories of layers by node."""
+
+    def __init__(self, body: GridBody, step: float) -> None:
+        self.body, self.step = body, step
+        mesh = body.mesh
+        shape = (2, 2, *mesh.nodes.shape)  # axis, component, element, row, column
+        self.strain_memory, self.force_memory = np.zeros(shape), np.zeros((2, 2, mesh.count))
+        self.decay, self.gain, self.delay = np.ones((2, mesh.count)), np.zeros((2, mesh.count)), np.zeros(mesh.count)
+        for axis in (0, 1):
+            place = mesh.positions[:, axis]
+            inner = [mesh.origin[axis] + mesh.thickness(axis)[0]]
+            inner.append(mesh.origin[axis] + mesh.size[axis] - mesh.thickness(axis)[1])
+            for sign, edge, thickness in zip((-1.0, 1.0), inner, mesh.thickness(axis), strict=True):
+                if thickness == 0.0:
+                    continue
+                q = np.maximum(sign * (place - edge), 0.0) / thickness
+                speed = np.sqrt((body.medium.c11, body.medium.c22)[axis] / body.medium.density)
+                profile = Profile(thickness, body.medium.normal_speed(axis), mesh.inner, body.absorption)
+                assert speed <= profile.speed < 1.1 * speed
+                there = q > 0.0
+                self.decay[axis, there] = profile.decay(q[there], step)
+                self.gain[axis, there] = profile.gain(q[there], step)
+                self.delay = np.maximum(self.delay, profile.delay(q, step))
+
+    def forces(self, u: np.ndarray, v: np.ndarray | None = None) -> np.ndarray:
+        """Nodal forces (2, n) at displacements (2, n); with velocities, half a step behind, also by the layers."""
+        mesh = self.body.mesh
+        absorbs = v is not None
+        w = u + self.delay * v if v is not None else u
+        derivative = mesh.rule.derivative
+        of_elements = w[:, mesh.nodes]
+        gradient = np.stack(
+            [
+                2.0 / mesh.element[0] * np.einsum("ik,cejk->ceji", derivative, of_elements),
+                2.0 / mesh.element[1] * np.einsum("jk,ceki->ceji", derivative, of_elements),
+            ]
+        )
+        if absorbs:
+            decay, gain = self.decay[:, mesh.nodes], self.gain[:, mesh.nodes]
+            self.strain_memory = decay[:, None] * self.strain_memory + gain[:, None] * gradient
+            gradient = gradient + self.strain_memory
+        strain = np.stack([gradient[0, 0], gradient[1, 1], gradient[1, 0] + gradient[0, 1]])
+        xx, yy, xy = np.einsum("ab,beji->aeji", self.body.medium.matrix, strain)
+        weight = 0.25 * mesh.element[0] * mesh.element[1] * np.outer(mesh.rule.weights, mesh.rule.weights)
+        total = np.zeros((2, 2, mesh.count))
+        for component, (along_x, along_y) in enumerate(((xx, xy), (xy, yy))):
+            fx = -2.0 / mesh.element[0] * np.einsum("ki,ejk->eji", derivative, weight * along_x)
+            fy = -2.0 / mesh.element[1] * np.einsum("kj,eki->eji", derivative, weight * along_y)
+            for axis, force in enumerate((fx, fy)):
+                total[axis, component] = np.bincount(mesh.nodes.ravel(), force.ravel(), mesh.count)
+        if absorbs:
+            self.force_memory = self.decay[:, None] * self.force_memory + self.gain[:, None] * total
+            total = total + self.force_memory
+        return total.sum(axis=0) * ~mesh.held
+
+    def energy(self, u: np.ndarray, elements: np.ndarray) -> float:
+        """½Σ σ:ε over some elements, (E,) bool."""
+        mesh, values = self.body.mesh, 0.0
+        weight = 0.25 * mesh.element[0] * mesh.element[1] * np.outer(mesh.rule.weights, mesh.rule.weights)
+        for nodes in mesh.nodes[elements]:
+            along_x = 2.0 / mesh.element[0] * np.einsum("ik,cjk->cji", mesh.rule.derivative, u[:, nodes])
+            along_y = 2.0 / mesh.element[1] * np.einsum("jk,cki->cji", mesh.rule.derivative, u[:, nodes])
+            strain = np.stack([along_x[0], along_y[1], along_y[0] + along_x[1]])
+            values += 0.5 * float(np.einsum("ji,aji,ab,bji->", weight, strain, self.body.medium.matrix, strain))
+        return values
+
+
+def close(found: np.ndarray, expected: np.ndarray, sums: int = 1) -> None:
+    """Equal but for rounding: each of `sums` results has some 200 products, of size up to that of the largest."""
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=sums * 1e-14 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("first_slot", [0, 24])
+@pytest.mark.parametrize("order", ORDERS)
+def test_elastic_forces(grid, noise, order: int, first_slot: int) -> None:
+    body = grid(order, first_slot=first_slot)
+    u = noise(body)
+    slots = np.zeros((3, body.blocks.end))
+    slots[:, body.blocks.slot] = u
+    force = np.zeros_like(slots)
+    body.fill_forces(slots, force)
+
+    close(force[:2, body.blocks.slot], Plain(body, STEP).forces(u[:2]))
+    unused = np.ones(body.blocks.end, dtype=np.bool_)
+    unused[body.blocks.slot] = False
+    assert not force[:, unused].any()
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_strain_energies(grid, noise, order: int) -> None:
+    body = grid(order)
+    plain, u = Plain(body, STEP), noise(body)
+    part, slots = GridPart(body, STEP), GridScene(body).layout.spread(u)
+
+    absorbs = body.mesh.absorbs.any(axis=1)
+    assert part.stored(slots)[0] == pytest.approx(plain.energy(u[:2], np.ones_like(absorbs)), rel=1e-12)
+    assert part.counted_as_damping(slots) == pytest.approx(plain.energy(u[:2], absorbs), rel=1e-12)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_steps_with_layers(grid, noise, order: int) -> None:
+    """Memories, delay, both axes and corners; each φ is that of the node, whose elements have its parts."""
+    body = grid(order)
+    plain, u, v = Plain(body, STEP), noise(body, 1)[:2] * 1e-3, noise(body, 2)[:2]
+    load = np.zeros((3, body.count))
+    load[:2] = 1e4 * noise(body, 3)[:2]
+    simulation = Simulation(GridScene(body, load=load), STEP)
+    simulation.state.displacement, simulation.state.velocity = (np.pad(each, ((0, 1), (0, 0))) for each in (u, v))
+    simulation.run(5)
+    for _ in range(5):
+        v = v + STEP / body.mass * (plain.forces(u, v) + load[:2] * ~body.mesh.held)
+        u = u + STEP * v
+
+    close(simulation.state.displacement[:2], u, 5)
+    close(simulation.state.velocity[:2], v, 5)
+    assert not simulation.state.displacement[2].any()
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_supported_nodes_are_moved_by_the_table(grid, noise, axis: int) -> None:
+    """On springs, in the middle of elastic elements and on their edges; one with a prescribed velocity."""
+    body = grid()
+    mesh = body.mesh
+    elastic = mesh.nodes[~mesh.absorbs.any(axis=1)]
+    nodes = np.unique(elastic[2])
+    builder, stiffness = SupportBuilder(), 1e9 * np.arange(1.0, len(nodes))
+    builder.add(nodes[1:], axis, stiffness=stiffness)
+    builder.add(nodes[:1], axis, drive=2.0, signal=np.cos, prescribed=True)
+    simulation = Simulation(GridScene(body, supports=builder.table()), STEP)
+    u, v = noise(body, 1)[:2] * 1e-3, noise(body, 2)[:2]
+    simulation.state.displacement, simulation.state.velocity = (np.pad(each, ((0, 1), (0, 0))) for each in (u, v))
+    simulation.run(4)
+    plain = Plain(body, STEP)
+    for step in range(4):
+        force = plain.forces(u, v)
+        force[axis, nodes[1:]] -= stiffness * u[axis, nodes[1:]]
+        v = v + STEP / body.mass * force
+        v[axis, nodes[0]] = 2.0 * np.cos((step + 0.5) * STEP)
+        u = u + STEP * v
+
+    close(simulation.state.displacement[:2], u, 4)
+    close(simulation.state.velocity[:2], v, 4)
