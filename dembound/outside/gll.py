@@ -59,3 +59,7 @@ class Rule:
             for j in range(self.count)
         ]
         return np.stack(each, axis=1)
+
+    def slope(self, x: np.ndarray) -> np.ndarray:
+        """Derivatives (k, N) at x (k,) of the polynomials of `shape`."""
+        return self.shape(x) @ self.derivative

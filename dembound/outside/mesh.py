@@ -218,16 +218,20 @@ class Mesh:
         each = 0.25 * self.element[0] * self.element[1] * np.outer(self.rule.weights, self.rule.weights)
         return np.bincount(self.nodes.ravel(), np.tile(each.ravel(), len(self.nodes)), self.count)
 
+    def located(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The element (k,) nearest to each of the points (k, 2) m, and their places (k, 2) in it, −1 … 1 inside."""
+        cell = (np.asarray(points) - self.origin) / self.element  # in columns and rows
+        away = np.abs(cell[:, None] - 0.5 - self.elements)
+        beyond = np.maximum(away - 0.5, 0.0) * self.element
+        chosen = np.argmin(np.sum(beyond**2, axis=2), axis=1)
+        return chosen, 2.0 * (cell - self.elements[chosen]) - 1.0
+
     def interpolation(self, points: np.ndarray) -> Interpolation:
         """How displacements at points (k, 2) m follow from those of nodes.
 
         Those of a point within no element are extrapolated from the nearest one.
         """
-        cell = (np.asarray(points) - self.origin) / self.element  # in columns and rows
-        away = np.abs(cell[:, None] - 0.5 - self.elements)
-        beyond = np.maximum(away - 0.5, 0.0) * self.element
-        chosen = np.argmin(np.sum(beyond**2, axis=2), axis=1)
-        local = 2.0 * (cell - self.elements[chosen]) - 1.0
+        chosen, local = self.located(points)
         x, y = (self.rule.shape(local[:, a]) for a in (0, 1))
         count = len(local)
         return Interpolation(self.nodes[chosen].reshape(count, -1), (y[:, :, None] * x[:, None, :]).reshape(count, -1))

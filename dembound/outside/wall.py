@@ -1,0 +1,147 @@
+"""Ties between the particles of a box and the continuum round it, one for every bond that a side of the box cuts.
+
+A tie is the half of the bond next to the particle (kernels/wall.py). The motion of the bond's middle is that of the
+homogenised packing: the continuum's displacement U and gradient ∇U at the point where the two disks i, j touch, plus
+
+    c = ½(χ_i + χ_j) + ½(l_i χ^θ_i − l_j χ^θ_j) t + (x_middle − x_contact),   c^θ = ½(χ^θ_i + χ^θ_j)   per unit ∇U
+
+with the correctors χ of the brick (disks/homogenise.py) and the arms l of the bond. Under a uniform gradient a tie then
+has exactly the force and moment of the bond.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dembound.disks.packed_material import PackedMaterial
+from dembound.kernels.tables import WallTies
+from dembound.outside.mesh import Mesh
+from dembound.packings.cut import CutContacts
+
+DAMPING = 0.3
+"""Dashpot of the ties over ρc_pD: it takes out waves too short for the elements, and no others."""
+
+
+@dataclass(frozen=True, eq=False)
+class CutBonds:
+    """The halves of cut bonds next to a body.
+
+    Attributes
+    ----------
+    particle : (t,) disk of the body. normal : (2, t) from its centre to that beyond. arm : (t,) m, to the contact.
+    point : (t, 2) m, of the contact. stiffness : (3, t) N/m, N/m and N·m, of half the bond: twice that of the bond.
+    corrector : (3, 4, t) m and rad, c above per unit gradient xx, yy, xy, yx.
+    """
+
+    particle: np.ndarray
+    normal: np.ndarray
+    arm: np.ndarray
+    point: np.ndarray
+    stiffness: np.ndarray
+    corrector: np.ndarray
+
+    @classmethod
+    def of(cls, ground: PackedMaterial, cut: CutContacts, positions: np.ndarray) -> CutBonds:
+        """Those of cut contacts of a body with disks at these positions (n, 2) m."""
+        law, kind, second = ground.stiffness, cut.contact_type, cut.is_second
+        arms = np.where(second, [law.arm_j[kind], law.arm_i[kind]], [law.arm_i[kind], law.arm_j[kind]])
+        vectors = cut.vectors(ground.brick).T
+        normal = vectors / np.hypot(*vectors)
+        centre = positions[cut.node]
+        own = np.where(second, *ground.brick.pairs[kind].T[::-1])
+        corrector = _middle(ground.continuum.corrector, own, cut.other, arms, normal)
+        off = 0.5 * vectors - arms[0] * normal  # from the contact to the bond's middle
+        for component, gradients in enumerate(((0, 2), (3, 1))):
+            for axis, gradient in enumerate(gradients):
+                corrector[component, gradient] += off[axis]
+        stiffness = 2.0 * np.stack([law.normal[kind], law.shear[kind], law.bending[kind]])
+        return cls(cut.node, normal, arms[0], centre + (arms[0] * normal).T, stiffness, corrector)
+
+
+def _middle(
+    corrector: np.ndarray, own: np.ndarray, other: np.ndarray, arms: np.ndarray, normal: np.ndarray
+) -> np.ndarray:
+    """Motion (3, 4, t) of the middles of bonds per unit gradient, from that of both disks, corrector (3, n, 4).
+
+    arms : (2, t) of the disk `own` (t,) of the brick and of the `other`.
+    """
+    first, second = (np.moveaxis(corrector[:, disk], 1, 2) for disk in (own, other))
+    along = np.stack([-normal[1], normal[0]])
+    middle = 0.5 * (first + second)
+    middle[:2] += 0.5 * along[:, None] * (arms[0] * first[2] - arms[1] * second[2])
+    return middle
+
+
+@dataclass(frozen=True, eq=False)
+class Wall:
+    """Ties of cut bonds to the elements of a mesh.
+
+    Attributes
+    ----------
+    bonds : sorted by the element they are tied to. mesh : the elements. element : (t,) that of each bond. lag : η, s.
+    """
+
+    bonds: CutBonds
+    mesh: Mesh
+    element: np.ndarray
+    lag: float
+
+    @classmethod
+    def of(cls, mesh: Mesh, bonds: CutBonds, lag: float) -> Wall:
+        """Each bond tied to the element nearest to its contact."""
+        element = mesh.located(bonds.point)[0]
+        order = np.argsort(element, kind="stable")
+        ordered = {name: values[..., order] for name, values in vars(bonds).items() if name != "point"}
+        return cls(CutBonds(**ordered, point=bonds.point[order]), mesh, element[order], lag)
+
+    @cached_property
+    def elements(self) -> np.ndarray:
+        """(e,) the elements that have ties."""
+        return np.unique(self.element)
+
+    @cached_property
+    def nodes(self) -> np.ndarray:
+        """(m,) the nodes of these elements, ascending."""
+        return np.unique(self.mesh.nodes[self.elements])
+
+    def ties(self, particle: np.ndarray, node: np.ndarray, line: np.ndarray, twin: np.ndarray | None) -> WallTies:
+        """The arrays for the kernels.
+
+        particle : (n,) slot of every disk of the body; node : (m,) that of every node of the mesh; line : (slots,) line
+        of slots in the support table; twin : (n,) slot of every disk's twin in the free-field column, None for none.
+        """
+        bonds, mesh = self.bonds, self.mesh
+        local = mesh.located(bonds.point)[1].T
+        shape, slope = ([of(values).T for values in local] for of in (mesh.rule.shape, mesh.rule.slope))
+        width, height = mesh.element
+        own = particle[bonds.particle]
+        nodes = node[mesh.nodes[self.elements]]
+        count = len(own)
+        return WallTies(
+            start=np.append(np.searchsorted(self.element, self.elements), count),
+            node=nodes,
+            line=line[nodes],
+            particle=own,
+            particle_line=line[own],
+            twin=np.full(count, -1) if twin is None else twin[bonds.particle],
+            along=np.ascontiguousarray(shape[0]),
+            along_slope=slope[0] * (2.0 / width),
+            up=np.ascontiguousarray(shape[1]),
+            up_slope=slope[1] * (2.0 / height),
+            corrector=bonds.corrector,
+            normal=bonds.normal,
+            arm=bonds.arm,
+            stiffness=bonds.stiffness,
+            lag=self.lag,
+            field=np.zeros((6, count)),
+            row=np.zeros((2, count)),
+        )
+
+
+def usual_lag(ground: PackedMaterial) -> float:
+    """η (s) of the ties: with half bonds of normal stiffness 2K, a dashpot of `DAMPING`·ρc_pD for K = ρc_p²."""
+    speed = float(np.sqrt(np.mean(np.diag(ground.material_tensor)[:2]) / ground.density))
+    return 0.5 * DAMPING * ground.brick.mean_diameter / speed
