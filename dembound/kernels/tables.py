@@ -185,12 +185,12 @@ class Supports(NamedTuple):
 class WallTies(NamedTuple):
     """Half bonds between particles and the wall of a grid, t of them, by the e elements of N × N nodes; see wall.py.
 
-    start : (e + 1,) ties of each element. node : (e, N, N) its nodes, by row and column, and line, theirs in the support
-    table. particle, particle_line : (t,) of the particle; twin (t,) in the free-field column, −1 for none. along, up :
-    (N, t) values of the element's shape functions along x and y at the tie's point; along_slope, up_slope their
-    derivatives, 1/m. corrector : (3, 4, t) m and rad, motion of the bond's middle beyond that of the point per unit
-    gradient xx, yy, xy, yx. normal : (2, t) from the particle to the point; arm (t,) m. stiffness : (3, t) N/m, N/m and
-    N·m of the half bond. lag : η, s. field (6, t), row (2, t) : work space.
+    start : (e + 1,) ties of each element. node : (e, N, N) its nodes, by row and column, and line, theirs in the
+    support table. particle, particle_line : (t,) of the particle; twin (t,) in the free-field column, −1 for none.
+    along, up : (N, t) values of the element's shape functions along x and y at the tie's point; along_slope, up_slope
+    their derivatives, 1/m. corrector : (3, 4, t) m and rad, motion of the bond's middle beyond that of the point, per
+    unit gradient xx, yy, xy, yx. normal : (2, t) from the particle to the point; arm (t,) m. stiffness : (3, t) N/m,
+    N/m and N·m of the half bond. lag : η, s. field (6, t), row (2, t) : work space.
     """
 
     start: np.ndarray

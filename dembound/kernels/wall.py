@@ -1,7 +1,7 @@
 """Half bonds between particles and the wall of a grid of elements.
 
-A bond that the side of a body cuts is tied to the wall of the grid beyond: its half next to the particle, twice as stiff
-as the bond, ends at the point where both disks touch. There the grid has the motion of the bond's middle,
+A bond that the side of a body cuts is tied to the wall of the grid beyond: its half next to the particle, twice as
+stiff as the bond, ends at the point where both disks touch. There the grid has the motion of the bond's middle,
 
     w_k = Σ_a N_a U_a,k + Σ_gh c_k,gh ∂U_g/∂h,  k = x, y, rotation (no first term for the rotation),
 
@@ -14,7 +14,6 @@ A particle with a twin in the free-field column is tied by its motion relative t
 scattered waves only.
 """
 
-import numpy as np
 from numba import njit
 
 from dembound.kernels.common import FAST, U
@@ -22,7 +21,7 @@ from dembound.kernels.law import is_tie
 from dembound.kernels.tables import WallTies
 
 X, Y, XX, YY, XY, YX = range(6)
-"""Rows of the work space: displacements and gradients ∂U_x/∂x, ∂U_y/∂y, ∂U_x/∂y, ∂U_y/∂x; or what is conjugate to them."""
+"""Rows of the work space: displacements and gradients ∂U_x/∂x, ∂U_y/∂y, ∂U_x/∂y, ∂U_y/∂x, or their conjugate forces."""
 
 VALUE, SLOPE_X, SLOPE_Y = (X, Y), (XX, YX), (XY, YY)
 """The same by component of U."""

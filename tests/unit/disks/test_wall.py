@@ -6,10 +6,10 @@ import pytest
 from dembound.casefile.disks.material import Material
 from dembound.disks.homogenise import Network
 from dembound.disks.packed_material import PackedMaterial, make_packed_material
+from dembound.disks.wall import CutBonds, Wall, usual_lag
 from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import tie_forces
 from dembound.outside.mesh import Around, Mesh
-from dembound.outside.wall import CutBonds, Wall, usual_lag
 from dembound.packings.cut import cut_contacts
 from dembound.packings.dense import Recipe, pack_dense
 from dembound.packings.square import Square
