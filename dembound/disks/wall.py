@@ -17,7 +17,9 @@ from functools import cached_property
 import numpy as np
 
 from dembound.disks.packed_material import PackedMaterial
+from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import WallTies
+from dembound.motion.layout import aligned_zeros
 from dembound.outside.mesh import Mesh
 from dembound.packings.cut import CutContacts
 
@@ -113,32 +115,62 @@ class Wall:
         particle : (n,) slot of every disk of the body; node : (m,) that of every node of the mesh; line : (slots,) line
         of slots in the support table; twin : (n,) slot of every disk's twin in the free-field column, None for none.
         """
-        bonds, mesh = self.bonds, self.mesh
+        bonds, mesh, (width, height) = self.bonds, self.mesh, self.mesh.element
+        start, place = self._blocks
+        lanes = LANES * int(start[-1])
         local = mesh.located(bonds.point)[1].T
-        shape, slope = ([of(values).T for values in local] for of in (mesh.rule.shape, mesh.rule.slope))
-        width, height = mesh.element
-        own = particle[bonds.particle]
-        nodes = node[mesh.nodes[self.elements]]
-        count = len(own)
+
+        def laid(values: np.ndarray) -> np.ndarray:
+            """Values (…, t) by blocks of eight, zero where there is no tie."""
+            wide = np.zeros((*values.shape[:-1], lanes), dtype=values.dtype)
+            wide[..., place] = values
+            return wide
+
+        def in_blocks(values: np.ndarray) -> np.ndarray:
+            """Values (f, t), the f of each block together."""
+            wide = laid(values)
+            return np.ascontiguousarray(wide.reshape(len(wide), -1, LANES).swapaxes(0, 1)).ravel()
+
+        (along, along_slope), (up, up_slope) = (
+            (in_blocks(mesh.rule.shape(at).T), in_blocks(mesh.rule.slope(at).T * (2.0 / size)))
+            for at, size in zip(local, (width, height), strict=True)
+        )
+        own = np.full(lanes, particle[bonds.particle[0]])
+        own[place] = particle[bonds.particle]
+        twins = np.full(lanes, -1)
+        if twin is not None:
+            twins[place] = twin[bonds.particle]
+        nodes = node[mesh.nodes[self.elements]].reshape(len(self.elements), -1)
         return WallTies(
-            start=np.append(np.searchsorted(self.element, self.elements), count),
+            points=tuple(mesh.rule.points.tolist()),
+            start=start,
             node=nodes,
             line=line[nodes],
             particle=own,
             particle_line=line[own],
-            twin=np.full(count, -1) if twin is None else twin[bonds.particle],
-            along=np.ascontiguousarray(shape[0]),
-            along_slope=slope[0] * (2.0 / width),
-            up=np.ascontiguousarray(shape[1]),
-            up_slope=slope[1] * (2.0 / height),
-            corrector=bonds.corrector,
-            normal=bonds.normal,
-            arm=bonds.arm,
-            stiffness=bonds.stiffness,
+            twin=twins,
+            along=along,
+            along_slope=along_slope,
+            up=up,
+            up_slope=up_slope,
+            corrector=in_blocks(bonds.corrector.reshape(12, -1)),
+            normal=laid(bonds.normal).ravel(),
+            arm=laid(bonds.arm),
+            stiffness=laid(bonds.stiffness).ravel(),
             lag=self.lag,
-            field=np.zeros((6, count)),
-            row=np.zeros((2, count)),
+            moved=np.zeros(2 * nodes.shape[1]),
+            reaction=aligned_zeros(2 * nodes.shape[1] * LANES),
+            field=aligned_zeros(6 * LANES),
+            own=aligned_zeros(3 * LANES),
         )
+
+    @cached_property
+    def _blocks(self) -> tuple[np.ndarray, np.ndarray]:
+        """First block of eight of each element with ties, (e + 1,), and the place (t,) of every tie in the blocks."""
+        first = np.append(np.searchsorted(self.element, self.elements), len(self.element))
+        many = np.diff(first)
+        start = np.concatenate([[0], np.cumsum(-(-many // LANES))])
+        return start, np.repeat(LANES * start[:-1] - first[:-1], many) + np.arange(len(self.element))
 
 
 def usual_lag(ground: PackedMaterial) -> float:

@@ -183,16 +183,19 @@ class Supports(NamedTuple):
 
 
 class WallTies(NamedTuple):
-    """Half bonds between particles and the wall of a grid, t of them, by the e elements of N × N nodes; see wall.py.
+    """Half bonds between particles and the wall of a grid, by its e elements of N × N nodes; see wall.py.
 
-    start : (e + 1,) ties of each element. node : (e, N, N) its nodes, by row and column, and line, theirs in the
-    support table. particle, particle_line : (t,) of the particle; twin (t,) in the free-field column, −1 for none.
-    along, up : (N, t) values of the element's shape functions along x and y at the tie's point; along_slope, up_slope
-    their derivatives, 1/m. corrector : (3, 4, t) m and rad, motion of the bond's middle beyond that of the point, per
-    unit gradient xx, yy, xy, yx. normal : (2, t) from the particle to the point; arm (t,) m. stiffness : (3, t) N/m,
-    N/m and N·m of the half bond. lag : η, s. field (6, t), row (2, t) : work space.
+    Ties are in B blocks of eight (lanes.py), T = 8B of them with those of no stiffness that fill the last block of each
+    element. points : tuple of N numbers, so that N is part of the type. start : (e + 1,) blocks of each element. node :
+    (e, N²) its nodes, row by row, and line, theirs in the support table. particle, particle_line : (T,) of the
+    particle; twin (T,) in the free-field column, −1 for none. along, up : (B·N·8,) values of the element's shape functions along
+    x and y at the tie's point; along_slope, up_slope their derivatives, 1/m. corrector : (B·12·8,) m and rad, motion x,
+    y, rotation of the bond's middle beyond that of the point, each per unit gradient xx, yy, xy, yx. normal : (2T,)
+    components x, then y, from the particle to the point; arm (T,) m. stiffness : (3T,) N/m, N/m and N·m of the half
+    bonds. lag : η, s. moved (2N²,), reaction (2N²·8,), field (48,), own (24,) : work space.
     """
 
+    points: tuple[float, ...]
     start: np.ndarray
     node: np.ndarray
     line: np.ndarray
@@ -208,8 +211,10 @@ class WallTies(NamedTuple):
     arm: np.ndarray
     stiffness: np.ndarray
     lag: float
+    moved: np.ndarray
+    reaction: np.ndarray
     field: np.ndarray
-    row: np.ndarray
+    own: np.ndarray
 
 
 class Sides(NamedTuple):

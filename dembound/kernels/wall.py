@@ -1,4 +1,4 @@
-"""Half bonds between particles and the wall of a grid of elements.
+"""Half bonds between particles and the wall of a grid of elements, eight ties of one element at once (lanes.py).
 
 A bond that the side of a body cuts is tied to the wall of the grid beyond: its half next to the particle, twice as
 stiff as the bond, ends at the point where both disks touch. There the grid has the motion of the bond's middle,
@@ -14,121 +14,174 @@ A particle with a twin in the free-field column is tied by its motion relative t
 scattered waves only.
 """
 
+from typing import Any
+
 from numba import njit
 
 from dembound.kernels.common import FAST, U
+from dembound.kernels.lanes import LANES, load, splat, store
 from dembound.kernels.law import is_tie
 from dembound.kernels.tables import WallTies
 
-X, Y, XX, YY, XY, YX = range(6)
-"""Rows of the work space: displacements and gradients ∂U_x/∂x, ∂U_y/∂y, ∂U_x/∂y, ∂U_y/∂x, or their conjugate forces."""
+_WITHIN: dict[str, Any] = FAST | {"forceinline": True}
+"""Options of functions that are called for each block: passing their arrays would take as long as a few ties."""
 
-VALUE, SLOPE_X, SLOPE_Y = (X, Y), (XX, YX), (XY, YY)
-"""The same by component of U."""
+_STEP = U(LANES)
 
-
-@njit(**FAST, forceinline=True)
-def _moved(c, i, u, v, lag):
-    """Displacement of a node, plus `lag` (s) times its velocity."""
-    return u[c, i] + lag * v[c, i]
+VALUE, SLOPE_X, SLOPE_Y = (0, 1), (2, 5), (4, 3)
+"""Fields of a block: U_x, U_y, then ∂U_x/∂x, ∂U_y/∂y, ∂U_x/∂y, ∂U_y/∂x; of each component its value and slopes."""
 
 
-@njit(**FAST)
-def _see(e, c, u, v, lag, ties):
-    """Add component c of the grid's motion at the points of the ties of element e to ties.field."""
-    value, slope_x, slope_y = VALUE[c], SLOPE_X[c], SLOPE_Y[c]
-    first, last = U(ties.start[e]), U(ties.start[e + 1])
-    field, row = ties.field, ties.row
-    for b in range(ties.up.shape[0]):
-        for t in range(first, last):
-            row[0, t] = 0.0
-            row[1, t] = 0.0
-        for a in range(ties.along.shape[0]):
-            moved = _moved(c, U(ties.node[e, b, a]), u, v, lag)
-            for t in range(first, last):
-                row[0, t] += ties.along[a, t] * moved
-                row[1, t] += ties.along_slope[a, t] * moved
-        for t in range(first, last):
-            field[value, t] += ties.up[b, t] * row[0, t]
-            field[slope_x, t] += ties.up[b, t] * row[1, t]
-            field[slope_y, t] += ties.up_slope[b, t] * row[0, t]
+@njit(**_WITHIN)
+def _collect(e, u, v, lag, ties):
+    """Fill ties.moved with displacements, plus `lag` (s) times velocities, of the nodes of element e; clear its forces.
 
-
-@njit(**FAST)
-def _react(e, c, ties, force):
-    """Add component c of the forces on the nodes of element e to force (k, 3), from what is conjugate in ties.field."""
-    value, slope_x, slope_y = VALUE[c], SLOPE_X[c], SLOPE_Y[c]
-    first, last = U(ties.start[e]), U(ties.start[e + 1])
-    field, row = ties.field, ties.row
-    for b in range(ties.up.shape[0]):
-        for t in range(first, last):
-            row[0, t] = ties.up[b, t] * field[value, t] + ties.up_slope[b, t] * field[slope_y, t]
-            row[1, t] = ties.up[b, t] * field[slope_x, t]
-        for a in range(ties.along.shape[0]):
-            total = 0.0
-            for t in range(first, last):
-                total += ties.along[a, t] * row[0, t] + ties.along_slope[a, t] * row[1, t]
-            force[ties.line[e, b, a], c] += total
-
-
-@njit(**FAST)
-def _pull(first, last, u, v, lag, ties, force):
-    """Add the forces of some ties to force (k, 3) of their particles, given the grid's motion in ties.field (6, t).
-
-    ties.field then contains what is conjugate to it in the forces on the grid. Returns the energy (J) of the ties.
+    ties.reaction has a lane for each tie of a block.
     """
-    field, c = ties.field, ties.corrector
-    energy = 0.0
-    for t in range(first, last):
-        i, twin = U(ties.particle[t]), ties.twin[t]
-        x = _moved(0, i, u, v, lag)
-        y = _moved(1, i, u, v, lag)
-        angle = _moved(2, i, u, v, lag)
-        if twin >= 0:
-            x -= _moved(0, U(twin), u, v, lag)
-            y -= _moved(1, U(twin), u, v, lag)
-            angle -= _moved(2, U(twin), u, v, lag)
-        xx, yy, xy, yx = field[XX, t], field[YY, t], field[XY, t], field[YX, t]
-        dx = field[X, t] + c[0, 0, t] * xx + c[0, 1, t] * yy + c[0, 2, t] * xy + c[0, 3, t] * yx - x
-        dy = field[Y, t] + c[1, 0, t] * xx + c[1, 1, t] * yy + c[1, 2, t] * xy + c[1, 3, t] * yx - y
-        bend = c[2, 0, t] * xx + c[2, 1, t] * yy + c[2, 2, t] * xy + c[2, 3, t] * yx - angle
-        nx, ny, arm = ties.normal[0, t], ties.normal[1, t], ties.arm[t]
-        open_by = nx * dx + ny * dy
-        slip = nx * dy - ny * dx - arm * angle
-        pull = ties.stiffness[0, t] * open_by
-        shear = ties.stiffness[1, t] * slip
-        moment = ties.stiffness[2, t] * bend
-        energy += 0.5 * (pull * open_by + shear * slip + moment * bend)
-        fx = pull * nx - shear * ny
-        fy = pull * ny + shear * nx
-        s = ties.particle_line[t]
-        force[s, 0] += fx
-        force[s, 1] += fy
-        force[s, 2] += arm * shear + moment
-        field[X, t] = -fx
-        field[Y, t] = -fy
-        field[XX, t] = -(c[0, 0, t] * fx + c[1, 0, t] * fy + c[2, 0, t] * moment)
-        field[YY, t] = -(c[0, 1, t] * fx + c[1, 1, t] * fy + c[2, 1, t] * moment)
-        field[XY, t] = -(c[0, 2, t] * fx + c[1, 2, t] * fy + c[2, 2, t] * moment)
-        field[YX, t] = -(c[0, 3, t] * fx + c[1, 3, t] * fy + c[2, 3, t] * moment)
-    return energy
+    size = ties.node[e].size
+    for q in range(size):
+        i = U(ties.node[e, q])
+        for c in range(2):
+            ties.moved[c * size + q] = u[c, i] + lag * v[c, i]
+            store(ties.reaction, U(c * size + q) * _STEP, splat(0.0))
+
+
+@njit(**_WITHIN)
+def _see(points, block, ties):
+    """Fill the fields of a block, the grid's motion at the points of its ties."""
+    count = len(points)
+    first = U(block) * U(count) * _STEP
+    for c in range(2):
+        value, slope_x, slope_y = splat(0.0), splat(0.0), splat(0.0)
+        for b in range(count):
+            row, slope = splat(0.0), splat(0.0)
+            for a in range(count):
+                moved = splat(ties.moved[c * count * count + b * count + a])
+                row += load(ties.along, first + U(a) * _STEP) * moved
+                slope += load(ties.along_slope, first + U(a) * _STEP) * moved
+            up = load(ties.up, first + U(b) * _STEP)
+            value += up * row
+            slope_x += up * slope
+            slope_y += load(ties.up_slope, first + U(b) * _STEP) * row
+        store(ties.field, U(VALUE[c]) * _STEP, value)
+        store(ties.field, U(SLOPE_X[c]) * _STEP, slope_x)
+        store(ties.field, U(SLOPE_Y[c]) * _STEP, slope_y)
+
+
+@njit(**_WITHIN)
+def _react(points, block, ties):
+    """Add the forces on the nodes of the block's element to ties.reaction, from what is conjugate in its fields."""
+    count = len(points)
+    first = U(block) * U(count) * _STEP
+    for c in range(2):
+        value = load(ties.field, U(VALUE[c]) * _STEP)
+        slope_x, slope_y = load(ties.field, U(SLOPE_X[c]) * _STEP), load(ties.field, U(SLOPE_Y[c]) * _STEP)
+        for b in range(count):
+            up = load(ties.up, first + U(b) * _STEP)
+            row = up * value + load(ties.up_slope, first + U(b) * _STEP) * slope_y
+            slope = up * slope_x
+            for a in range(count):
+                at = U(c * count * count + b * count + a) * _STEP
+                along, steep = load(ties.along, first + U(a) * _STEP), load(ties.along_slope, first + U(a) * _STEP)
+                store(ties.reaction, at, load(ties.reaction, at) + along * row + steep * slope)
+
+
+@njit(**_WITHIN)
+def _particles(block, u, v, lag, ties):
+    """Fill ties.own (24,) with the motion of the block's particles, relative to their twins if they have any."""
+    for lane in range(LANES):
+        k = U(block) * _STEP + U(lane)
+        i, twin = U(ties.particle[k]), ties.twin[k]
+        for c in range(3):
+            moved = u[c, i] + lag * v[c, i]
+            if twin >= 0:
+                moved -= u[c, U(twin)] + lag * v[c, U(twin)]
+            ties.own[c * LANES + lane] = moved
+
+
+@njit(**_WITHIN)
+def _corrector(block, component, ties, gradient):
+    """Motion of the bonds' middles beyond that of the points: c of one component times the gradients, four lanes."""
+    first = U(block) * U(12) * _STEP + U(component) * U(4) * _STEP
+    xx, yy, xy, yx = gradient
+    along = load(ties.corrector, first) * xx + load(ties.corrector, first + _STEP) * yy
+    across = load(ties.corrector, first + U(2) * _STEP) * xy + load(ties.corrector, first + U(3) * _STEP) * yx
+    return along + across
+
+
+@njit(**_WITHIN)
+def _pull(block, u, v, lag, ties):
+    """Replace a block's fields by what is conjugate to them in the forces on the grid, and ties.own by the particles'.
+
+    Returns the energy (J) of the ties in lanes.
+    """
+    _particles(block, u, v, lag, ties)
+    field, own = ties.field, ties.own
+    gradient = (
+        load(field, U(2) * _STEP), load(field, U(3) * _STEP), load(field, U(4) * _STEP), load(field, U(5) * _STEP),
+    )  # fmt: skip
+    angle = load(own, U(2) * _STEP)
+    dx = load(field, U(0)) + _corrector(block, 0, ties, gradient) - load(own, U(0))
+    dy = load(field, _STEP) + _corrector(block, 1, ties, gradient) - load(own, _STEP)
+    bend = _corrector(block, 2, ties, gradient) - angle
+    at = U(block) * _STEP
+    size = U(ties.arm.size)
+    nx, ny, arm = load(ties.normal, at), load(ties.normal, size + at), load(ties.arm, at)
+    opened = nx * dx + ny * dy
+    slipped = nx * dy - ny * dx - arm * angle
+    pull = load(ties.stiffness, at) * opened
+    shear = load(ties.stiffness, size + at) * slipped
+    moment = load(ties.stiffness, U(2) * size + at) * bend
+    fx = pull * nx - shear * ny
+    fy = pull * ny + shear * nx
+    store(own, U(0), fx)
+    store(own, _STEP, fy)
+    store(own, U(2) * _STEP, arm * shear + moment)
+    store(field, U(0), splat(0.0) - fx)
+    store(field, _STEP, splat(0.0) - fy)
+    first = U(block) * U(12) * _STEP
+    for g in range(4):
+        place = first + U(g) * _STEP
+        along, up = load(ties.corrector, place), load(ties.corrector, place + U(4) * _STEP)
+        turn = load(ties.corrector, place + U(8) * _STEP)
+        store(field, U(2 + g) * _STEP, splat(0.0) - along * fx - up * fy - turn * moment)
+    return splat(0.5) * (pull * opened + shear * slipped + moment * bend)
+
+
+@njit(**_WITHIN)
+def _scatter(e, block, last, ties, force):
+    """Add the forces in ties.own to the block's particles, and after the last block those on the element's nodes."""
+    for lane in range(LANES):
+        s = U(ties.particle_line[U(block) * _STEP + U(lane)])
+        for c in range(3):
+            force[s, c] += ties.own[c * LANES + lane]
+    if last:
+        size = ties.node[e].size
+        for q in range(size):
+            for c in range(2):
+                total = 0.0
+                for lane in range(LANES):
+                    total += ties.reaction[(c * size + q) * LANES + lane]
+                force[ties.line[e, q], c] += total
 
 
 @njit(**FAST)
 def tie_forces(ties, u, v, force, lag):
     """Add the forces of all ties to force (k, 3), with `lag` as η; returns their energy (J) where η is 0."""
-    energy = 0.0
+    points = ties.points
+    energy = splat(0.0)
     for e in range(ties.start.size - 1):
-        first, last = U(ties.start[e]), U(ties.start[e + 1])
-        for f in range(6):
-            for t in range(first, last):
-                ties.field[f, t] = 0.0
-        for c in range(2):
-            _see(e, c, u, v, lag, ties)
-        energy += _pull(first, last, u, v, lag, ties, force)
-        for c in range(2):
-            _react(e, c, ties, force)
-    return energy
+        _collect(e, u, v, lag, ties)
+        for block in range(ties.start[e], ties.start[e + 1]):
+            _see(points, block, ties)
+            energy += _pull(block, u, v, lag, ties)
+            _react(points, block, ties)
+            _scatter(e, block, block == ties.start[e + 1] - 1, ties, force)
+    store(ties.own, U(0), energy)
+    total = 0.0
+    for lane in range(LANES):
+        total += ties.own[lane]
+    return total
 
 
 @njit(**FAST)

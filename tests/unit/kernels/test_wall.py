@@ -1,5 +1,7 @@
 """Half bonds to the wall of a grid: forces are the derivatives of one energy, and follow the law of bonds."""
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 
@@ -13,32 +15,77 @@ LINES = np.random.default_rng(1).permutation(SUPPORTED)
 """Line in the support table of every particle and node."""
 
 
-def ties(seed: int = 2, **changes: object) -> WallTies:
-    rng = np.random.default_rng(seed)
+class Given(NamedTuple):
+    """Ties one by one, (…, t), the first two of one element."""
+
+    particle: np.ndarray
+    twin: np.ndarray
+    along: np.ndarray
+    along_slope: np.ndarray
+    up: np.ndarray
+    up_slope: np.ndarray
+    corrector: np.ndarray
+    normal: np.ndarray
+    arm: np.ndarray
+    stiffness: np.ndarray
+
+
+def given(**changes: np.ndarray) -> Given:
+    rng = np.random.default_rng(2)
     angle = rng.uniform(0.0, 2.0 * np.pi, TIES)
-    particle = np.array([0, 3, 3, 5, 7])
-    node = PARTICLES + rng.permutation(NODES)[: ELEMENTS * POINTS**2].reshape(ELEMENTS, POINTS, POINTS)
-    along, along_slope, up, up_slope = rng.normal(size=(4, POINTS, TIES))
-    made = WallTies(
-        start=np.array([0, 2, TIES]),
+    shapes = rng.normal(size=(4, POINTS, TIES))
+    made = Given(
+        particle=np.array([0, 3, 3, 5, 7]),
+        twin=np.array([-1, 1, 1, -1, 2]),
+        along=shapes[0],
+        along_slope=shapes[1],
+        up=shapes[2],
+        up_slope=shapes[3],
+        corrector=rng.normal(size=(12, TIES)),
+        normal=np.stack([np.cos(angle), np.sin(angle)]),
+        arm=rng.uniform(0.5, 1.0, TIES),
+        stiffness=rng.uniform(0.5, 2.0, (3, TIES)),
+    )
+    return made._replace(**changes)
+
+
+def ties(of: Given | None = None, lag: float = 0.0) -> WallTies:
+    """The same in blocks of eight, one for each element."""
+    of = of or given()
+    place = np.array([0, 1, 8, 9, 10])
+
+    def laid(values: np.ndarray, fill: float = 0.0) -> np.ndarray:
+        wide = np.full((*values.shape[:-1], 16), fill, dtype=values.dtype)
+        wide[..., place] = values
+        return wide
+
+    def in_blocks(values: np.ndarray) -> np.ndarray:
+        return np.concatenate([laid(values)[:, :8].ravel(), laid(values)[:, 8:].ravel()])
+
+    node = PARTICLES + np.random.default_rng(6).permutation(NODES)[: ELEMENTS * POINTS**2].reshape(ELEMENTS, -1)
+    particle = laid(of.particle)
+    return WallTies(
+        points=tuple(np.linspace(-1.0, 1.0, POINTS).tolist()),
+        start=np.array([0, 1, 2]),
         node=node,
         line=LINES[node],
         particle=particle,
         particle_line=LINES[particle],
-        twin=np.array([-1, 1, 1, -1, 2]),
-        along=along,
-        along_slope=along_slope,
-        up=up,
-        up_slope=up_slope,
-        corrector=rng.normal(size=(3, 4, TIES)),
-        normal=np.stack([np.cos(angle), np.sin(angle)]),
-        arm=rng.uniform(0.5, 1.0, TIES),
-        stiffness=rng.uniform(0.5, 2.0, (3, TIES)),
-        lag=0.0,
-        field=np.full((6, TIES), np.nan),
-        row=np.full((2, TIES), np.nan),
+        twin=laid(of.twin, -1),
+        along=in_blocks(of.along),
+        along_slope=in_blocks(of.along_slope),
+        up=in_blocks(of.up),
+        up_slope=in_blocks(of.up_slope),
+        corrector=in_blocks(of.corrector),
+        normal=laid(of.normal).ravel(),
+        arm=laid(of.arm),
+        stiffness=laid(of.stiffness).ravel(),
+        lag=lag,
+        moved=np.full(2 * POINTS**2, np.nan),
+        reaction=np.full(16 * POINTS**2, np.nan),
+        field=np.full(48, np.nan),
+        own=np.full(24, np.nan),
     )
-    return made._replace(**changes)
 
 
 def motion(seed: int = 3) -> np.ndarray:
@@ -58,10 +105,10 @@ def forces(bundle: WallTies, u: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("relative", [False, True])
 def test_forces_are_the_derivatives_of_the_energy(relative) -> None:
-    bundle, u = ties(), motion()
+    of, u = given(), motion()
     if not relative:
-        bundle = bundle._replace(twin=np.full(TIES, -1))
-    twins = bundle.twin[bundle.twin >= 0]
+        of = given(twin=np.full(TIES, -1))
+    bundle, twins = ties(of), of.twin[of.twin >= 0]
     force = forces(bundle, u, np.zeros_like(u))
     for i in range(SUPPORTED):
         for c in range(3):
@@ -78,20 +125,19 @@ def test_forces_are_the_derivatives_of_the_energy(relative) -> None:
 
 def test_a_tie_is_half_a_bond() -> None:
     """One tie at a node of the wall, against the law: n·Δu, t·Δu − lθ, and no rotation of the wall."""
-    bundle, u = ties(corrector=np.zeros((3, 4, TIES)), twin=np.full(TIES, -1)), motion()
     one = np.zeros((POINTS, TIES))
     one[1] = 1.0
-    bundle = bundle._replace(along=one, up=one, start=np.array([0, TIES, TIES]))
+    of, u = given(corrector=np.zeros((12, TIES)), twin=np.full(TIES, -1), along=one, up=one), motion()
+    bundle = ties(of)
     expected = np.zeros((SUPPORTED, 3))
-    wall = bundle.node[0, 1, 1]
     for t in range(TIES):
-        i, n = bundle.particle[t], bundle.normal[:, t]
+        i, n, wall = of.particle[t], of.normal[:, t], bundle.node[int(t > 1), POINTS + 1]
         way = np.array([-n[1], n[0]])
         apart = u[:2, wall] - u[:2, i]
-        pull = bundle.stiffness[0, t] * (n @ apart)
-        shear = bundle.stiffness[1, t] * (way @ apart - bundle.arm[t] * u[2, i])
+        pull = of.stiffness[0, t] * (n @ apart)
+        shear = of.stiffness[1, t] * (way @ apart - of.arm[t] * u[2, i])
         force = pull * n + shear * way
-        expected[i] += [*force, bundle.arm[t] * shear - bundle.stiffness[2, t] * u[2, i]]
+        expected[i] += [*force, of.arm[t] * shear - of.stiffness[2, t] * u[2, i]]
         expected[wall, :2] -= force
 
     # sums of five forces of some ten
@@ -110,7 +156,7 @@ def test_velocities_count_as_displacements_in_the_lag() -> None:
 
 
 def test_forces_add_to_what_is_there() -> None:
-    bundle, u = ties(), motion()
+    bundle, u = ties(lag=0.1), motion()
     already = np.random.default_rng(5).normal(size=(SUPPORTED, 3))
     both = already.copy()
     wall_forces(bundle, u, u, both)
