@@ -39,6 +39,7 @@ class ChartReference(StrEnum):
 
     exact = "exact"
     extended = "extended"
+    finer = "finer"
     finest = "finest"
 
 
@@ -57,7 +58,8 @@ def chart(
         typer.Option(
             metavar="REFERENCE",
             help="Errors are those against: exact, an exact solution; extended, the same scene so large that nothing "
-            "returns; finest, the choice with the most nodes times steps. By default the first that the case allows.",
+            "returns; finer, of bars, finite differences at Courant number 1 with a finer spacing; finest, the choice with "
+            "the most nodes times steps. By default the first that the case allows.",
         ),
     ] = None,
     quantity: Annotated[
@@ -142,7 +144,7 @@ def _cells(charted: Charted, number: int, line: Line) -> list[str]:
     if line.outcome.failure:
         return ["failed"]
     worst = line.errors[0]
-    mark = "ref." if number == charted.reference.own else "*" if number in charted.front else ""
+    mark = "ref." if number in charted.reference.own else "*" if number in charted.front else ""
     numbers = f"{100.0 * worst.rms:.3g}", f"{100.0 * worst.peak:.3g}", f"{line.cpu:.3g}", f"{line.wall:.3g}"
     return [*numbers, f"{line.outcome.work:.3g}", mark]
 

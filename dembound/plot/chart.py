@@ -1,7 +1,7 @@
 """A chart: the error of every choice against its cost, with the Pareto front and the names of all choices."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -97,16 +97,16 @@ def plot_chart(path: Path) -> Figure:
     """
     with open_record(path) as file:
         dots = [_read(number, group) for number, group in enumerate(file["choices"].values(), start=1)]
-        reference, own = str(file["reference"].attrs["sentence"]), int(file["reference"].attrs["choice"])
+        reference, own = str(file["reference"].attrs["sentence"]), {k + 1 for k in file["reference"].attrs["choices"]}
         quantity, title = str(file.attrs["quantity"]), str(file.attrs["title"] or file.attrs["name"])
         sentence, threads = str(file.attrs["sentence"]), _threads(file)
     figure = new_figure(12.0, 6.4)
     panel, side = figure.subplots(1, 2, width_ratios=(1.45, 1.0))
-    good = [dot for dot in dots if not dot.failure and dot.number != own + 1]
+    good = [dot for dot in dots if not dot.failure and dot.number not in own]
     _draw(panel, good)
-    if own >= 0:
-        cost = dots[own].cost
-        panel.axvline(cost, color=REFERENCE, linestyle=":", linewidth=1.2, label=f"cost of the reference, {own + 1}")
+    for number in sorted(own):
+        label, cost = f"cost of the reference, {number}", dots[number - 1].cost
+        panel.axvline(cost, color=REFERENCE, linestyle=":", linewidth=1.2, label=label)
     monitors = ", ".join(dict.fromkeys(dot.monitor for dot in good))
     panel.set_xlabel(f"CPU time of stepping (s), {threads} thread{'s' if threads > 1 else ''}")
     panel.set_ylabel(f"RMS error of the {quantity}, worst monitor (%)")
@@ -203,13 +203,13 @@ def _annotate(panel: Axes, dot: Dot, place: tuple[float, float]) -> Annotation:
     )
 
 
-def _list(panel: Axes, dots: Sequence[Dot], own: int) -> None:
+def _list(panel: Axes, dots: Sequence[Dot], own: Collection[int]) -> None:
     """The names, errors and costs of the choices, the front first, then the others, then failures."""
     panel.set_axis_off()
-    rest = [dot for dot in dots if not (dot.on_front or dot.failure or dot.number == own + 1)]
+    rest = [dot for dot in dots if not (dot.on_front or dot.failure or dot.number in own)]
     entries = [
         *_entries("Pareto front, the cheapest first", [dot for dot in dots if dot.on_front], COLOURS[1]),
-        *_entries(REFERENCE_HEAD, [dot for dot in dots if dot.number == own + 1], DARK),
+        *_entries(REFERENCE_HEAD, [dot for dot in dots if dot.number in own], DARK),
         *(_entries(OTHERS, rest, COLOURS[0]) if len(dots) <= MOST_LISTED else [(ELSEWHERE, COLOURS[0], True)]),
         *_entries("failed", [dot for dot in dots if dot.failure], DARK),
     ]

@@ -1,7 +1,7 @@
 """Errors of choices: the histories of their monitors beside those of a reference."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -36,9 +36,9 @@ class Wanted:
 class Reference:
     """What errors are measured against.
 
-    name : "exact", "extended" or "finest"; sentence : it in words. gauges : its histories for a choice and its outcome.
-    until : s, time up to which histories are compared. findings : its numbers by name. own : number of the choice that
-    is the reference itself, None for another one. caution : what these errors do not include, in words.
+    name : "exact", "extended", "finer" or "finest"; sentence : it in words. gauges : its histories for a choice and its
+    outcome. until : s, time up to which histories are compared. findings : its numbers by name. own : numbers of the
+    choices that are the reference itself. cautions : what these errors do not include, in words.
     """
 
     name: str
@@ -46,8 +46,8 @@ class Reference:
     gauges: Callable[[Choice, Outcome], Gauges]
     until: float = math.inf
     findings: Mapping[str, float] = field(default_factory=dict)
-    own: int | None = None
-    caution: str = ""
+    own: Sequence[int] = ()
+    cautions: Sequence[str] = ()
 
 
 @dataclass(frozen=True)

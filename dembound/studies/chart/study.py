@@ -99,7 +99,7 @@ class Charted:
     @property
     def judged(self) -> list[int]:
         """Numbers of the choices that have an error and are not the reference."""
-        return [k for k, line in enumerate(self.lines) if line.errors and k != self.reference.own]
+        return [k for k, line in enumerate(self.lines) if line.errors and k not in self.reference.own]
 
     def cheapest(self, level: float) -> int | None:
         """Number of the cheapest choice with an RMS error of at most `level`; None if there is none."""
@@ -119,7 +119,8 @@ class Charted:
         best = min((self.lines[k] for k in self.judged), key=lambda line: line.errors[0].rms, default=None)
         if best is not None and best.errors[0].rms > LEVELS[-1]:
             parts.append(f"most accurate: {self._described(best)}")
-        return "; ".join(parts)
+        own = [f"{line.choice.name} ({line.cpu:.2g} s)" for line in (self.lines[k] for k in self.reference.own)]
+        return "; ".join([*parts, *([f"the reference itself: {', '.join(own)}"] if own else [])])
 
     def _described(self, line: Line) -> str:
         """A choice with its error and cost."""
@@ -149,8 +150,8 @@ def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown
     lines = [_line(choice, outcome, reference, options) for choice, outcome in zip(choices, outcomes, strict=True)]
     if not any(line.errors for line in lines):
         raise RunError("\n".join(dict.fromkeys(f"{line.outcome.failure}" for line in lines)))
-    lines_out = [*left_out, reference.caution] if reference.caution else left_out
-    charted = Charted(case, reference, options.wanted.quantity, kind_of(case).work_unit, lines, lines_out)
+    unit, lines_out = kind_of(case).work_unit, [*left_out, *reference.cautions]
+    charted = Charted(case, reference, options.wanted.quantity, unit, lines, lines_out)
     if not (judged := charted.judged):
         raise RunError(f"nothing is left to compare with the reference, {reference.sentence}, which is a choice itself")
     return replace(charted, front=[judged[k] for k in front([_point(lines[k]) for k in judged])])

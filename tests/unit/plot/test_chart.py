@@ -10,13 +10,13 @@ from dembound.plot.chart import LEAST, plot_chart
 
 @pytest.fixture
 def chart(tmp_path):
-    """Writes records of charts: choices of (name, error, costs), the numbers of those on the front, the reference's."""
+    """Writes records of charts: choices of (name, error, costs), the numbers of those on the front, those of the reference."""
 
-    def write(choices, front=(), own=-1, failed=()):
+    def write(choices, front=(), own=(), failed=()):
         path = tmp_path / "chart.h5"
         with h5py.File(path, "w") as file:
             file.attrs.update({"name": "rod", "title": "A rod", "quantity": "velocity", "sentence": "cheapest: none"})
-            file.create_group("reference").attrs.update({"sentence": "exact", "choice": own})
+            file.create_group("reference").attrs.update({"sentence": "exact", "choices": np.array(own, dtype=int)})
             for number, (name, error, costs) in enumerate(choices):
                 run = file.create_group(f"runs/{number}")
                 run.attrs["threads"], run["cpu"] = 1, np.array(costs)
@@ -49,7 +49,7 @@ def test_points_are_errors_in_per_cent_at_the_median_cost(chart) -> None:
 
 def test_reference_others_and_failures_are_listed(chart) -> None:
     choices = [("own", 0.0, [8.0]), ("good", 0.1, [1.0]), ("bad", 0.2, [2.0]), ("none", 0.0, [])]
-    panel, side = plot_chart(chart(choices, front=[1], own=0, failed=[3])).axes
+    panel, side = plot_chart(chart(choices, front=[1], own=(0,), failed=[3])).axes
     assert texts(side) == [
         *("Pareto front, the cheapest first", "2  good: 10 %, 1 s", "reference", "1  own: 8 s"),
         *("others", "3  bad: 20 %, 2 s", "failed", "4  none: too long a step"),

@@ -9,7 +9,7 @@ import pytest
 
 from dembound.errors import CaseError, RunError
 from dembound.running import Progress
-from dembound.studies.chart import study
+from dembound.studies.chart import reference, study
 from dembound.studies.chart.choices import combinations
 from dembound.studies.chart.errors import Wanted
 from dembound.studies.chart.study import Options, chart
@@ -91,12 +91,57 @@ def test_nothing_but_failures_is_a_failure(charted, spalling) -> None:
         charted(spalling(), {"run.courant": [3.0]})
 
 
-def test_the_finest_choice_is_the_reference_where_there_is_no_solution(charted, spalling) -> None:
-    found, _ = charted(spalling({"bar.attenuation": 0.1, "bar.strength": 1e9}), repeats=1)
-    assert (found.reference.name, found.reference.own) == ("finest", 1)
-    assert found.reference.sentence == "the finest run, spacing 0.025 m"
-    assert found.judged == found.front == [0]
-    assert found.lines[1].errors[0].rms == 0.0
+def test_the_finest_choice_is_the_reference_of_disks_without_a_solution(charted, bar) -> None:
+    case = bar({"run.duration": 0.02, "motion.held": []})
+    found, _ = charted(case, {"packing.radius": [0.25, 0.5]}, repeats=1)
+    assert (found.reference.name, found.reference.own) == ("finest", (0,))
+    assert found.reference.sentence == "the finest run, radius 0.25 m"
+    assert found.judged == found.front == [1]
+    assert found.lines[0].errors[0].rms == 0.0
+    assert found.sentence.endswith(f"the reference itself: radius 0.25 m ({found.lines[0].cpu:.2g} s)")
+
+
+def test_a_choice_that_is_the_reference_run_again_is_not_its_cheapest(charted, bar) -> None:
+    case = bar({"run.duration": 0.02, "motion.held": []})
+    found, _ = charted(case, {"run.safety": [0.45, 0.9], "output.snapshots": [0, 2]}, repeats=1)
+    assert found.reference.own == (0, 1)  # the number of snapshots changes no run
+    assert found.judged == [2, 3]
+    assert found.cheapest(1.0) in (2, 3)
+
+
+FADING = {"bar.attenuation": 0.1, "bar.strength": 1e9, "method": {"type": "finite_difference"}, "load.1.nodes": 1}
+"""A bar for which no exact solution is known."""
+
+
+def test_a_finer_run_is_the_reference_of_bars_without_a_solution(charted, spalling) -> None:
+    found, runs = charted(spalling(FADING), {"bar.spacing": [0.05, 0.025], "run.courant": [0.9, 1.0]}, repeats=1)
+    assert (found.reference.name, found.reference.own) == ("finer", ())
+    # 20 and 40 cells: 160 are a multiple of both, and four times as many as the finest
+    assert found.reference.sentence == (
+        "finite differences at Courant number 1 and a spacing of 0.00625 m, finer than all choices"
+    )
+    assert runs.count("finer reference") == 1
+    assert found.judged == [0, 1, 2, 3]
+    assert all(error.apart == 0.0 for line in found.lines for error in line.errors)
+    errors = {line.choice.name: line.errors[0].rms for line in found.lines}
+    # without attenuation no error would be left at ν = 1; with it 0.04 %, and 16 % at ν = 0.9
+    assert errors["spacing 0.025 m, courant 1"] < 0.05 * errors["spacing 0.025 m, courant 0.9"]
+
+
+def test_the_finer_run_is_of_bars(charted, bar) -> None:
+    with pytest.raises(CaseError, match="finer is for bars"):
+        charted(bar(), {"run.safety": [0.45, 0.9]}, repeats=1, reference="finer")
+
+
+def test_the_finest_choice_takes_its_place_where_it_fails(charted, spalling, monkeypatch) -> None:
+    def impossible(*_):
+        raise CaseError(["bar.spacing: is too small"])
+
+    monkeypatch.setattr(reference, "finer", impossible)
+    found, _ = charted(spalling(FADING), repeats=1)
+    assert (found.reference.name, found.reference.own) == ("finest", (1,))
+    (line,) = found.left_out
+    assert line == "the reference is the finest choice, as a finer run is not possible: bar.spacing: is too small"
 
 
 def test_spalls_are_compared_with_the_closed_form(charted, spalling) -> None:
@@ -122,7 +167,7 @@ SPALLING_DISKS = {
 def test_histories_are_compared_up_to_the_first_broken_bond(charted, bar) -> None:
     laws = {"material.elastic_start": [True, False], "run.safety": [0.9, 0.3]}
     found, _ = charted(bar(SPALLING_DISKS), laws, repeats=1)
-    time = found.lines[found.reference.own].outcome.findings["break time"].value
+    time = found.lines[found.reference.own[0]].outcome.findings["break time"].value
     assert found.reference.until == time < 0.05
     assert found.reference.sentence.endswith(f", up to its first break at {1e3 * time:.4g} ms")
     assert "break time +" in found.found(found.lines[0]) or "break time -" in found.found(found.lines[0])
