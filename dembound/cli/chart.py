@@ -58,8 +58,8 @@ def chart(
         typer.Option(
             metavar="REFERENCE",
             help="Errors are those against: exact, an exact solution; extended, the same scene so large that nothing "
-            "returns; finer, of bars, finite differences at Courant number 1 with a finer spacing; finest, the choice with "
-            "the most nodes times steps. By default the first that the case allows.",
+            "returns; finer, of bars, finite differences at Courant number 1 and a finer spacing; finest, the choice "
+            "with the most nodes times steps. By default the first that the case allows.",
         ),
     ] = None,
     quantity: Annotated[
@@ -136,6 +136,8 @@ def _print(charted: Charted) -> None:
     out.print(table)
     out.print("* on the Pareto front; CPU: time of stepping, run: of the whole run without files, medians")
     out.print(f"work: {charted.work_unit}")
+    if farthest := max(line.apart for line in charted.lines):
+        out.print(f"† monitors record elsewhere than in the reference, up to {farthest:.2g} m away")
     out.print(f"{charted.case.name}: {charted.sentence}")
 
 
@@ -145,6 +147,7 @@ def _cells(charted: Charted, number: int, line: Line) -> list[str]:
         return ["failed"]
     worst = line.errors[0]
     mark = "ref." if number in charted.reference.own else "*" if number in charted.front else ""
+    mark += "†" if line.apart > 0.0 else ""
     numbers = f"{100.0 * worst.rms:.3g}", f"{100.0 * worst.peak:.3g}", f"{line.cpu:.3g}", f"{line.wall:.3g}"
     return [*numbers, f"{line.outcome.work:.3g}", mark]
 
@@ -159,5 +162,5 @@ def _leave(charted: Charted, folder: Path, title: str | None) -> Iterator[Path]:
     yield folder / "chart.h5"
     write_table(charted, folder / "chart.csv")
     yield folder / "chart.csv"
-    save(plot_chart(folder / "chart.h5"), folder / "chart.png", title)
+    save(plot_chart(folder / "chart.h5", title), folder / "chart.png")
     yield folder / "chart.png"

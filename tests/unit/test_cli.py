@@ -1002,6 +1002,27 @@ def test_a_chart_is_printed_drawn_and_resumed(dembound, spalling, tmp_path) -> N
     again = dembound("chart", "rod.toml", *vary, "--resume")
     assert again.code == 0
     assert (folder / "chart.csv").read_text(encoding="utf-8") == before  # with the costs measured before
+    assert "replacing" not in done.err + again.err
+
+
+def test_a_second_chart_replaces_the_first_and_keeps_other_files(dembound, spalling, tmp_path) -> None:
+    (tmp_path / "rod.toml").write_text(spalling().text, encoding="utf-8")
+    folder, vary = Path("results") / "rod_chart", ["--vary", "bar.spacing=0.05,0.025", "--repeats", 1]
+    dembound("chart", "rod.toml", *vary)
+    (folder / "thesis.tex").touch()
+    (folder / "chart.h5.log").touch()  # of a process that was killed
+    second = dembound("chart", "rod.toml", *vary, "--title", "Mine")
+    assert second.err.splitlines()[0] == f"{folder}: replacing the chart of before, whose runs --resume would keep"
+    assert {path.name for path in folder.iterdir()} == {"chart.h5", "chart.csv", "chart.png", "thesis.tex"}
+
+
+def test_choices_whose_monitors_are_elsewhere_are_marked(dembound, spalling, tmp_path) -> None:
+    (tmp_path / "rod.toml").write_text(spalling().text, encoding="utf-8")
+    vary = ["--vary", "bar.spacing=0.05,0.025", "--repeats", 1]
+    done = dembound("chart", "rod.toml", *vary, "--reference", "finest")  # at 0.525 m: nodes at 0.5 and 0.525 m
+    assert re.search(r"spacing 0\.05 m.* \*† *\n", done.out)
+    assert "† monitors record elsewhere than in the reference, up to 0.025 m away\n" in done.out
+    assert "†" not in dembound("chart", "rod.toml", *vary, "--reference", "finer").out
 
 
 def test_a_case_may_have_its_chart(dembound, spalling, tmp_path) -> None:

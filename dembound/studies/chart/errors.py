@@ -20,6 +20,9 @@ QUIET = 0.01
 Relative errors there are those of a small residual motion.
 """
 
+SAME_PLACE = 1e-9
+"""Distance of two particles over that from the origin up to which they are at the same place, but for rounding."""
+
 Component = Literal["x", "y"]
 
 
@@ -54,7 +57,8 @@ class Reference:
 class MonitorError:
     """The error at one monitor.
 
-    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : m, distance of the two particles compared.
+    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : m, distance of the two particles compared,
+    0 if it is of rounding only.
     """
 
     monitor: str
@@ -110,6 +114,7 @@ def _error(name: str, found: Gauge, expected: Gauge, column: int, wanted: Wanted
         left, right = on_common_clock(*mine, *theirs)
     rms, peak = relative_errors(left, right)
     apart = float(np.hypot(*(found.position - expected.position)))
+    apart = apart if apart > SAME_PLACE * float(np.hypot(*expected.position)) else 0.0
     component = "stress" if wanted.quantity == "stress" else COMPONENTS[column]
     return MonitorError(name, component, rms, peak, apart)
 

@@ -1,9 +1,9 @@
 """A reference for bars: the same bar by finite differences at Courant number 1, with a finer spacing than all choices.
 
 At Courant number 1 central differences are d'Alembert's solution at the nodes, whatever the spacing, between loaded,
-free, held and absorbing ends. With attenuation or a prescribed velocity the error is of second order in the spacing; the
-place of the first spall is one of the planes between nodes. Loads act on the last node alone, as in the exact solution:
-the nodes over which a case spreads them are a matter of its method.
+free, held and absorbing ends. With attenuation or a prescribed velocity the error is of second order in the spacing;
+the place of the first spall is one of the planes between nodes. Loads act on the last node alone, as in the exact
+solution: the nodes over which a case spreads them are a matter of its method.
 
 Its nodes lie where those of all choices do, if a spacing down to 1/MOST of the finest one can do so, and it records at
 the nodes of every choice's monitors: no error is that of a monitor at another place.

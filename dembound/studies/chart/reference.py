@@ -11,6 +11,7 @@ from dembound.bar.kind import SPALL_TIME
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.casefile.chart import ReferenceName
+from dembound.casefile.disks import DiskCase
 from dembound.disks.breaks import BREAK_TIME
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import with_changes
@@ -27,6 +28,11 @@ SIDES = "boundary."
 
 DISCRETE = ("bar.spacing", "method", "run")
 """Beginnings of the keys of bars that the finer reference replaces."""
+
+REALISATIONS = (
+    "choices differ in their random packing, and every packing is another realisation of the rock: errors beside a run "
+    "with one of them include the difference between realisations, which smaller disks do not remove"
+)
 
 RunOf = Callable[[str, Case], Outcome]
 """Returns the outcome of a case that is no choice, given its name."""
@@ -164,6 +170,7 @@ class _References:
             until=min(breaks, default=math.inf),
             findings=findings,
             own=tuple(k for k, outcome in enumerate(self._outcomes) if _is_same_run(outcome, run)),
+            cautions=_of_random_packings(self._choices),
         )
 
 
@@ -176,6 +183,15 @@ def _finest(outcomes: Sequence[Outcome]) -> int:
     if not done:
         raise RunError("no choice could be run")
     return max(done, key=lambda k: outcomes[k].count * outcomes[k].steps)
+
+
+def _of_random_packings(choices: Sequence[Choice]) -> tuple[str, ...]:
+    """A caution if choices have different bricks, and random ones among them."""
+    packings = [choice.case.packing for choice in choices if isinstance(choice.case, DiskCase)]
+    bricks = {repr(packing.with_copies(1, 1)) for packing in packings}
+    if len(bricks) < 2 or not any(packing.packed_under_stress for packing in packings):
+        return ()
+    return (REALISATIONS,)
 
 
 def _is_same_run(outcome: Outcome, run: Outcome) -> bool:

@@ -66,6 +66,11 @@ class Line:
         """Median time of the whole run, s."""
         return float(np.median(self.outcome.wall))
 
+    @property
+    def apart(self) -> float:
+        """Largest distance (m) of a monitor from where the reference recorded it."""
+        return max((error.apart for error in self.errors), default=0.0)
+
 
 @dataclass(frozen=True)
 class Charted:

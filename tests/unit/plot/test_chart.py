@@ -6,13 +6,14 @@ import pytest
 
 from dembound.errors import CaseError
 from dembound.plot.chart import LEAST, plot_chart
+from dembound.plot.style import save
 
 
 @pytest.fixture
 def chart(tmp_path):
-    """Writes records of charts: choices of (name, error, costs), the numbers of those on the front, those of the reference."""
+    """Writes records of charts: choices of (name, error, costs), numbers of those on the front, of the reference."""
 
-    def write(choices, front=(), own=(), failed=()):
+    def write(choices, front=(), own=(), failed=(), apart=0.0):
         path = tmp_path / "chart.h5"
         with h5py.File(path, "w") as file:
             file.attrs.update({"name": "rod", "title": "A rod", "quantity": "velocity", "sentence": "cheapest: none"})
@@ -25,6 +26,7 @@ def chart(tmp_path):
                 group.attrs.update({"name": name, "on_front": number in front, "failure": failure, "found": ""})
                 group["run"] = h5py.SoftLink(f"/runs/{number}")
                 group["monitor"], group["component"], group["rms"] = ["gauge"], ["x"], np.array([error])
+                group["apart"] = np.array([apart * number])
         return path
 
     return write
@@ -105,6 +107,22 @@ def test_units_stay_beside_their_numbers(chart, length: int) -> None:
 def test_many_choices_are_listed_elsewhere(chart) -> None:
     side = plot_chart(chart([(f"choice {k}", 0.1 + k, [1.0 + k]) for k in range(40)], front=[0])).axes[1]
     assert texts(side)[-1] == "others: see chart.csv"
+
+
+def test_monitors_elsewhere_are_marked_with_the_largest_distance(chart) -> None:
+    choices = [("fine", 0.01, [3.0]), ("coarse", 0.2, [0.5]), ("coarser", 0.3, [0.4])]
+    side = plot_chart(chart(choices, apart=0.25)).axes[1]  # 0, 0.25 and 0.5 m
+    names = [text.split(":")[0] for text in texts(side)[1:4]]
+    assert names == ["3  coarser†", "2  coarse†", "1  fine"]
+    assert texts(side)[-1] == "† monitors record elsewhere than in the reference, up to 0.5 m away"
+    assert "†" not in "".join(texts(plot_chart(chart(choices)).axes[1]))
+
+
+def test_the_sentence_stays_below_any_title(chart) -> None:
+    path = chart([("fine", 0.01, [3.0])])
+    assert plot_chart(path).get_suptitle() == "A rod\ncheapest: none"
+    assert plot_chart(path, "Mine $x^{$").get_suptitle() == "Mine $x^{$\ncheapest: none"
+    save(plot_chart(path, "Mine $x^{$"), path.with_suffix(".png"))  # as text, not as a formula
 
 
 def test_a_file_that_is_no_record_is_bad_input(tmp_path) -> None:

@@ -178,6 +178,16 @@ def test_histories_are_compared_up_to_the_first_broken_bond(charted, bar) -> Non
     assert whole.lines[0].errors[0].rms > 3.0 * found.lines[0].errors[0].rms
 
 
+def test_random_packings_are_realisations(charted, bar) -> None:
+    packing = {"pattern": "B", "size": [9.0, 3.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0], "seed": 1}
+    case = bar({"packing": packing, "run.duration": 0.004})
+    found, _ = charted(case, {"packing.seed": [1, 2]}, repeats=1, reference="finest")
+    assert found.left_out == [reference.REALISATIONS]
+    same = charted(case, {"packing.size": [[9.0, 3.0], [12.0, 3.0]]}, repeats=1, reference="finest")[0]
+    assert not same.left_out  # the same brick, more of them
+    assert not charted(bar(), {"packing.radius": [0.25, 0.5]}, repeats=1, reference="finest")[0].left_out
+
+
 def test_a_law_that_does_not_break_is_described_so(bar, tmp_path) -> None:
     unbreakable = {"density": 2500.0, "p_wave_speed": 1000.0, "contact_share": 0.0}
     case = bar(SPALLING_DISKS)
