@@ -20,11 +20,12 @@ from dembound.results.folder import Folder
 from dembound.results.interrupts import Interrupts
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.kept_stages import KeptStages
-from dembound.results.reader import replacing, trust
+from dembound.results.reader import open_record, replacing, trust
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
 from dembound.results.vtk import write_vtu
+from dembound.results.warnings import never_silent
 from dembound.running.planning import about, plan, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
 from dembound.running.unfinished import Unfinished, find_unfinished
@@ -134,7 +135,9 @@ class _Job:
         trust(record)
         summary = summarise(planned, simulation, record, self.clock.seconds)
         summary |= kind.summarise(planned.scene, simulation, beginning, record)
-        warnings += _passed_on(kind.warnings_after(planned.scene, summary, record), self.progress)
+        with open_record(record) as file:
+            loud = list(never_silent(planned.scene, summary["ended"], file))
+        warnings += _passed_on([*kind.warnings_after(planned.scene, summary, record), *loud], self.progress)
         simulation.forget_trackers()
         resumed = [] if self.found is None else self.found.resumed
         return summary | {"warnings": warnings, "resumed": resumed}

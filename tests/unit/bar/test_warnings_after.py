@@ -75,8 +75,8 @@ def test_a_wave_that_tears_the_end_where_it_enters_is_warned_of(run, side: str, 
 
     assert warning.startswith(f"boundary.{side}: the incoming wave itself broke the bar, at ")
     assert warning.endswith(
-        f" m from the {side} end, before any reflected wave had returned there; take a smaller bar.spacing, or a weaker "
-        "or slower wave"
+        f" m from the {side} end, before any reflected wave had returned there; take a smaller bar.spacing, or a "
+        "weaker or slower wave"
     )
     assert not run(changes | {"bar.spacing": 0.0025})  # fifty cells in a pulse
 
