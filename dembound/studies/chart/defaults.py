@@ -8,6 +8,8 @@ from typing import Any, get_args
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
+from dembound.disks.matching import homogenised_beta
+from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.methods import FiniteDifference, Method, Patch, Peridynamics, Switch
@@ -21,6 +23,9 @@ FEW = 2
 
 FRACTION = 0.5
 """Factor of the second step fraction."""
+
+UNMATCHED = 0.01
+"""Relative difference of β from the homogenised one from which on that is another choice: it reflects half of it."""
 
 HORIZON = 3
 """Horizon of bars' methods where the case has none."""
@@ -38,8 +43,9 @@ Named = Iterator[tuple[str, dict[str, Any]]]
 def defaults(case: Case) -> dict[str, dict[str, Any]]:
     """Changes of keys by the name of the choice.
 
-    The case itself. Of disks: coarser radii; half the step; and for its absorbing sides each other type, one change at
-    a time. Of a bar: every method with every spacing, each at its automatic step, and finite differences at ν = 1.
+    The case itself. Of disks: coarser radii; half the step; homogenised factors β; and for its absorbing sides each
+    other type, one change at a time. Of a bar: every method with every spacing, each at its automatic step, and finite
+    differences at ν = 1.
     """
     return dict(_of_bar(case) if isinstance(case, BarCase) else _of_disks(case))
 
@@ -54,7 +60,23 @@ def _of_disks(case: Case) -> Named:
     step = "run.safety" if case.run.time_step == "auto" else "run.time_step"
     changes = {step: FRACTION * (case.run.safety if case.run.time_step == "auto" else case.run.time_step)}
     yield label(case, changes), changes
+    yield from _homogenised_factors(case)
     yield from _other_sides(case)
+
+
+def _homogenised_factors(case: DiskCase) -> Named:
+    """Factors β of the homogenised stiffness for all sides that have others."""
+    if not any(table.factors for table in case.boundary.values()):
+        return
+    scene, found = build(case), {}
+    for side, table in case.boundary.items():
+        for motion, beta in table.factors.items():
+            matched = homogenised_beta(scene, side, motion)
+            if abs(matched - beta) > UNMATCHED * matched:  # not where the motion is held, for which it is nan
+                found[side, motion] = round(matched, 4)
+    sides = " and ".join(dict.fromkeys(side for side, _ in found))
+    if found:
+        yield f"{sides}, homogenised β", {f"boundary.{side}.beta_{m}": beta for (side, m), beta in found.items()}
 
 
 def _other_sides(case: DiskCase) -> Named:

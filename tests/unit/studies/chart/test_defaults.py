@@ -2,14 +2,18 @@
 
 import pytest
 
+from dembound.disks.matching import homogenised_beta
+from dembound.disks.scene import build
 from dembound.kinds import load, with_changes
 from dembound.shipped import folder, names
+from dembound.studies.chart import defaults as chosen
 from dembound.studies.chart.choices import choices_of
 from dembound.studies.chart.defaults import defaults
 
 
 @pytest.mark.parametrize("name", names())
-def test_every_shipped_case_has_some(name: str) -> None:
+def test_every_shipped_case_has_some(name: str, monkeypatch) -> None:
+    monkeypatch.setattr(chosen, "_homogenised_factors", lambda case: iter(()))  # they need the packing
     case = load(folder() / f"{name}.toml")
     choices, _ = choices_of(case, defaults(case))
     assert len(choices) >= 4
@@ -21,12 +25,27 @@ def test_of_disks_one_thing_changes_at_a_time(bar) -> None:
         "as in the case": {},
         "radius 0.5 m": {"packing.radius": 0.5},  # ×1.25 and ×1.5 do not divide 10 m × 1 m
         "safety 0.45": {"run.safety": 0.45},
+        "right, homogenised β": {"boundary.right.beta_p": 1.0},
         "right viscoelastic": {"boundary.right": {"type": "viscoelastic", "distance": 5.0, "beta_p": 0.8}},
         "right free": {"boundary.right": {"type": "free"}},
     }
 
 
-def test_rows_of_frames_are_coarsened_with_the_disks() -> None:
+def test_homogenised_factors_are_a_choice_where_others_are_given(bar) -> None:
+    packing = {"pattern": "B", "size": [9.0, 3.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0], "seed": 1}
+    case = bar({"packing": packing, "motion.held": ["y", "rotation"], "boundary.right": {"type": "viscous"}})
+    found = defaults(case)["left and right, homogenised β"]
+    scene = build(case)
+    assert found == {
+        f"boundary.{side}.beta_p": round(homogenised_beta(scene, side, "p"), 4) for side in ("left", "right")
+    }  # y is held
+    assert 0.5 < found["boundary.right.beta_p"] < 0.95
+    near = {key: 1.005 * beta for key, beta in found.items()}
+    assert not any("homogenised" in name for name in defaults(with_changes(case, near)))
+
+
+def test_rows_of_frames_are_coarsened_with_the_disks(monkeypatch) -> None:
+    monkeypatch.setattr(chosen, "_homogenised_factors", lambda case: iter(()))
     case = load(folder() / "zhou2018" / "long_bar_c.toml")
     (changes,) = (changes for changes in defaults(case).values() if changes.get("packing.radius") == 0.3125)
     assert changes["packing.edge_radius"] == 1.25 * case.packing.edge_radius
