@@ -24,7 +24,7 @@ from dembound.disks.summary import asked_stress, describe_static, summarise_disk
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
 from dembound.disks.wave_front import front_of
-from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Reduction, Stage
+from dembound.motion.kind import Beginning, Box, Finding, Kind, OnLook, Reduction, Stage
 from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
@@ -131,9 +131,9 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Steps times the particles that are stepped."""
         return run.state.step * run.scene.count
 
-    def findings(self, scene: DiskScene, run: Run) -> dict[str, Finding]:
-        """Time (s) and place (m) of the first broken bonds, if any break."""
-        return first_break(run)
+    def findings(self, scene: DiskScene, run: Run, inside: Box | None = None) -> dict[str, Finding]:
+        """Time (s) and place (m) of the first broken bonds, if any break there."""
+        return first_break(run, inside)
 
     def outcome(self, summary: Mapping[str, Any]) -> list[str]:
         """Static stage, laws and cracks in words."""

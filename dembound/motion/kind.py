@@ -62,6 +62,10 @@ class Plan:
     refused: tuple[str, ...] = ()
 
 
+Box = tuple[float, float, float, float]
+"""A rectangle x0, y0, x1, y1 in m, with its edges."""
+
+
 class Finding(NamedTuple):
     """A number found by a run, and its unit."""
 
@@ -210,8 +214,11 @@ class Kind(ABC, Generic[C, S]):
     def work(self, run: Run) -> int:
         """The work of a run so far, in `work_unit`; the same in every run of a case."""
 
-    def findings(self, scene: S, run: Run) -> dict[str, Finding]:
-        """Numbers by name that are compared between runs in addition to histories; by default none."""
+    def findings(self, scene: S, run: Run, inside: Box | None = None) -> dict[str, Finding]:
+        """Numbers by name that are compared between runs in addition to histories; by default none.
+
+        inside : where in the scene they are found, by default everywhere.
+        """
         return {}
 
     @abstractmethod

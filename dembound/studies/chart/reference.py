@@ -1,20 +1,21 @@
 """The reference of a chart: an exact solution, an extended run, a finer run of a bar, or that of the finest choice."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
-from dembound.bar.kind import SPALL_TIME
+from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.casefile.chart import ReferenceName
 from dembound.casefile.disks import DiskCase
-from dembound.disks.breaks import BREAK_TIME
+from dembound.disks.breaks import BREAK_TIME, BREAK_X, BREAK_Y
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import with_changes
+from dembound.motion.kind import Box, Finding
 from dembound.studies.chart.choices import Choice
 from dembound.studies.chart.errors import Reference
 from dembound.studies.chart.exact import Exact, exact_of
@@ -34,8 +35,11 @@ REALISATIONS = (
     "with one of them include the difference between realisations, which smaller disks do not remove"
 )
 
-RunOf = Callable[[str, Case], Outcome]
-"""Returns the outcome of a case that is no choice, given its name."""
+RunOf = Callable[[str, Case, Box | None], Outcome]
+"""Returns the outcome of a case that is no choice, given its name, and the part of its scene in which breaks count."""
+
+AXES = {SPALL_PLACE: 0, BREAK_X: 0, BREAK_Y: 1}
+"""Axis of those findings that are places."""
 
 AFFORDABLE = 16
 """Size of an extended scene over that of the choice with most particles, up to which it is run without being asked for.
@@ -117,7 +121,8 @@ class _References:
         if larger.case is plain:
             reason = "no side has to be moved, the extended scene is that of the case"
             raise CaseError([f"--reference: {reason}"], self._case.name)
-        outcome = self._done("extended scene", larger.case)
+        outcome = self._done("extended scene", larger.case, larger.inside)
+        outcome = replace(outcome, findings=_shifted(outcome.findings, larger.inside))
         sentence = larger.sentence.removeprefix("reference: ")
         sentence += f", by finite differences at Courant number 1, spacing {fine.spacing:.4g} m" if fine else ""
         return self._of_run("extended", sentence, outcome, self._places(fine))
@@ -141,9 +146,9 @@ class _References:
         sentence = f"the finest run, {self._choices[self._own].name}"
         return self._of_run("finest", sentence, self._outcomes[self._own], lambda run, _: run.gauges)
 
-    def _done(self, name: str, case: Case) -> Outcome:
-        """The outcome of a case that is no choice; raises RunError if its run fails."""
-        outcome = self._run(name, case)
+    def _done(self, name: str, case: Case, inside: Box | None = None) -> Outcome:
+        """The outcome of a case that is no choice, breaking inside a box; raises RunError if its run fails."""
+        outcome = self._run(name, case, inside)
         if outcome.failure:
             raise RunError(f"{name}: {outcome.failure}")
         return outcome
@@ -192,6 +197,14 @@ def _of_random_packings(choices: Sequence[Choice]) -> tuple[str, ...]:
     if len(bricks) < 2 or not any(packing.packed_under_stress for packing in packings):
         return ()
     return (REALISATIONS,)
+
+
+def _shifted(findings: Mapping[str, Finding], inside: Box) -> dict[str, Finding]:
+    """Findings with places in the scene of the case, which lies in a larger one at this box."""
+    return {
+        name: found._replace(value=found.value - inside[AXES[name]]) if name in AXES else found
+        for name, found in findings.items()
+    }
 
 
 def _is_same_run(outcome: Outcome, run: Outcome) -> bool:

@@ -13,6 +13,7 @@ from dembound.casefile.chart import ReferenceName
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import kind_of
+from dembound.motion.kind import Box
 from dembound.results.histories import Quantity
 from dembound.running import Progress
 from dembound.studies.chart.choices import Choice, choices_of, digest, from_table
@@ -121,8 +122,8 @@ class Charted:
             name = "none" if found is None else self._described(self.lines[found])
             within.setdefault(name, []).append(f"within {100.0 * level:g} %")
         parts = [f"cheapest {' and '.join(levels)}: {name}" for name, levels in within.items()]
-        best = min((self.lines[k] for k in self.judged), key=lambda line: line.errors[0].rms, default=None)
-        if best is not None and best.errors[0].rms > LEVELS[-1]:
+        best = self.lines[self.front[0]]  # without those that are as accurate, but cost more
+        if best.errors[0].rms > LEVELS[-1]:
             parts.append(f"most accurate: {self._described(best)}")
         own = [f"{line.choice.name} ({line.cpu:.2g} s)" for line in (self.lines[k] for k in self.reference.own)]
         return "; ".join([*parts, *([f"the reference itself: {', '.join(own)}"] if own else [])])
@@ -216,14 +217,14 @@ class _Runs:
             del outcome.cpu[repeats:], outcome.wall[repeats:]
         return outcomes
 
-    def one(self, name: str, case: Case) -> Outcome:
-        """The outcome of a case, without costs if it has to be run."""
+    def one(self, name: str, case: Case, inside: Box | None = None) -> Outcome:
+        """The outcome of a case, without costs if it has to be run; inside : where its findings are looked for."""
         key = digest(case)
         if (found := self._record.outcome(key)) is not None:
             return found
         try:
             with self._shown(name) as progress:
-                outcome, _, _ = measure(case, progress)
+                outcome, _, _ = measure(case, progress, inside=inside)
         except DemboundError as error:
             outcome = Outcome(failure=str(error).splitlines()[0])
         self._record.add(key, outcome)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError, RunError
+from dembound.motion.kind import Finding
 from dembound.running import Progress
 from dembound.studies.chart import reference, study
 from dembound.studies.chart.choices import combinations
@@ -186,6 +187,25 @@ def test_random_packings_are_realisations(charted, bar) -> None:
     same = charted(case, {"packing.size": [[9.0, 3.0], [12.0, 3.0]]}, repeats=1, reference="finest")[0]
     assert not same.left_out  # the same brick, more of them
     assert not charted(bar(), {"packing.radius": [0.25, 0.5]}, repeats=1, reference="finest")[0].left_out
+
+
+def test_breaks_beyond_the_scene_of_the_case_are_no_end_of_the_comparison(bar, monkeypatch, tmp_path) -> None:
+    # a pulse from the left that would tear the free end of the longer bar: at the case's own end it goes on
+    case = bar({**SPALLING_DISKS, "boundary.right": {"type": "viscous"}, "run.duration": 0.03})
+    sides = {"boundary.right": [{"type": "viscous"}, {"type": "viscous", "beta_p": 0.5}]}
+    boxes = []
+    measured = study.measure
+    monkeypatch.setattr(study, "measure", lambda *a, inside=None, **k: boxes.append(inside) or measured(*a, **k))
+    found = chart(case, Options(combinations(case, sides), 1, "extended"), tmp_path / "chart", False, Log())
+    assert boxes.count((0.0, 0.0, 10.0, 1.0)) == 1  # the extended scene grows to the right
+    assert found.reference.name == "extended"
+
+
+def test_places_in_an_extended_scene_are_those_in_the_case() -> None:
+    found = {"break time": Finding(0.1, "s"), "break x": Finding(203.0, "m"), "break y": Finding(5.0, "m")}
+    shifted = reference._shifted(found, (200.0, 2.0, 240.0, 22.0))
+    assert {name: value for name, (value, _) in shifted.items()} == {"break time": 0.1, "break x": 3.0, "break y": 3.0}
+    assert reference._shifted({"spall place": Finding(1.5, "m")}, (1.0, 0.0, 2.0, 0.0))["spall place"].value == 0.5
 
 
 def test_a_law_that_does_not_break_is_described_so(bar, tmp_path) -> None:
