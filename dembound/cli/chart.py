@@ -148,8 +148,15 @@ def _cells(charted: Charted, number: int, line: Line) -> list[str]:
     worst = line.errors[0]
     mark = "ref." if number in charted.reference.own else "*" if number in charted.front else ""
     mark += "†" if line.apart > 0.0 else ""
-    numbers = f"{100.0 * worst.rms:.3g}", f"{100.0 * worst.peak:.3g}", f"{line.cpu:.3g}", f"{line.wall:.3g}"
+    numbers = _percent(worst.rms), _percent(worst.peak), f"{line.cpu:.3g}", f"{line.wall:.3g}"
     return [*numbers, f"{line.outcome.work:.3g}", mark]
+
+
+def _percent(error: float) -> str:
+    """A relative error in per cent; 0 for rounding errors."""
+    from dembound.studies.chart.front import ROUNDING
+
+    return f"{100.0 * error:.3g}" if error > ROUNDING else "0"
 
 
 def _leave(charted: Charted, folder: Path, title: str | None) -> Iterator[Path]:

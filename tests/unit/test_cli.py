@@ -1025,6 +1025,14 @@ def test_choices_whose_monitors_are_elsewhere_are_marked(dembound, spalling, tmp
     assert "†" not in dembound("chart", "rod.toml", *vary, "--reference", "finer").out
 
 
+def test_rounding_errors_are_printed_as_none(dembound, spalling, tmp_path) -> None:
+    exact = {"method": {"type": "finite_difference"}, "load.1.nodes": 1, "bar.strength": 1e9}
+    (tmp_path / "rod.toml").write_text(spalling(exact).text, encoding="utf-8")
+    done = dembound("chart", "rod.toml", "--vary", "run.courant=1.0,0.9", "--repeats", 1)
+    assert re.search(r"\n courant 1 +0 +0 ", done.out)
+    assert "cheapest within 1 % and within 0.1 %: courant 1 (0 %, " in done.out
+
+
 def test_a_case_may_have_its_chart(dembound, spalling, tmp_path) -> None:
     table = {"vary": {"bar.spacing": [0.05, 0.025]}, "repeats": 1, "reference": "finest"}
     (tmp_path / "rod.toml").write_text(spalling({"chart": table}).text, encoding="utf-8")
