@@ -93,8 +93,12 @@ class Charted:
     front: Sequence[int] = ()
 
     def found(self, line: Line) -> str:
-        """The findings of a choice in words, as differences from those of the reference if it has them."""
-        wanted, found = self.reference.findings, line.outcome.findings
+        """The findings of a choice in words, as differences from those of the reference if it has them.
+
+        Those of the reference itself are its numbers.
+        """
+        is_own = any(line is self.lines[k] for k in self.reference.own)
+        wanted, found = {} if is_own else self.reference.findings, line.outcome.findings
         missing = [name for name in wanted if name not in found]
         parts = [f"no {', '.join(missing)}"] if missing else []
         for name, (value, unit) in found.items():

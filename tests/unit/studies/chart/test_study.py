@@ -172,6 +172,7 @@ def test_histories_are_compared_up_to_the_first_broken_bond(charted, bar) -> Non
     assert found.reference.until == time < 0.05
     assert found.reference.sentence.endswith(f", up to its first break at {1e3 * time:.4g} ms")
     assert "break time +" in found.found(found.lines[0]) or "break time -" in found.found(found.lines[0])
+    assert found.found(found.lines[found.reference.own[0]]).startswith(f"break time {time:.5g} s, break x ")
 
     whole, _ = charted(bar(SPALLING_DISKS | {"chart.until": "end"}), laws, repeats=1)
     assert (whole.reference.until, "break" in whole.reference.sentence) == (np.inf, False)
