@@ -20,7 +20,7 @@ from dembound.studies.chart.choices import Choice, choices_of, digest, from_tabl
 from dembound.studies.chart.defaults import defaults
 from dembound.studies.chart.errors import MonitorError, Reference, Wanted, errors
 from dembound.studies.chart.exact import exact_of
-from dembound.studies.chart.front import ROUNDING, Point, cheapest_within, front
+from dembound.studies.chart.front import EQUAL, ROUNDING, Point, cheapest_within, front
 from dembound.studies.chart.measure import Outcome, measure
 from dembound.studies.chart.record import Record, record_in
 from dembound.studies.chart.reference import reference_of
@@ -126,9 +126,9 @@ class Charted:
             name = "none" if found is None else self._described(self.lines[found])
             within.setdefault(name, []).append(f"within {100.0 * level:g} %")
         parts = [f"cheapest {' and '.join(levels)}: {name}" for name, levels in within.items()]
-        best = self.lines[self.front[0]]  # without those that are as accurate, but cost more
-        if best.errors[0].rms > LEVELS[-1]:
-            parts.append(f"most accurate: {self._described(best)}")
+        least = self.lines[self.front[0]].errors[0].rms
+        if least > LEVELS[-1] and (best := self.cheapest(least * (1.0 + EQUAL))) is not None:
+            parts.append(f"most accurate: {self._described(self.lines[best])}")
         own = [f"{line.choice.name} ({line.cpu:.2g} s)" for line in (self.lines[k] for k in self.reference.own)]
         return "; ".join([*parts, *([f"the reference itself: {', '.join(own)}"] if own else [])])
 

@@ -2,6 +2,7 @@
 
 import csv
 from contextlib import contextmanager
+from dataclasses import replace
 
 import h5py
 import numpy as np
@@ -108,6 +109,15 @@ def test_a_choice_that_is_the_reference_run_again_is_not_its_cheapest(charted, b
     assert found.reference.own == (0, 1)  # the number of snapshots changes no run
     assert found.judged == [2, 3]
     assert found.cheapest(1.0) in (2, 3)
+
+
+def test_of_equally_accurate_choices_the_first_is_named(charted, bar) -> None:
+    sides = {"boundary.right": [{"type": "viscous"}, {"type": "free"}]}
+    found, _ = charted(bar({"run.duration": 0.01}), sides, repeats=1, reference="exact")
+    errors = [[replace(line.errors[0], rms=rms)] for line, rms in zip(found.lines, (0.1001, 0.1), strict=True)]
+    lines = [replace(line, errors=each) for line, each in zip(found.lines, errors, strict=True)]
+    equal = replace(found, lines=lines, front=[1, 0])  # the second by a thousandth, at the same cost
+    assert "most accurate: boundary.right viscous (10 %" in equal.sentence
 
 
 FADING = {"bar.attenuation": 0.1, "bar.strength": 1e9, "method": {"type": "finite_difference"}, "load.1.nodes": 1}
