@@ -65,11 +65,12 @@ def _of_disks(case: Case) -> Named:
 
 
 def _homogenised_factors(case: DiskCase) -> Named:
-    """Factors β of the homogenised stiffness for all sides that have others."""
-    if not any(table.factors for table in case.boundary.values()):
+    """Factors β of the homogenised stiffness for all sides that have others; where a wave enters, it would change."""
+    absorbing = {side: table for side, table in case.boundary.items() if table.factors and not table.waves}
+    if not absorbing:
         return
     scene, found = build(case), {}
-    for side, table in case.boundary.items():
+    for side, table in absorbing.items():
         for motion, beta in table.factors.items():
             matched = homogenised_beta(scene, side, motion)
             if abs(matched - beta) > UNMATCHED * matched:  # not where the motion is held, for which it is nan
