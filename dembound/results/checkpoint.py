@@ -118,11 +118,19 @@ def facts_of(case: Case) -> dict[str, Any]:
 
 
 def differences(first: Any, second: Any, key: str = "") -> list[str]:
-    """The keys in which two nested tables differ, a line each with both values."""
+    """The keys in which two nested tables differ, a line each with both values.
+
+    A key that is not given has the value None, as TOML has no other.
+    """
     if isinstance(first, Mapping) and isinstance(second, Mapping):
         names = dict.fromkeys([*first, *second])
         pairs = [(f"{key}.{name}" if key else name, first.get(name), second.get(name)) for name in names]
         return [line for name, one, two in pairs for line in differences(one, two, name)]
     if first == second:
         return []
-    return [f"{key}: is {json.dumps(first)} here, and {json.dumps(second)} there"]
+    return [f"{key}: is {_in_words(first)} here, and {_in_words(second)} there"]
+
+
+def _in_words(value: Any) -> str:
+    """The value of a key, or of one that is left out."""
+    return "not given" if value is None else json.dumps(value)

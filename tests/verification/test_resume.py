@@ -2,18 +2,20 @@
 
 import json
 import re
+from functools import partial
 
 import h5py
 import numpy as np
 import pytest
 import tomli_w
 
+from dembound.check import check
 from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.results.checkpoint import Checkpoints
 from dembound.results.folder import Folder
 from dembound.results.interrupts import Stopped
-from dembound.running import job, resume_case, run_case
+from dembound.running import job, preflight, resume_case, run_case
 
 PACKING = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
 MATERIAL = {"density": 2500.0, "p_wave_speed": 1000.0}
@@ -240,8 +242,14 @@ def test_the_settled_state_of_another_body_is_refused(tmp_path) -> None:
         ({"static": used | {"damp": 0.5}}, "static.damp: is 0.5 here, and 0.7 there"),
         ({"static": used, "material": BRITTLE | {"pb_ten": 4e5}}, "material.pb_ten: is 400000.0 here"),
         ({"static": used, "packing": PACKING | {"seed": 2}}, "packing.seed: is 2 here, and 0 there"),
+        ({"static": used, "boundary": FREE_FIELD}, "has no settled state (body.column.npz)"),
         ({"static": static | {"from": str(tmp_path)}}, "has no settled state"),
+        ({"static": static | {"from": str(tmp_path / "nowhere")}}, "has no settled state"),
     ]:
-        with pytest.raises(CaseError, match=re.escape(key)):
-            run_case(case_of("settled, updated", **changes), tmp_path / "other")
-        assert not (tmp_path / "other" / "settled_updated").exists()
+        case, messages = case_of("settled, updated", **changes), set()
+        for find in (check, preflight, partial(run_case, results=tmp_path / "other")):
+            with pytest.raises(CaseError, match=re.escape(key)) as refused:
+                find(case)
+            messages.add((refused.value.source, str(refused.value)))
+        assert len(messages) == 1
+        assert not (tmp_path / "other").exists()
