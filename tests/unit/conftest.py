@@ -1,15 +1,18 @@
 """Small cases and a small recorded run that many tests start from."""
 
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
 import pytest
+from typer.main import get_command
 
+from dembound import cli
 from dembound.casefile import Case
 from dembound.disks.rows import contact_rows
 from dembound.disks.scene import DiskScene
@@ -18,6 +21,7 @@ from dembound.motion.energy import Ledger
 from dembound.motion.kind import Plan
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import NEVER
+from dembound.plot import style
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.running import plan
@@ -250,3 +254,45 @@ def in_order() -> Callable[[DiskScene], DiskScene]:
         return replace(scene, slots=None, rows=tuple(rows))
 
     return make
+
+
+class Answer(NamedTuple):
+    """What a command ended with."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture(scope="session")
+def command() -> Callable[[], None]:
+    """The application as `app()` makes it; a tenth of the time of these tests would go into making it every time."""
+    return get_command(cli.app)
+
+
+@pytest.fixture
+def dembound(tmp_path, monkeypatch, capsys, command) -> Callable[..., Answer]:
+    """Runs a command in an empty folder as the shell would, with pictures of a few dots per inch, soon packed."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys.modules["dembound.cli.app"], "app", command)
+    monkeypatch.setattr(style, "DOTS_PER_INCH", 30)
+
+    def run(*arguments: object) -> Answer:
+        monkeypatch.setattr(sys, "argv", ["dembound", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        return Answer(ended.value.code or 0, *capsys.readouterr())
+
+    return run
+
+
+@pytest.fixture
+def written(bar, tmp_path) -> Callable[..., Path]:
+    """Writes cases of the small bar to files."""
+
+    def write(name: str = "bar", changes: dict | None = None) -> Path:
+        path = tmp_path / f"{name}.toml"
+        path.write_text(bar(changes).text, encoding="utf-8")
+        return path
+
+    return write
