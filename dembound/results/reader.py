@@ -217,12 +217,11 @@ def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
     Raises CaseError when there is no entry, and RecordError for the ledger of an earlier version.
     """
     columns = {name: item[:] for name, item in datasets_of(file["energy"]).items()} if "energy" in file else {}
-    missing = [name for name in ("time", "error", "supplied") if name not in columns]
-    if columns and missing:
+    if not any(map(len, columns.values())):
+        raise CaseError([f"{file.filename}: has no entries in its energy ledger"])
+    if missing := [name for name in ("time", "error", "supplied") if name not in columns]:
         lacks = f"its energy ledger has no {', '.join(missing)}"
         raise RecordError([f"{file.filename}: is of another version of dembound, {lacks}; run the case anew"])
-    if not columns or len(columns["time"]) == 0:
-        raise CaseError([f"{file.filename}: has no entries in its energy ledger"])
     scale = float(columns["supplied"][-1])
     columns["relative_error"] = columns["error"] / scale if scale > 0.0 else np.zeros_like(columns["error"])
     return columns
