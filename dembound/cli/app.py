@@ -7,7 +7,8 @@ import gc
 import logging
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
@@ -37,16 +38,28 @@ COLLECT_EVERY = 100_000
 """New objects after which Python searches for unused cycles: nearly all objects are those of packages, and remain."""
 
 
+@contextmanager
+def _one_line_at_signals() -> Iterator[None]:
+    """End with one line, and the exit code of the signal; typer itself would end silently, with 130 after any."""
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        err.print("dembound: stopped")
+        raise typer.Exit(exit_code_of(stop)) from None
+
+
 class _Commands(TyperGroup):
-    """All commands; a signal ends each with one line and its own exit code."""
+    """All commands; signals end them as by `_one_line_at_signals`, also while options are read."""
+
+    def make_context(self, *arguments: Any, **more: Any) -> Any:
+        """Read the options."""
+        with _one_line_at_signals():
+            return super().make_context(*arguments, **more)
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command that was given; typer itself would end silently, with 130 after any signal."""
-        try:
+        """Run the command that was given."""
+        with _one_line_at_signals():
             return super().invoke(ctx)
-        except KeyboardInterrupt as stop:
-            err.print("dembound: stopped")
-            raise typer.Exit(exit_code_of(stop)) from None
 
 
 app = typer.Typer(

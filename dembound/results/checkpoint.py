@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RecordError
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
 from dembound.results.interrupts import Interrupts, Stopped
@@ -55,14 +55,16 @@ class Checkpoint:
 
     @classmethod
     def read(cls, path: Path) -> Checkpoint:
-        """Read a checkpoint; raises CaseError for a file that is damaged or of another version."""
+        """Read a checkpoint; raises RecordError for a file that is damaged, CaseError for one of another version."""
         try:
             with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
                 arrays = {name: archive[name] for name in archive.files}
             facts = json.loads(arrays.pop(FACTS).tobytes())
             version = facts["version"]
-        except (ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError) as error:
-            raise CaseError([f"{path}: is damaged: {error}"]) from None
+        except (KeyError, zipfile.BadZipFile) as error:
+            raise RecordError([f"{path}: is damaged: {error}"]) from None
+        except (ValueError, EOFError, NotImplementedError):  # whose messages are about numpy's options
+            raise RecordError([f"{path}: is damaged, no archive of arrays"]) from None
         if version != __version__:
             raise CaseError([f"{path}: is of dembound {version}, this is {__version__}; run the case anew"])
         return cls(facts, arrays)

@@ -22,7 +22,7 @@ FOLDER = "settled"
 def settled_state(folder: Path, name: str, keys: Mapping[str, Any]) -> Arrays:
     """The arrays of a stage of a name that a run has kept in a folder; keys : of the case on which it depends.
 
-    Raises CaseError if it is not there, is damaged, or depends on other keys.
+    Raises CaseError if it is not there or depends on other keys, RecordError if it is damaged.
     """
     path = folder / f"{name}.npz"
     if not path.is_file():

@@ -74,7 +74,7 @@ def resume_case(
     snapshots keep their intervals. Without it a run that is complete cannot be continued.
 
     Raises CaseError if there is no checkpoint, one of another version or of another case than the record, or of a run
-    that has reached that time; else errors as `run_case`.
+    that has reached that time, RecordError if it is damaged; else errors as `run_case`.
     """
     found = find_unfinished(folder, until)
     return _Job(found.case, found.folder, progress or Progress(), seconds or {}, found).run()

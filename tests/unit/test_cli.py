@@ -1031,13 +1031,15 @@ def test_a_file_of_an_odd_name_is_refused(dembound, written, tmp_path) -> None:
 def test_a_damaged_record_ends_with_5(dembound, written, tmp_path) -> None:
     dembound("run", written())
     record = tmp_path / "results" / "bar" / "run.h5"
-    record.write_bytes(record.read_bytes()[:20_000])
+    whole = record.read_bytes()
 
-    for command in (["plot"], ["plot", "--energy"], ["gauge"], ["view", "-o", "v.png"], ["compare", "results/bar"]):
-        answer = dembound(*command, "results/bar")
-        assert answer.code == 5
-        assert len(answer.err.splitlines()) == 1
-        assert "run.h5: cannot be read as a record of results" in answer.err
+    for damaged in (whole[:20_000], b"", bytes(len(whole)), b"0 1\n2 3\n"):
+        record.write_bytes(damaged)
+        for command in (["plot"], ["plot", "--energy"], ["gauge"], ["view", "-o", "v.png"], ["compare", "results/bar"]):
+            answer = dembound(*command, "results/bar")
+            assert answer.code == 5
+            assert len(answer.err.splitlines()) == 1
+            assert "run.h5: cannot be read as a record of results" in answer.err
 
 
 def test_warnings_of_python_are_not_shown(dembound, written, monkeypatch) -> None:

@@ -261,11 +261,12 @@ def test_what_cannot_be_resumed_is_refused_with_the_reason(case, tmp_path) -> No
     with pytest.raises(CaseError, match=r"bar\.strength: is 8000000\.0 here, and 9000000\.0 there"):
         resume_case(folder, until=0.05)
     (folder / "checkpoint.npz").write_bytes(re.sub(rb'("version": ")[^"]+', version_of_equal_length, checkpoint))
-    with pytest.raises(CaseError, match="is damaged"):  # its checksum no longer fits
+    with pytest.raises(RecordError, match="is damaged: Bad CRC-32"):
         resume_case(folder, until=0.05)
-    (folder / "checkpoint.npz").write_bytes(checkpoint[: len(checkpoint) // 2])
-    with pytest.raises(CaseError, match="is damaged"):
-        resume_case(folder, until=0.05)
+    for damaged, reason in ((checkpoint[: len(checkpoint) // 2], ": File is not a zip file"), (b"0", ", no archive")):
+        (folder / "checkpoint.npz").write_bytes(damaged)
+        with pytest.raises(RecordError, match=f"is damaged{reason}"):
+            resume_case(folder, until=0.05)
 
 
 def version_of_equal_length(found: re.Match) -> bytes:
