@@ -60,7 +60,7 @@ def reading(path: Path) -> Iterator[h5py.File]:
     import h5py
 
     if not path.is_file():
-        raise RecordError([f"{path}: is not there, or is not a file"])
+        raise RecordError([f"{path}: cannot be read as a record of results: there is no such file"])
     try:
         with h5py.File(CommittedFile(path, "r") if log_of(path).is_file() else path, "r") as file:
             yield file
