@@ -8,7 +8,7 @@ from dembound.machine import disk_free
 from dembound.motion.energy import Entry, SideEntry
 from dembound.motion.kind import Plan
 from dembound.motion.memory import in_words
-from dembound.running.planning import steps_between_entries
+from dembound.running.planning import steps_between_entries, steps_between_samples
 
 ALWAYS = 1e6
 """Bytes of pictures, of the summary, and of the first chunks of what grows."""
@@ -25,13 +25,14 @@ def results_bytes(planned: Plan) -> dict[str, float]:
     kind, scene, case = planned.kind, planned.scene, planned.scene.case
     whole, stepped = kind.storage(scene), kind.storage(planned.stepped)
     samples = planned.steps / max(1, round(case.output.history_interval / planned.time_step))
-    row = len(scene.monitors) * (MOTION + 8 * (scene.record_width > 6)) + len(scene.edges) * (MOTION - 8)
+    row = len(scene.monitors) * (MOTION + 8 * (scene.record_width > 6))
     entry = 8 * (len(fields(Entry)) + len(SideEntry._fields) * len(scene.edges))
     copies = 2 if case.run.checkpoint > 0.0 else 0
     settled = len(kind.stage_names(scene)) if copies and kind.stages_from(case) is None else 0
     return {
         "output.snapshots": min(case.output.snapshots, planned.steps) * whole.snapshot,
         "output.history_interval": samples * row,
+        "output.side_interval": planned.steps / steps_between_samples(planned) * len(scene.edges) * (MOTION - 8),
         "output.energy_interval": planned.steps / steps_between_entries(planned) * entry * (1 + copies),
         "run.checkpoint": (copies + settled) * stepped.checkpoint,
         "": ALWAYS + whole.header,

@@ -27,6 +27,9 @@ ROUNDING = 1e-6
 ENTRIES = 100
 """Entries of the energy ledger where the case does not give an interval."""
 
+SIDE_STEPS = 8
+"""Steps between two samples of the sides where the case does not give an interval."""
+
 
 def plan(case: Case, clock: Clock | None = None) -> Plan:
     """Build the scene and choose the step; the clock counts the time under "build".
@@ -98,7 +101,7 @@ def _interval_warnings(planned: Plan) -> Iterator[str]:
     output = planned.scene.case.output
     if output.snapshots > planned.steps:
         yield f"output.snapshots: is {output.snapshots}, the run has {planned.steps:,} steps and as many snapshots"
-    for key in ("history_interval", "energy_interval"):
+    for key in ("history_interval", "side_interval", "energy_interval"):
         interval = getattr(output, key)
         if 0.0 < interval < (1.0 - ROUNDING) * planned.time_step:
             yield f"output.{key}: is {interval:g} s, below the time step, {planned.time_step:.4g} s; every step is kept"
@@ -117,11 +120,19 @@ def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Si
         system=beginning.system,
         datum=beginning.datum,
         clock=clock,
-        watches_sides=True,
+        side_stride=steps_between_samples(planned),
     )
     if scene.case.run.until == "silent":
         simulation.track(Silence(silent_rule(planned.scene, planned.kind.sources(planned.scene)), planned.time_step))
     return simulation, Ledger(simulation, steps_between_entries(planned), last=planned.steps - 1)
+
+
+def steps_between_samples(planned: Plan) -> int:
+    """Steps from one sample of the sides to the next."""
+    output = planned.scene.case.output
+    if output.side_interval > 0.0:
+        return max(1, round(output.side_interval / planned.time_step))
+    return max(SIDE_STEPS, round(output.history_interval / planned.time_step))
 
 
 def steps_between_entries(planned: Plan) -> int:

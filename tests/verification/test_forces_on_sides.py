@@ -22,14 +22,14 @@ def watched(scene, start=None) -> Simulation:
     """A simulation that measures the sides, from rest as built or from a settled state."""
     step = choose_step(scene)[0]
     if start is None:
-        return Simulation(scene, step, watches_sides=True)
+        return Simulation(scene, step, side_stride=1)
     system = DiskSystem(scene, step, start)
-    return Simulation(scene, step, system=system, datum=start.displacement, watches_sides=True)
+    return Simulation(scene, step, system=system, datum=start.displacement, side_stride=1)
 
 
 def forces(simulation: Simulation) -> dict[str, np.ndarray]:
     """Forces (2,) N before the last step by side."""
-    return dict(zip(simulation.sides.names, simulation.side_record[-1, :, 3:], strict=True))
+    return dict(zip(simulation.sides.names, simulation.side_samples.record[-1, :, 3:], strict=True))
 
 
 DASHPOTS = {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}
@@ -55,7 +55,7 @@ def test_forces_on_sides_are_all_that_changes_the_momentum(lab, boundary):
         before = scene.mass @ simulation.state.velocity[:2].T
         simulation.run(simulation.state.step + 1)
         gained = (scene.mass @ simulation.state.velocity[:2].T - before) / simulation.time_step
-        size = np.abs(simulation.side_record[..., 3:]).max()
+        size = np.abs(simulation.side_samples.record[..., 3:]).max()
         assert size > 1e3
         np.testing.assert_allclose(sum(forces(simulation).values()), gained, rtol=0.0, atol=1e-11 * size)
 
