@@ -15,6 +15,7 @@ from dembound.bar.outcome import bar_outcome
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.sources import sources_of_bar
 from dembound.bar.stability import choose_step
+from dembound.bar.storage import storage_of
 from dembound.bar.summary import part_of, spalls_of, summarise_bar
 from dembound.bar.warnings import bar_warnings, warnings_after_bar
 from dembound.bar.wave_front import front_of_bar
@@ -23,6 +24,7 @@ from dembound.motion.kind import Beginning, Box, Finding, Kind, OnLook
 from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
+from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run
 from dembound.results.reader import has_monitors
 
@@ -75,6 +77,10 @@ class Bars(Kind[BarCase, BarScene]):
     def has_coda(self, scene: BarScene) -> bool:
         """Whether it may break."""
         return bool(np.isfinite(scene.case.bar.breaking_stretch))
+
+    def storage(self, scene: BarScene) -> Storage:
+        """From its nodes and the lengths of its bonds."""
+        return storage_of(scene)
 
     def unit(self, scene: BarScene) -> tuple[float, float]:
         """The spacing of its nodes."""

@@ -44,6 +44,6 @@ def steps_too_long(run: Run, output: Output | None) -> Iterator[str]:
     """Time step and intervals that are longer than the run."""
     if run.time_step != "auto" and run.time_step > run.duration:
         yield f"run.time_step: is {run.time_step:g}, must be at most run.duration, {run.duration:g} (s)"
-    for key in ("history_interval", "energy_interval"):
+    for key in ("history_interval", "side_interval", "energy_interval"):
         if output and (interval := getattr(output, key)) > run.duration:
             yield f"output.{key}: is {interval:g}, must be at most run.duration, {run.duration:g} (s)"

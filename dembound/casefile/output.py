@@ -9,6 +9,12 @@ class Output(Table):
     history_interval: float = quantity(
         0.0, unit="s", help="time between two samples of the histories; 0: every step", ge=0.0
     )
+    side_interval: float = quantity(
+        0.0,
+        unit="s",
+        help="time between two samples of the sides; 0: every eighth step, or history_interval if that is longer",
+        ge=0.0,
+    )
     energy_interval: float = quantity(
         0.0, unit="s", help="time between two entries of the energy ledger; 0: a hundred over the run", ge=0.0
     )

@@ -13,6 +13,7 @@ from rich.table import Column
 
 from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case, use_threads
 from dembound.cli.console import compact_table, err, out
+from dembound.results.interrupts import exit_code_of
 
 if TYPE_CHECKING:
     from dembound.running import Progress
@@ -111,9 +112,9 @@ def chart(
 
     try:
         charted = make(loaded, options, folder, resume, shown)
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         err.print(f"{loaded.name}: stopped; `dembound chart --resume` with the same options continues")
-        raise
+        raise typer.Exit(exit_code_of(stop)) from None
     _print(charted)
     for path in _leave(charted, folder, title):
         out.print(f"wrote {path}")

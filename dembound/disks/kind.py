@@ -19,7 +19,8 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.settled import Settled, settling_keys
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
-from dembound.disks.static import settle
+from dembound.disks.static import settle, stage_names
+from dembound.disks.storage import storage_of
 from dembound.disks.summary import asked_stress, describe_static, summarise_disks
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
@@ -28,6 +29,7 @@ from dembound.motion.kind import Beginning, Box, Finding, Kind, OnLook, Reductio
 from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
+from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run
 
 if TYPE_CHECKING:
@@ -92,9 +94,17 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Whether the case has one."""
         return scene.case.static is not None
 
+    def storage(self, scene: DiskScene) -> Storage:
+        """From its disks and contacts."""
+        return storage_of(scene)
+
     def stage_keys(self, scene: DiskScene) -> dict[str, Any]:
         """What the result of its static stage depends on."""
         return settling_keys(scene)
+
+    def stage_names(self, scene: DiskScene) -> list[str]:
+        """Those of its static stage."""
+        return [] if scene.case.static is None else stage_names(scene)
 
     def stages_from(self, case: DiskCase) -> Path | None:
         """The folder given by ``static.from``."""

@@ -19,7 +19,7 @@ from dembound.kernels.law import (
     turn,
     turning_work,
 )
-from dembound.kernels.sides import note_sides
+from dembound.kernels.sides import note_side_halves, note_side_motion, note_side_work
 from dembound.kernels.step import copy, copy_component, move_supported, note_after, note_before, note_top_speeds
 
 
@@ -44,6 +44,17 @@ def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
     return done, why
 
 
+@njit(**FAST, forceinline=True)
+def note_sides(step, steps, number, u, supports, pulled, followed, moved, body, sides):
+    """Write what is recorded of the sides in this of all steps, the first of which is that of `number`."""
+    if (number + step) % sides.every == 0:
+        row = (number + step) // sides.every - sides.first
+        note_side_motion(step, row, u, supports, pulled, followed, moved, body, sides)
+    if step == steps - 1:  # the ledger is written after the last step only
+        note_side_halves(step, u, supports, pulled, followed, moved, body, sides)
+    note_side_work(step, u, supports, pulled, followed, moved, body, sides)
+
+
 @njit(**FAST)
 def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed, moved):
     """The steps themselves, with work space of the k supported nodes; the last displacements may be in u_next."""
@@ -65,8 +76,8 @@ def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pul
         note_all(laws, step, here, log)
         move_all(laws, here, there, v, body, nodes)
         move_supported(step, here, v, there, pulled, followed, supports, body, work, moved)
-        if log.sides.record.shape[1] > 0:
-            note_sides(step, here, supports, pulled, followed, moved, body, log.sides)
+        if log.sides.every > 0:
+            note_sides(step, steps, number, here, supports, pulled, followed, moved, body, log.sides)
         note_after(step, v, log.probes, log.record, log.tracked, log.peaks)
         if log.top_speed.size > 0:
             note_top_speeds(v, log.top_speed)

@@ -150,46 +150,58 @@ def _of_batch(b, c, signal, lines, constants, u, supports, across, followed, mov
 
 
 @njit(**FAST, forceinline=True)
-def note_sides(step, u, supports, across, followed, moved, body, sides):
-    """Write displacements and forces of all sides in this step to row `step` of sides.record, and add up their work.
+def _of_side(b, step, u, supports, across, followed, moved, sides):
+    """`_of_batch` of batch b in this step."""
+    first, last = U(sides.start[b]), U(sides.start[b + 1])
+    signal = sides.sign[b] * sides.signals[step, sides.signal[b]] if sides.signal[b] >= 0 else 0.0
+    lines, constants = sides.line[first:last], sides.constant[first:last]
+    c = U(sides.component[b])
+    return _of_batch(b, c, signal, lines, constants, u, supports, across, followed, moved, sides)
+
+
+@njit(**FAST)
+def note_side_motion(step, row, u, supports, across, followed, moved, body, sides):
+    """Write displacements and forces of all sides in this step to a row of sides.record.
 
     u : (3, n) displacements before the step; across (k, 3) N forces of ties and followed (k, 3) m/s mean velocities of
     twins in the step; moved (3, 3, k) velocities of the supported nodes before and after it, and all forces on them
     from outside.
     """
-    record, work = sides.record, sides.work
+    record = sides.record
     for o in range(record.shape[1]):
         first, last = U(sides.member_start[o]), U(sides.member_start[o + 1])
         members = sides.member[first:last]
         for c in range(3):
             moves = body.free[c] != 0.0
-            record[step, o, c] = _mean(u[c], members, sides.weight[c, first:last]) if moves else 0.0
+            record[row, o, c] = _mean(u[c], members, sides.weight[c, first:last]) if moves else 0.0
         for c in range(2):
-            record[step, o, 3 + c] = _steady(c, sides, o, body.load)
+            record[row, o, 3 + c] = _steady(c, sides, o, body.load)
+    for b in range(sides.kind.size):
+        if sides.component[b] < 2:
+            force = _of_side(b, step, u, supports, across, followed, moved, sides)[0]
+            record[row, sides.side[b], 3 + sides.component[b]] += sides.sign[b] * force
+
+
+@njit(**FAST)
+def note_side_halves(step, u, supports, across, followed, moved, body, sides):
+    """Fill sides.work[1], the work up to the beginning of this step; `note_side_work` has to be called after it."""
+    work = sides.work
+    for o in range(work.shape[1]):
+        for c in range(2):
             work[1, o, c] = work[0, o, c]
     for b in range(sides.kind.size):
-        c, o = U(sides.component[b]), sides.side[b]
-        first, last = U(sides.start[b]), U(sides.start[b + 1])
-        signal = sides.sign[b] * sides.signals[step, sides.signal[b]] if sides.signal[b] >= 0 else 0.0
-        force, power, before, absorbed = _of_batch(
-            b,
-            c,
-            signal,
-            sides.line[first:last],
-            sides.constant[first:last],
-            u,
-            supports,
-            across,
-            followed,
-            moved,
-            sides,
-        )
-        if c < 2:
-            record[step, o, U(3) + c] += sides.sign[b] * force
-        came = power + absorbed
+        _, power, before, absorbed = _of_side(b, step, u, supports, across, followed, moved, sides)
         # of dashpots without a wave all is absorbed, also in half a step
-        half = came if sides.kind[b] == DASHPOT else before + absorbed
-        work[1, o, 0] += 0.5 * body.step * half
-        work[1, o, 1] += 0.5 * body.step * (half - before)
-        work[0, o, 0] += body.step * came
-        work[0, o, 1] += body.step * absorbed
+        half = power + absorbed if sides.kind[b] == DASHPOT else before + absorbed
+        work[1, sides.side[b], 0] += 0.5 * body.step * half
+        work[1, sides.side[b], 1] += 0.5 * body.step * (half - before)
+
+
+@njit(**FAST, forceinline=True)
+def note_side_work(step, u, supports, across, followed, moved, body, sides):
+    """Add the work of all sides in this step to sides.work[0]; see `note_side_motion`."""
+    for b in range(sides.kind.size):
+        if sides.kind[b] != SPRING:
+            _, power, _, absorbed = _of_side(b, step, u, supports, across, followed, moved, sides)
+            sides.work[0, sides.side[b], 0] += body.step * (power + absorbed)
+            sides.work[0, sides.side[b], 1] += body.step * absorbed

@@ -193,8 +193,9 @@ class Sides(NamedTuple):
     member_start : (s + 1,) members of each side in member (m,), nodes; weight (3, m) of their displacements in the
     mean, sign of images included. offset : (s, 2) N, added to the force on each side. bearer_start : (s + 1,) nodes of
     each side in bearer (q,) whose steady forces are added too, times share (2, q); none if these do not change.
-    record : (steps, s, 5) mean displacement, m and rad, and force, N, at the start of each step. work : (2, s, 2) J
-    that came in and were absorbed, without springs; row 0 up to the half step reached, row 1 up to the last whole step.
+    record : (rows, s, 5) mean displacement, m and rad, and force, N, at the start of each `every`-th step, of which
+    `first` came before; every is 0 where nothing is recorded. work : (2, s, 2) J that came in and were absorbed,
+    without springs; row 0 up to the half step reached, row 1 up to the last whole step, after the last step of a call.
     """
 
     kind: np.ndarray
@@ -214,6 +215,8 @@ class Sides(NamedTuple):
     bearer_start: np.ndarray
     bearer: np.ndarray
     share: np.ndarray
+    every: int
+    first: int
     record: np.ndarray
     work: np.ndarray
 
@@ -239,6 +242,8 @@ class Sides(NamedTuple):
             bearer_start=np.zeros(1, dtype=np.int64),
             bearer=number,
             share=np.zeros((2, 0)),
+            every=0,
+            first=0,
             record=np.zeros((0, 0, 5)),
             work=np.zeros((2, 0, 2)),
         )

@@ -102,6 +102,7 @@ class Ledger(Tracker):
         self._came = 0.0  # kinetic energy at the start
         self._most = 0.0, 0.0  # supplied by boundaries and loads, largest values so far
         self._begun: _Begun | None = None
+        self._space: list[np.ndarray] = []
 
     def handle(self, run: Run) -> None:
         """Begin an entry, or complete the one begun one step earlier."""
@@ -114,8 +115,15 @@ class Ledger(Tracker):
         if self.due == run.state.step:
             state = run.state
             balancing = run.system.balancing_work(state.u)  # forces may end in the step
-            self._begun = _Begun(state.u.copy(), state.v.copy(), balancing, len(state.laws))
+            self._begun = _Begun(self._kept(0, state.u), self._kept(1, state.v), balancing, len(state.laws))
             self.due = state.step + 1
+
+    def _kept(self, number: int, values: np.ndarray) -> np.ndarray:
+        """A copy of values, in memory that was used for the entry before; new memory takes as long as the copy."""
+        if len(self._space) <= number:
+            self._space.append(np.empty_like(values))
+        np.copyto(self._space[number], values)
+        return self._space[number]
 
     def _enter(self, run: Run, begun: _Begun) -> None:
         """Write the energies at the beginning of the last step."""
@@ -158,10 +166,7 @@ class Ledger(Tracker):
 
     def _in_springs(self, run: Run, u: np.ndarray) -> np.ndarray:
         """Energy (s,) J in the springs of every side at displacements (3, slots), of a settled body since the start."""
-        if run.sides is None:
-            return np.zeros(0)
-        moved = run.state.layout.gather(u) - run.state.datum
-        return run.sides.stored(moved)
+        return np.zeros(0) if run.sides is None else run.sides.stored(u, run.state.datum)
 
     def _watch(self) -> None:
         """Raise RunError if the run has gained energy that was not supplied, as with a step too large for its law."""

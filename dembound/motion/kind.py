@@ -19,6 +19,7 @@ from dembound.motion.paths import Front, Source
 from dembound.motion.scene import Scene
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
+from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run
 
 if TYPE_CHECKING:
@@ -178,9 +179,17 @@ class Kind(ABC, Generic[C, S]):
         """Whether a stage before the run loads the scene, by default not."""
         return False
 
+    @abstractmethod
+    def storage(self, scene: S) -> Storage:
+        """Bytes on disk of what is written of a scene."""
+
     def stage_keys(self, scene: S) -> dict[str, Any]:
         """What the results of the stages before a run depend on, as plain JSON values by key."""
         return {}
+
+    def stage_names(self, scene: S) -> list[str]:
+        """The names of the stages before a run, by default none."""
+        return []
 
     def stages_from(self, case: C) -> Path | None:
         """The folder of results whose stages a case uses; by default none."""

@@ -33,6 +33,28 @@ class _Batch(NamedTuple):
     follow: np.ndarray
 
 
+class Samples(NamedTuple):
+    """Samples of the sides at each `every`-th step, of which `first` came before.
+
+    record : (rows, s, 5) mean displacement, since the start, and force of every side, see `tables.Sides`.
+    """
+
+    every: int
+    first: int
+    record: np.ndarray
+
+    @classmethod
+    def between(cls, step: int, later: int, every: int, sides: int) -> Samples:
+        """Those of the steps from `step` on and before `later`, to be filled; none if every is 0."""
+        first, last = (-(-of // max(1, every)) for of in (step, later))
+        return cls(every, first, np.empty((last - first if every > 0 else 0, sides, 5)))
+
+    @property
+    def steps(self) -> np.ndarray:
+        """Their steps, (rows,)."""
+        return self.every * (self.first + np.arange(len(self.record)))
+
+
 class NodeSides:
     """The sides of a scene for the kernels.
 
@@ -69,14 +91,15 @@ class NodeSides:
         columns = [signal(times) for signal in self._whole.supports.signals]
         return np.stack([np.zeros(len(times)), *columns], axis=1)[:, 1:].copy()
 
-    def table(self, signals: np.ndarray, system: System, record: np.ndarray, work: np.ndarray) -> tables.Sides:
-        """The arrays for steps with these signals (steps, q); record (steps, s, 5) and work (2, s, 2) are filled."""
-        arrays: dict[str, np.ndarray] = {"offset": np.zeros((len(self.names), 2))}
+    def table(self, signals: np.ndarray, system: System, samples: Samples, work: np.ndarray) -> tables.Sides:
+        """The arrays for steps with these signals (steps, q); samples and work (2, s, 2) are filled."""
+        table, offset = self._table, np.zeros((len(self.names), 2))
         if system.turning is not None:  # then steady forces are loads and rotated balancing forces
-            arrays |= self._bearing() | {"offset": self._borne(-system.load)}
+            table, offset = self._bearing(table), self._borne(-system.load)
         elif system.balancing_force is not None:
-            arrays["offset"] = self._borne(system.balancing_force)
-        return self._table._replace(signals=signals, record=record, work=work, **arrays)
+            offset = self._borne(system.balancing_force)
+        every, first, record = samples
+        return table._replace(offset=offset, signals=signals, every=every, first=first, record=record, work=work)
 
     def origin(self, datum: np.ndarray) -> np.ndarray:
         """Mean displacement (s, 3) of every side at the start, displacements (3, n)."""
@@ -88,11 +111,12 @@ class NodeSides:
         """Mean displacement (s, 3) of every side at displacements (3, n)."""
         return np.array([(weight * displacement[:, node]).sum(axis=1) for node, weight in self._members]).reshape(-1, 3)
 
-    def stored(self, displacement: np.ndarray) -> np.ndarray:
-        """Energy (s,) J in the springs of every side at displacements (3, n)."""
-        stored = np.zeros(len(self.names))
+    def stored(self, u: np.ndarray, datum: np.ndarray) -> np.ndarray:
+        """Energy (s,) J in the springs of every side at displacements u (3, slots), from rest at datum (3, n)."""
+        stored, slot = np.zeros(len(self.names)), self._scene.layout.slot
         for batch in self._springs:
-            stretch = displacement[batch.component, self._nodes[batch.line]]
+            node = self._nodes[batch.line]
+            stretch = u[batch.component, slot[node]] - datum[batch.component, node]
             stored[batch.side] += 0.5 * float(np.sum(batch.constant * stretch**2))
         return stored
 
@@ -100,14 +124,14 @@ class NodeSides:
         """Parts (s, 2) N of steady forces (3, n) N that belong to each side."""
         return np.array([(share * force[:2, node]).sum(axis=1) for node, share in self._bearers])
 
-    def _bearing(self) -> dict[str, np.ndarray]:
-        """The same for the kernels, see `tables.Sides`."""
+    def _bearing(self, table: tables.Sides) -> tables.Sides:
+        """A table with the same for the kernels."""
         slot = self._scene.layout.slot
-        return {
-            "bearer_start": np.cumsum([0, *(len(node) for node, _ in self._bearers)]),
-            "bearer": np.concatenate([slot[node] for node, _ in self._bearers]),
-            "share": np.concatenate([share for _, share in self._bearers], axis=1),
-        }
+        return table._replace(
+            bearer_start=np.cumsum([0, *(len(node) for node, _ in self._bearers)]),
+            bearer=np.concatenate([slot[node] for node, _ in self._bearers]),
+            share=np.concatenate([share for _, share in self._bearers], axis=1),
+        )
 
     def _mean(self, edge: Edge) -> tuple[np.ndarray, np.ndarray]:
         """Nodes (m,) whose displacements, with weights (3, m), have the mean of a side; by share of its diameters."""
@@ -193,7 +217,10 @@ class NodeSides:
         slot = self._scene.layout.slot
         nodes = [slot[node] for node, _ in self._members]
         return tables.NO_SIDES._replace(
-            **{name: column(name, np.int64) for name in ("kind", "side", "component", "signal")},
+            kind=column("kind", np.int64),
+            side=column("side", np.int64),
+            component=column("component", np.int64),
+            signal=column("signal", np.int64),
             sign=column("sign", np.float64),
             start=np.cumsum([0, *(len(batch.line) for batch in batches)]),
             line=elements("line", np.int64),

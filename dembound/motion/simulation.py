@@ -10,7 +10,7 @@ from dembound.motion.layout import aligned_zeros
 from dembound.motion.memory import DRIVEN_BYTES
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
-from dembound.motion.sides import NodeSides
+from dembound.motion.sides import NodeSides, Samples
 from dembound.motion.state import State
 from dembound.motion.supports import NodeSupports
 from dembound.motion.threads import threads_for
@@ -29,14 +29,13 @@ class Simulation:
     datum : (3, n) displacements at which they are at rest; by default zero.
     damp : local damping coefficient; by default the scene's.
     clock : counts the seconds of stepping and of trackers, under "step" and "record".
-    watches_sides : whether forces and displacements of the sides are measured.
+    side_stride : steps between two samples of the sides' forces and displacements; 0: sides are not measured.
 
     Attributes
     ----------
     state : all arrays that change during the run.
     trackers : those that are called during the run; at first a `Watch`, which all runs should have. stopped : whether a
-    tracker has ended the run. sides : those that are measured; None for none. side_record : (steps, s, 5) mean
-    displacement, since the start, and force of every side before each of the last steps, see kernels.tables.Sides.
+    tracker has ended the run. sides : those that are measured; None for none. side_samples : of the last steps.
     """
 
     def __init__(
@@ -49,7 +48,7 @@ class Simulation:
         datum: np.ndarray | None = None,
         damp: float | None = None,
         clock: Clock | None = None,
-        watches_sides: bool = False,
+        side_stride: int = 0,
     ) -> None:
         self.scene = scene
         self.time_step = time_step
@@ -73,8 +72,9 @@ class Simulation:
         self._u_next = aligned_zeros(3, layout.count)
         self._damp = scene.damp if damp is None else damp
         self._supports = NodeSupports(scene, self.system.ties, time_step)
-        self.sides = NodeSides(scene, self._supports) if watches_sides else None
-        self.side_record = np.empty((0, 0, 5))
+        self.sides = NodeSides(scene, self._supports) if side_stride > 0 else None
+        self._side_stride = side_stride
+        self.side_samples = Samples.between(0, 0, side_stride, 0)
         if self.sides is not None:
             self.state.side_work = np.zeros((2, len(self.sides.names), 2))
         self._mobility, self._inverse_inertia = (layout.spread(time_step / of) for of in (scene.mass, scene.inertia))
@@ -141,17 +141,18 @@ class Simulation:
     def _advance_to(self, step: int) -> np.ndarray:
         """Advance to a step; returns the record of the probes, see `advance`."""
         record = np.empty((step - self.state.step, len(self.probes), self.scene.record_width))
-        self.side_record = np.empty((len(record), 0 if self.sides is None else len(self.sides.names), 5))
+        names = [] if self.sides is None else self.sides.names
+        self.side_samples = Samples.between(self.state.step, step, self._side_stride, len(names))
         at_once = max(1, int(DRIVEN_BYTES / (24 * max(1, len(self._supports.nodes)))))
         with threads_for(self.scene.count):
             for first in range(0, len(record), at_once):
-                self._advance(record[first : first + at_once], self.side_record[first : first + at_once])
+                self._advance(record[first : first + at_once])
         if self.sides is not None:
-            self.side_record[..., :3] -= self.sides.origin(self.state.datum)
+            self.side_samples.record[..., :3] -= self.sides.origin(self.state.datum)
         record[..., :3] -= self.state.datum[:, self.probes].T
         return record
 
-    def _advance(self, record: np.ndarray, side_record: np.ndarray) -> None:
+    def _advance(self, record: np.ndarray) -> None:
         """Do as many steps as the record (k, p, 6 or 7) has rows, with changes of law if necessary."""
         times = (self.state.step + np.arange(len(record))) * self.time_step
         supports = self._supports.table(times)
@@ -161,7 +162,7 @@ class Simulation:
             remaining = supports._replace(drive=supports.drive[done:])
             measured = tables.NO_SIDES
             if self.sides is not None:
-                measured = self.sides.table(signals[done:], self.system, side_record[done:], self.state.side_work)
+                measured = self.sides.table(signals[done:], self.system, self.side_samples, self.state.side_work)
             done += self._advance_under_one_law(record[done:], remaining, measured)
 
     def _advance_under_one_law(self, record: np.ndarray, supports: tables.Supports, sides: tables.Sides) -> int:

@@ -9,7 +9,7 @@ from dembound.errors import RunError
 from dembound.motion.clock import Clock
 from dembound.motion.part import System
 from dembound.motion.scene import Scene
-from dembound.motion.sides import NodeSides
+from dembound.motion.sides import NodeSides, Samples
 from dembound.motion.state import Arrays, State
 
 NEVER = 2**62
@@ -19,8 +19,7 @@ NEVER = 2**62
 class Run(Protocol):
     """Data of a run that trackers use: scene, parts, state, time step (s), clock; setting `stopped` ends the run.
 
-    sides : those whose forces are measured, None for none; side_record : (steps, s, 5) of the last steps, see
-    `Simulation`.
+    sides : those whose forces are measured, None for none; side_samples : of the last steps.
     """
 
     scene: Scene
@@ -30,7 +29,7 @@ class Run(Protocol):
     clock: Clock
     stopped: bool
     sides: NodeSides | None
-    side_record: np.ndarray
+    side_samples: Samples
 
     @property
     def time(self) -> float:

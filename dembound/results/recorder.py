@@ -70,6 +70,7 @@ class Recorder:
         self._times: list[np.ndarray] = []
         self._samples: list[np.ndarray] = []
         self._side_samples: list[np.ndarray] = []
+        self._side_times: list[np.ndarray] = []
         self._broken: list[Cracks] = []
         self._store = CommittedFile(path, "w" if counts is None else "a")
         self.file = h5py.File(self._store, "w" if counts is None else "a", libver=FORMAT)
@@ -114,7 +115,8 @@ class Recorder:
         The ledger's entry of the last step, which may be the last of this run only, is not included.
         """
         return {
-            "histories": max((len(each["time"]) for each in self._histories + self._side_histories), default=0),
+            "histories": max((len(each["time"]) for each in self._histories), default=0),
+            "sides": max((len(each["time"]) for each in self._side_histories), default=0),
             "cracks": len(self._cracks["time"]),
             "energy": 0 if self.ledger is None else self.ledger.regular_entries,
             "laws": len(self._laws["time"]),
@@ -136,7 +138,9 @@ class Recorder:
         self._times.append((begun + rows) * step)
         self._samples.append(self.run.scene.observed(record[rows]))
         if self._sides:
-            self._side_samples.append(self.run.side_record[rows])
+            sides = self.run.side_samples
+            self._side_times.append(sides.steps * step)
+            self._side_samples.append(sides.record)
         self._broken.append(self.run.system.take_cracks(state.step))
         kept = sum(samples.nbytes for samples in self._samples + self._side_samples)
         if time.monotonic() - self._written >= KEPT_SECONDS:
@@ -191,7 +195,7 @@ class Recorder:
             if name in self.scene.monitors:
                 _cut(history, counts["histories"])
         for name in self._sides:
-            _cut({column: self.file["boundaries"][name][column] for column, *_ in SIDE_HISTORY}, counts["histories"])
+            _cut({column: self.file["boundaries"][name][column] for column, *_ in SIDE_HISTORY}, counts["sides"])
         for name in ("cracks", "energy", "laws"):
             _cut(datasets_of(self.file[name]), counts[name])
         for side in self.file.get("energy/sides", {}).values():
@@ -206,16 +210,17 @@ class Recorder:
         """Write samples and cracks that are kept in memory."""
         if self._times:
             times, samples = np.concatenate(self._times), np.concatenate(self._samples)
-            sides = np.concatenate(self._side_samples) if self._sides else np.zeros((0, 0, 5))
-            self._times, self._samples, self._side_samples = [], [], []
+            self._times, self._samples = [], []
             for index, history in enumerate(self._histories):
                 extend(history["time"], times)
                 extend(history["displacement"], samples[:, index, :3])
                 extend(history["velocity"], samples[:, index, 3:6])
                 if "stress" in history:
                     extend(history["stress"], samples[:, index, 6])
-            for name, history in zip(self._sides, self._side_histories, strict=True):
-                index = self._sides[name]
+        if self._side_times:
+            times, sides = np.concatenate(self._side_times), np.concatenate(self._side_samples)
+            self._side_times, self._side_samples = [], []
+            for index, history in zip(self._sides.values(), self._side_histories, strict=True):
                 extend(history["time"], times)
                 extend(history["displacement"], sides[:, index, :3])
                 extend(history["force"], sides[:, index, 3:])

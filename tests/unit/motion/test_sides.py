@@ -1,6 +1,7 @@
 """The sides of a run: whose is a force at a corner, and what is measured of bars and of unwatched runs."""
 
 import numpy as np
+import pytest
 
 from dembound.boundaries.support import Edge, SupportBuilder
 from dembound.disks.scene import build
@@ -55,11 +56,29 @@ def test_a_component_held_by_two_sides_is_of_that_along_whose_normal_it_is() -> 
 def test_a_run_measures_sides_only_if_it_is_asked_to(bar) -> None:
     scene = build(bar())
     step = choose_step(scene)[0]
-    unwatched, watched = Simulation(scene, step), Simulation(scene, step, watches_sides=True)
+    unwatched, watched = Simulation(scene, step), Simulation(scene, step, side_stride=1)
     for each in (unwatched, watched):
         each.run(20)
     assert unwatched.sides is None
     assert watched.sides is not None
-    assert unwatched.side_record.shape[1:] == (0, 5)
-    assert watched.side_record.shape[1:] == (len(watched.sides.names), 5)
+    assert unwatched.side_samples.record.shape[1:] == (0, 5)
+    assert watched.side_samples.record.shape[1:] == (len(watched.sides.names), 5)
     assert np.array_equal(unwatched.state.u, watched.state.u)
+
+
+@pytest.mark.parametrize("cuts", [(40,), (1, 2, 8, 9, 23, 24, 40), (15, 31, 40)])
+def test_samples_are_those_of_every_nth_step_however_the_run_is_cut(bar, cuts) -> None:
+    scene = build(bar())
+    step = choose_step(scene)[0]
+    every, eighth = (Simulation(scene, step, side_stride=stride) for stride in (1, 8))
+    every.run(40)
+    steps, samples = [], []
+    for cut in cuts:
+        eighth.run(cut)
+        steps += eighth.side_samples.steps.tolist()
+        samples.append(eighth.side_samples.record)
+    assert steps == [0, 8, 16, 24, 32]
+    assert np.array_equal(np.concatenate(samples), every.side_samples.record[::8])
+    assert np.array_equal(eighth.state.side_work, every.state.side_work)
+    assert np.any(every.side_samples.record[-1])
+    assert np.all(every.state.side_work[:, :, 0].any(axis=1))

@@ -17,7 +17,7 @@ def test_keys_that_are_commented_out_exist_and_show_their_defaults() -> None:
     text, count = re.subn(r"^# (?=\w+ = |\[)", "", ROCK_BAR, flags=re.MULTILINE)
     told, plain = loads(text), loads(ROCK_BAR)
 
-    assert count == 13
+    assert count == 14
     assert told.boundary["right"].type == "free"
     assert (told.bar.area, told.bar.attenuation) == (plain.bar.area, plain.bar.attenuation)
     assert (told.method, told.load, told.run, told.output) == (plain.method, plain.load, plain.run, plain.output)
