@@ -1,6 +1,7 @@
 """Facts and warnings about a case, computed without running it."""
 
 import time
+from pathlib import Path
 
 from dembound.casefile import Case
 from dembound.casefile.messages import counted
@@ -10,26 +11,32 @@ from dembound.motion.memory import has_in_words, in_words
 from dembound.motion.proposals import proposals
 from dembound.motion.silence import silent_rule
 from dembound.motion.simulation import Simulation
-from dembound.running import plan, warnings_before
+from dembound.running import disk_facts, disk_warnings, plan, require_stages, warnings_before
 
 TRIAL_STEPS, TRIALS = 20, 3
 
 
-def check(case: Case) -> tuple[dict[str, str], list[str]]:
-    """Facts about the run a case describes, ready to print, and warnings. Runs a few steps to estimate the time."""
+def check(case: Case, results: Path = Path("results")) -> tuple[dict[str, str], list[str]]:
+    """Facts about the run a case describes, ready to print, and warnings. Runs a few steps to estimate the time.
+
+    results : folder in which the run would write its own, whose disk has to have the space.
+    """
     planned = plan(case)
+    require_stages(planned)
     own = planned.kind.facts(planned.scene, planned.time_step)
-    return _run_facts(planned) | own | proposals(planned), warnings_before(planned)
+    warnings = [*warnings_before(planned), *disk_warnings(planned, results)]
+    return _run_facts(planned, results) | own | proposals(planned), warnings
 
 
-def _run_facts(planned: Plan) -> dict[str, str]:
-    """Steps, memory and time, and the reductions of the scene."""
+def _run_facts(planned: Plan, results: Path) -> dict[str, str]:
+    """Steps, memory, space on the disk and time, and the reductions of the scene."""
     scene = planned.stepped
     facts = {
         "time step": f"{planned.time_step:.4g} s, {planned.time_step / planned.step_limit:.3f} of the limit "
         f"{planned.step_limit:.6g} s",
         "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s{_until_silent(planned)}",
         "memory": f"about {in_words(scene.largest_memory)} at its peak{_here()}",
+        "disk": disk_facts(planned, results),
         "estimated time": f"{duration_in_words(_estimate(planned))} {_threads_in_words(scene.threads)}"
         f"{planned.kind.not_estimated(scene.case)}",
     }

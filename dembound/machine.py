@@ -1,7 +1,8 @@
-"""The memory of this machine: how much there is, and how arrays that are removed give theirs back."""
+"""The memory and disks of this machine: how much there is, and how arrays that are removed give memory back."""
 
 import ctypes
 import os
+import shutil
 import sys
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
@@ -41,6 +42,16 @@ def memory_here(root: Path = Path("/")) -> Memory | None:
     """
     known = [*_of_linux(root / "proc/meminfo"), *_of_groups(root)] or list(_of_machine())
     return Memory(min(m.total for m in known), min(m.free for m in known)) if known else None
+
+
+def disk_free(path: Path) -> float | None:
+    """Bytes that are free on the disk of a path, which need not exist yet; None where the system does not report it."""
+    for place in (path.absolute(), *path.absolute().parents):
+        try:
+            return float(shutil.disk_usage(place).free)
+        except OSError:
+            continue
+    return None
 
 
 def _of_linux(path: Path) -> Iterator[Memory]:

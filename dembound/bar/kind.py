@@ -15,14 +15,16 @@ from dembound.bar.outcome import bar_outcome
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.sources import sources_of_bar
 from dembound.bar.stability import choose_step
+from dembound.bar.storage import storage_of
 from dembound.bar.summary import part_of, spalls_of, summarise_bar
 from dembound.bar.warnings import bar_warnings, warnings_after_bar
 from dembound.bar.wave_front import front_of_bar
 from dembound.casefile.bar import SCHEMA, BarCase
-from dembound.motion.kind import Beginning, Finding, Kind, OnLook
+from dembound.motion.kind import Beginning, Box, Finding, Kind, OnLook
 from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
+from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run
 from dembound.results.reader import has_monitors
 
@@ -76,6 +78,10 @@ class Bars(Kind[BarCase, BarScene]):
         """Whether it may break."""
         return bool(np.isfinite(scene.case.bar.breaking_stretch))
 
+    def storage(self, scene: BarScene) -> Storage:
+        """From its nodes and the lengths of its bonds."""
+        return storage_of(scene)
+
     def unit(self, scene: BarScene) -> tuple[float, float]:
         """The spacing of its nodes."""
         return scene.rod.spacing, scene.rod.spacing
@@ -100,15 +106,13 @@ class Bars(Kind[BarCase, BarScene]):
         """Forces of springs and bonds computed; without horizons one for every node, less one, and step."""
         return part_of(run).bond_updates
 
-    def findings(self, scene: BarScene, run: Run) -> dict[str, Finding]:
-        """Middle (m) and time (s) of the first spall, if there is one."""
-        found, _ = spalls_of(scene, run)
-        if not found:
-            return {}
-        return {
-            SPALL_PLACE: Finding(0.5 * sum(found[0].start), "m"),
-            SPALL_TIME: Finding(found[0].time, "s"),
-        }
+    def findings(self, scene: BarScene, run: Run, inside: Box | None = None) -> dict[str, Finding]:
+        """Middle (m) and time (s) of the first spall, if there is one there."""
+        for spall in spalls_of(scene, run)[0]:
+            place = 0.5 * sum(spall.start)
+            if inside is None or inside[0] <= place <= inside[2]:
+                return {SPALL_PLACE: Finding(place, "m"), SPALL_TIME: Finding(spall.time, "s")}
+        return {}
 
     def outcome(self, summary: Mapping[str, Any]) -> list[str]:
         """Methods and spalls in words."""

@@ -6,7 +6,9 @@ from dembound.motion.memory import largest, ledger_bytes, must_fit, record_bytes
 
 def must_fit_here(case: BarCase) -> None:
     """Raise CaseError if a run of a case needs more memory than is free here; nothing is built for this."""
-    must_fit(run_bytes(case), "bar.spacing", f"{case.bar.cells + 1:,} nodes")
+    lengths = case.method.largest_horizon
+    horizon = f" with a horizon of {lengths:,} spacings" if lengths > 1 else ""
+    must_fit(run_bytes(case), "bar.spacing", f"{case.bar.cells + 1:,} nodes{horizon}")
 
 
 def run_bytes(case: BarCase) -> float:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dembound.bar.banded import ROUNDING
 from dembound.bar.entering import MOMENTS, entering_pressure, moments
 from dembound.bar.facts import PERCENT, cells_of_waves
 from dembound.bar.lattice import carrying_lattice
@@ -136,20 +137,29 @@ def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path
 
 
 def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:
-    """A first spall at the load, before a reflected wave can have returned there."""
+    """A first spall at a load or a wave that enters, before a reflected wave can have returned there."""
     if not summary["spalls"]:
         return
-    first, bar, horizon = summary["spalls"][0], case.bar, case.method.largest_horizon
-    near = horizon * bar.length / bar.cells
-    for load in case.load:
-        start = case.wave[load.wave].start
-        distance = first["start"][0] if load.side == "left" else bar.length - first["start"][1]
-        if distance < near and first["time"] < start + 2.0 * bar.length / bar.speed:
-            cure = f"give load.{load.name}.nodes = {horizon}" if load.nodes < horizon else "take a smaller bar.spacing"
+    first, bar = summary["spalls"][0], case.bar
+    near = case.method.largest_horizon * bar.length / bar.cells * (1.0 + ROUNDING)
+    for key, what, side, wave, cure in _pushing(case):
+        distance = first["start"][0] if side == "left" else bar.length - first["start"][1]
+        if distance <= near and first["time"] < case.wave[wave].start + 2.0 * bar.length / bar.speed:
             yield (
-                f"load.{load.name}: the load itself broke the bar, at {first['time']:.4g} s and {distance:g} m from "
-                f"the loaded end, before any reflected wave had returned there; {cure}"
+                f"{key}: the {what} itself broke the bar, at {first['time']:.4g} s and {distance:g} m from "
+                f"the {side} end, before any reflected wave had returned there; {cure}"
             )
+
+
+def _pushing(case: BarCase) -> Iterator[tuple[str, str, str, str, str]]:
+    """Loads and driven ends that can move: key, what it is, side, name of its wave, and what keeps the bar whole."""
+    horizon, finer = case.method.largest_horizon, "take a smaller bar.spacing"
+    for load in case.load:
+        cure = f"give load.{load.name}.nodes = {horizon}" if load.nodes < horizon else finer
+        yield f"load.{load.name}", "load", load.side, load.wave, cure
+    for side, waves in case.driving.items():
+        if 0 not in case.side(side).prescribed(normal_axis(side)):
+            yield f"boundary.{side}", "incoming wave", side, waves["p"], f"{finer}, or a weaker or slower wave"
 
 
 def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:

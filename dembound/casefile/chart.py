@@ -7,7 +7,7 @@ from pydantic import field_validator
 
 from dembound.table import Table, quantity
 
-ReferenceName = Literal["exact", "extended", "finest"]
+ReferenceName = Literal["exact", "extended", "finer", "finest"]
 
 End = Literal["break", "end"]
 
@@ -28,7 +28,7 @@ class Chart(Table):
     choice: tuple[ChartChoice, ...] = quantity((), unit="1", help="additional choices, a table each")
     repeats: int = quantity(3, unit="1", help="timed runs of every choice, after one that compiles", ge=1)
     reference: ReferenceName | None = quantity(
-        None, unit="1", help="what errors are measured against; absent: exact, extended or finest, as the case allows"
+        None, unit="1", help="what errors are measured against; absent: the first of these that the case allows"
     )
     until: End = quantity(
         "break",

@@ -28,7 +28,7 @@ def load(path: Path, schemas: Sequence[Schema]) -> Case:
         line.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")  # without the byte order mark of some editors
     except FileNotFoundError:
         raise CaseError(["no such file"], str(path)) from None
     except UnicodeDecodeError:

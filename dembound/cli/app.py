@@ -7,16 +7,20 @@ import gc
 import logging
 import sys
 import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from dembound.cli.console import err, escape_unprintable, out
-from dembound.errors import CONTROL, CaseError, DemboundError, UnusableTypeWarning
+from dembound.errors import CaseError, DemboundError, UnusableTypeWarning
 from dembound.machine import give_back_at_once
+from dembound.results.interrupts import exit_code_of
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -29,13 +33,38 @@ EXIT_CODES = (  # in one line: line breaks within a paragraph stay in the help
     "143 by SIGTERM, 129 by SIGHUP."
 )
 CANNOT_WRITE = 5
-INTERRUPTED = 130
 
 COLLECT_EVERY = 100_000
 """New objects after which Python searches for unused cycles: nearly all objects are those of packages, and remain."""
 
+
+@contextmanager
+def _one_line_at_signals() -> Iterator[None]:
+    """End with one line, and the exit code of the signal; typer itself would end silently, with 130 after any."""
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        err.print("dembound: stopped")
+        raise typer.Exit(exit_code_of(stop)) from None
+
+
+class _Commands(TyperGroup):
+    """All commands; signals end them as by `_one_line_at_signals`, also while options are read."""
+
+    def make_context(self, *arguments: Any, **more: Any) -> Any:
+        """Read the options."""
+        with _one_line_at_signals():
+            return super().make_context(*arguments, **more)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command that was given."""
+        with _one_line_at_signals():
+            return super().invoke(ctx)
+
+
 app = typer.Typer(
     name="dembound",
+    cls=_Commands,
     help="Waves in bonded particles, with artificial boundaries that absorb, and in bars of rock that break.",
     epilog=EXIT_CODES,
     no_args_is_help=True,
@@ -109,10 +138,10 @@ def changed(case: Case, changes: list[str] | None, name: str | None) -> Case:
         case = with_changes(case, dict(_setting(text) for text in changes))
     if name is None:
         return case
-    if name != Path(name).name or name in ("", ".", ".."):
-        raise CaseError([f"--name: is {name}, must be the name of one folder"])
-    if CONTROL.search(name):
-        raise CaseError([f"--name: is {name}, must have no control characters"])
+    from dembound.results.folder import problem_of
+
+    if problem := problem_of(name):
+        raise CaseError([f"--name: is {name!r}, {problem}"])
     return replace(case, name=name)
 
 
@@ -186,9 +215,14 @@ def main() -> None:
             app(prog_name="dembound")  # the name in help and completion, however it was started
     except DemboundError as error:
         source = f"{error.source}: " if error.source else ""
-        for line in str(error).splitlines():
-            err.print(f"{source}{line}", style="red")
+        _print_failure(error, [f"{source}{line}" for line in str(error).splitlines()])
         sys.exit(error.exit_code)
     except OSError as error:  # a missing folder, no permission, a full disk
-        err.print(f"{error.filename or 'output'}: {error.strerror or error}", style="red")
+        _print_failure(error, [f"{error.filename or 'output'}: {error.strerror or error}"])
         sys.exit(CANNOT_WRITE)
+
+
+def _print_failure(error: Exception, lines: Sequence[str]) -> None:
+    """Print what has failed, and the notes of commands about what can be done."""
+    for line in (*lines, *getattr(error, "__notes__", ())):
+        err.print(line, style="red")

@@ -5,13 +5,14 @@ from __future__ import annotations
 import gc
 import json
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from dembound.cli.app import (
-    INTERRUPTED,
     PICTURE,
     Cases,
     Name,
@@ -28,12 +29,15 @@ from dembound.cli.app import (
 )
 from dembound.cli.console import compact_table, err, out
 from dembound.errors import CaseError
+from dembound.results.interrupts import exit_code_of
 from dembound.version import IMPORT_BEGAN
 
 if TYPE_CHECKING:
     from dembound.boundaries.support import Edge
     from dembound.casefile import Case
     from dembound.disks.scene import DiskScene
+    from dembound.results.folder import Folder
+    from dembound.running import Progress
 
 
 @app.command("check", rich_help_panel="Cases")
@@ -97,18 +101,12 @@ def resume(
 
     A complete run is continued to a later time; histories, ledger and snapshots keep their intervals.
     """
-    from dembound.cli.progress import progress_of
+    from dembound.results.folder import Folder
     from dembound.running import resume_case
 
     use_threads(threads)
     for folder in results:
-        try:
-            with progress_of(folder.name) as step:
-                done = resume_case(folder, until, step)
-        except KeyboardInterrupt as stop:
-            partial = folder if folder.suffix == ".partial" else folder.with_name(f"{folder.name}.partial")
-            raise _stopped(partial, stop) from None
-        _print_results(done)
+        _print_results(_watched(Folder.of(folder), partial(resume_case, folder, until)))
 
 
 @app.command("rerun", rich_help_panel="Cases")
@@ -129,15 +127,27 @@ def rerun(
 
 def _run(case: Case, output: Path, spent: dict[str, float]) -> None:
     """Run a case, with its progress, and print its outcome; spent : seconds before, by section."""
-    from dembound.cli.progress import progress_of
+    from dembound.results.folder import Folder
     from dembound.running import run_case
 
+    folder = Folder(output, case.name)
+    _print_results(_watched(folder, partial(run_case, case, output, seconds=spent)))
+
+
+def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:
+    """Do some work on the results of a folder, with its progress; if it ends early, print what is left of it."""
+    from dembound.cli.progress import progress_of
+
     try:
-        with progress_of(case.name) as step:
-            folder = run_case(case, output, step, spent)
+        with progress_of(folder.name) as progress:
+            return work(progress)
     except KeyboardInterrupt as stop:
-        raise _stopped(output / f"{case.name}.partial", stop) from None
-    _print_results(folder)
+        err.print(f"{folder.name}: stopped; {'; '.join(_left_of(folder.partial)) or 'the run had not begun'}")
+        raise typer.Exit(exit_code_of(stop)) from None
+    except OSError as error:
+        for line in _left_of(folder.partial):
+            error.add_note(f"{folder.name}: {line}")
+        raise
 
 
 def _print_results(folder: Path) -> None:
@@ -153,13 +163,12 @@ def _print_results(folder: Path) -> None:
     out.print(f"{name}: results in {folder}")
 
 
-def _stopped(partial: Path, stop: KeyboardInterrupt) -> typer.Exit:
-    """Print what is left of a run that a signal has stopped; returns the end of the process, with its exit code."""
-    kept = [f"histories so far are in {partial}"] if (partial / "run.h5").is_file() else []
-    if (partial / "checkpoint.npz").is_file():
-        kept.append(f"to continue: dembound resume {partial}")
-    err.print(f"{partial.stem}: stopped; {'; '.join(kept) or 'the run had not begun'}")
-    return typer.Exit(getattr(stop, "exit_code", INTERRUPTED))
+def _left_of(folder: Path) -> list[str]:
+    """What is left in the partial folder of a run that ended early, and how to continue it."""
+    left = [f"histories so far are in {folder}"] if (folder / "run.h5").is_file() else []
+    if (folder / "checkpoint.npz").is_file():
+        left.append(f"to continue: dembound resume {folder}")
+    return left
 
 
 @app.command("packing", rich_help_panel="Cases")

@@ -13,6 +13,7 @@ from rich.table import Column
 
 from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case, use_threads
 from dembound.cli.console import compact_table, err, out
+from dembound.results.interrupts import exit_code_of
 
 if TYPE_CHECKING:
     from dembound.running import Progress
@@ -39,6 +40,7 @@ class ChartReference(StrEnum):
 
     exact = "exact"
     extended = "extended"
+    finer = "finer"
     finest = "finest"
 
 
@@ -57,7 +59,8 @@ def chart(
         typer.Option(
             metavar="REFERENCE",
             help="Errors are those against: exact, an exact solution; extended, the same scene so large that nothing "
-            "returns; finest, the choice with the most nodes times steps. By default the first that the case allows.",
+            "returns; finer, of bars, finite differences at Courant number 1 and a finer spacing; finest, the choice "
+            "with the most nodes times steps. By default the first that the case allows.",
         ),
     ] = None,
     quantity: Annotated[
@@ -109,9 +112,9 @@ def chart(
 
     try:
         charted = make(loaded, options, folder, resume, shown)
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         err.print(f"{loaded.name}: stopped; `dembound chart --resume` with the same options continues")
-        raise
+        raise typer.Exit(exit_code_of(stop)) from None
     _print(charted)
     for path in _leave(charted, folder, title):
         out.print(f"wrote {path}")
@@ -134,6 +137,8 @@ def _print(charted: Charted) -> None:
     out.print(table)
     out.print("* on the Pareto front; CPU: time of stepping, run: of the whole run without files, medians")
     out.print(f"work: {charted.work_unit}")
+    if farthest := max(line.apart for line in charted.lines):
+        out.print(f"† monitors record elsewhere than in the reference, up to {farthest:.2g} m away")
     out.print(f"{charted.case.name}: {charted.sentence}")
 
 
@@ -142,9 +147,17 @@ def _cells(charted: Charted, number: int, line: Line) -> list[str]:
     if line.outcome.failure:
         return ["failed"]
     worst = line.errors[0]
-    mark = "ref." if number == charted.reference.own else "*" if number in charted.front else ""
-    numbers = f"{100.0 * worst.rms:.3g}", f"{100.0 * worst.peak:.3g}", f"{line.cpu:.3g}", f"{line.wall:.3g}"
+    mark = "ref." if number in charted.reference.own else "*" if number in charted.front else ""
+    mark += "†" if line.apart > 0.0 else ""
+    numbers = _percent(worst.rms), _percent(worst.peak), f"{line.cpu:.3g}", f"{line.wall:.3g}"
     return [*numbers, f"{line.outcome.work:.3g}", mark]
+
+
+def _percent(error: float) -> str:
+    """A relative error in per cent; 0 for rounding errors."""
+    from dembound.studies.chart.front import ROUNDING
+
+    return f"{100.0 * error:.3g}" if error > ROUNDING else "0"
 
 
 def _leave(charted: Charted, folder: Path, title: str | None) -> Iterator[Path]:
@@ -157,5 +170,5 @@ def _leave(charted: Charted, folder: Path, title: str | None) -> Iterator[Path]:
     yield folder / "chart.h5"
     write_table(charted, folder / "chart.csv")
     yield folder / "chart.csv"
-    save(plot_chart(folder / "chart.h5"), folder / "chart.png", title)
+    save(plot_chart(folder / "chart.h5", title), folder / "chart.png")
     yield folder / "chart.png"

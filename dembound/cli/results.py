@@ -1,6 +1,8 @@
 """Commands for results: plot, view, compare, cache."""
 
-from collections.abc import Mapping, Sequence
+from __future__ import annotations
+
+from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -10,10 +12,8 @@ from rich.table import Column
 
 from dembound.cli.app import PICTURE, PictureTitle, Side, app, png, writable
 from dembound.cli.console import compact_table, out
+from dembound.cli.plotted import CALIBRATIONS, Component, Plotted, Quantity, SceneField
 from dembound.errors import CaseError
-
-CALIBRATIONS = "calibrations"
-"""Name of results that do not belong to a run."""
 
 
 class Field(StrEnum):
@@ -21,39 +21,6 @@ class Field(StrEnum):
 
     velocity = "velocity"
     displacement = "displacement"
-
-
-class Quantity(StrEnum):
-    """Quantities of the monitors."""
-
-    velocity = "velocity"
-    displacement = "displacement"
-    acceleration = "acceleration"
-    stress = "stress"
-
-
-class Component(StrEnum):
-    """Components of the monitors' motion."""
-
-    x = "x"
-    y = "y"
-    both = "both"
-    rotation = "rotation"
-
-
-class SceneField(StrEnum):
-    """Fields of a whole scene; each kind of scene accepts some of them."""
-
-    velocity = "velocity"
-    displacement = "displacement"
-    stress = "stress"
-    damage = "damage"
-    stress_xx = "stress_xx"
-    stress_yy = "stress_yy"
-    stress_xy = "stress_xy"
-    forces = "forces"
-    peak = "peak"
-    unbalanced = "unbalanced"
 
 
 @app.command("plot", rich_help_panel="Results")
@@ -108,44 +75,15 @@ def plot(
 
     With free-field sides, a monitor's twin in the free-field column is drawn as a dashed line.
     """
-    from dembound.kinds import kind_of_record
-    from dembound.plot.boundary import plot_boundary
-    from dembound.plot.convergence import plot_convergence
-    from dembound.plot.energy import plot_energy
-    from dembound.plot.histories import plot_histories
-    from dembound.plot.side import plot_side
     from dembound.plot.style import save
     from dembound.plot.table import write_lines
 
     files = [results_file(path) for path in results]
+    asked = Plotted(quantity, component, monitor, boundary, energy, field, snapshot, table)
     kind = _common_kind(files)
-    pictures = {"--field": field, "--energy": energy, "--boundary": boundary}
-    choices = {"--quantity": None if boundary else quantity, "--component": component, "--monitor": monitor}
-    _one_picture(pictures, choices, kind)
-    for option in ("--field", "--energy"):
-        if pictures[option] and len(files) > 1:
-            raise CaseError([f"{option}: shows one run, name one"])
-    if snapshot is not None and field is None:
-        raise CaseError(["--snapshot: goes with --field"])
-    if table is not None and field is not None:
-        raise CaseError(["--table: is of lines, a field has none; run.h5 and the files for ParaView have its values"])
-    if kind == CALIBRATIONS:
-        figure = plot_convergence(files)
-    elif field is not None:
-        figure = kind_of_record(files[0]).field_picture(files[0], field.value, snapshot)
-    elif energy:
-        figure = plot_energy(files[0])
-    elif boundary is not None and quantity is not None:
-        figure = plot_side(files, boundary.value, quantity.value)
-    elif boundary is not None:
-        figure = plot_boundary(files, boundary.value)
-    else:
-        figure = plot_histories(
-            files,
-            component=component.value if component else None,
-            quantity=(quantity or Quantity.velocity).value,
-            monitors=monitor or None,
-        )
+    if problems := list(asked.problems(kind, len(files))):
+        raise CaseError(problems)
+    figure = asked.draw(files, kind)
     save(figure, output, title)
     out.print(f"wrote {output}")
     if table is not None:
@@ -166,21 +104,6 @@ def _kind(file: Path) -> str:
     from dembound.kinds import kind_of_record
 
     return CALIBRATIONS if file.name == "calibration.h5" else f"runs of {kind_of_record(file).plural}"
-
-
-def _one_picture(pictures: Mapping[str, object], choices: Mapping[str, object], kind: str) -> None:
-    """Raise CaseError if options select several pictures, or a choice that the selected picture does not have.
-
-    pictures : options that select another picture than histories; choices : options that only histories have.
-    """
-    asked = [option for option, value in pictures.items() if value]
-    chosen = [option for option, value in choices.items() if value]
-    if kind == CALIBRATIONS:
-        problems = [f"{option}: is for runs, not for calibrations" for option in asked + chosen]
-    else:
-        problems = [f"{option}: is not allowed together with {asked[0]}" for option in (asked[1:] + chosen) if asked]
-    if problems:
-        raise CaseError(problems)
 
 
 @app.command("view", rich_help_panel="Results")

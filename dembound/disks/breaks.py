@@ -2,26 +2,32 @@
 
 import numpy as np
 
-from dembound.motion.kind import Finding
+from dembound.motion.kind import Box, Finding
 from dembound.motion.trackers import Run
 
 BREAK_TIME, BREAK_X, BREAK_Y = "break time", "break x", "break y"
 """Names of what is found about the first broken bonds."""
 
+EVERYWHERE: Box = (-np.inf, -np.inf, np.inf, np.inf)
 
-def first_break(run: Run) -> dict[str, Finding]:
+
+def first_break(run: Run, inside: Box | None = None) -> dict[str, Finding]:
     """Time (s) of the step in which the first bonds break, and the mean of their places (m) then; empty without one.
 
-    The run's list of broken bonds is emptied, as by every `System.take_cracks`.
+    inside : the part of the scene that counts, by default all. The run's list of broken bonds is emptied, as by every
+    `System.take_cracks`.
     """
     cracks = run.system.take_cracks(run.state.step)
-    if len(cracks) == 0:
+    settled = 0.5 * run.state.datum[:2, cracks.pair].sum(axis=2).T
+    places = cracks.position - settled
+    x0, y0, x1, y1 = inside or EVERYWHERE
+    counted = np.all((places >= [x0, y0]) & (places <= [x1, y1]), axis=1)
+    if not counted.any():
         return {}
-    first = cracks.step == cracks.step.min()
-    settled = 0.5 * run.state.datum[:2, cracks.pair[first]].sum(axis=2).T
-    x, y = np.mean(cracks.position[first] - settled, axis=0)
+    step = int(cracks.step[counted].min())
+    x, y = np.mean(places[counted & (cracks.step == step)], axis=0)
     return {
-        BREAK_TIME: Finding(float(cracks.step[first][0] * run.time_step), "s"),
+        BREAK_TIME: Finding(float(step * run.time_step), "s"),
         BREAK_X: Finding(float(x), "m"),
         BREAK_Y: Finding(float(y), "m"),
     }

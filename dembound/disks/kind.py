@@ -19,15 +19,17 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.settled import Settled, settling_keys
 from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
-from dembound.disks.static import settle
+from dembound.disks.static import settle, stage_names
+from dembound.disks.storage import storage_of
 from dembound.disks.summary import asked_stress, describe_static, summarise_disks
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
 from dembound.disks.wave_front import front_of
-from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Reduction, Stage
+from dembound.motion.kind import Beginning, Box, Finding, Kind, OnLook, Reduction, Stage
 from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
+from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run
 
 if TYPE_CHECKING:
@@ -92,9 +94,17 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Whether the case has one."""
         return scene.case.static is not None
 
+    def storage(self, scene: DiskScene) -> Storage:
+        """From its disks and contacts."""
+        return storage_of(scene)
+
     def stage_keys(self, scene: DiskScene) -> dict[str, Any]:
         """What the result of its static stage depends on."""
         return settling_keys(scene)
+
+    def stage_names(self, scene: DiskScene) -> list[str]:
+        """Those of its static stage."""
+        return [] if scene.case.static is None else stage_names(scene)
 
     def stages_from(self, case: DiskCase) -> Path | None:
         """The folder given by ``static.from``."""
@@ -131,9 +141,9 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Steps times the particles that are stepped."""
         return run.state.step * run.scene.count
 
-    def findings(self, scene: DiskScene, run: Run) -> dict[str, Finding]:
-        """Time (s) and place (m) of the first broken bonds, if any break."""
-        return first_break(run)
+    def findings(self, scene: DiskScene, run: Run, inside: Box | None = None) -> dict[str, Finding]:
+        """Time (s) and place (m) of the first broken bonds, if any break there."""
+        return first_break(run, inside)
 
     def outcome(self, summary: Mapping[str, Any]) -> list[str]:
         """Static stage, laws and cracks in words."""

@@ -61,6 +61,18 @@ def settle(scene: DiskScene, on_look: OnLook = None, stages: Stages | None = Non
     return _settle_built(scene, _Stage("body", "the static stage", on_look, kept))
 
 
+def stage_names(scene: DiskScene) -> list[str]:
+    """The names of a scene's stages in the `Stages` that `settle` receives, in their order."""
+    if scene.before is None:
+        return [*([_column("body")] if scene.seam is not None else []), "body"]
+    return [*([_column("before")] if scene.before.seam is not None else []), "before", "body"]
+
+
+def _column(name: str) -> str:
+    """The name of the stage of the free-field column alone, before that of a body."""
+    return f"{name}.column"
+
+
 @dataclass(frozen=True)
 class _Stage:
     """One stage: its key in `stages`, its name in messages, who gets its progress, and what keeps it."""
@@ -75,7 +87,7 @@ def _settle_built(scene: DiskScene, stage: _Stage) -> Settled:
     """The stage of a body as built, after that of its free-field column."""
     if scene.seam is None:
         return _settle(scene, lambda: None, stage)
-    alone = replace(stage, key=f"{stage.key}.column", name=f"{stage.name} of the free-field column alone")
+    alone = replace(stage, key=_column(stage.key), name=f"{stage.name} of the free-field column alone")
     column = _settle(column_alone(scene), lambda: None, alone)
     return replace(_settle(scene, lambda: _beside(scene, column.start), stage), column=column)
 

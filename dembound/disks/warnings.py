@@ -9,7 +9,7 @@ import numpy as np
 
 from dembound.boundaries import SIDES, Motion, axis_of_motion
 from dembound.casefile.disks.load import Load
-from dembound.casefile.magnitudes import grip_stress, stress_warnings, time_warnings
+from dembound.casefile.magnitudes import grip_stress, stress_in_words, stress_warnings, time_warnings
 from dembound.disks.matching import homogenised_beta, reflected
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.results.reader import open_record
@@ -40,6 +40,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
     return [
         *_steady_without_static(scene),
         *_locked_in(scene),
+        *_settles_in_tension(scene),
         *_tension(scene),
         *_too_few_per_wavelength(scene),
         *time_warnings(scene.case, time_step, _travel_time(scene)),
@@ -73,6 +74,20 @@ def _locked_in(scene: DiskScene) -> Iterator[str]:
             f"material.locked_in: is {material.locked_in / 1e6:.3g} MPa; where it relaxes, the largest bond stress is "
             f"about {pulled / 1e6:.3g} MPa of tension, above material.pb_ten = {material.pb_ten / 1e6:.3g} MPa, and "
             "break in the static stage"
+        )
+
+
+def _settles_in_tension(scene: DiskScene) -> Iterator[str]:
+    """A stress to settle under whose largest principal stress is a tension above the bonds' strength."""
+    static, strength = scene.case.static, scene.case.material.pb_ten
+    if static is None or static.stress is None or strength is None:
+        return
+    xx, yy, xy = static.stress
+    largest = 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)
+    if largest > strength:
+        yield (
+            f"static.stress: has a tension of {stress_in_words(largest)}, above material.pb_ten = "
+            f"{stress_in_words(strength)}; bonds break in the static stage"
         )
 
 

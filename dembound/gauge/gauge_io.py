@@ -78,7 +78,7 @@ def read_gauge(
     Raises CaseError for a file that cannot be read, an unknown monitor, a bar that is not loaded at one end, and a
     gauge that is not on the bar.
     """
-    if h5py.is_hdf5(path):
+    if _is_record(path):
         time, stress, known = _recorded(path, monitor)
     else:
         (time, stress), known = _samples(path, "stress (Pa)"), GaugeMetadata()
@@ -109,7 +109,7 @@ def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
 
     Raises CaseError for anything else.
     """
-    if not h5py.is_hdf5(path):
+    if not _is_record(path):
         if not Path(free_end).is_file():
             raise CaseError([f"--free-end: is {free_end}, must be a text file of time (s) and velocity (m/s)"])
         return _samples(Path(free_end), "velocity (m/s)")
@@ -125,6 +125,11 @@ def read_free_end(path: Path, free_end: str) -> tuple[np.ndarray, np.ndarray]:
         outwards = 1.0 if _loaded_end(file) == "left" else -1.0
         time, velocity = history_of(there[free_end], "velocity")
         return time, outwards * velocity[:, 0]
+
+
+def _is_record(path: Path) -> bool:
+    """Whether a file is a record by its name or contents; else it is a text."""
+    return path.suffix == ".h5" or h5py.is_hdf5(path)
 
 
 def not_above_zero(option: str, value: float | None, unit: str) -> Iterator[str]:

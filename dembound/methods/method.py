@@ -7,6 +7,9 @@ import numpy as np
 from dembound.methods.bonds import Bonds, Rod
 from dembound.table import Table
 
+WIDEST = 1000
+"""Largest horizon in spacings: the step limit of a bar takes a time that grows with its square, minutes for this."""
+
 
 class Method(Table, ABC):
     """Creates the bonds between the nodes of a bar, and changes them when they are stretched."""

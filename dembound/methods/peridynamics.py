@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 
 from dembound.methods.bonds import Bonds, Rod
-from dembound.methods.method import Method
+from dembound.methods.method import WIDEST, Method
 from dembound.table import quantity
 
 
@@ -17,7 +17,7 @@ class Peridynamics(Method):
     """
 
     type: Literal["peridynamics"]
-    horizon: int = quantity(..., unit="1", help="horizon m in spacings: δ = mΔx", ge=1)
+    horizon: int = quantity(..., unit="1", help="horizon m in spacings: δ = mΔx", ge=1, le=WIDEST)
     corrected_ends: bool = quantity(False, unit="1", help="whether local springs repair the bar's soft ends")
 
     @property

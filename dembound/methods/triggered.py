@@ -1,13 +1,13 @@
 """The base of methods that are finite differences until something is about to break."""
 
-from dembound.methods.method import Method
+from dembound.methods.method import WIDEST, Method
 from dembound.table import quantity
 
 
 class Triggered(Method):
     """Local springs until a stretch reaches `trigger` of the critical one, peridynamics of some kind from then on."""
 
-    horizon: int = quantity(..., unit="1", help="horizon m of the peridynamics, in spacings", ge=1)
+    horizon: int = quantity(..., unit="1", help="horizon m of the peridynamics, in spacings", ge=1, le=WIDEST)
     trigger: float = quantity(0.9, unit="1", help="share of the critical stretch that brings it in", gt=0.0, le=1.0)
 
     @property

@@ -19,6 +19,7 @@ from dembound.motion.paths import Front, Source
 from dembound.motion.scene import Scene
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
+from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run
 
 if TYPE_CHECKING:
@@ -60,6 +61,10 @@ class Plan:
     steps: int
     regular_steps: int
     refused: tuple[str, ...] = ()
+
+
+Box = tuple[float, float, float, float]
+"""A rectangle x0, y0, x1, y1 in m, with its edges."""
 
 
 class Finding(NamedTuple):
@@ -174,9 +179,17 @@ class Kind(ABC, Generic[C, S]):
         """Whether a stage before the run loads the scene, by default not."""
         return False
 
+    @abstractmethod
+    def storage(self, scene: S) -> Storage:
+        """Bytes on disk of what is written of a scene."""
+
     def stage_keys(self, scene: S) -> dict[str, Any]:
         """What the results of the stages before a run depend on, as plain JSON values by key."""
         return {}
+
+    def stage_names(self, scene: S) -> list[str]:
+        """The names of the stages before a run, by default none."""
+        return []
 
     def stages_from(self, case: C) -> Path | None:
         """The folder of results whose stages a case uses; by default none."""
@@ -210,8 +223,11 @@ class Kind(ABC, Generic[C, S]):
     def work(self, run: Run) -> int:
         """The work of a run so far, in `work_unit`; the same in every run of a case."""
 
-    def findings(self, scene: S, run: Run) -> dict[str, Finding]:
-        """Numbers by name that are compared between runs in addition to histories; by default none."""
+    def findings(self, scene: S, run: Run, inside: Box | None = None) -> dict[str, Finding]:
+        """Numbers by name that are compared between runs in addition to histories; by default none.
+
+        inside : where in the scene they are found, by default everywhere.
+        """
         return {}
 
     @abstractmethod

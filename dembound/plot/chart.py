@@ -1,7 +1,7 @@
 """A chart: the error of every choice against its cost, with the Pareto front and the names of all choices."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,6 +37,9 @@ DARK = "#404040"
 NO_BREAK = "\u00a0"
 """A blank at which `textwrap` breaks no line."""
 
+MARK = "†"
+"""Mark of choices whose monitors are not where the reference recorded them."""
+
 REFERENCE_HEAD, OTHERS = "reference", "others"
 
 LINE = 0.033
@@ -58,7 +61,8 @@ class Dot:
     """A choice of a chart.
 
     number : from 1. error : RMS of the worst monitor, %; cpu (r,) s of each run; both empty after a failure. monitor :
-    the worst, with its component. found : other numbers beside those of the reference, in words.
+    the worst, with its component. found : other numbers beside those of the reference, in words. apart : m, largest
+    distance of a monitor from where the reference recorded it.
     """
 
     number: int
@@ -69,6 +73,7 @@ class Dot:
     cpu: np.ndarray
     monitor: str
     found: str = ""
+    apart: float = 0.0
 
     @property
     def cost(self) -> float:
@@ -82,7 +87,7 @@ class Dot:
 
 
 @styled
-def plot_chart(path: Path) -> Figure:
+def plot_chart(path: Path, title: str | None = None) -> Figure:
     """RMS error against CPU time of stepping, both logarithmic, and a list of the choices.
 
     Points have the numbers of the list; horizontal bars show the range of the timed runs, horizontal lines 1 % and
@@ -92,28 +97,30 @@ def plot_chart(path: Path) -> Figure:
     ----------
     path
         ``chart.h5`` of a chart.
+    title
+        Above the sentence about the cheapest choices; by default that of the case.
 
     Raises CaseError when the file cannot be read.
     """
     with open_record(path) as file:
         dots = [_read(number, group) for number, group in enumerate(file["choices"].values(), start=1)]
-        reference, own = str(file["reference"].attrs["sentence"]), int(file["reference"].attrs["choice"])
-        quantity, title = str(file.attrs["quantity"]), str(file.attrs["title"] or file.attrs["name"])
+        reference, own = str(file["reference"].attrs["sentence"]), {k + 1 for k in file["reference"].attrs["choices"]}
+        quantity, title = str(file.attrs["quantity"]), title or str(file.attrs["title"] or file.attrs["name"])
         sentence, threads = str(file.attrs["sentence"]), _threads(file)
     figure = new_figure(12.0, 6.4)
     panel, side = figure.subplots(1, 2, width_ratios=(1.45, 1.0))
-    good = [dot for dot in dots if not dot.failure and dot.number != own + 1]
+    good = [dot for dot in dots if not dot.failure and dot.number not in own]
     _draw(panel, good)
-    if own >= 0:
-        cost = dots[own].cost
-        panel.axvline(cost, color=REFERENCE, linestyle=":", linewidth=1.2, label=f"cost of the reference, {own + 1}")
+    for number in sorted(own):
+        label, cost = f"cost of the reference, {number}", dots[number - 1].cost
+        panel.axvline(cost, color=REFERENCE, linestyle=":", linewidth=1.2, label=label)
     monitors = ", ".join(dict.fromkeys(dot.monitor for dot in good))
     panel.set_xlabel(f"CPU time of stepping (s), {threads} thread{'s' if threads > 1 else ''}")
     panel.set_ylabel(f"RMS error of the {quantity}, worst monitor (%)")
     panel.set_title(_wrapped(f"errors are those against {reference}; {monitors}", 88), loc="left", fontsize=8.5)
     panel.legend(loc="best", fontsize=8.5)
     _list(side, dots, own)
-    figure.suptitle(f"{title}\n{_wrapped(sentence, 150)}", fontsize=10)
+    figure.suptitle(f"{title}\n{_wrapped(sentence, 150)}", fontsize=10, parse_math=False)
     figure.draw_without_rendering()
     _number(figure, panel, good)
     return figure
@@ -126,9 +133,8 @@ def _read(number, group) -> Dot:  # type: ignore[no-untyped-def]
         return Dot(number, str(group.attrs["name"]), False, failure, np.nan, np.zeros(0), "")
     monitor = f"{group['monitor'].asstr()[0]} ({group['component'].asstr()[0]})"
     on_front, error = bool(group.attrs["on_front"]), 100.0 * float(group["rms"][0])
-    return Dot(
-        number, str(group.attrs["name"]), on_front, "", error, group["run/cpu"][:], monitor, str(group.attrs["found"])
-    )
+    found, apart = str(group.attrs["found"]), float(np.max(group["apart"]))
+    return Dot(number, str(group.attrs["name"]), on_front, "", error, group["run/cpu"][:], monitor, found, apart)
 
 
 def _threads(file) -> int:  # type: ignore[no-untyped-def]
@@ -203,15 +209,16 @@ def _annotate(panel: Axes, dot: Dot, place: tuple[float, float]) -> Annotation:
     )
 
 
-def _list(panel: Axes, dots: Sequence[Dot], own: int) -> None:
+def _list(panel: Axes, dots: Sequence[Dot], own: Collection[int]) -> None:
     """The names, errors and costs of the choices, the front first, then the others, then failures."""
     panel.set_axis_off()
-    rest = [dot for dot in dots if not (dot.on_front or dot.failure or dot.number == own + 1)]
+    rest = [dot for dot in dots if not (dot.on_front or dot.failure or dot.number in own)]
     entries = [
         *_entries("Pareto front, the cheapest first", [dot for dot in dots if dot.on_front], COLOURS[1]),
-        *_entries(REFERENCE_HEAD, [dot for dot in dots if dot.number == own + 1], DARK),
+        *_entries(REFERENCE_HEAD, [dot for dot in dots if dot.number in own], DARK),
         *(_entries(OTHERS, rest, COLOURS[0]) if len(dots) <= MOST_LISTED else [(ELSEWHERE, COLOURS[0], True)]),
         *_entries("failed", [dot for dot in dots if dot.failure], DARK),
+        *_footnote(dots),
     ]
     lines = sum(text.count("\n") + 1 for text, _, _ in entries)
     height = min(LINE, 1.0 / lines)
@@ -240,8 +247,16 @@ def _entries(head: str, dots: Sequence[Dot], colour: str) -> list[tuple[str, str
         error = f"{dot.error:.{2 if dot.error < 99.5 else 3}g} %, " if dot.error >= LEAST else "0 %, "
         numbers = dot.failure or f"{'' if head == REFERENCE_HEAD else error}{dot.cost:.2g} s"
         numbers += f", {dot.found}" if dot.found and head != OTHERS else ""
-        found.append((_wrapped(f"{dot.number}  {dot.name}: {numbers}", WIDTH), colour, False))
+        mark = MARK if dot.apart > 0.0 else ""
+        found.append((_wrapped(f"{dot.number}  {dot.name}{mark}: {numbers}", WIDTH), colour, False))
     return found
+
+
+def _footnote(dots: Sequence[Dot]) -> list[tuple[str, str, bool]]:
+    """The meaning of the mark, if any choice has it."""
+    farthest = max(dot.apart for dot in dots)
+    text = f"{MARK} monitors record elsewhere than in the reference, up to {farthest:.2g} m away"
+    return [("", DARK, False), (_wrapped(text, WIDTH), DARK, False)] if farthest > 0.0 else []
 
 
 def _wrapped(text: str, width: int) -> str:

@@ -50,7 +50,7 @@ NEGLIGIBLE = 1e-6
 def plot_energy(run: Path) -> Figure:
     """The energy ledger of a run against time; below, its error over the supplied energy.
 
-    Columns that are negligible during the whole run are left out.
+    Columns that are negligible during the whole run are left out, as are those that an earlier version did not write.
 
     Parameters
     ----------
@@ -65,10 +65,10 @@ def plot_energy(run: Path) -> Figure:
     time = columns["time"] / unit.seconds
     figure = new_figure(9.0, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[4, 1])
-    largest = {column: float(np.abs(columns[column]).max()) for column in COLUMNS}
+    largest = {column: float(np.abs(columns[column]).max()) for column in COLUMNS if column in columns}
     least = NEGLIGIBLE * max(largest.values())
     for index, (column, label) in enumerate((BAR_COLUMNS if bar else COLUMNS).items()):
-        if largest[column] > least:
+        if largest.get(column, 0.0) > least:
             looks = line_style(index) | {"color": HUES[index]} | OWN_LOOKS.get(column, {})
             upper.plot(time, columns[column], label=label, gid=label, **looks)
     lower.plot(time, columns["relative_error"], color=REFERENCE, gid="error of the balance")

@@ -14,7 +14,7 @@ from dembound.results.sides import SideHistory, read_side_history
 LEAST = 1e-6
 """A component that stays below this share of the other one is left out."""
 
-LINES = {"stress": ("along the normal", "shear"), "displacement": ("along x", "along y")}
+LINES = {"stress": ("normal, tension positive", "shear, xy"), "displacement": ("along x", "along y")}
 """Names of the components; the second is dashed."""
 
 
@@ -53,7 +53,7 @@ def plot_side(runs: Sequence[Path], side: str, quantity: str) -> Figure:
                 panels[1].plot(100.0 * history.strain, values[:, 0], label=label, gid=label, **style)
     panels[0].set_xlabel(unit.label)
     for panel in panels:
-        panel.set_ylabel("mean stress, tension positive (MPa)" if quantity == "stress" else "mean displacement (m)")
+        panel.set_ylabel("mean stress (MPa)" if quantity == "stress" else "mean displacement (m)")
     if strained:
         panels[1].set_xlabel("strain to the opposite side, extension positive (%)")
     figure.suptitle(f"{quantity.capitalize()} of the {side} side", fontsize=11)

@@ -20,7 +20,7 @@ def write_lines(figure: Figure, path: Path) -> None:
     """Write the lines of a figure as CSV, a column each, either completely or not at all.
 
     Lines with the same x values share one column of them, which comes first. Columns end with their lines; cells below
-    are empty. Frames and other lines without data are left out.
+    are empty. Zeros have no sign. Frames and other lines without data are left out.
 
     Raises FileNotFoundError if the folder of the path does not exist.
     """
@@ -28,7 +28,9 @@ def write_lines(figure: Figure, path: Path) -> None:
     with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow([head for head, _ in columns])
-        table.writerows(zip_longest(*([f"{value:.10g}" for value in values] for _, values in columns), fillvalue=""))
+        table.writerows(
+            zip_longest(*([f"{value + 0.0:.10g}" for value in values] for _, values in columns), fillvalue="")
+        )
 
 
 def columns_of(figure: Figure) -> Iterator[Column]:
@@ -42,10 +44,10 @@ def columns_of(figure: Figure) -> Iterator[Column]:
                 break
         else:
             groups.append((along, [(panel, line)]))
-    for along, lines in groups:
-        panel, first = lines[0]
-        of = f" of {first.get_label()}" if len(groups) > 1 else ""
-        yield f"{_x_label(panel)}{of}", along
+    heads = [_x_label(lines[0][0]) for _, lines in groups]
+    for head, (along, lines) in zip(heads, groups, strict=True):
+        of = f" of {lines[0][1].get_label()}" if heads.count(head) > 1 else ""
+        yield f"{head}{of}", along
         for panel, line in lines:
             yield _head(figure, panel, line), np.asarray(line.get_ydata(), dtype=float)
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RecordError
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
 from dembound.results.interrupts import Interrupts, Stopped
@@ -55,14 +55,16 @@ class Checkpoint:
 
     @classmethod
     def read(cls, path: Path) -> Checkpoint:
-        """Read a checkpoint; raises CaseError for a file that is damaged or of another version."""
+        """Read a checkpoint; raises RecordError for a file that is damaged, CaseError for one of another version."""
         try:
             with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
                 arrays = {name: archive[name] for name in archive.files}
             facts = json.loads(arrays.pop(FACTS).tobytes())
             version = facts["version"]
-        except (ValueError, KeyError, EOFError, zipfile.BadZipFile, NotImplementedError) as error:
-            raise CaseError([f"{path}: is damaged: {error}"]) from None
+        except (KeyError, zipfile.BadZipFile) as error:
+            raise RecordError([f"{path}: is damaged: {error}"]) from None
+        except (ValueError, EOFError, NotImplementedError):  # whose messages are about numpy's options
+            raise RecordError([f"{path}: is damaged, no archive of arrays"]) from None
         if version != __version__:
             raise CaseError([f"{path}: is of dembound {version}, this is {__version__}; run the case anew"])
         return cls(facts, arrays)
@@ -118,11 +120,19 @@ def facts_of(case: Case) -> dict[str, Any]:
 
 
 def differences(first: Any, second: Any, key: str = "") -> list[str]:
-    """The keys in which two nested tables differ, a line each with both values."""
+    """The keys in which two nested tables differ, a line each with both values.
+
+    A key that is not given has the value None, as TOML has no other.
+    """
     if isinstance(first, Mapping) and isinstance(second, Mapping):
         names = dict.fromkeys([*first, *second])
         pairs = [(f"{key}.{name}" if key else name, first.get(name), second.get(name)) for name in names]
         return [line for name, one, two in pairs for line in differences(one, two, name)]
     if first == second:
         return []
-    return [f"{key}: is {json.dumps(first)} here, and {json.dumps(second)} there"]
+    return [f"{key}: is {_in_words(first)} here, and {_in_words(second)} there"]
+
+
+def _in_words(value: Any) -> str:
+    """The value of a key, or of one that is left out."""
+    return "not given" if value is None else json.dumps(value)

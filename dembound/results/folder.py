@@ -6,10 +6,11 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Self
 
 from filelock import FileLock, Timeout
 
-from dembound.errors import CaseError
+from dembound.errors import CONTROL, CaseError
 
 PARTIAL = ".partial"
 """Ending of the folder of a run that is not complete."""
@@ -27,6 +28,25 @@ OWN = re.compile(
 """The files that a run writes, by their paths in its folder; all others are somebody else's, and are kept."""
 
 
+NO_NAMES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.IGNORECASE)
+"""Names that Windows keeps for devices."""
+
+
+def problem_of(name: str) -> str:
+    """What is wrong with a name for a folder of results, empty if it can be one on all systems."""
+    if name in ("", ".", "..") or re.search(r"[/\\]", name):
+        return "must be the name of one folder"
+    if CONTROL.search(name):
+        return "must have no control characters"
+    if found := re.search(r'[<>:"|?*]', name):
+        return f"must have no {found[0]}, which Windows does not allow"
+    if name[-1] in ". ":
+        return "must not end in a dot or blank, which Windows removes"
+    if NO_NAMES.fullmatch(name):
+        return "which Windows keeps for a device; take another one"
+    return ""
+
+
 class Folder:
     """The folder ``results/<name>`` of a run.
 
@@ -40,11 +60,19 @@ class Folder:
         self.final, self.partial = results / name, results / f"{name}{PARTIAL}"
         self._old = results / f"{name}{REPLACED}"
 
+    @classmethod
+    def of(cls, path: Path) -> Self:
+        """The folder of a run from the path of the complete or the partial one, which may be the current folder."""
+        named = path if path.name not in ("", "..") else path.resolve()
+        return cls(named.parent, named.name.removesuffix(PARTIAL))
+
     def check(self) -> None:
         """Raise CaseError where results cannot be written: at a link, a file, a folder without a run or one in use.
 
-        A name cannot end like the folder of another run.
+        A name cannot end like the folder of another run, and must be possible on all systems.
         """
+        if problem := problem_of(self.name):
+            raise CaseError([f"{self.name!r}: is no name for results, {problem}; give another --name"])
         for ending in (PARTIAL, REPLACED):
             if self.name.endswith(ending):
                 raise CaseError([f"{self.name}: is no name of a case, must not end in {ending}; give another --name"])
@@ -55,6 +83,10 @@ class Folder:
                 raise CaseError([f"{path}: is a file, give another --output or --name"])
         if self.final.is_dir() and any(self.final.iterdir()) and not (self.final / "run.h5").is_file():
             raise CaseError([f"{self.final}: exists and holds no run, give another --output or --name"])
+        self.require_unused()
+
+    def require_unused(self) -> None:
+        """Raise CaseError if a run is writing it."""
         if (self.partial / LOCK).is_file():
             self._lock().release()
 
@@ -88,7 +120,9 @@ class Folder:
         try:
             lock.acquire(blocking=False)
         except Timeout:
-            raise CaseError([f"{self.partial}: is being written by another run, wait or give another --name"]) from None
+            raise CaseError(
+                [f"{self.partial}: is being written by another run; wait for its end, or take another name"]
+            ) from None
         return lock
 
     def finish(self) -> None:

@@ -8,13 +8,37 @@ from typing import Self
 ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 """Ctrl-C; the request to end, by batch systems before they kill; a closed terminal."""
 
+INTERRUPTED = 130
+"""Exit code after Ctrl-C."""
+
 
 class Stopped(KeyboardInterrupt):
-    """Raised in place of KeyboardInterrupt when a run has been ended by a signal and its state has been kept."""
+    """Raised in place of KeyboardInterrupt for a signal, and when a run has been ended by one and its state is kept."""
 
     def __init__(self, number: int) -> None:
         super().__init__(signal.Signals(number).name)
         self.exit_code = 128 + number
+
+
+def exit_code_of(stop: KeyboardInterrupt) -> int:
+    """Exit code of a process that ends with it."""
+    return stop.exit_code if isinstance(stop, Stopped) else INTERRUPTED
+
+
+def end_at_signals() -> None:
+    """Let all signals that end a run raise `Stopped` from now on, as Ctrl-C raises KeyboardInterrupt."""
+    for number in _obeyed():
+        if signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, _stop)
+
+
+def _stop(number: int, frame: FrameType | None) -> None:
+    raise Stopped(number)
+
+
+def _obeyed() -> list[int]:
+    """The signals that end a run, without those that the process was started to ignore, such as by ``nohup``."""
+    return [number for number in ENDING if signal.getsignal(number) is not signal.SIG_IGN]
 
 
 class Interrupts:
@@ -33,7 +57,7 @@ class Interrupts:
 
     def __enter__(self) -> Self:
         if threading.current_thread() is threading.main_thread():
-            self._before = {number: signal.signal(number, self._note) for number in ENDING}
+            self._before = {number: signal.signal(number, self._note) for number in _obeyed()}
         return self
 
     def __exit__(

@@ -19,6 +19,20 @@ FOLDER = "settled"
 """Name of the folder of stages within that of a run."""
 
 
+def settled_state(folder: Path, name: str, keys: Mapping[str, Any]) -> Arrays:
+    """The arrays of a stage of a name that a run has kept in a folder; keys : of the case on which it depends.
+
+    Raises CaseError if it is not there or depends on other keys, RecordError if it is damaged.
+    """
+    path = folder / f"{name}.npz"
+    if not path.is_file():
+        raise CaseError([f"static.from: {folder} has no settled state ({name}.npz)"])
+    kept = Checkpoint.read(path)
+    if different := differences(keys, kept.facts["keys"]):
+        raise CaseError([f"static.from: {folder} has settled another body", *different])
+    return kept.arrays
+
+
 class KeptStages(Stages):
     """Stages that are kept in the folder of a run, or taken from that of another one.
 
@@ -47,17 +61,11 @@ class KeptStages(Stages):
     def finished(self, name: str) -> Arrays | None:
         """The arrays of a stage, if it has been kept.
 
-        Raises CaseError if it is to be taken from another run that has none, or that depends on other keys.
+        Raises CaseError as `settled_state` if it is to be taken from another run.
         """
-        path = None if self._source is None else self._source / f"{name}.npz"
-        if path is None or not path.is_file():
-            if self._required:
-                raise CaseError([f"static.from: {self._source} has no settled state ({name}.npz)"])
+        if self._source is None or not (self._required or (self._source / f"{name}.npz").is_file()):
             return None
-        kept = Checkpoint.read(path)
-        if different := differences(self._keys, kept.facts["keys"]):
-            raise CaseError([f"static.from: {path.parent} has settled another body", *different])
-        return kept.arrays
+        return settled_state(self._source, name, self._keys)
 
     def begin(self, name: str, simulation: Simulation) -> None:
         """Write checkpoints of the stage, and continue it where it was left."""

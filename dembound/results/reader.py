@@ -59,6 +59,8 @@ def reading(path: Path) -> Iterator[h5py.File]:
     """
     import h5py
 
+    if not path.is_file():
+        raise RecordError([f"{path}: cannot be read as a record of results: there is no such file"])
     try:
         with h5py.File(CommittedFile(path, "r") if log_of(path).is_file() else path, "r") as file:
             yield file
@@ -212,11 +214,14 @@ def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
     time. The work of the forces that balance a settled stress and the energy absorbed by boundaries are not included,
     as both also grow in an unstable run.
 
-    Raises CaseError when there is no entry.
+    Raises CaseError when there is no entry, and RecordError for the ledger of an earlier version.
     """
     columns = {name: item[:] for name, item in datasets_of(file["energy"]).items()} if "energy" in file else {}
-    if not columns or len(columns["time"]) == 0:
+    if not any(map(len, columns.values())):
         raise CaseError([f"{file.filename}: has no entries in its energy ledger"])
+    if missing := [name for name in ("time", "error", "supplied") if name not in columns]:
+        lacks = f"its energy ledger has no {', '.join(missing)}"
+        raise RecordError([f"{file.filename}: is of another version of dembound, {lacks}; run the case anew"])
     scale = float(columns["supplied"][-1])
     columns["relative_error"] = columns["error"] / scale if scale > 0.0 else np.zeros_like(columns["error"])
     return columns

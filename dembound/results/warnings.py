@@ -60,6 +60,30 @@ def still_moving(scene: Scene, duration: float, file: h5py.File, pieces: np.ndar
         )
 
 
+def never_silent(scene: Scene, ended: object, file: h5py.File) -> Iterator[str]:
+    """A warning about a run that should have ended when all monitors were silent, and did not.
+
+    ended : the entry of its summary, None for a whole run. file : its open record.
+    """
+    run = scene.case.run
+    if run.until != "silent" or ended is not None:
+        return
+    shares = {}
+    for name in (monitor.name for monitor in scene.case.monitor):
+        speed = np.abs(file[f"histories/{name}/velocity"][:, :2]).max(axis=1)
+        late = float(speed[-max(1, round(NOW * len(speed))) :].max())
+        shares[name] = late / float(speed.max()) if late > 0.0 else 0.0
+    loudest = max(shares, key=lambda name: shares[name])
+    why = f"the velocity of monitor.{loudest} is still {100.0 * shares[loudest]:.2g} % of its peak"
+    if shares[loudest] <= run.silent_level:
+        why = "not all were so for long enough, or waves had not passed them all"
+    yield (
+        f'run.until: is "silent", but the run went on for its whole duration, {run.duration:g} s: the monitors did not '
+        f"become silent ({100.0 * run.silent_level:g} % of their peaks), {why}; take a longer run.duration or a higher "
+        "run.silent_level"
+    )
+
+
 def _braked(scene: Scene, pieces: np.ndarray) -> np.ndarray:
     """The nodes (n,) bool whose motion is damped: all with local damping, else those connected to dashpots.
 

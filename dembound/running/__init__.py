@@ -1,7 +1,8 @@
 """Runs cases: from their tables, or from a checkpoint, to folders of results."""
 
+from dembound.running.disk_space import disk_facts, disk_warnings
 from dembound.running.job import SECTIONS, resume_case, run_case
-from dembound.running.planning import MOST_STEPS, plan, preflight, simulation_of, warnings_before
+from dembound.running.planning import MOST_STEPS, plan, preflight, require_stages, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
 
 __all__ = [
@@ -9,8 +10,11 @@ __all__ = [
     "SECTIONS",
     "Progress",
     "Reports",
+    "disk_facts",
+    "disk_warnings",
     "plan",
     "preflight",
+    "require_stages",
     "resume_case",
     "run_case",
     "simulation_of",

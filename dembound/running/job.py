@@ -1,6 +1,7 @@
 """Runs one case, from its tables or a checkpoint to a folder of results."""
 
 import json
+import logging
 import math
 from collections.abc import Mapping
 from dataclasses import replace
@@ -20,17 +21,22 @@ from dembound.results.folder import Folder
 from dembound.results.interrupts import Interrupts
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.kept_stages import KeptStages
-from dembound.results.reader import replacing, trust
+from dembound.results.reader import open_record, replacing, trust
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
 from dembound.results.vtk import write_vtu
-from dembound.running.planning import about, plan, simulation_of, warnings_before
+from dembound.results.warnings import never_silent
+from dembound.running.disk_space import disk_facts, disk_warnings, results_bytes
+from dembound.running.planning import about, plan, require_stages, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
 from dembound.running.unfinished import Unfinished, find_unfinished
 
 SECTIONS = ("import", "compile", "build", "settle", "step", "record", "export", "pictures")
 """The parts of a run whose time is measured, in the order of the summary."""
+
+LARGE = 1e9
+"""Bytes of results whose size is logged before the run."""
 
 RESUMED_SECTIONS = ("settle", "step", "record")
 """Those that a resumed run does not repeat."""
@@ -69,7 +75,7 @@ def resume_case(
     snapshots keep their intervals. Without it a run that is complete cannot be continued.
 
     Raises CaseError if there is no checkpoint, one of another version or of another case than the record, or of a run
-    that has reached that time; else errors as `run_case`.
+    that has reached that time, RecordError if it is damaged; else errors as `run_case`.
     """
     found = find_unfinished(folder, until)
     return _Job(found.case, found.folder, progress or Progress(), seconds or {}, found).run()
@@ -103,6 +109,9 @@ class _Job:
         case, clock = self.case, self.clock
         with clock.with_compiling():
             planned = self._plan()
+            require_stages(planned)
+            if self.found is None:
+                self._announce_size(planned)
             with about(case), self.folder.writing(anew=self.found is None) as partial:
                 if self.found is not None:
                     self.found.copy_to(partial)
@@ -114,6 +123,13 @@ class _Job:
                     part.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
                 self.folder.finish()
         return self.folder.final
+
+    def _announce_size(self, planned: Plan) -> None:
+        """Warn if the disk has less space than the results need, and log their size if it is large."""
+        results = self.folder.final.parent
+        short = _passed_on(list(disk_warnings(planned, results)), self.progress)
+        if not short and sum(results_bytes(planned).values()) > LARGE:
+            logging.getLogger(__name__).info(f"{self.case.name}: {disk_facts(planned, results)}")
 
     def _plan(self) -> Plan:
         """The plan; that of a resumed run has the time step of its checkpoint."""
@@ -134,7 +150,9 @@ class _Job:
         trust(record)
         summary = summarise(planned, simulation, record, self.clock.seconds)
         summary |= kind.summarise(planned.scene, simulation, beginning, record)
-        warnings += _passed_on(kind.warnings_after(planned.scene, summary, record), self.progress)
+        with open_record(record) as file:
+            loud = list(never_silent(planned.scene, summary["ended"], file))
+        warnings += _passed_on([*kind.warnings_after(planned.scene, summary, record), *loud], self.progress)
         simulation.forget_trackers()
         resumed = [] if self.found is None else self.found.resumed
         return summary | {"warnings": warnings, "resumed": resumed}

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 
@@ -10,12 +11,18 @@ from dembound.errors import CaseError, DemboundError
 from dembound.kinds import checked, kind_of
 from dembound.motion.clock import Clock
 from dembound.motion.energy import Ledger
-from dembound.motion.kind import Beginning, Plan
+from dembound.motion.kind import Beginning, Kind, Plan
+from dembound.motion.scene import Scene
 from dembound.motion.silence import Silence, silent_rule
 from dembound.motion.simulation import Simulation
+from dembound.results.kept_stages import FOLDER as STAGES
+from dembound.results.kept_stages import settled_state
 
 MOST_STEPS = 1e11
 """Largest number of steps. Even a few nodes would take more than a day for it: a mistake in a time."""
+
+ROUNDING = 1e-6
+"""Part of a time step by which an interval may be shorter, as steps are rounded."""
 
 ENTRIES = 100
 """Entries of the energy ledger where the case does not give an interval."""
@@ -59,19 +66,45 @@ def preflight(case: Case) -> None:
     """Find errors that would stop a case later, as far as this takes little time.
 
     Builds the scene, whose brick is then cached. Where the time step is found quickly, it also plans the run. Raises
-    the errors of `plan`.
+    the errors of `plan` and `require_stages`.
     """
     kind = kind_of(case)
     if kind.is_planned_quickly(case):
-        plan(case)
+        require_stages(plan(case))
         return
     with about(case):
-        kind.build(case)
+        scene = kind.build(case)
+        if kind.stages_from(case) is not None:
+            _require_stages(kind, kind.reduced(scene).scene)
+
+
+def require_stages(planned: Plan) -> None:
+    """Raise CaseError if the case uses stages of another run that are missing, damaged, or of another body."""
+    with about(planned.scene.case):
+        _require_stages(planned.kind, planned.stepped)
+
+
+def _require_stages(kind: Kind[Any, Any], stepped: Scene) -> None:
+    """The same for the scene that is stepped."""
+    if (source := kind.stages_from(stepped.case)) is not None:
+        for name in kind.stage_names(stepped):
+            settled_state(source / STAGES, name, kind.stage_keys(stepped))
 
 
 def warnings_before(planned: Plan) -> list[str]:
     """Warnings about probable mistakes, known before the run, one line each."""
-    return planned.kind.warnings_before(planned.scene, planned.time_step)
+    return [*planned.kind.warnings_before(planned.scene, planned.time_step), *_interval_warnings(planned)]
+
+
+def _interval_warnings(planned: Plan) -> Iterator[str]:
+    """Warnings about outputs that the case asks for more often than there are steps."""
+    output = planned.scene.case.output
+    if output.snapshots > planned.steps:
+        yield f"output.snapshots: is {output.snapshots}, the run has {planned.steps:,} steps and as many snapshots"
+    for key in ("history_interval", "side_interval", "energy_interval"):
+        interval = getattr(output, key)
+        if 0.0 < interval < (1.0 - ROUNDING) * planned.time_step:
+            yield f"output.{key}: is {interval:g} s, below the time step, {planned.time_step:.4g} s; every step is kept"
 
 
 def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Simulation, Ledger]:
@@ -87,14 +120,14 @@ def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Si
         system=beginning.system,
         datum=beginning.datum,
         clock=clock,
-        side_stride=_steps_between_samples(planned),
+        side_stride=steps_between_samples(planned),
     )
     if scene.case.run.until == "silent":
         simulation.track(Silence(silent_rule(planned.scene, planned.kind.sources(planned.scene)), planned.time_step))
-    return simulation, Ledger(simulation, _steps_between_entries(planned), last=planned.steps - 1)
+    return simulation, Ledger(simulation, steps_between_entries(planned), last=planned.steps - 1)
 
 
-def _steps_between_samples(planned: Plan) -> int:
+def steps_between_samples(planned: Plan) -> int:
     """Steps from one sample of the sides to the next."""
     output = planned.scene.case.output
     if output.side_interval > 0.0:
@@ -102,7 +135,7 @@ def _steps_between_samples(planned: Plan) -> int:
     return max(SIDE_STEPS, round(output.history_interval / planned.time_step))
 
 
-def _steps_between_entries(planned: Plan) -> int:
+def steps_between_entries(planned: Plan) -> int:
     """Steps from one entry of the energy ledger to the next."""
     interval = planned.scene.case.output.energy_interval
     return max(1, round(interval / planned.time_step) if interval > 0.0 else planned.regular_steps // ENTRIES)

@@ -53,7 +53,12 @@ class Unfinished:
         return Checkpoint.read(self.path / FILE).arrays
 
     def copy_to(self, partial: Path) -> None:
-        """Copy what a run is continued from to its partial folder, unless it is there."""
+        """Copy what a run is continued from to its partial folder, unless it is there.
+
+        Raises CaseError if another process has taken it away since it was found.
+        """
+        if not (self.path / FILE).is_file():
+            raise CaseError([f"{self.path}: has been changed by another run meanwhile; nothing is left to resume"])
         if self.path == partial:
             return
         for name in ("run.h5", FILE):
@@ -67,21 +72,22 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
 
     Raises CaseError as `dembound.running.resume_case`.
     """
-    path = folder if (folder / FILE).is_file() else folder.with_name(f"{folder.name}{PARTIAL}")
+    results = Folder.of(folder)
+    results.require_unused()
+    path = folder if (folder / FILE).is_file() else results.partial
     if not (path / FILE).is_file():
         raise CaseError([f"{folder}: has no checkpoint ({FILE}); is run.checkpoint 0, or had the run not begun?"])
     facts = dict(Checkpoint.read(path / FILE).facts)
     is_complete = not path.name.endswith(PARTIAL)
-    name = path.name.removesuffix(PARTIAL)
     if until is None and is_complete:
         raise CaseError([f"{path}: is complete; --until continues it to a later time"])
     reached = facts["step"] * facts["time_step"] if facts["stage"] is None else 0.0
     if until is not None and until <= reached:
         raise CaseError([f"--until: is {until:g} s, must be after {reached:g} s, which the run has reached"])
-    case = replace(_case_of(facts, path), name=name)
+    case = replace(_case_of(facts, path), name=results.name)
     if until is not None:
         case = _lasting(case, until)
-    return Unfinished(case, Folder(path.parent, name), path, facts)
+    return Unfinished(case, results, path, facts)
 
 
 def _case_of(facts: dict[str, Any], path: Path) -> Case:

@@ -21,6 +21,7 @@ from dembound.errors import CaseError
 from dembound.exact.dispersion import Lattice, usual_shares
 from dembound.methods import Peridynamics
 from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.method import WIDEST
 from dembound.motion.simulation import Simulation
 from dembound.results.reader import replacing
 
@@ -43,9 +44,6 @@ Shares that differ from those of L are separated by slashes, see `Lattice`.
 
 STEPS = 20
 """Steps simulated to measure a frequency. Two would be enough; more reduce rounding errors."""
-
-WIDEST = 1000
-"""Largest horizon in spacings; wider ones would take too long."""
 
 ROWS = 100
 """Wave numbers of each lattice in the table, evenly up to its shortest wave."""

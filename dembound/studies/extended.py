@@ -32,6 +32,7 @@ from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
 from dembound.disks.wave_front import front_of
 from dembound.errors import CaseError
+from dembound.motion.kind import Box
 from dembound.motion.paths import Front, Source, plane_needed
 from dembound.packings.tiling import count_disks
 from dembound.table import shifted_box, shifted_place
@@ -58,10 +59,12 @@ class Extended:
 
     case : the enlarged case, called as the case with "_extended"; the case itself if no side has to move.
     sentence : its size, the number of its particles, and what does not return from where.
+    inside : the scene of the case in it, m.
     """
 
     case: Case
     sentence: str
+    inside: Box
 
 
 def extended(case: Case, most: int = MOST) -> Extended:
@@ -97,7 +100,7 @@ def _extended_disks(case: DiskCase, most: int) -> Extended:
     what = f"the same scene {size}, {count:,} particles"
     sentence = _sentence(case, what, moving)
     if not any(bricks.values()):
-        return Extended(case, sentence)
+        return Extended(case, sentence, (0.0, 0.0, *case.packing.extent))
     wide, high = case.packing.brick_size
     by = added[0][0] * wide, added[1][0] * high
     _holes_must_end(case, bricks)
@@ -108,7 +111,7 @@ def _extended_disks(case: DiskCase, most: int) -> Extended:
         run=_same_step(case.run, choose_step(scene)[0]),
         name=f"{case.name}_extended",
     )
-    return Extended(larger, sentence)
+    return Extended(larger, sentence, shifted_box((0.0, 0.0, *case.packing.extent), by))
 
 
 def _moving(case: Case, staying: set[str]) -> list[str]:
@@ -262,7 +265,7 @@ def _extended_bar(case: BarCase, most: int) -> Extended:
     _must_not_exceed(count + 1, min(most, MOST_CELLS), f"{length:g} m", case)
     sentence = _sentence(case, f"the same bar {length:g} m long, {count + 1:,} nodes", moving)
     if not any(cells.values()):
-        return Extended(case, sentence)
+        return Extended(case, sentence, (0.0, 0.0, bar.length, 0.0))
     shift = cells["left"] * spacing
     monitors = tuple(
         monitor.model_copy(update={"position": min(monitor.position + shift, length)}) for monitor in case.monitor
@@ -274,4 +277,4 @@ def _extended_bar(case: BarCase, most: int) -> Extended:
         run=_same_step(case.run, step),
         name=f"{case.name}_extended",
     )
-    return Extended(larger, sentence)
+    return Extended(larger, sentence, (shift, 0.0, shift + bar.length, 0.0))

@@ -126,7 +126,7 @@ def read_text(path: Path) -> str:
     """
     try:
         if not path.is_file():
-            raise ValueError(f'path: no file "{path}"')
+            raise ValueError(f'path: "{path}" is not a regular file' if path.exists() else f'path: no file "{path}"')
         return path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         raise ValueError(f'path: "{path}" {NO_COLUMNS}: it is not text in UTF-8') from None

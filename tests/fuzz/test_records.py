@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from small_cases import PUSHED, SPALLING, small
 
 from dembound.errors import RecordError
 from dembound.gauge.gauge_io import read_gauge
-from dembound.kinds import kind_of_record, loads
+from dembound.kinds import kind_of_record
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
 from dembound.plot.boundary import plot_boundary
@@ -28,63 +29,15 @@ from dembound.results.results import Results
 from dembound.results.vtk import write_vtu
 from dembound.running import plan
 
-BAR = """
-[bar]
-length = 1.0
-spacing = 0.025
-density = 2500.0
-wave_speed = 1000.0
-strength = 8e6
-[method]
-type = "peridynamics"
-horizon = 3
-[[load]]
-name = "hit"
-pressure = 12e6
-nodes = 3
-wave = "hit"
-[wave.hit]
-type = "triangle"
-amplitude = 1.0
-rise = 2e-4
-fall = 2e-4
-[[monitor]]
-name = "gauge"
-position = 0.525
-[run]
-duration = 1.5e-3
-courant = 1.0
-"""
-
-DISKS = """
-[packing]
-pattern = "A"
-size = [4.0, 1.0]
-radius = 0.25
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-[boundary.left]
-type = "velocity"
-wave_p = "push"
-[boundary.right]
-type = "viscous"
-[wave.push]
-type = "cosine"
-amplitude = 0.5
-period = 0.01
-[[monitor]]
-name = "gauge"
-position = [2.4, 0.5]
-[run]
-duration = 0.005
-"""
+GAUGED = {"packing.size": [4.0, 1.0], "monitor": [{"name": "gauge", "position": [2.4, 0.5]}], "run.duration": 0.005}
+"""Changes of a lattice, with a monitor of the name that the bar has."""
 
 
-@pytest.fixture(params=[BAR, DISKS], ids=["bar", "disks"])
+@pytest.fixture(params=[(SPALLING, {}), (PUSHED, GAUGED)], ids=["bar", "disks"])
 def record(request, tmp_path) -> Path:
     """The record of a run with histories, two snapshots, a ledger, and of the bar cracks."""
-    planned = plan(loads(request.param, Path(), "small"))
+    tables, changes = request.param
+    planned = plan(small(tables, changes=changes))
     half = planned.steps // 2
     simulation = Simulation(planned.scene, planned.time_step, list(planned.scene.monitors.values()))
     ledger = Ledger(simulation, half)

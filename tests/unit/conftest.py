@@ -1,15 +1,19 @@
 """Small cases and a small recorded run that many tests start from."""
 
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
 import pytest
+from small_cases import PUSHED, SPALLING, small
+from typer.main import get_command
 
+from dembound import cli
 from dembound.casefile import Case
 from dembound.disks.rows import contact_rows
 from dembound.disks.scene import DiskScene
@@ -21,6 +25,7 @@ from dembound.motion.trackers import NEVER
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
+from dembound.plot import style
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.running import plan
@@ -28,42 +33,10 @@ from dembound.starting import starting_point
 
 STARTER = starting_point()
 
-CASE = """
-[packing]
-pattern = "A"
-size = [10.0, 2.5]
-radius = 0.25
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-[boundary.left]
-type = "velocity"
-wave_p = "push"
-wave_s = "shake"
-[boundary.right]
-type = "viscous"
-[wave.push]
-type = "cosine"
-amplitude = 0.5
-period = 0.01
-[wave.shake]
-type = "cosine"
-amplitude = 0.2
-period = 0.01
-[[monitor]]
-name = "front"
-position = [2.4, 1.2]
-[[monitor]]
-name = "back"
-position = [9.6, 1.2]
-[run]
-duration = 0.01
-"""
-
 
 def record(path: Path, name: str, snapshots: int) -> Path:
     """Run the case, 20 × 5 disks in P and S motion, under a name; the snapshots are evenly spaced."""
-    planned = plan(loads(CASE, Path(), name))
+    planned = plan(small(PUSHED, name))
     half, quarter = planned.steps // 2, planned.steps // 4
     return recorded(path, planned, half + snapshots * quarter, [half + k * quarter for k in range(snapshots)])
 
@@ -131,46 +104,16 @@ BRITTLE = {
 @pytest.fixture(scope="session")
 def cracked_run(tmp_path_factory) -> Path:
     """The record of a run called ``cracked`` whose bonds break, with two snapshots and two entries of the ledger."""
-    planned = plan(with_changes(loads(CASE, Path(), "cracked"), BRITTLE))
+    planned = plan(small(PUSHED, "cracked", BRITTLE))
     half = 1 + planned.steps // 2
     path = tmp_path_factory.mktemp("cracked") / "run.h5"
     return recorded(path, planned, 2 * half, [half, 2 * half], range(0, 2 * half, half))
 
 
-SPALLING = """
-[bar]
-length = 1.0
-spacing = 0.025
-density = 2500.0
-wave_speed = 1000.0
-strength = 8e6
-[method]
-type = "peridynamics"
-horizon = 3
-[[load]]
-name = "hit"
-pressure = 12e6
-nodes = 3
-wave = "hit"
-[wave.hit]
-type = "triangle"
-amplitude = 1.0
-rise = 2e-4
-fall = 2e-4
-[[monitor]]
-name = "gauge"
-position = 0.525
-[run]
-duration = 1.5e-3
-courant = 1.0
-"""
-"""A bar of 41 nodes, 60 steps: a compressive pulse of 0.4 m comes back as tension and tears off its free end."""
-
-
 @pytest.fixture(scope="session")
 def spalled_run(tmp_path_factory) -> Path:
     """The record of that bar, called ``spalled``, with twelve snapshots and twelve entries of the ledger."""
-    planned = plan(loads(SPALLING, Path(), "spalled"))
+    planned = plan(small(SPALLING, "spalled"))
     part = planned.steps // 12
     path = tmp_path_factory.mktemp("spalled") / "run.h5"
     return recorded(path, planned, 12 * part, range(part, 13 * part, part), range(0, 12 * part, part))
@@ -181,7 +124,7 @@ def spalling() -> Callable[..., Case]:
     """Makes cases: that bar with keys changed."""
 
     def make(changes: Mapping[str, Any] | None = None, name: str = "spalling") -> Case:
-        return with_changes(loads(SPALLING, Path(), name), changes or {})
+        return small(SPALLING, name, changes)
 
     return make
 
@@ -280,3 +223,45 @@ def noise() -> Callable[[GridBody], np.ndarray]:
         return field
 
     return make
+
+
+class Answer(NamedTuple):
+    """What a command ended with."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture(scope="session")
+def command() -> Callable[[], None]:
+    """The application as `app()` makes it; a tenth of the time of these tests would go into making it every time."""
+    return get_command(cli.app)
+
+
+@pytest.fixture
+def dembound(tmp_path, monkeypatch, capsys, command) -> Callable[..., Answer]:
+    """Runs a command in an empty folder as the shell would, with pictures of a few dots per inch, soon packed."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys.modules["dembound.cli.app"], "app", command)
+    monkeypatch.setattr(style, "DOTS_PER_INCH", 30)
+
+    def run(*arguments: object) -> Answer:
+        monkeypatch.setattr(sys, "argv", ["dembound", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            cli.main()
+        return Answer(ended.value.code or 0, *capsys.readouterr())
+
+    return run
+
+
+@pytest.fixture
+def written(bar, tmp_path) -> Callable[..., Path]:
+    """Writes cases of the small bar to files."""
+
+    def write(name: str = "bar", changes: dict | None = None) -> Path:
+        path = tmp_path / f"{name}.toml"
+        path.write_text(bar(changes).text, encoding="utf-8")
+        return path
+
+    return write

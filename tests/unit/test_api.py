@@ -120,7 +120,9 @@ def test_results_are_those_of_the_record(results) -> None:
 
 
 def test_folders_that_are_no_results_say_so(tmp_path, results) -> None:
-    with pytest.raises(dembound.CaseError, match="cannot be read"):
+    with pytest.raises(
+        dembound.RecordError, match=r"^\S+run\.h5: cannot be read as a record of results: there is no such file$"
+    ):
         dembound.Results(tmp_path)
     alone = tmp_path / "run.h5"
     alone.write_bytes((results.folder / "run.h5").read_bytes())

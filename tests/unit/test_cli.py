@@ -8,7 +8,6 @@ import runpy
 import subprocess
 import sys
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from unittest.mock import ANY
@@ -19,7 +18,6 @@ import numpy as np
 import pytest
 import tomli_w
 from matplotlib.figure import Figure
-from typer.main import get_command
 
 from dembound import cli, starting
 from dembound.boundaries import SIDES
@@ -32,49 +30,6 @@ from dembound.motion.simulation import Simulation
 from dembound.plot import style
 from dembound.running import plan
 from dembound.version import __version__
-
-
-@dataclass
-class Answer:
-    """What a command ended with."""
-
-    code: int
-    out: str
-    err: str
-
-
-@pytest.fixture(scope="module")
-def command() -> Callable[[], None]:
-    """The application as `app()` makes it; a tenth of the time of these tests would go into making it every time."""
-    return get_command(cli.app)
-
-
-@pytest.fixture
-def dembound(tmp_path, monkeypatch, capsys, command) -> Callable[..., Answer]:
-    """Runs a command in an empty folder as the shell would, with pictures of a few dots per inch, soon packed."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys.modules["dembound.cli.app"], "app", command)
-    monkeypatch.setattr(style, "DOTS_PER_INCH", 30)
-
-    def run(*arguments: object) -> Answer:
-        monkeypatch.setattr(sys, "argv", ["dembound", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            cli.main()
-        return Answer(ended.value.code or 0, *capsys.readouterr())
-
-    return run
-
-
-@pytest.fixture
-def written(bar, tmp_path) -> Callable[..., Path]:
-    """Writes cases of the small bar to files."""
-
-    def write(name: str = "bar", changes: dict | None = None) -> Path:
-        path = tmp_path / f"{name}.toml"
-        path.write_text(bar(changes).text, encoding="utf-8")
-        return path
-
-    return write
 
 
 def cells(line: str) -> list[str]:
@@ -101,7 +56,7 @@ def test_the_module_is_the_command(monkeypatch, capsys) -> None:
 
 
 def test_version_and_help_end_well(dembound) -> None:
-    assert dembound("--version") == Answer(0, f"dembound {__version__}\n", "")
+    assert dembound("--version") == (0, f"dembound {__version__}\n", "")
     told = dembound("--help")
     assert told.code == 0
     for command in ("new", "cases", "schema", "check", "run", "calibrate", "plot", "dispersion", "stability", "gauge"):
@@ -196,7 +151,7 @@ def test_starting_points_are_listed_and_written_by_name(dembound, tmp_path) -> N
 
     assert dembound("new", "--from", "rock_bar", "first.toml").code == 0
     assert isinstance(load(tmp_path / "first.toml"), BarCase)
-    assert dembound("check", "first.toml") == Answer(0, ANY, "")  # nothing to be warned of
+    assert dembound("check", "first.toml") == (0, ANY, "")  # nothing to be warned of
     refused = dembound("new", "--from", "rock", "second.toml")
     assert refused.code == 2
     assert refused.err.startswith('--from: is "rock", must be one of long_bar, ')
@@ -221,13 +176,13 @@ def test_new_overwrites_nothing(dembound, tmp_path) -> None:
     (tmp_path / "mine.toml").write_text("precious")
     answer = dembound("new", "mine.toml")
 
-    assert answer == Answer(2, "", "mine.toml: exists already, give another name\n")
+    assert answer == (2, "", "mine.toml: exists already, give another name\n")
     assert (tmp_path / "mine.toml").read_text() == "precious"
 
     (tmp_path / "dembound.schema.json").write_text("precious")
     answer = dembound("new", "other.toml")
     said = "dembound.schema.json: exists and is not a schema of dembound; move it, or give --no-schema\n"
-    assert answer == Answer(2, "", said)
+    assert answer == (2, "", said)
     assert dembound("new", "--no-schema", "other.toml").code == 0
     assert files(tmp_path) == {"mine.toml", "other.toml", "dembound.schema.json"}
     assert (tmp_path / "dembound.schema.json").read_text() == "precious"
@@ -240,7 +195,7 @@ def test_shipped_cases_are_listed_and_copied(dembound, tmp_path) -> None:
     assert {"quickstart", "zhou2018/tunnel"} <= set(names)
     assert files(tmp_path) == set()
 
-    assert dembound("cases", "copy", "spall") == Answer(0, "wrote spall.toml\nwrote spall_pulse.txt\n", "")
+    assert dembound("cases", "copy", "spall") == (0, "wrote spall.toml\nwrote spall_pulse.txt\n", "")
     assert dembound("check", "spall.toml").code == 0
     assert dembound("cases", "copy", "spall").code == 2
     assert dembound("cases", "copy", "zhou2018/tunnel", "there").code == 0
@@ -276,7 +231,7 @@ def test_all_mistakes_are_told_at_once_and_nothing_is_written(dembound, written,
 
 
 def test_a_missing_case_is_named(dembound) -> None:
-    assert dembound("run", "nowhere.toml") == Answer(2, "", "nowhere.toml: no such file\n")
+    assert dembound("run", "nowhere.toml") == (2, "", "nowhere.toml: no such file\n")
 
 
 def test_check_prints_facts_and_warnings_and_writes_nothing(dembound, written, tmp_path) -> None:
@@ -542,7 +497,7 @@ def test_all_sides_are_calibrated_at_once_and_leave_one_case(dembound, written, 
 
 def test_one_side_or_all_of_them_are_calibrated(dembound, written, tmp_path) -> None:
     path = written()
-    assert dembound("calibrate", path) == Answer(2, "", "--boundary: is missing; name a side, or give --all\n")
+    assert dembound("calibrate", path) == (2, "", "--boundary: is missing; name a side, or give --all\n")
     answer = dembound("calibrate", path, "--all", "-b", "left", "--wave", "p")
     assert answer.code == 2
     assert [line.split(":")[0] for line in answer.err.splitlines()] == ["--boundary", "--wave"]
@@ -657,7 +612,7 @@ def test_options_of_another_picture_are_bad_input(dembound, spalled_run, small_r
             "RESULTS: holds runs of bars and runs of disks, which cannot be drawn in one picture; name one kind\n",
         ),
     ):
-        assert dembound("plot", *arguments) == Answer(2, "", said)
+        assert dembound("plot", *arguments) == (2, "", said)
     assert files(tmp_path) == {"passes/calibration.h5"}
 
 
@@ -670,7 +625,7 @@ def test_pictures_are_png_files(dembound, spalled_run, tmp_path) -> None:
         ("view", spalled_run, "--output"),
     ):
         for name in ("picture.pdf", "picture"):
-            assert dembound(*command, name) == Answer(2, "", f"{command[-1]}: is {name}, must end in .png\n")
+            assert dembound(*command, name) == (2, "", f"{command[-1]}: is {name}, must end in .png\n")
     assert dembound("plot", spalled_run, "-o", "picture.PNG").code == 0
     assert files(tmp_path) == {"picture.PNG"}
 
@@ -697,7 +652,7 @@ def test_what_bars_and_disks_do_not_have_is_bad_input(dembound, spalled_run, sma
 
 def test_force_chains_are_drawn_of_contacts(dembound, cracked_run, tmp_path) -> None:
     answer = dembound("plot", cracked_run, "--field", "forces", "--snapshot", "-1", "-o", "forces.png")
-    assert answer == Answer(0, "wrote forces.png\n", "")
+    assert answer == (0, "wrote forces.png\n", "")
     assert files(tmp_path) == {"forces.png"}
 
 
@@ -753,7 +708,7 @@ def test_what_cannot_be_written_is_named(dembound, written, tmp_path) -> None:
         ["plot", "results/bar", "-o", "nowhere/plot.png"],
         ["dispersion", "--table", "nowhere/table.csv"],
     ):
-        assert dembound(*arguments) == Answer(5, "", "nowhere: there is no such folder\n")
+        assert dembound(*arguments) == (5, "", "nowhere: there is no such folder\n")
 
 
 def test_dispersion_is_told_drawn_and_written(dembound, tmp_path) -> None:
@@ -832,7 +787,7 @@ def test_bars_of_cases_are_told_and_simulated(dembound, tmp_path) -> None:
         (["bar.toml", "--horizon", 3], "--horizon: is given by the case, change it with --set\n"),
         (["--set", "run.time_step=1e-6"], "--set: changes a case, and none is given\n"),
     ):
-        assert dembound("dispersion", *arguments) == Answer(2, "", said)
+        assert dembound("dispersion", *arguments) == (2, "", said)
 
 
 def test_lattices_that_make_no_sense_are_bad_input(dembound, tmp_path) -> None:
@@ -890,7 +845,7 @@ def test_gauges_that_tell_nothing_are_bad_input(dembound, written) -> None:
         (["absent.txt"], 'no file "absent.txt"\n'),
         (["results/bar"], "results/bar/run.h5: contains no history of stress between the ends of a bar\n"),
     ):
-        assert dembound("gauge", *arguments) == Answer(2, "", said)
+        assert dembound("gauge", *arguments) == (2, "", said)
 
 
 def test_options_of_gauges_that_make_no_sense_are_bad_input(dembound, felt, tmp_path) -> None:
@@ -909,7 +864,7 @@ def test_options_of_gauges_that_make_no_sense_are_bad_input(dembound, felt, tmp_
             "--pulse-end: is 0 s, must be after 0.000259 s, when the pulse is half risen\n",
         ),
     ):
-        assert dembound("gauge", "gauge.txt", *options, "-o", "gauge.png") == Answer(2, "", said)
+        assert dembound("gauge", "gauge.txt", *options, "-o", "gauge.png") == (2, "", said)
     assert files(tmp_path) == {"gauge.txt"}
 
 
@@ -930,7 +885,7 @@ def test_the_starter_of_a_bar_tells_its_strength_and_no_speed(dembound) -> None:
 
     asked = dembound("gauge", "results/bar", "--estimate")  # the pulse is not yet back at the gauge
     said = "--wave-speed: needs two tension peaks to be estimated, 0 found; give it\n"
-    assert asked == Answer(2, "", said)
+    assert asked == (2, "", said)
 
 
 def test_runs_on_bars_are_read_by_gauge_where_one_end_is_loaded(dembound, spalling) -> None:
@@ -964,7 +919,7 @@ def test_runs_on_bars_are_read_by_gauge_where_one_end_is_loaded(dembound, spalli
         (["results/none", "--monitor", "gauge"], f"results/none{refused.format('neither end')}"),
         (["results"], "results: contains no results, must be a folder with run.h5 or calibration.h5\n"),
     ):
-        assert dembound("gauge", *arguments) == Answer(2, "", said)
+        assert dembound("gauge", *arguments) == (2, "", said)
 
 
 DENSE = {"pattern": "B", "size": [2.0, 2.0], "radius": 0.1, "radius_ratio": 1.5, "brick": [2.0, 2.0]}
@@ -1002,6 +957,35 @@ def test_a_chart_is_printed_drawn_and_resumed(dembound, spalling, tmp_path) -> N
     again = dembound("chart", "rod.toml", *vary, "--resume")
     assert again.code == 0
     assert (folder / "chart.csv").read_text(encoding="utf-8") == before  # with the costs measured before
+    assert "replacing" not in done.err + again.err
+
+
+def test_a_second_chart_replaces_the_first_and_keeps_other_files(dembound, spalling, tmp_path) -> None:
+    (tmp_path / "rod.toml").write_text(spalling().text, encoding="utf-8")
+    folder, vary = Path("results") / "rod_chart", ["--vary", "bar.spacing=0.05,0.025", "--repeats", 1]
+    dembound("chart", "rod.toml", *vary)
+    (folder / "thesis.tex").touch()
+    (folder / "chart.h5.log").touch()  # of a process that was killed
+    second = dembound("chart", "rod.toml", *vary, "--title", "Mine")
+    assert second.err.splitlines()[0] == f"{folder}: replacing the chart of before, whose runs --resume would keep"
+    assert {path.name for path in folder.iterdir()} == {"chart.h5", "chart.csv", "chart.png", "thesis.tex"}
+
+
+def test_choices_whose_monitors_are_elsewhere_are_marked(dembound, spalling, tmp_path) -> None:
+    (tmp_path / "rod.toml").write_text(spalling().text, encoding="utf-8")
+    vary = ["--vary", "bar.spacing=0.05,0.025", "--repeats", 1]
+    done = dembound("chart", "rod.toml", *vary, "--reference", "finest")  # at 0.525 m: nodes at 0.5 and 0.525 m
+    assert re.search(r"spacing 0\.05 m.* \*† *\n", done.out)
+    assert "† monitors record elsewhere than in the reference, up to 0.025 m away\n" in done.out
+    assert "†" not in dembound("chart", "rod.toml", *vary, "--reference", "finer").out
+
+
+def test_rounding_errors_are_printed_as_none(dembound, spalling, tmp_path) -> None:
+    exact = {"method": {"type": "finite_difference"}, "load.1.nodes": 1, "bar.strength": 1e9}
+    (tmp_path / "rod.toml").write_text(spalling(exact).text, encoding="utf-8")
+    done = dembound("chart", "rod.toml", "--vary", "run.courant=1.0,0.9", "--repeats", 1)
+    assert re.search(r"\n courant 1 +0 +0 ", done.out)
+    assert "cheapest within 1 % and within 0.1 %: courant 1 (0 %, " in done.out
 
 
 def test_a_case_may_have_its_chart(dembound, spalling, tmp_path) -> None:
@@ -1051,7 +1035,7 @@ def test_markup_in_titles_and_names_is_text(dembound, written, tmp_path) -> None
         (["--set", f"run.duration={'9' * 5000}"], "--set run.duration: has a number of more than 4000 digits"),
         (["--set", "packing.radius=1e-9"], "bar: packing.size: holds "),
         (["--set", "run.duration=\udcff"], "has characters that are not text in UTF-8"),
-        (["--name", "a\x1bb"], r"--name: is a\x1bb, must have no control characters"),
+        (["--name", "a\x1bb"], r"--name: is 'a\x1bb', must have no control characters"),
     ],
 )
 def test_odd_values_are_bad_input_in_one_line(dembound, written, arguments: list[str], said: str) -> None:
@@ -1076,13 +1060,15 @@ def test_a_file_of_an_odd_name_is_refused(dembound, written, tmp_path) -> None:
 def test_a_damaged_record_ends_with_5(dembound, written, tmp_path) -> None:
     dembound("run", written())
     record = tmp_path / "results" / "bar" / "run.h5"
-    record.write_bytes(record.read_bytes()[:20_000])
+    whole = record.read_bytes()
 
-    for command in (["plot"], ["plot", "--energy"], ["gauge"], ["view", "-o", "v.png"], ["compare", "results/bar"]):
-        answer = dembound(*command, "results/bar")
-        assert answer.code == 5
-        assert len(answer.err.splitlines()) == 1
-        assert "run.h5: cannot be read as a record of results" in answer.err
+    for damaged in (whole[:20_000], b"", bytes(len(whole)), b"0 1\n2 3\n"):
+        record.write_bytes(damaged)
+        for command in (["plot"], ["plot", "--energy"], ["gauge"], ["view", "-o", "v.png"], ["compare", "results/bar"]):
+            answer = dembound(*command, "results/bar")
+            assert answer.code == 5
+            assert len(answer.err.splitlines()) == 1
+            assert "run.h5: cannot be read as a record of results" in answer.err
 
 
 def test_warnings_of_python_are_not_shown(dembound, written, monkeypatch) -> None:

@@ -126,6 +126,7 @@ def test_a_matched_bar_lets_in_the_wave_and_absorbs_it(rock):
     (came_left, out_left, _), (came_right, out_right, _) = ledger.side_columns[-1]
     assert came_left == pytest.approx(energy, rel=1e-12)
     assert came_right == 0.0
+    assert not ledger.side_columns[:, 1, 0].any()  # not for half a step either
     assert out_right == pytest.approx(energy, rel=1e-9)
     assert abs(out_left) < 1e-9 * energy
 

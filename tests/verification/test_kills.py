@@ -8,6 +8,8 @@ from pathlib import Path
 
 import h5py
 import pytest
+import tomli_w
+from small_cases import GRAINS
 
 from dembound.results.reader import open_record
 
@@ -17,41 +19,13 @@ INTERVAL = 0.3
 MARGIN = 2.0
 """Seconds of a block of steps and of writing a checkpoint, on a busy machine."""
 
-CASE = f"""
-[packing]
-pattern = "B"
-size = [20.0, 10.0]
-radius = 0.25
-radius_ratio = 1.5
-brick = [5.0, 5.0]
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-law = "linearpbond"
-pb_ten = 4e5
-pb_coh = 8e5
-[static]
-stress = [-2e5, -2e5, 0.0]
-[boundary.left]
-type = "viscous_input"
-wave_p = "pulse"
-[boundary.right]
-type = "viscous"
-[wave.pulse]
-type = "cosine"
-amplitude = 1.0
-period = 0.02
-[[monitor]]
-name = "middle"
-position = [10.0, 5.0]
-[run]
-duration = 0.4
-checkpoint = {INTERVAL}
-[output]
-pictures = false
-snapshots = 4
-energy_interval = 1e-3
-"""
+CASE = {
+    **GRAINS,
+    "packing": GRAINS["packing"] | {"size": [20.0, 10.0], "brick": [5.0, 5.0]},
+    "material": GRAINS["material"] | {"law": "linearpbond", "pb_ten": 4e5, "pb_coh": 8e5},
+    "static": {"stress": [-2e5, -2e5, 0.0]},
+    "output": {"pictures": False, "snapshots": 4, "energy_interval": 1e-3},
+}
 
 
 def started(*words: str) -> subprocess.Popen:
@@ -74,7 +48,8 @@ def numbers(record: Path) -> dict[str, bytes]:
 @pytest.mark.parametrize(("kills", "duration"), [(3, 0.4), pytest.param(50, 16.0, marks=pytest.mark.slow)])
 def test_a_run_that_is_killed_goes_on(tmp_path, kills, duration) -> None:
     for name in ("killed", "whole"):
-        (tmp_path / f"{name}.toml").write_text(CASE.replace("duration = 0.4", f"duration = {duration}"))
+        tables = CASE | {"run": {"duration": duration, "checkpoint": INTERVAL}}
+        (tmp_path / f"{name}.toml").write_text(tomli_w.dumps(tables))
     whole = started("run", str(tmp_path / "whole.toml"), "-o", str(tmp_path))
     assert whole.wait() == 0
     draw = random.Random(kills)

@@ -2,49 +2,25 @@
 
 import json
 import re
+from functools import partial
 
 import h5py
 import numpy as np
 import pytest
-import tomli_w
+from small_cases import GRAINS, PULLED, small
 
+from dembound.check import check
 from dembound.errors import CaseError
-from dembound.kinds import loads
 from dembound.results.checkpoint import Checkpoints
 from dembound.results.folder import Folder
 from dembound.results.interrupts import Stopped
-from dembound.running import job, resume_case, run_case
+from dembound.running import job, preflight, resume_case, run_case
 
-PACKING = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
-MATERIAL = {"density": 2500.0, "p_wave_speed": 1000.0}
+PACKING, MATERIAL, INPUT = GRAINS["packing"], GRAINS["material"], GRAINS["boundary"]["bottom"]
 BRITTLE = MATERIAL | {"law": "linearpbond", "pb_ten": 3e5, "pb_coh": 6e5, "fric": 0.3}
-INPUT = {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"}
 FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
-DISKS = {
-    "packing": PACKING,
-    "material": MATERIAL,
-    "boundary": {"bottom": INPUT, "right": {"type": "viscous"}},
-    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.01}},
-    "monitor": [{"name": "middle", "position": [4.0, 2.0]}, {"name": "top", "position": [4.0, 4.0]}],
-    "run": {"duration": 0.03},
-    "output": {
-        "peaks": True,
-        "contacts": True,
-        "pictures": False,
-        "snapshots": 5,
-        "history_interval": 4e-4,
-        "energy_interval": 1.1e-3,
-    },
-}
-BAR = {
-    "bar": {"length": 1.0, "spacing": 0.01, "density": 2500.0, "wave_speed": 1000.0, "strength": 8e6},
-    "boundary": {"right": {"type": "viscous", "beta_p": 0.2}},
-    "load": [{"name": "hit", "pressure": -15e6, "nodes": 3, "wave": "hit"}],
-    "wave": {"hit": {"type": "triangle", "amplitude": 1.0, "rise": 2e-4, "fall": 2e-4}},
-    "monitor": [{"name": "gauge", "position": 0.5}],
-    "run": {"duration": 2e-3},
-    "output": {"pictures": False, "snapshots": 5, "energy_interval": 9e-5},
-}
+DISKS = GRAINS | {"output": GRAINS["output"] | {"peaks": True, "contacts": True}}
+BAR = PULLED | {"boundary": {"right": {"type": "viscous", "beta_p": 0.2}}}
 CASES = {
     "elastic": DISKS,
     "rows and symmetry": DISKS
@@ -92,8 +68,7 @@ def stopping(monkeypatch) -> None:
 
 
 def case_of(name: str, **changes):
-    tables = CASES[name] | changes
-    return loads(tomli_w.dumps(tables), name=re.sub(r"\W+", "_", name))
+    return small(CASES[name] | changes, name)
 
 
 def stopped(case, folder, step: int, stage: str | None = None):
@@ -241,7 +216,12 @@ def test_the_settled_state_of_another_body_is_refused(tmp_path) -> None:
         ({"static": used, "material": BRITTLE | {"pb_ten": 4e5}}, "material.pb_ten: is 400000.0 here"),
         ({"static": used, "packing": PACKING | {"seed": 2}}, "packing.seed: is 2 here, and 0 there"),
         ({"static": static | {"from": str(tmp_path)}}, "has no settled state"),
+        ({"static": static | {"from": str(tmp_path / "nowhere")}}, "has no settled state"),
     ]:
-        with pytest.raises(CaseError, match=re.escape(key)):
-            run_case(case_of("settled, updated", **changes), tmp_path / "other")
-        assert not (tmp_path / "other" / "settled_updated").exists()
+        case, messages = case_of("settled, updated", **changes), set()
+        for find in (check, preflight, partial(run_case, results=tmp_path / "other")):
+            with pytest.raises(CaseError, match=re.escape(key)) as refused:
+                find(case)
+            messages.add((refused.value.source, str(refused.value)))
+        assert len(messages) == 1
+        assert not (tmp_path / "other").exists()

@@ -37,17 +37,17 @@ def choices_of(case: Case, named: Mapping[str, Mapping[str, Any]]) -> tuple[list
     once. Raises CaseError with these lines if no choice is valid.
     """
     made: dict[str, Choice] = {}
-    left_out: dict[str, str] = {}
+    left_out: list[str] = []
     for name, changes in named.items():
         try:
             choice = Choice(name, changes, with_changes(case, changes))
         except CaseError as error:
-            left_out.setdefault(str(error), f"{name}: left out, {'; '.join(error.problems)}")
+            left_out.append(f"{name}: left out, {'; '.join(error.problems)}")
             continue
         made.setdefault(digest(choice.case), choice)
     if not made:
-        raise CaseError(list(left_out.values()) or ["chart: has no choice"], case.name)
-    return list(made.values()), list(left_out.values())
+        raise CaseError(left_out or ["chart: has no choice"], case.name)
+    return list(made.values()), left_out
 
 
 def combinations(case: Case, vary: Mapping[str, Sequence[Any]]) -> dict[str, dict[str, Any]]:

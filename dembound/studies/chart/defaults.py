@@ -3,13 +3,16 @@
 import math
 from collections.abc import Iterator, Mapping
 from itertools import islice
-from typing import Any
+from typing import Any, get_args
 
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
+from dembound.disks.matching import homogenised_beta
+from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
+from dembound.methods import FiniteDifference, Method, Patch, Peridynamics, Switch
 from dembound.studies.chart.words import label
 
 COARSER = (1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 10.0)
@@ -21,8 +24,14 @@ FEW = 2
 FRACTION = 0.5
 """Factor of the second step fraction."""
 
+UNMATCHED = 0.01
+"""Relative difference of β from the homogenised one from which on that is another choice: it reflects half of it."""
+
 HORIZON = 3
 """Horizon of bars' methods where the case has none."""
+
+STEP_KEYS = ("time_step", "safety", "courant")
+"""Keys of ``[run]`` that determine the step of a bar."""
 
 OWN = "as in the case"
 
@@ -34,8 +43,9 @@ Named = Iterator[tuple[str, dict[str, Any]]]
 def defaults(case: Case) -> dict[str, dict[str, Any]]:
     """Changes of keys by the name of the choice.
 
-    Of disks: the case itself; coarser radii; half the step; and for its absorbing sides each other type, one change at
-    a time. Of a bar: every method with every spacing, each at its automatic step, and finite differences at ν = 1.
+    The case itself. Of disks: coarser radii; half the step; homogenised factors β; and for its absorbing sides each
+    other type, one change at a time. Of a bar: every method with every spacing, each at its automatic step, and finite
+    differences at ν = 1.
     """
     return dict(_of_bar(case) if isinstance(case, BarCase) else _of_disks(case))
 
@@ -50,7 +60,24 @@ def _of_disks(case: Case) -> Named:
     step = "run.safety" if case.run.time_step == "auto" else "run.time_step"
     changes = {step: FRACTION * (case.run.safety if case.run.time_step == "auto" else case.run.time_step)}
     yield label(case, changes), changes
+    yield from _homogenised_factors(case)
     yield from _other_sides(case)
+
+
+def _homogenised_factors(case: DiskCase) -> Named:
+    """Factors β of the homogenised stiffness for all sides that have others; where a wave enters, it would change."""
+    absorbing = {side: table for side, table in case.boundary.items() if table.factors and not table.waves}
+    if not absorbing:
+        return
+    scene, found = build(case), {}
+    for side, table in absorbing.items():
+        for motion, beta in table.factors.items():
+            matched = homogenised_beta(scene, side, motion)
+            if abs(matched - beta) > UNMATCHED * matched:  # not where the motion is held, for which it is nan
+                found[side, motion] = round(matched, 4)
+    sides = " and ".join(dict.fromkeys(side for side, _ in found))
+    if found:
+        yield f"{sides}, homogenised β", {f"boundary.{side}.beta_{m}": beta for (side, m), beta in found.items()}
 
 
 def _other_sides(case: DiskCase) -> Named:
@@ -78,24 +105,37 @@ def _factors(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _of_bar(case: BarCase) -> Named:
-    """Choices of the case of a bar; a given time step, which would suit one of them only, becomes automatic."""
-    spacing, step = case.bar.spacing, case.run.time_step
+    """Choices of the case of a bar; a given step, which would suit one method and spacing only, becomes automatic."""
+    yield OWN, {}
+    spacing, run = case.bar.spacing, case.run.given()
     coarser = [change["bar.spacing"] for change in _valid(case, ({"bar.spacing": k * spacing} for k in COARSER))]
-    automatic = {} if step == "auto" else {"run.time_step": "auto"}
+    automatic = {key: value for key, value in run.items() if key not in ("time_step", "courant") or value == "auto"}
+    exact = {key: value for key, value in run.items() if key not in STEP_KEYS} | {"courant": 1.0}
+    differences = _method(case, FiniteDifference)
     for size in (spacing, *coarser):
-        for changes in ({"method": {"type": "finite_difference"}, "run.courant": 1.0}, *_methods(case)):
-            changes = {"bar.spacing": size, **changes}
-            yield label(case, changes), changes | automatic
+        name = label(case, {"bar.spacing": size, "method": differences, "run.courant": 1.0})
+        yield name, {"bar.spacing": size, "method": differences, "run": exact}
+        for method in _methods(case):
+            changes = {"bar.spacing": size, "method": method}
+            yield label(case, changes), changes | ({} if automatic == run else {"run": automatic})
 
 
 def _methods(case: BarCase) -> Iterator[dict[str, Any]]:
-    """Changes of the method; those that change when something is about to break only for bars that can break."""
-    horizon = max(case.method.largest_horizon, HORIZON)
-    yield {"method": {"type": "finite_difference"}}
-    yield {"method": {"type": "peridynamics", "horizon": horizon}}
+    """The methods, the case's own first if it is another package's; those that wait for a break if it can break."""
+    kinds: list[type[Method]] = [FiniteDifference, Peridynamics]
     if case.bar.breaking_stretch < math.inf:
-        yield {"method": {"type": "switch", "horizon": horizon}}
-        yield {"method": {"type": "patch", "horizon": horizon}}
+        kinds += [Switch, Patch]
+    if type(case.method) not in kinds:
+        yield case.method.given()
+    yield from (_method(case, kind) for kind in kinds)
+
+
+def _method(case: BarCase, kind: type[Method]) -> dict[str, Any]:
+    """The table of a method, with all keys of the case's own method that it has, too."""
+    (name,) = get_args(kind.model_fields["type"].annotation)
+    horizon = {"horizon": max(case.method.largest_horizon, HORIZON)} if "horizon" in kind.model_fields else {}
+    own = {key: value for key, value in case.method.given().items() if key in kind.model_fields and key != "type"}
+    return {"type": name} | horizon | own
 
 
 def _valid(case: Case, changes: Iterator[dict[str, Any]]) -> Iterator[dict[str, Any]]:

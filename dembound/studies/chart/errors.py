@@ -1,7 +1,7 @@
 """Errors of choices: the histories of their monitors beside those of a reference."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -20,6 +20,9 @@ QUIET = 0.01
 Relative errors there are those of a small residual motion.
 """
 
+SAME_PLACE = 1e-9
+"""Distance of two particles over that from the origin up to which they are at the same place, but for rounding."""
+
 Component = Literal["x", "y"]
 
 
@@ -36,9 +39,9 @@ class Wanted:
 class Reference:
     """What errors are measured against.
 
-    name : "exact", "extended" or "finest"; sentence : it in words. gauges : its histories for a choice and its outcome.
-    until : s, time up to which histories are compared. findings : its numbers by name. own : number of the choice that
-    is the reference itself, None for another one. caution : what these errors do not include, in words.
+    name : "exact", "extended", "finer" or "finest"; sentence : it in words. gauges : its histories for a choice and its
+    outcome. until : s, time up to which histories are compared. findings : its numbers by name. own : numbers of the
+    choices that are the reference itself. cautions : what these errors do not include, in words.
     """
 
     name: str
@@ -46,15 +49,16 @@ class Reference:
     gauges: Callable[[Choice, Outcome], Gauges]
     until: float = math.inf
     findings: Mapping[str, float] = field(default_factory=dict)
-    own: int | None = None
-    caution: str = ""
+    own: Sequence[int] = ()
+    cautions: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
 class MonitorError:
     """The error at one monitor.
 
-    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : m, distance of the two particles compared.
+    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; apart : m, distance of the two particles compared,
+    0 if it is of rounding only.
     """
 
     monitor: str
@@ -110,6 +114,7 @@ def _error(name: str, found: Gauge, expected: Gauge, column: int, wanted: Wanted
         left, right = on_common_clock(*mine, *theirs)
     rms, peak = relative_errors(left, right)
     apart = float(np.hypot(*(found.position - expected.position)))
+    apart = apart if apart > SAME_PLACE * float(np.hypot(*expected.position)) else 0.0
     component = "stress" if wanted.quantity == "stress" else COMPONENTS[column]
     return MonitorError(name, component, rms, peak, apart)
 

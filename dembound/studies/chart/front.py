@@ -76,5 +76,13 @@ def _beats(other: Point, point: Point) -> bool:
 
 
 def cheapest_within(points: Sequence[Point], level: float) -> int | None:
-    """Number of the cheapest point on the front with an error of at most `level`; None if all errors are larger."""
-    return next((k for k in reversed(front(points)) if points[k].error <= level), None)
+    """Number of the cheapest point on the front with an error of at most `level`; None if all errors are larger.
+
+    Of several at the same cost the one with the least work, then the first.
+    """
+    within = [k for k in front(points) if points[k].error <= level]
+    if not within:
+        return None
+    return min(
+        (k for k in within if cost_ratio(points[k], points[within[-1]]) == 1.0), key=lambda k: (points[k].work, k)
+    )

@@ -8,7 +8,7 @@ import numpy as np
 
 from dembound.casefile import Case
 from dembound.motion.clock import Clock
-from dembound.motion.kind import Finding, Plan
+from dembound.motion.kind import Box, Finding, Plan
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import Records
 from dembound.results.histories import Quantity
@@ -65,12 +65,14 @@ class Outcome:
     wall: list[float] = field(default_factory=list)
 
 
-def measure(case: Case, progress: Progress, watched: bool = True) -> tuple[Outcome, float, float]:
+def measure(
+    case: Case, progress: Progress, watched: bool = True, inside: Box | None = None
+) -> tuple[Outcome, float, float]:
     """Run a case; returns its results without costs, CPU time while stepping and time of the whole run, s.
 
     The whole run is building, settling and stepping, without files and pictures. Times do not include compiling.
     watched : whether the energy ledger detects runs that gain energy; it interrupts the stepping a few hundred times,
-    which takes longer than all steps of a short bar.
+    which takes longer than all steps of a short bar. inside : the part of the scene in which findings are looked for.
 
     Raises the errors of `running.plan` and of runs.
     """
@@ -83,10 +85,10 @@ def measure(case: Case, progress: Progress, watched: bool = True) -> tuple[Outco
         simulation.track(records, *([ledger] if watched else []), Reports(progress, planned.steps))
         with cpu.with_compiling():
             simulation.run(planned.steps)
-    return _outcome(planned, simulation, records), cpu.seconds["step"], wall.seconds["whole"]
+    return _outcome(planned, simulation, records, inside), cpu.seconds["step"], wall.seconds["whole"]
 
 
-def _outcome(planned: Plan, simulation: Simulation, records: Records) -> Outcome:
+def _outcome(planned: Plan, simulation: Simulation, records: Records, inside: Box | None) -> Outcome:
     """The results of a run that is over."""
     scene, kind = planned.scene, planned.kind
     return Outcome(
@@ -97,7 +99,7 @@ def _outcome(planned: Plan, simulation: Simulation, records: Records) -> Outcome
         work=kind.work(simulation),
         threads=simulation.scene.threads,
         gauges=_gauges(planned, records),
-        findings=kind.findings(scene, simulation),
+        findings=kind.findings(scene, simulation, inside),
     )
 
 

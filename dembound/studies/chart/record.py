@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import shutil
+import logging
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +17,12 @@ from dembound.studies.chart.measure import Gauge, Gauges, Outcome
 if TYPE_CHECKING:
     import h5py
 
+LOGGER = logging.getLogger(__name__)
+
 FILE = "chart.h5"
+
+OWN = (FILE, f"{FILE}.new", f"{FILE}.log", f"{FILE}.log.part", "chart.csv", "chart.png")
+"""The files of a chart; all others in its folder are somebody else's, and are kept."""
 
 NUMBERS = ("failure", "time_step", "step_limit", "steps", "count", "work", "threads")
 """Attributes of an outcome that are single values."""
@@ -72,13 +77,15 @@ class Record:
 def record_in(folder: Path, resume: bool) -> Record:
     """The record of a chart in its folder; that of an earlier chart is kept to resume it, otherwise deleted.
 
-    Raises CaseError for a folder that holds something else.
+    Other files in the folder remain. Raises CaseError for a folder that holds something else.
     """
     path = folder / FILE
     if folder.exists() and any(folder.iterdir()) and not path.is_file():
         raise CaseError([f"{folder}: exists and holds no chart, give another --output or --name"])
-    if folder.exists() and not resume:
-        shutil.rmtree(folder)
+    if path.is_file() and not resume:
+        LOGGER.info("%s: replacing the chart of before, whose runs --resume would keep", folder)
+        for name in OWN:
+            (folder / name).unlink(missing_ok=True)
     folder.mkdir(parents=True, exist_ok=True)
     return Record(path)
 

@@ -1,27 +1,45 @@
-"""The reference of a chart: an exact solution, an extended run, or the run of the finest choice."""
+"""The reference of a chart: an exact solution, an extended run, a finer run of a bar, or that of the finest choice."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
-from dembound.bar.kind import SPALL_TIME
+import numpy as np
+
+from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
 from dembound.casefile import Case
+from dembound.casefile.bar import BarCase
 from dembound.casefile.chart import ReferenceName
-from dembound.disks.breaks import BREAK_TIME
-from dembound.errors import CaseError, RunError
+from dembound.casefile.disks import DiskCase
+from dembound.disks.breaks import BREAK_TIME, BREAK_X, BREAK_Y
+from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import with_changes
+from dembound.motion.kind import Box, Finding
 from dembound.studies.chart.choices import Choice
 from dembound.studies.chart.errors import Reference
 from dembound.studies.chart.exact import Exact, exact_of
-from dembound.studies.chart.measure import Outcome
+from dembound.studies.chart.finer import Finer, finer
+from dembound.studies.chart.measure import Gauges, Outcome
+from dembound.studies.chart.words import label
 from dembound.studies.extended import MOST, extended
 
 SIDES = "boundary."
 """Beginning of all keys of sides."""
 
-RunOf = Callable[[str, Case], Outcome]
-"""Returns the outcome of a case that is no choice, given its name."""
+DISCRETE = ("bar.spacing", "method", "run")
+"""Beginnings of the keys of bars that the finer reference replaces."""
+
+REALISATIONS = (
+    "choices differ in their random packing, and every packing is another realisation of the rock: errors beside a run "
+    "with one of them include the difference between realisations, which smaller disks do not remove"
+)
+
+RunOf = Callable[[str, Case, Box | None], Outcome]
+"""Returns the outcome of a case that is no choice, given its name, and the part of its scene in which breaks count."""
+
+AXES = {SPALL_PLACE: 0, BREAK_X: 0, BREAK_Y: 1}
+"""Axis of those findings that are places."""
 
 AFFORDABLE = 16
 """Size of an extended scene over that of the choice with most particles, up to which it is run without being asked for.
@@ -34,83 +52,167 @@ def reference_of(
     """The reference of this name for choices with these outcomes.
 
     By default the exact solution if the case has one. Else, if choices differ in their sides, the extended scene, if it
-    is affordable. Else the choice with the most nodes times steps.
+    is affordable. Else of bars the finer run, of disks the choice with the most nodes times steps.
 
     Raises CaseError if a reference that is asked for by name is not possible, RunError if its run fails.
     """
-    finest = _finest(case, choices, outcomes)
-    if wanted == "exact":
-        return _exact(exact_of(case))
-    if wanted == "extended":
-        return _extended(case, choices, outcomes, finest, run, MOST)
-    if wanted is None:
+    return _References(case, choices, outcomes, run).of(wanted)
+
+
+class _References:
+    """The references for choices with these outcomes."""
+
+    def __init__(self, case: Case, choices: Sequence[Choice], outcomes: Sequence[Outcome], run: RunOf) -> None:
+        self._case, self._choices, self._outcomes, self._run = case, choices, outcomes, run
+        self._own = _finest(outcomes)
+
+    def of(self, wanted: ReferenceName | None) -> Reference:
+        """The reference of this name, or the default."""
+        if wanted is None:
+            return self._default()
+        made = {"exact": self._exact, "extended": self._extended, "finer": self._finer, "finest": self._finest}
+        return made[wanted]()
+
+    def _default(self) -> Reference:
+        """The first that the case allows."""
         with suppress(CaseError):
-            return _exact(exact_of(case))
-        if any(key.startswith(SIDES) for choice in choices for key in choice.changes):
-            most = AFFORDABLE * max(outcome.count for outcome in outcomes)
-            try:
-                return _extended(case, choices, outcomes, finest, run, most)
-            except CaseError as error:
-                unseen = "errors of its sides are not seen"
-                sentence = f"{finest.sentence}; {unseen}"
-                return replace(finest, sentence=sentence, caution=f"{unseen}, as there is no extended scene: {error}")
-    return finest
+            return self._exact()
+        if not any(key.startswith(SIDES) for choice in self._choices for key in choice.changes):
+            return self._best()
+        try:
+            return self._extended(AFFORDABLE * max(outcome.count for outcome in self._outcomes))
+        except CaseError as error:
+            best, unseen = self._best(), "errors of its sides are not seen"
+            caution = f"{unseen}, as there is no extended scene: {error}"
+            return replace(best, sentence=f"{best.sentence}; {unseen}", cautions=(*best.cautions, caution))
+
+    def _best(self) -> Reference:
+        """The most accurate run of the same scene."""
+        if not isinstance(self._case, BarCase):
+            return self._finest()
+        try:
+            return self._finer()
+        except DemboundError as error:
+            finest = self._finest()
+            caution = f"the reference is the finest choice, as a finer run is not possible: {error}"
+            return replace(finest, cautions=(caution,))
+
+    def _exact(self) -> Reference:
+        """The exact solution."""
+        solution: Exact = exact_of(self._case)
+        return Reference(
+            name="exact",
+            sentence=solution.sentence,
+            gauges=lambda choice, outcome: solution.gauges(choice.case, outcome.gauges),
+            until=solution.until,
+            findings=solution.findings,
+        )
+
+    def _extended(self, most: int = MOST) -> Reference:
+        """The scene with all keys of the finest choice but those of its sides, extended to at most so many particles.
+
+        Bars are those of the finer run.
+        """
+        changes = self._choices[self._own].changes
+        plain = with_changes(self._case, {key: each for key, each in changes.items() if not key.startswith(SIDES)})
+        fine = finer(plain, self._choices, self._outcomes) if isinstance(plain, BarCase) else None
+        plain = fine.case if fine else plain
+        larger = extended(plain, most)
+        if larger.case is plain:
+            reason = "no side has to be moved, the extended scene is that of the case"
+            raise CaseError([f"--reference: {reason}"], self._case.name)
+        outcome = self._done("extended scene", larger.case, larger.inside)
+        outcome = replace(outcome, findings=_shifted(outcome.findings, larger.inside))
+        sentence = larger.sentence.removeprefix("reference: ")
+        sentence += f", by finite differences at Courant number 1, spacing {fine.spacing:.4g} m" if fine else ""
+        return self._of_run("extended", sentence, outcome, self._places(fine))
+
+    def _finer(self) -> Reference:
+        """Finite differences at Courant number 1 with a finer spacing than all choices."""
+        own = self._choices[self._own]
+        if not isinstance(own.case, BarCase):
+            raise CaseError(["--reference: finer is for bars; of disks take exact, extended or finest"], own.case.name)
+        fine = finer(own.case, self._choices, self._outcomes)
+        outcome = self._done("finer reference", fine.case)
+        sentence = (
+            f"finite differences at Courant number 1 and a spacing of {fine.spacing:.4g} m, finer than all choices"
+        )
+        other = {key: value for key, value in own.changes.items() if not key.startswith(DISCRETE)}
+        sentence += f", {label(self._case, other)}" if other else ""
+        return self._of_run("finer", sentence, outcome, self._places(fine))
+
+    def _finest(self) -> Reference:
+        """The run of the finest choice."""
+        sentence = f"the finest run, {self._choices[self._own].name}"
+        return self._of_run("finest", sentence, self._outcomes[self._own], lambda run, _: run.gauges)
+
+    def _done(self, name: str, case: Case, inside: Box | None = None) -> Outcome:
+        """The outcome of a case that is no choice, breaking inside a box; raises RunError if its run fails."""
+        outcome = self._run(name, case, inside)
+        if outcome.failure:
+            raise RunError(f"{name}: {outcome.failure}")
+        return outcome
+
+    def _places(self, fine: Finer | None) -> Callable[[Outcome, Outcome], Gauges]:
+        """The gauges of a run for the outcome of a choice, at their places in the scene before it was extended."""
+        if fine is not None:
+            return fine.gauges
+        places = {name: gauge.position for name, gauge in self._outcomes[self._own].gauges.items()}
+        return lambda run, _: {name: replace(run.gauges[name], position=place) for name, place in places.items()}
+
+    def _of_run(
+        self, name: str, sentence: str, run: Outcome, gauges: Callable[[Outcome, Outcome], Gauges]
+    ) -> Reference:
+        """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
+        findings = {found: value for found, (value, _) in run.findings.items()}
+        breaks = [
+            findings[at] for at in (SPALL_TIME, BREAK_TIME) if at in findings and self._case.chart.until == "break"
+        ]
+        return Reference(
+            name=name,
+            sentence=sentence + "".join(f", up to its first break at {1e3 * time:.4g} ms" for time in breaks),
+            gauges=lambda _, outcome: gauges(run, outcome),
+            until=min(breaks, default=math.inf),
+            findings=findings,
+            own=tuple(k for k, outcome in enumerate(self._outcomes) if _is_same_run(outcome, run)),
+            cautions=_of_random_packings(self._choices),
+        )
 
 
-def _extended(
-    case: Case, choices: Sequence[Choice], outcomes: Sequence[Outcome], finest: Reference, run: RunOf, most: int
-) -> Reference:
-    """The scene of the case with all keys of the finest choice but those of its sides, extended.
-
-    most : largest number of particles.
-    """
-    assert finest.own is not None
-    inner = {key: value for key, value in choices[finest.own].changes.items() if not key.startswith(SIDES)}
-    plain = with_changes(case, inner)
-    larger = extended(plain, most)
-    if larger.case is plain:
-        raise CaseError(["--reference: no side has to be moved, the extended scene is that of the case"], case.name)
-    outcome = run("extended scene", larger.case)
-    if outcome.failure:
-        raise RunError(f"extended scene: {outcome.failure}")
-    moved = {  # the same particles, which are elsewhere in the extended scene
-        name: replace(outcome.gauges[name], position=gauge.position)
-        for name, gauge in outcomes[finest.own].gauges.items()
-    }
-    return _of_run("extended", larger.sentence.removeprefix("reference: "), case, replace(outcome, gauges=moved))
-
-
-def _exact(solution: Exact) -> Reference:
-    """The reference that an exact solution is."""
-    return Reference(
-        name="exact",
-        sentence=solution.sentence,
-        gauges=lambda choice, outcome: solution.gauges(choice.case, outcome.gauges),
-        until=solution.until,
-        findings=solution.findings,
-    )
-
-
-def _finest(case: Case, choices: Sequence[Choice], outcomes: Sequence[Outcome]) -> Reference:
-    """The choice with the most nodes times steps, the first of several.
+def _finest(outcomes: Sequence[Outcome]) -> int:
+    """The number of the choice with the most nodes times steps, the first of several.
 
     Work would be no measure of accuracy for bars: wider horizons have more bonds and larger errors.
     """
     done = [k for k, outcome in enumerate(outcomes) if not outcome.failure]
     if not done:
         raise RunError("no choice could be run")
-    own = max(done, key=lambda k: outcomes[k].count * outcomes[k].steps)
-    return replace(_of_run("finest", f"the finest run, {choices[own].name}", case, outcomes[own]), own=own)
+    return max(done, key=lambda k: outcomes[k].count * outcomes[k].steps)
 
 
-def _of_run(name: str, sentence: str, case: Case, outcome: Outcome) -> Reference:
-    """The reference that a run is, up to its first spall or broken bond, after which histories do not converge."""
-    findings = {found: value for found, (value, _) in outcome.findings.items()}
-    breaks = [findings[at] for at in (SPALL_TIME, BREAK_TIME) if at in findings and case.chart.until == "break"]
-    return Reference(
-        name=name,
-        sentence=sentence + "".join(f", up to its first break at {1e3 * time:.4g} ms" for time in breaks),
-        gauges=lambda choice, _: outcome.gauges,
-        until=min(breaks, default=math.inf),
-        findings=findings,
+def _of_random_packings(choices: Sequence[Choice]) -> tuple[str, ...]:
+    """A caution if choices have different bricks, and random ones among them."""
+    packings = [choice.case.packing for choice in choices if isinstance(choice.case, DiskCase)]
+    bricks = {repr(packing.with_copies(1, 1)) for packing in packings}
+    if len(bricks) < 2 or not any(packing.packed_under_stress for packing in packings):
+        return ()
+    return (REALISATIONS,)
+
+
+def _shifted(findings: Mapping[str, Finding], inside: Box) -> dict[str, Finding]:
+    """Findings with places in the scene of the case, which lies in a larger one at this box."""
+    return {
+        name: found._replace(value=found.value - inside[AXES[name]]) if name in AXES else found
+        for name, found in findings.items()
+    }
+
+
+def _is_same_run(outcome: Outcome, run: Outcome) -> bool:
+    """Whether two outcomes are of the same run: the same work in the same steps, and the same bits."""
+    if (outcome.time_step, outcome.steps, outcome.work) != (run.time_step, run.steps, run.work):
+        return False
+    return outcome.gauges.keys() == run.gauges.keys() and all(
+        np.array_equal(gauge.velocity, run.gauges[name].velocity)
+        and np.array_equal(gauge.displacement, run.gauges[name].displacement)
+        for name, gauge in outcome.gauges.items()
     )

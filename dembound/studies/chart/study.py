@@ -13,13 +13,14 @@ from dembound.casefile.chart import ReferenceName
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import kind_of
+from dembound.motion.kind import Box
 from dembound.results.histories import Quantity
 from dembound.running import Progress
 from dembound.studies.chart.choices import Choice, choices_of, digest, from_table
 from dembound.studies.chart.defaults import defaults
 from dembound.studies.chart.errors import MonitorError, Reference, Wanted, errors
 from dembound.studies.chart.exact import exact_of
-from dembound.studies.chart.front import ROUNDING, Point, cheapest_within, front
+from dembound.studies.chart.front import EQUAL, ROUNDING, Point, cheapest_within, front
 from dembound.studies.chart.measure import Outcome, measure
 from dembound.studies.chart.record import Record, record_in
 from dembound.studies.chart.reference import reference_of
@@ -66,6 +67,11 @@ class Line:
         """Median time of the whole run, s."""
         return float(np.median(self.outcome.wall))
 
+    @property
+    def apart(self) -> float:
+        """Largest distance (m) of a monitor from where the reference recorded it."""
+        return max((error.apart for error in self.errors), default=0.0)
+
 
 @dataclass(frozen=True)
 class Charted:
@@ -87,8 +93,12 @@ class Charted:
     front: Sequence[int] = ()
 
     def found(self, line: Line) -> str:
-        """The findings of a choice in words, as differences from those of the reference if it has them."""
-        wanted, found = self.reference.findings, line.outcome.findings
+        """The findings of a choice in words, as differences from those of the reference if it has them.
+
+        Those of the reference itself are its numbers.
+        """
+        is_own = any(line is self.lines[k] for k in self.reference.own)
+        wanted, found = {} if is_own else self.reference.findings, line.outcome.findings
         missing = [name for name in wanted if name not in found]
         parts = [f"no {', '.join(missing)}"] if missing else []
         for name, (value, unit) in found.items():
@@ -99,7 +109,7 @@ class Charted:
     @property
     def judged(self) -> list[int]:
         """Numbers of the choices that have an error and are not the reference."""
-        return [k for k, line in enumerate(self.lines) if line.errors and k != self.reference.own]
+        return [k for k, line in enumerate(self.lines) if line.errors and k not in self.reference.own]
 
     def cheapest(self, level: float) -> int | None:
         """Number of the cheapest choice with an RMS error of at most `level`; None if there is none."""
@@ -116,10 +126,11 @@ class Charted:
             name = "none" if found is None else self._described(self.lines[found])
             within.setdefault(name, []).append(f"within {100.0 * level:g} %")
         parts = [f"cheapest {' and '.join(levels)}: {name}" for name, levels in within.items()]
-        best = min((self.lines[k] for k in self.judged), key=lambda line: line.errors[0].rms, default=None)
-        if best is not None and best.errors[0].rms > LEVELS[-1]:
-            parts.append(f"most accurate: {self._described(best)}")
-        return "; ".join(parts)
+        least = self.lines[self.front[0]].errors[0].rms
+        if least > LEVELS[-1] and (best := self.cheapest(least * (1.0 + EQUAL))) is not None:
+            parts.append(f"most accurate: {self._described(self.lines[best])}")
+        own = [f"{line.choice.name} ({line.cpu:.2g} s)" for line in (self.lines[k] for k in self.reference.own)]
+        return "; ".join([*parts, *([f"the reference itself: {', '.join(own)}"] if own else [])])
 
     def _described(self, line: Line) -> str:
         """A choice with its error and cost."""
@@ -149,8 +160,8 @@ def chart(case: Case, options: Options, folder: Path, resume: bool, shown: Shown
     lines = [_line(choice, outcome, reference, options) for choice, outcome in zip(choices, outcomes, strict=True)]
     if not any(line.errors for line in lines):
         raise RunError("\n".join(dict.fromkeys(f"{line.outcome.failure}" for line in lines)))
-    lines_out = [*left_out, reference.caution] if reference.caution else left_out
-    charted = Charted(case, reference, options.wanted.quantity, kind_of(case).work_unit, lines, lines_out)
+    unit, lines_out = kind_of(case).work_unit, [*left_out, *reference.cautions]
+    charted = Charted(case, reference, options.wanted.quantity, unit, lines, lines_out)
     if not (judged := charted.judged):
         raise RunError(f"nothing is left to compare with the reference, {reference.sentence}, which is a choice itself")
     return replace(charted, front=[judged[k] for k in front([_point(lines[k]) for k in judged])])
@@ -210,14 +221,14 @@ class _Runs:
             del outcome.cpu[repeats:], outcome.wall[repeats:]
         return outcomes
 
-    def one(self, name: str, case: Case) -> Outcome:
-        """The outcome of a case, without costs if it has to be run."""
+    def one(self, name: str, case: Case, inside: Box | None = None) -> Outcome:
+        """The outcome of a case, without costs if it has to be run; inside : where its findings are looked for."""
         key = digest(case)
         if (found := self._record.outcome(key)) is not None:
             return found
         try:
             with self._shown(name) as progress:
-                outcome, _, _ = measure(case, progress)
+                outcome, _, _ = measure(case, progress, inside=inside)
         except DemboundError as error:
             outcome = Outcome(failure=str(error).splitlines()[0])
         self._record.add(key, outcome)

@@ -57,8 +57,8 @@ def write_results(charted: Charted, path: Path) -> None:
 def _write_reference(group: h5py.Group, charted: Charted) -> None:
     """Its name, in words, and its histories; those of an exact solution are those of the first choice with results."""
     reference = charted.reference
-    own = -1 if reference.own is None else reference.own
-    group.attrs.update({"name": reference.name, "sentence": reference.sentence, "choice": own})
+    own = np.array(reference.own, dtype=int)
+    group.attrs.update({"name": reference.name, "sentence": reference.sentence, "choices": own})
     for name, value in reference.findings.items():
         group.attrs[name] = value
     line = next(line for line in charted.lines if not line.outcome.failure)

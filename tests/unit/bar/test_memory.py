@@ -33,5 +33,7 @@ def test_a_bar_too_large_is_refused_before_its_nodes_are_placed(spalling, monkey
     monkeypatch.setattr(memory, "memory_here", lambda: Memory(300e6, 250e6))
     case = spalling({"bar.spacing": 1e-6})
 
-    with pytest.raises(CaseError, match=r"^bar.spacing: 1,000,001 nodes need about \d+ MB of memory, this machine "):
+    with pytest.raises(
+        CaseError, match=r"^bar.spacing: 1,000,001 nodes with a horizon of 3 spacings need about \d+ MB of "
+    ):
         build_bar(case)

@@ -38,6 +38,17 @@ def test_it_is_the_first_step_and_the_mean_place(bar) -> None:
     assert found[BREAK_Y] == (pytest.approx(0.5 * run.scene.size[1]), "m")
 
 
+def test_only_those_inside_a_part_of_the_scene_count(bar) -> None:
+    run = run_of(bar(BONDS))
+    cracks = run.system.take_cracks(run.state.step)
+    last = float(cracks.position[cracks.step == cracks.step.min(), 0].max())
+    rest = cracks.position[:, 0] < last - 0.1  # what breaks later, nearer to the driven end
+    found = first_break(run_of(bar(BONDS)), (0.0, 0.0, last - 0.1, 1.0))
+    assert found[BREAK_TIME].value == pytest.approx(cracks.step[rest].min() * run.time_step)
+    assert found[BREAK_X].value < last - 0.1
+    assert first_break(run_of(bar(BONDS)), (0.0, 0.0, 0.3, 1.0)) == {}
+
+
 def test_places_are_those_without_the_displacement_at_rest(bar) -> None:
     by = 1e-3
     case = bar(BONDS)

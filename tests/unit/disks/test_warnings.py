@@ -86,6 +86,25 @@ def test_locked_in_stress_that_breaks_bonds_is_warned_of(bar, changes: dict, bey
 
 
 @pytest.mark.parametrize(
+    ("stress", "tension"),
+    [
+        ([-9e6, -9e6, 0.0], None),
+        ([-9e6, 1.1e6, 0.0], "1.1 MPa"),
+        ([0.9e6, 0.9e6, 0.0], None),
+        ([0.5e6, 0.5e6, -0.6e6], "1.1 MPa"),  # 0.5 + 0.6
+        ([0.9e6, -0.7e6, 0.6e6], "1.1 MPa"),  # 0.1 + (0.8² + 0.6²)^½
+        ([0.9e6, -0.7e6, 0.3e6], None),  # 0.95
+    ],
+)
+def test_settling_under_a_tension_above_the_strength_is_warned_of(bar, stress, tension) -> None:
+    brittle = {"material.law": "linearpbond", "material.pb_ten": 1e6, "material.pb_coh": 2e6}
+    found = warned(bar({**brittle, **SLOW, **CALIBRATED, "motion.held": [], "static": {"stress": stress}}))
+    said = f"static.stress: has a tension of {tension}, above material.pb_ten = 1 MPa; bonds break in the static stage"
+
+    assert [line for line in found if "tension of" in line] == ([] if tension is None else [said])
+
+
+@pytest.mark.parametrize(
     ("static", "sudden"), [({}, True), ({"static": {"boundary": {"left": {"type": "fixed"}}}}, False)]
 )
 def test_a_steady_load_without_a_static_stage_is_warned_of(bar, static: dict, sudden: bool) -> None:

@@ -6,17 +6,18 @@ import pytest
 
 from dembound.errors import CaseError
 from dembound.plot.chart import LEAST, plot_chart
+from dembound.plot.style import save
 
 
 @pytest.fixture
 def chart(tmp_path):
-    """Writes records of charts: choices of (name, error, costs), the numbers of those on the front, the reference's."""
+    """Writes records of charts: choices of (name, error, costs), numbers of those on the front, of the reference."""
 
-    def write(choices, front=(), own=-1, failed=()):
+    def write(choices, front=(), own=(), failed=(), apart=0.0):
         path = tmp_path / "chart.h5"
         with h5py.File(path, "w") as file:
             file.attrs.update({"name": "rod", "title": "A rod", "quantity": "velocity", "sentence": "cheapest: none"})
-            file.create_group("reference").attrs.update({"sentence": "exact", "choice": own})
+            file.create_group("reference").attrs.update({"sentence": "exact", "choices": np.array(own, dtype=int)})
             for number, (name, error, costs) in enumerate(choices):
                 run = file.create_group(f"runs/{number}")
                 run.attrs["threads"], run["cpu"] = 1, np.array(costs)
@@ -25,6 +26,7 @@ def chart(tmp_path):
                 group.attrs.update({"name": name, "on_front": number in front, "failure": failure, "found": ""})
                 group["run"] = h5py.SoftLink(f"/runs/{number}")
                 group["monitor"], group["component"], group["rms"] = ["gauge"], ["x"], np.array([error])
+                group["apart"] = np.array([apart * number])
         return path
 
     return write
@@ -49,7 +51,7 @@ def test_points_are_errors_in_per_cent_at_the_median_cost(chart) -> None:
 
 def test_reference_others_and_failures_are_listed(chart) -> None:
     choices = [("own", 0.0, [8.0]), ("good", 0.1, [1.0]), ("bad", 0.2, [2.0]), ("none", 0.0, [])]
-    panel, side = plot_chart(chart(choices, front=[1], own=0, failed=[3])).axes
+    panel, side = plot_chart(chart(choices, front=[1], own=(0,), failed=[3])).axes
     assert texts(side) == [
         *("Pareto front, the cheapest first", "2  good: 10 %, 1 s", "reference", "1  own: 8 s"),
         *("others", "3  bad: 20 %, 2 s", "failed", "4  none: too long a step"),
@@ -105,6 +107,22 @@ def test_units_stay_beside_their_numbers(chart, length: int) -> None:
 def test_many_choices_are_listed_elsewhere(chart) -> None:
     side = plot_chart(chart([(f"choice {k}", 0.1 + k, [1.0 + k]) for k in range(40)], front=[0])).axes[1]
     assert texts(side)[-1] == "others: see chart.csv"
+
+
+def test_monitors_elsewhere_are_marked_with_the_largest_distance(chart) -> None:
+    choices = [("fine", 0.01, [3.0]), ("coarse", 0.2, [0.5]), ("coarser", 0.3, [0.4])]
+    side = plot_chart(chart(choices, apart=0.25)).axes[1]  # 0, 0.25 and 0.5 m
+    names = [text.split(":")[0] for text in texts(side)[1:4]]
+    assert names == ["3  coarser†", "2  coarse†", "1  fine"]
+    assert texts(side)[-1] == "† monitors record elsewhere than in the reference, up to 0.5 m away"
+    assert "†" not in "".join(texts(plot_chart(chart(choices)).axes[1]))
+
+
+def test_the_sentence_stays_below_any_title(chart) -> None:
+    path = chart([("fine", 0.01, [3.0])])
+    assert plot_chart(path).get_suptitle() == "A rod\ncheapest: none"
+    assert plot_chart(path, "Mine $x^{$").get_suptitle() == "Mine $x^{$\ncheapest: none"
+    save(plot_chart(path, "Mine $x^{$"), path.with_suffix(".png"))  # as text, not as a formula
 
 
 def test_a_file_that_is_no_record_is_bad_input(tmp_path) -> None:

@@ -8,6 +8,7 @@ import tomli_w
 from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.plot.side import plot_side
+from dembound.plot.table import columns_of
 from dembound.results.reader import text_of
 from dembound.results.results import Results
 from dembound.results.sides import read_side_history
@@ -51,11 +52,22 @@ def test_both_quantities_are_drawn_with_their_units(run) -> None:
     np.testing.assert_allclose(by_time.lines[0].get_ydata(), history.stress[:, 0] / 1e6)
     np.testing.assert_allclose(by_time.lines[1].get_ydata(), history.stress[:, 1] / 1e6)
     np.testing.assert_allclose(by_strain.lines[0].get_xdata(), 100.0 * history.strain)
-    assert by_time.get_ylabel() == "mean stress, tension positive (MPa)"
+    assert by_time.get_ylabel() == by_strain.get_ylabel() == "mean stress (MPa)"
     assert by_strain.get_xlabel().endswith("(%)")
 
     (panel,) = plot_side([run], "bottom", "displacement").axes
     assert panel.get_ylabel() == "mean displacement (m)"
+
+
+def test_the_table_has_units_and_each_stress_its_own_sign(run) -> None:
+    heads = [head for head, _ in columns_of(plot_side([run], "top", "stress"))]
+    assert heads == [
+        "time (ms)",
+        "pulled, normal, tension positive: mean stress (MPa)",
+        "pulled, shear, xy: mean stress (MPa)",
+        "strain to the opposite side, extension positive (%)",
+        "pulled, normal, tension positive: mean stress (MPa)",
+    ]
 
 
 def test_other_sides_and_quantities_are_refused(run, small_run) -> None:

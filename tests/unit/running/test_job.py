@@ -508,6 +508,24 @@ def test_a_run_ends_when_all_is_silent_with_the_same_bits_until_then(bar, tmp_pa
     assert kept[f"{len([name for name in kept if name.endswith('/at')]) - 1:04d}/at"] == ended["time"]
 
 
+def test_a_run_that_never_becomes_silent_says_so(bar, tmp_path) -> None:
+    grip = {"boundary.left": {"type": "velocity", "wave_p": "pulse"}, "boundary.right": {"type": "free"}}
+    whole = run_case(bar({**QUIET, **SILENT, **grip}, "rings"), tmp_path)  # the pulse goes to and fro
+    assert summary(whole)["ended"] is None
+    (said,) = (line for line in summary(whole)["warnings"] if line.startswith("run.until: "))
+    assert said.startswith(
+        'run.until: is "silent", but the run went on for its whole duration, 0.2 s: the monitors did not become silent '
+        "(5 % of their peaks), the velocity of monitor.middle is still "
+    )
+    # over at 0.02 s, but all must be silent for the time of a slow wave to the farther side and back
+    late = run_case(bar({**QUIET, **SILENT, "run.duration": 0.025}, "late"), tmp_path)
+    (said,) = (line for line in summary(late)["warnings"] if line.startswith("run.until: "))
+    assert "not all were so for long enough, or waves had not passed them all" in said
+    for changes in (QUIET, {**QUIET, **SILENT}):
+        warnings = summary(run_case(bar(changes, "other"), tmp_path))["warnings"]
+        assert not any(line.startswith("run.until") for line in warnings)
+
+
 def test_a_bar_of_nodes_ends_when_it_is_silent(spalling, tmp_path) -> None:
     changes = {"boundary.right": {"type": "viscous"}, "bar.strength": 1e12, "run.duration": 0.02}
     changes |= {"method": {"type": "finite_difference"}, "load.hit.nodes": 1}

@@ -52,6 +52,7 @@ def test_all_is_at_its_place_on_its_particles(field, pattern) -> None:
     assert 0.0 < shift[0] < large.size[0] - small.size[0]
     assert shift[1] > 0.0
     np.testing.assert_allclose(np.array(shift) / case.packing.brick_size % 1.0 % (1.0 - 1e-9), 0.0, atol=1e-9)
+    np.testing.assert_allclose(extended(case).inside, [*shift, *(shift + small.size)])
     for name, node in small.monitors.items():
         (here, twin), (there, its) = at(small, node, 0.0), at(large, large.monitors[name], shift)
         np.testing.assert_allclose(there, here, atol=1e-9)
@@ -194,8 +195,10 @@ def test_a_rock_bar_grows_beyond_its_absorbing_end(spalling) -> None:
         "before 0.004 s"
     )
     other = spalling({"boundary.left": {"type": "viscous"}, "load.hit.side": "right", "run.duration": 4e-3})
-    longer = extended(other).case
-    assert longer.monitor[0].position - 0.525 == pytest.approx(longer.bar.length - 1.0, rel=1e-12)
+    found = extended(other)
+    longer, beyond = found.case, found.case.bar.length - 1.0
+    assert longer.monitor[0].position - 0.525 == pytest.approx(beyond, rel=1e-12)
+    assert found.inside == pytest.approx((beyond, 0.0, beyond + 1.0, 0.0))
 
 
 def test_a_loaded_end_stays(spalling) -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from dembound.bar.scene import build_bar
 from dembound.kinds import loads
-from dembound.studies.quiet import PARTICLES, trials
+from dembound.studies.quiet import PARTICLES, UNLOADED, trials
 
 ROCK = """
 [bar]
@@ -61,7 +61,13 @@ def test_a_large_scene_is_a_reduced_copy_with_the_same_sides(bar) -> None:
 def test_a_law_with_a_history_is_measured_beside_its_linear_one(bar) -> None:
     found, words = trials(bar({"material.law": "linearpbond"}))
 
-    assert [(trial.name, trial.is_linear) for trial in found] == [("elastic", True), ("linearpbond", False)]
+    assert [(trial.name, trial.is_linear) for trial in found] == [
+        ("elastic", True),
+        ("linearpbond, unloaded", False),
+    ]
+    assert UNLOADED in words
+    pressed, words = trials(bar({"material.law": "linearpbond", "material.contact_share": 0.0}))  # nothing opens
+    assert (pressed[1].name, UNLOADED in words) == ("linearpbond", False)
     assert found[1].limit == pytest.approx(np.sqrt(0.75 / 1.05) * found[0].limit, rel=1e-3)
     assert any("no bond breaks" in word for word in words)
 

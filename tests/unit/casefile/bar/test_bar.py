@@ -224,9 +224,12 @@ def names(types: Iterable[type], key: str = "type") -> str:
             'type = "finite_difference"\nhorizon = 3',
             f"horizon: is for {names(METHODS, 'horizon')}; allowed here: type",
         ),
-        ('type = "peridynamics"', "horizon: is missing, must be a whole number no less than 1"),
+        ('type = "peridynamics"', "horizon: is missing, must be a whole number no less than 1 and no more than 1000"),
         ('type = "peridynamics"\nhorizon = 0', "horizon: is 0, must be at least 1"),
-        ('type = "peridynamics"\nhorizon = 2.5', "horizon: is 2.5, must be a whole number no less than 1"),
+        (
+            'type = "peridynamics"\nhorizon = 2.5',
+            "horizon: is 2.5, must be a whole number no less than 1 and no more than 1000",
+        ),
         ('type = "peridynamics"\nhorizon = 51', "horizon: is 51, must be at most 50, half the bar's spacings"),
         ('type = "switch"\nhorizon = 51', "horizon: is 51, must be at most 50, half the bar's spacings"),
         (

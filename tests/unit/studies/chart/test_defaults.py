@@ -2,14 +2,18 @@
 
 import pytest
 
+from dembound.disks.matching import homogenised_beta
+from dembound.disks.scene import build
 from dembound.kinds import load, with_changes
 from dembound.shipped import folder, names
+from dembound.studies.chart import defaults as chosen
 from dembound.studies.chart.choices import choices_of
 from dembound.studies.chart.defaults import defaults
 
 
 @pytest.mark.parametrize("name", names())
-def test_every_shipped_case_has_some(name: str) -> None:
+def test_every_shipped_case_has_some(name: str, monkeypatch) -> None:
+    monkeypatch.setattr(chosen, "_homogenised_factors", lambda case: iter(()))  # they need the packing
     case = load(folder() / f"{name}.toml")
     choices, _ = choices_of(case, defaults(case))
     assert len(choices) >= 4
@@ -21,12 +25,24 @@ def test_of_disks_one_thing_changes_at_a_time(bar) -> None:
         "as in the case": {},
         "radius 0.5 m": {"packing.radius": 0.5},  # ×1.25 and ×1.5 do not divide 10 m × 1 m
         "safety 0.45": {"run.safety": 0.45},
+        "right, homogenised β": {"boundary.right.beta_p": 1.0},
         "right viscoelastic": {"boundary.right": {"type": "viscoelastic", "distance": 5.0, "beta_p": 0.8}},
         "right free": {"boundary.right": {"type": "free"}},
     }
 
 
-def test_rows_of_frames_are_coarsened_with_the_disks() -> None:
+def test_homogenised_factors_are_a_choice_where_others_are_given(bar) -> None:
+    packing = {"pattern": "B", "size": [9.0, 3.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0], "seed": 1}
+    case = bar({"packing": packing, "motion.held": ["y", "rotation"], "boundary.right": {"type": "viscous"}})
+    found = defaults(case)["right, homogenised β"]  # not the left side, where the wave enters
+    assert found == {"boundary.right.beta_p": round(homogenised_beta(build(case), "right", "p"), 4)}  # y is held
+    assert 0.5 < found["boundary.right.beta_p"] < 0.95
+    near = {key: 1.005 * beta for key, beta in found.items()}
+    assert not any("homogenised" in name for name in defaults(with_changes(case, near)))
+
+
+def test_rows_of_frames_are_coarsened_with_the_disks(monkeypatch) -> None:
+    monkeypatch.setattr(chosen, "_homogenised_factors", lambda case: iter(()))
     case = load(folder() / "zhou2018" / "long_bar_c.toml")
     (changes,) = (changes for changes in defaults(case).values() if changes.get("packing.radius") == 0.3125)
     assert changes["packing.edge_radius"] == 1.25 * case.packing.edge_radius
@@ -35,12 +51,46 @@ def test_rows_of_frames_are_coarsened_with_the_disks() -> None:
 def test_of_bars_all_methods_with_all_spacings(spalling) -> None:
     case = spalling({"run": {"duration": 1.5e-3, "time_step": 1e-6}})
     found = defaults(case)
-    assert {changes["bar.spacing"] for changes in found.values()} == {0.025, 0.03125, 0.05}
-    types = [changes["method"]["type"] for changes in found.values() if changes["bar.spacing"] == 0.05]
+    assert next(iter(found.items())) == ("as in the case", {})
+    others = list(found.values())[1:]
+    assert {changes["bar.spacing"] for changes in others} == {0.025, 0.03125, 0.05}
+    types = [changes["method"]["type"] for changes in others if changes["bar.spacing"] == 0.05]
     assert types == ["finite_difference", "finite_difference", "peridynamics", "switch", "patch"]
-    assert {changes["run.time_step"] for changes in found.values()} == {"auto"}
+    assert [changes["run"] for changes in others[:2]] == [
+        {"duration": 1.5e-3, "courant": 1.0},
+        {"duration": 1.5e-3},  # automatic
+    ]
+
+
+@pytest.mark.parametrize("step", [{"safety": 0.5}, {"courant": 0.3}, {"time_step": 1e-6}, {"time_step": "auto"}])
+def test_all_choices_are_valid_whatever_step_the_bar_has(spalling, step) -> None:
+    case = spalling({"run": {"duration": 1.5e-3, **step}})
+    choices, left_out = choices_of(case, defaults(case))
+    assert not left_out
+    steps = {(choice.case.run.courant, choice.case.run.time_step, choice.case.run.safety) for choice in choices[1:]}
+    assert steps == {(1.0, "auto", 0.9), (None, "auto", step.get("safety", 0.9))}
+
+
+def test_the_case_itself_counts_once(spalling) -> None:
+    method = {"type": "peridynamics", "horizon": 2, "corrected_ends": True}
+    case = spalling({"method": method, "run": {"duration": 1.5e-3}})
+    choices, _ = choices_of(case, defaults(case))
+    assert choices[0].name == "as in the case"
+    assert len([choice for choice in choices if choice.case.method == case.method]) == 3  # one for each spacing
+
+
+def test_methods_have_the_keys_of_the_case(spalling) -> None:
+    case = spalling({"method": {"type": "switch", "horizon": 5, "trigger": 0.8, "corrected_ends": True}})
+    methods = {changes["method"]["type"]: changes["method"] for changes in list(defaults(case).values())[1:]}
+    assert methods == {
+        "finite_difference": {"type": "finite_difference"},
+        "peridynamics": {"type": "peridynamics", "horizon": 5, "corrected_ends": True},
+        "switch": {"type": "switch", "horizon": 5, "trigger": 0.8, "corrected_ends": True},
+        "patch": {"type": "patch", "horizon": 5, "trigger": 0.8},
+    }
 
 
 def test_methods_that_wait_for_a_break_are_for_bars_that_can_break(spalling) -> None:
     case = with_changes(spalling(), {"bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1e3}})
-    assert {changes["method"]["type"] for changes in defaults(case).values()} == {"finite_difference", "peridynamics"}
+    types = {changes["method"]["type"] for changes in list(defaults(case).values())[1:]}
+    assert types == {"finite_difference", "peridynamics"}

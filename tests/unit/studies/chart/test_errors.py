@@ -37,6 +37,7 @@ def test_the_worst_monitor_comes_first(compared) -> None:
     assert [each.rms for each in found] == pytest.approx([0.2, 0.1])
     assert [each.peak for each in found] == pytest.approx([0.2, 0.1])
     assert [each.apart for each in found] == [0.0, 0.5]
+    assert compared({"a": gauge(101, place=0.1 + 0.2)}, {"a": gauge(101, place=0.3)})[0].apart == 0.0  # rounding
 
 
 def test_the_finer_history_is_interpolated(compared) -> None:

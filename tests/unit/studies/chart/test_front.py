@@ -86,3 +86,13 @@ def test_noise_does_not_change_the_front() -> None:
 def test_the_cheapest_within_a_level() -> None:
     points = [point(0.1, 1.0), point(0.05, 4.0), point(0.01, 16.0)]
     assert [cheapest_within(points, level) for level in (0.2, 0.06, 0.01, 0.001)] == [0, 1, 2, None]
+
+
+def test_of_equal_costs_and_errors_the_least_work_then_the_first_is_named() -> None:
+    # errors within 1 % of each other: none rules out another
+    points = [point(0.1, 1.0, work=100), point(0.1004, 1.3, work=98), point(0.1005, 0.9, work=98), point(0.5, 1.0)]
+    assert front(points) == [0, 1, 2]
+    assert cheapest_within(points, 0.2) == 1
+    assert cheapest_within(points[:1] + points[2:], 0.2) == 1
+    # a choice that costs less is named before one with the same error
+    assert cheapest_within([point(0.1, 1.0), point(0.15, 0.2)], 0.2) == 1

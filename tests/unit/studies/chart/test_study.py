@@ -2,14 +2,16 @@
 
 import csv
 from contextlib import contextmanager
+from dataclasses import replace
 
 import h5py
 import numpy as np
 import pytest
 
 from dembound.errors import CaseError, RunError
+from dembound.motion.kind import Finding
 from dembound.running import Progress
-from dembound.studies.chart import study
+from dembound.studies.chart import reference, study
 from dembound.studies.chart.choices import combinations
 from dembound.studies.chart.errors import Wanted
 from dembound.studies.chart.study import Options, chart
@@ -91,12 +93,66 @@ def test_nothing_but_failures_is_a_failure(charted, spalling) -> None:
         charted(spalling(), {"run.courant": [3.0]})
 
 
-def test_the_finest_choice_is_the_reference_where_there_is_no_solution(charted, spalling) -> None:
-    found, _ = charted(spalling({"bar.attenuation": 0.1, "bar.strength": 1e9}), repeats=1)
-    assert (found.reference.name, found.reference.own) == ("finest", 1)
-    assert found.reference.sentence == "the finest run, spacing 0.025 m"
-    assert found.judged == found.front == [0]
-    assert found.lines[1].errors[0].rms == 0.0
+def test_the_finest_choice_is_the_reference_of_disks_without_a_solution(charted, bar) -> None:
+    case = bar({"run.duration": 0.02, "motion.held": []})
+    found, _ = charted(case, {"packing.radius": [0.25, 0.5]}, repeats=1)
+    assert (found.reference.name, found.reference.own) == ("finest", (0,))
+    assert found.reference.sentence == "the finest run, radius 0.25 m"
+    assert found.judged == found.front == [1]
+    assert found.lines[0].errors[0].rms == 0.0
+    assert found.sentence.endswith(f"the reference itself: radius 0.25 m ({found.lines[0].cpu:.2g} s)")
+
+
+def test_a_choice_that_is_the_reference_run_again_is_not_its_cheapest(charted, bar) -> None:
+    case = bar({"run.duration": 0.02, "motion.held": []})
+    found, _ = charted(case, {"run.safety": [0.45, 0.9], "output.snapshots": [0, 2]}, repeats=1)
+    assert found.reference.own == (0, 1)  # the number of snapshots changes no run
+    assert found.judged == [2, 3]
+    assert found.cheapest(1.0) in (2, 3)
+
+
+def test_of_equally_accurate_choices_the_first_is_named(charted, bar) -> None:
+    sides = {"boundary.right": [{"type": "viscous"}, {"type": "free"}]}
+    found, _ = charted(bar({"run.duration": 0.01}), sides, repeats=1, reference="exact")
+    errors = [[replace(line.errors[0], rms=rms)] for line, rms in zip(found.lines, (0.1001, 0.1), strict=True)]
+    lines = [replace(line, errors=each) for line, each in zip(found.lines, errors, strict=True)]
+    equal = replace(found, lines=lines, front=[1, 0])  # the second by a thousandth, at the same cost
+    assert "most accurate: boundary.right viscous (10 %" in equal.sentence
+
+
+FADING = {"bar.attenuation": 0.1, "bar.strength": 1e9, "method": {"type": "finite_difference"}, "load.1.nodes": 1}
+"""A bar for which no exact solution is known."""
+
+
+def test_a_finer_run_is_the_reference_of_bars_without_a_solution(charted, spalling) -> None:
+    found, runs = charted(spalling(FADING), {"bar.spacing": [0.05, 0.025], "run.courant": [0.9, 1.0]}, repeats=1)
+    assert (found.reference.name, found.reference.own) == ("finer", ())
+    # 20 and 40 cells: 160 are a multiple of both, and four times as many as the finest
+    assert found.reference.sentence == (
+        "finite differences at Courant number 1 and a spacing of 0.00625 m, finer than all choices"
+    )
+    assert runs.count("finer reference") == 1
+    assert found.judged == [0, 1, 2, 3]
+    assert all(error.apart == 0.0 for line in found.lines for error in line.errors)
+    errors = {line.choice.name: line.errors[0].rms for line in found.lines}
+    # without attenuation no error would be left at ν = 1; with it 0.04 %, and 16 % at ν = 0.9
+    assert errors["spacing 0.025 m, courant 1"] < 0.05 * errors["spacing 0.025 m, courant 0.9"]
+
+
+def test_the_finer_run_is_of_bars(charted, bar) -> None:
+    with pytest.raises(CaseError, match="finer is for bars"):
+        charted(bar(), {"run.safety": [0.45, 0.9]}, repeats=1, reference="finer")
+
+
+def test_the_finest_choice_takes_its_place_where_it_fails(charted, spalling, monkeypatch) -> None:
+    def impossible(*_):
+        raise CaseError(["bar.spacing: is too small"])
+
+    monkeypatch.setattr(reference, "finer", impossible)
+    found, _ = charted(spalling(FADING), repeats=1)
+    assert (found.reference.name, found.reference.own) == ("finest", (1,))
+    (line,) = found.left_out
+    assert line == "the reference is the finest choice, as a finer run is not possible: bar.spacing: is too small"
 
 
 def test_spalls_are_compared_with_the_closed_form(charted, spalling) -> None:
@@ -122,15 +178,45 @@ SPALLING_DISKS = {
 def test_histories_are_compared_up_to_the_first_broken_bond(charted, bar) -> None:
     laws = {"material.elastic_start": [True, False], "run.safety": [0.9, 0.3]}
     found, _ = charted(bar(SPALLING_DISKS), laws, repeats=1)
-    time = found.lines[found.reference.own].outcome.findings["break time"].value
+    time = found.lines[found.reference.own[0]].outcome.findings["break time"].value
     assert found.reference.until == time < 0.05
     assert found.reference.sentence.endswith(f", up to its first break at {1e3 * time:.4g} ms")
     assert "break time +" in found.found(found.lines[0]) or "break time -" in found.found(found.lines[0])
+    assert found.found(found.lines[found.reference.own[0]]).startswith(f"break time {time:.5g} s, break x ")
 
     whole, _ = charted(bar(SPALLING_DISKS | {"chart.until": "end"}), laws, repeats=1)
     assert (whole.reference.until, "break" in whole.reference.sentence) == (np.inf, False)
     # the pieces fly on at speeds of their own
     assert whole.lines[0].errors[0].rms > 3.0 * found.lines[0].errors[0].rms
+
+
+def test_random_packings_are_realisations(charted, bar) -> None:
+    packing = {"pattern": "B", "size": [9.0, 3.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0], "seed": 1}
+    case = bar({"packing": packing, "run.duration": 0.004})
+    found, _ = charted(case, {"packing.seed": [1, 2]}, repeats=1, reference="finest")
+    assert found.left_out == [reference.REALISATIONS]
+    same = charted(case, {"packing.size": [[9.0, 3.0], [12.0, 3.0]]}, repeats=1, reference="finest")[0]
+    assert not same.left_out  # the same brick, more of them
+    assert not charted(bar(), {"packing.radius": [0.25, 0.5]}, repeats=1, reference="finest")[0].left_out
+
+
+def test_breaks_beyond_the_scene_of_the_case_are_no_end_of_the_comparison(bar, monkeypatch, tmp_path) -> None:
+    # a pulse from the left that would tear the free end of the longer bar: at the case's own end it goes on
+    case = bar({**SPALLING_DISKS, "boundary.right": {"type": "viscous"}, "run.duration": 0.03})
+    sides = {"boundary.right": [{"type": "viscous"}, {"type": "viscous", "beta_p": 0.5}]}
+    boxes = []
+    measured = study.measure
+    monkeypatch.setattr(study, "measure", lambda *a, inside=None, **k: boxes.append(inside) or measured(*a, **k))
+    found = chart(case, Options(combinations(case, sides), 1, "extended"), tmp_path / "chart", False, Log())
+    assert boxes.count((0.0, 0.0, 10.0, 1.0)) == 1  # the extended scene grows to the right
+    assert found.reference.name == "extended"
+
+
+def test_places_in_an_extended_scene_are_those_in_the_case() -> None:
+    found = {"break time": Finding(0.1, "s"), "break x": Finding(203.0, "m"), "break y": Finding(5.0, "m")}
+    shifted = reference._shifted(found, (200.0, 2.0, 240.0, 22.0))
+    assert {name: value for name, (value, _) in shifted.items()} == {"break time": 0.1, "break x": 3.0, "break y": 3.0}
+    assert reference._shifted({"spall place": Finding(1.5, "m")}, (1.0, 0.0, 2.0, 0.0))["spall place"].value == 0.5
 
 
 def test_a_law_that_does_not_break_is_described_so(bar, tmp_path) -> None:

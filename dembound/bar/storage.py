@@ -1,0 +1,22 @@
+"""What a bar takes on disk, for n nodes with bonds of m lengths."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from dembound.bar.memory import bonds_bytes
+from dembound.motion.storage import POINT, Storage, mesh_bytes
+
+if TYPE_CHECKING:
+    from dembound.bar.scene import BarScene
+
+CHANGING, CONSTANT = 32.0, 8.0
+"""Bytes of the motion, stress and damage of a node for ParaView, and of the fields that remain."""
+
+
+def storage_of(scene: BarScene) -> Storage:
+    """Bytes on disk of a bar: in the record of a snapshot motion, stress and damage; a line between two nodes."""
+    nodes, lengths = float(scene.count), max(scene.case.method.largest_horizon, 1)
+    vtu = mesh_bytes(1.0, CHANGING + CONSTANT + 4.0 * scene.case.output.peaks, 1.0, 2, 4.0)
+    snapshot = nodes * (64.0 + vtu + POINT + CHANGING)
+    return Storage(60.0 * nodes, snapshot, 96.0 * nodes + bonds_bytes(nodes, lengths))

@@ -1,0 +1,29 @@
+"""Bytes on disk, counted from the shapes of what is written."""
+
+from typing import NamedTuple
+
+TEXT = 4.0 / 3.0
+"""Bytes in a VTU file for each byte of data: it is base64 text."""
+
+POINT = 24.0
+"""Bytes of a position, three doubles."""
+
+
+class Storage(NamedTuple):
+    """Bytes on disk of a scene.
+
+    header : of what is written once. snapshot : of a snapshot, in the record and in all files for ParaView.
+    checkpoint : of a checkpoint, and of a settled state.
+    """
+
+    header: float
+    snapshot: float
+    checkpoint: float
+
+
+def mesh_bytes(points: float, point_data: float, cells: float, corners: int, cell_data: float) -> float:
+    """Of a VTU file with so many points and cells, from the bytes of data for each.
+
+    Of cells there are the numbers of their corners (4 bytes), where they end (4) and their types (8).
+    """
+    return TEXT * (points * (POINT + point_data) + cells * (4.0 * corners + 12.0 + cell_data))

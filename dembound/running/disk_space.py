@@ -1,0 +1,61 @@
+"""The size of the results of a run, computed from its plan, and the free space of the disk they are written to."""
+
+from collections.abc import Iterator
+from dataclasses import fields
+from pathlib import Path
+
+from dembound.machine import disk_free
+from dembound.motion.energy import Entry, SideEntry
+from dembound.motion.kind import Plan
+from dembound.motion.memory import in_words
+from dembound.running.planning import steps_between_entries, steps_between_samples
+
+ALWAYS = 1e6
+"""Bytes of pictures, of the summary, and of the first chunks of what grows."""
+
+MOTION = 8 + 24 + 24
+"""Bytes of a sample of a monitor: time, displacement and velocity; of a side a force in place of the velocity."""
+
+
+def results_bytes(planned: Plan) -> dict[str, float]:
+    """Bytes of the results of a run, by the key of the case that determines how many; they are an estimate.
+
+    While a checkpoint is written, there are two of them; they contain the ledger.
+    """
+    kind, scene, case = planned.kind, planned.scene, planned.scene.case
+    whole, stepped = kind.storage(scene), kind.storage(planned.stepped)
+    samples = planned.steps / max(1, round(case.output.history_interval / planned.time_step))
+    row = len(scene.monitors) * (MOTION + 8 * (scene.record_width > 6))
+    entry = 8 * (len(fields(Entry)) + len(SideEntry._fields) * len(scene.edges))
+    copies = 2 if case.run.checkpoint > 0.0 else 0
+    settled = len(kind.stage_names(scene)) if copies and kind.stages_from(case) is None else 0
+    return {
+        "output.snapshots": min(case.output.snapshots, planned.steps) * whole.snapshot,
+        "output.history_interval": samples * row,
+        "output.side_interval": planned.steps / steps_between_samples(planned) * len(scene.edges) * (MOTION - 8),
+        "output.energy_interval": planned.steps / steps_between_entries(planned) * entry * (1 + copies),
+        "run.checkpoint": (copies + settled) * stepped.checkpoint,
+        "": ALWAYS + whole.header,
+    }
+
+
+def disk_facts(planned: Plan, results: Path) -> str:
+    """The size of the results of a run as text, and the free space where they are written."""
+    return f"about {in_words(sum(results_bytes(planned).values()))} of results{_free(results)}"
+
+
+def _free(results: Path) -> str:
+    free = disk_free(results)
+    return "" if free is None else f"; the disk has {in_words(free)} free"
+
+
+def disk_warnings(planned: Plan, results: Path) -> Iterator[str]:
+    """A warning about results that are larger than the free space of their disk."""
+    sizes, free = results_bytes(planned), disk_free(results)
+    need = sum(sizes.values())
+    if free is not None and need > free:
+        key = max(filter(None, sizes), key=lambda name: sizes[name])
+        yield (
+            f"{key}: the results take about {in_words(need)}, {in_words(sizes[key])} of them by this key; "
+            f"the disk has {in_words(free)} free"
+        )

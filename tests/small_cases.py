@@ -1,0 +1,70 @@
+"""Small cases that tests of several folders start from, as tables; `small` makes cases of them."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import tomli_w
+
+from dembound.casefile import Case
+from dembound.kinds import loads, with_changes
+
+Tables = dict[str, Any]
+
+HIT = {"type": "triangle", "amplitude": 1.0, "rise": 2e-4, "fall": 2e-4}
+
+SPALLING: Tables = {
+    "bar": {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0, "strength": 8e6},
+    "method": {"type": "peridynamics", "horizon": 3},
+    "load": [{"name": "hit", "pressure": 12e6, "nodes": 3, "wave": "hit"}],
+    "wave": {"hit": HIT},
+    "monitor": [{"name": "gauge", "position": 0.525}],
+    "run": {"duration": 1.5e-3, "courant": 1.0},
+}
+"""A bar of 41 nodes, 60 steps: a compressive pulse of 0.4 m comes back as tension and tears off its free end."""
+
+PULLED: Tables = SPALLING | {
+    "bar": SPALLING["bar"] | {"spacing": 0.01},
+    "method": {"type": "patch", "horizon": 3},
+    "load": [{"name": "hit", "pressure": -15e6, "nodes": 3, "wave": "hit"}],
+    "monitor": [{"name": "gauge", "position": 0.5}],
+    "run": {"duration": 2e-3},
+    "output": {"pictures": False, "snapshots": 5, "energy_interval": 9e-5},
+}
+"""A bar of 101 nodes that is pulled and breaks."""
+
+PUSHED: Tables = {
+    "packing": {"pattern": "A", "size": [10.0, 2.5], "radius": 0.25},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
+    "boundary": {
+        "left": {"type": "velocity", "wave_p": "push", "wave_s": "shake"},
+        "right": {"type": "viscous"},
+    },
+    "wave": {
+        "push": {"type": "cosine", "amplitude": 0.5, "period": 0.01},
+        "shake": {"type": "cosine", "amplitude": 0.2, "period": 0.01},
+    },
+    "monitor": [{"name": "front", "position": [2.4, 1.2]}, {"name": "back", "position": [9.6, 1.2]}],
+    "run": {"duration": 0.01},
+}
+"""A lattice of 20 × 5 disks in P and S motion."""
+
+GRAINS: Tables = {
+    "packing": {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]},
+    "material": PUSHED["material"],
+    "boundary": {
+        "bottom": {"type": "viscous_input", "wave_p": "pulse", "wave_s": "pulse"},
+        "right": {"type": "viscous"},
+    },
+    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.01}},
+    "monitor": [{"name": "middle", "position": [4.0, 2.0]}, {"name": "top", "position": [4.0, 4.0]}],
+    "run": {"duration": 0.03},
+    "output": {"pictures": False, "snapshots": 5, "history_interval": 4e-4, "energy_interval": 1.1e-3},
+}
+"""Two bricks of random disks that a wave enters from below."""
+
+
+def small(tables: Tables, name: str = "small", changes: Mapping[str, Any] | None = None) -> Case:
+    """The case of tables, with some keys changed; its name has no other characters than a folder may have."""
+    case = loads(tomli_w.dumps(tables), name=re.sub(r"\W+", "_", name))
+    return with_changes(case, changes) if changes else case

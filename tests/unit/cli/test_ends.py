@@ -1,0 +1,136 @@
+"""However a command ends, it is one line with what is left and what can be done, and its exit code."""
+
+import errno
+import signal
+import subprocess
+import sys
+import threading
+
+import h5py
+import pytest
+
+from dembound.results.folder import Folder
+from dembound.running import job
+
+IMPORTED = """
+import os, signal, sys
+signal.signal(signal.SIGHUP, signal.{hangups})
+class Signals:
+    def find_spec(self, name, path=None, target=None):
+        if name == "numpy":
+            os.kill(os.getpid(), signal.{number})
+sys.meta_path.insert(0, Signals())
+sys.argv = ["dembound", "dispersion", "--horizon", "0"]
+from dembound.__main__ import main
+main()
+"""
+"""A command that receives a signal as it begins to import numpy."""
+
+
+def ended(number: str, hangups: str = "SIG_DFL") -> tuple[int, str]:
+    program = IMPORTED.format(number=number, hangups=hangups)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    return done.returncode, done.stderr
+
+
+@pytest.mark.parametrize("number", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_signal_during_imports_has_its_line_and_code(number) -> None:
+    assert ended(number) == (128 + getattr(signal, number), "dembound: stopped\n")
+
+
+def test_a_hangup_that_is_to_be_ignored_is_ignored() -> None:
+    code, said = ended("SIGHUP", "SIG_IGN")  # as by nohup
+    assert code == 2
+    assert "--horizon" in said
+
+
+def test_a_full_disk_says_how_to_continue(dembound, written, tmp_path, monkeypatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", "results/bar.partial/paraview/particles.vtkhdf")
+
+    monkeypatch.setattr(job, "write_vtu", full)
+    answer = dembound("run", written())
+    lines = [line for line in answer.err.splitlines() if "warning" not in line]
+
+    assert answer.code == 5
+    assert lines == [
+        "results/bar.partial/paraview/particles.vtkhdf: No space left on device",
+        "bar: histories so far are in results/bar.partial",
+        "bar: to continue: dembound resume results/bar.partial",
+    ]
+    monkeypatch.undo()
+    monkeypatch.chdir(tmp_path)
+    resumed = dembound("resume", "results/bar.partial")
+    assert resumed.code == 0
+    assert "bar.partial" not in resumed.out + resumed.err
+
+
+def test_warnings_of_a_resumed_run_have_the_name_of_the_run(dembound, written) -> None:
+    path = written("bar", {"wave.pulse.start": 1.0})  # after the end of the run
+    first = dembound("run", path)
+    again = dembound("resume", "results/bar", "--until", "0.011")
+
+    assert "bar: warning: " in first.err
+    assert {line.partition(": ")[0] for line in again.err.splitlines()} == {"bar"}
+
+
+def test_a_run_that_another_process_writes_is_not_resumed(dembound, written, tmp_path) -> None:
+    ready, done = threading.Event(), threading.Event()
+
+    def hold() -> None:
+        with Folder(tmp_path / "results", "bar").writing(anew=True):  # nothing else yet, as in a static stage
+            ready.set()
+            done.wait()
+
+    other = threading.Thread(target=hold)
+    other.start()
+    ready.wait()
+    try:
+        for path in ("results/bar", "results/bar.partial"):
+            answer = dembound("resume", path)
+            assert answer.code == 2
+            assert answer.err == (
+                "results/bar.partial: is being written by another run; wait for its end, or take another name\n"
+            )
+    finally:
+        done.set()
+        other.join()
+    answer = dembound("resume", "results/bar")
+    assert answer.code == 2
+    assert "has no checkpoint" in answer.err
+
+
+@pytest.mark.parametrize("name", ["", "CON", "nul.txt", "bar.", "bar ", "a:b", "a/b", "a\\b", "..", "a*"])
+def test_names_that_not_all_systems_can_have_are_refused(dembound, written, tmp_path, name) -> None:
+    answer = dembound("run", written(), "--name", name)
+    assert answer.code == 2
+    (line,) = answer.err.splitlines()
+    assert line.startswith(f"--name: is {name!r}, ")
+    assert not (tmp_path / "results").exists()
+
+
+def test_a_case_with_a_byte_order_mark_is_read(dembound, written) -> None:
+    path = written()
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    assert dembound("check", path).code == 0
+
+
+def test_a_wave_file_that_is_no_file_is_called_so(dembound, written, tmp_path) -> None:
+    (tmp_path / "waves").mkdir()
+    for path, problem in (("waves", "is not a regular file"), ("/dev/zero", "is not a regular file"), ("w.txt", "")):
+        answer = dembound("check", written(), "--set", f'wave.pulse={{type="file",path="{path}"}}')
+        assert answer.code == 2
+        (line,) = answer.err.splitlines()
+        assert line.endswith(problem)
+        assert ("no file" in line) == (problem == "")
+
+
+def test_the_ledger_of_an_earlier_version_is_called_so(dembound, written) -> None:
+    dembound("run", written())
+    with h5py.File("results/bar/run.h5", "a") as file:
+        del file["energy/supplied"]
+    answer = dembound("plot", "results/bar", "--energy")
+
+    assert answer.code == 5
+    (line,) = answer.err.splitlines()
+    assert "is of another version of dembound, its energy ledger has no supplied" in line
