@@ -4,7 +4,8 @@ First every block of eight elements computes its forces, moves the nodes that no
 forces on the others. Then each of these sums the forces of its at most four elements, in a fixed order, and is moved:
 the same bits for any number of threads. Nodes have no rotation, no local damping, and stay at rest on outer edges.
 
-The work of elements that absorb is taken from the grid in full, the strain energy they hold included.
+In the ledger, the work done on elements that absorb counts as taken by damping when it is done: it has left the others.
+The sum of it with kinetic energy and the strain energy of the others is conserved, exactly as by central differences.
 """
 
 from numba import get_thread_id, njit, prange
@@ -241,5 +242,5 @@ def _energies(points, shape, blocks, space, u, energy):
 
 @njit(**FAST)
 def strain_energies(grid, u, energy):
-    """Fill energy (blocks,) J with the strain energy of every block at displacements u (3, slots), without memories."""
+    """Fill energy (k,) J with the strain energies of the first k blocks at displacements u (3, slots)."""
     _energies(grid.points, grid.shape, grid.blocks, grid.space, u, energy)

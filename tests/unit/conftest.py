@@ -264,9 +264,7 @@ def grid() -> Callable[..., GridBody]:
     """Makes continua: elements of 3 × 2 m round a box of 2 × 1 of them that reaches the top, with other keys."""
 
     def make(order: int = 4, medium: Medium = ROCK, first_slot: int = 0, **more: Any) -> GridBody:
-        mesh = Mesh.around(
-            (0.0, 0.0, 6.0, 2.0), (3.0, 2.0), order, margin=Around(1, 2, 1, 0), layer=Around(2, 2, 2, 0)
-        )
+        mesh = Mesh.around((0.0, 0.0, 6.0, 2.0), (3.0, 2.0), order, margin=Around(1, 2, 1, 0), layer=Around(2, 2, 2, 0))
         return GridBody(mesh=mesh, medium=medium, first_slot=first_slot, **more)
 
     return make

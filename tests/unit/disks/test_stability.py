@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from dembound.boundaries.support import SupportBuilder
-from dembound.motion import eigenvalue
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import OPENING, choose_step, step_limit
-from dembound.motion.eigenvalue import LEAST, TOLERANCE
 from dembound.errors import CaseError, RunError
+from dembound.motion import eigenvalue
+from dembound.motion.eigenvalue import LEAST, TOLERANCE
 
 MASS = 2500.0 * 0.5**2
 K = 2500.0 * 1000.0**2

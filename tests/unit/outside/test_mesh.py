@@ -10,9 +10,7 @@ ORDER = 4
 
 def buried() -> Mesh:
     """Round a box of 2 × 1 elements of 3 × 2 m on all four sides."""
-    return Mesh.around(
-        (10.0, 20.0, 16.0, 22.0), (3.0, 2.0), ORDER, margin=Around(1, 2, 1, 1), layer=Around(2, 1, 1, 1)
-    )
+    return Mesh.around((10.0, 20.0, 16.0, 22.0), (3.0, 2.0), ORDER, margin=Around(1, 2, 1, 1), layer=Around(2, 1, 1, 1))
 
 
 def below() -> Mesh:
