@@ -108,8 +108,8 @@ def motion_inside(layers: Around, beyond: Around) -> np.ndarray:
 def test_waves_of_all_angles_beside_a_larger_grid() -> None:
     """P, S and Rayleigh waves, 0.4 s; what the ends of the larger grid send back needs 0.45 s.
 
-    RMS over all nodes and times. A thousandth is the floor of elements with nine nodes to the shortest S wave, here that
-    of λ = 23 m, of whose wave number the push has exp(−½(2π·12/23)²) = 0.5 %.
+    RMS over all nodes and times. A thousandth is the floor of elements with nine nodes to the shortest S wave, here
+    that of λ = 23 m, of whose wave number the push has exp(−½(2π·12/23)²) = 0.5 %.
     """
     expected = motion_inside(Around(), Around(23, 23, 23, 0))
     found = motion_inside(Around(3, 3, 3, 0), Around(1, 1, 1, 0))
