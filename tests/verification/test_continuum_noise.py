@@ -18,13 +18,19 @@ from dembound.outside.stability import step_limit
 SAMPLES = 40
 
 
-def kinetic(ratio: float, steps: int, delay: float = 0.1, box: tuple[int, int, int, int] | None = None) -> np.ndarray:
+def kinetic(
+    ratio: float,
+    steps: int,
+    delay: float = 0.1,
+    box: tuple[int, int, int, int] | None = None,
+    order: int = 4,
+) -> np.ndarray:
     """Kinetic energies (40,) at even intervals of steps over that of the noise, means over fifty steps.
 
-    ratio : Poisson's, of plane strain; delay : k of the layers; box : elements left out.
+    ratio : Poisson's, of plane strain; delay : k of the layers; box : elements left out; order : of the elements.
     """
     slower = np.sqrt((1.0 - 2.0 * ratio) / (2.0 - 2.0 * ratio))
-    mesh = Mesh(order=4, element=(10.0, 10.0), cells=(12, 6), layer=Around(3, 3, 3, 0), box=box)
+    mesh = Mesh(order=order, element=(10.0, 10.0), cells=(12, 6), layer=Around(3, 3, 3, 0), box=box)
     medium = Medium.isotropic(2500.0, 1000.0, 1000.0 * slower)
     body = GridBody(mesh=mesh, medium=medium, absorption=Absorption(delay=delay))
     simulation = Simulation(GridScene(body), 0.9 * step_limit(body))
@@ -59,6 +65,15 @@ def test_noise_decays_for_long(ratio: float, box: tuple[int, int, int, int] | No
 
     assert energies.max() < 1.0
     assert energies[30:].max() < energies[:10].max()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("order", [3, 5, 6])
+def test_noise_decays_in_elements_of_other_orders(order: int) -> None:
+    energies = kinetic(0.25, 200_000, order=order)
+
+    assert energies.max() < 1.0
+    assert energies[-4:].max() < 1e-2
 
 
 def test_without_the_delay_it_grows() -> None:
