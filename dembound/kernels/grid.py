@@ -4,7 +4,8 @@ First every block of eight elements computes its forces, moves the nodes that no
 forces on the others. Then each of these sums the forces of its at most four elements, in a fixed order, and is moved:
 the same bits for any number of threads. Nodes have no rotation, no local damping, and stay at rest on outer edges.
 
-The work of elements that absorb is taken from the grid in full, the strain energy they hold included.
+In the ledger, the work done on elements that absorb counts as taken by damping when it is done: it has left the others.
+The sum of it with kinetic energy and the strain energy of the others is conserved, exactly as by central differences.
 """
 
 from numba import get_thread_id, njit, prange
@@ -89,15 +90,24 @@ def _move_blocks(points, shape, blocks, absorber, force, first, last, u, v, body
 
 @njit(**WITHIN)
 def _sum_at(blocks, k, force):
-    """Force (x, y) of all elements on the k-th shared node, and of those that absorb."""
-    x = 0.0
-    y = 0.0
-    ax = 0.0
-    ay = 0.0
+    """Force (x, y) of all elements on the k-th shared node."""
+    first, end = blocks.start[k], blocks.start[k + U(1)]
+    entry = U(blocks.entry[U(first)])
+    x, y = force[entry], force[entry + _STEP]
+    for e in range(first + 1, end):
+        entry = U(blocks.entry[U(e)])
+        x += force[entry]
+        y += force[entry + _STEP]
+    return x, y
+
+
+@njit(**WITHIN)
+def _sums_at(blocks, k, force):
+    """The same, and the part of it of elements that absorb."""
+    x, y, ax, ay = 0.0, 0.0, 0.0, 0.0
     for e in range(blocks.start[k], blocks.start[k + U(1)]):
         entry = blocks.entry[U(e)]
-        fx = force[U(entry)]
-        fy = force[U(entry) + _STEP]
+        fx, fy = force[U(entry)], force[U(entry) + _STEP]
         x += fx
         y += fy
         if entry >= blocks.entry_layer:
@@ -106,34 +116,43 @@ def _sum_at(blocks, k, force):
     return x, y, ax, ay
 
 
-@njit(**FAST)
+@njit(**WITHIN)
+def _move_node(i, x, y, u, v, body, u_next):
+    """Move node i by a step under a force (x, y) and steady loads; u_next gets the forces on a supported one."""
+    if body.load.shape[1] > 0:
+        x += body.load[U(0), i]
+        y += body.load[U(1), i]
+    mobility = body.mobility[i]
+    if mobility == 0.0:
+        u_next[U(0), i] = x
+        u_next[U(1), i] = y
+    else:
+        vx = kick(v[U(0), i], x, body.free[0] * mobility, 0.0)
+        vy = kick(v[U(1), i], y, body.free[1] * mobility, 0.0)
+        v[U(0), i] = vx
+        v[U(1), i] = vy
+        u_next[U(0), i] = u[U(0), i] + body.step * vx
+        u_next[U(1), i] = u[U(1), i] + body.step * vy
+
+
+@njit(**WITHIN)
 def _move_shared(blocks, force, first, last, u, v, body, u_next, taken):
     """Sum the forces on shared nodes first to last − 1, and move them."""
+    elastic = blocks.shared_layer - blocks.shared_begin
+    for n in range(first, min(last, elastic)):
+        x, y = _sum_at(blocks, U(n), force)
+        _move_node(U(blocks.shared_begin + n), x, y, u, v, body, u_next)
     half = 0.0
     whole = 0.0
-    for n in range(first, last):
-        k = U(n)
-        i = U(blocks.shared_begin) + k
-        x, y, ax, ay = _sum_at(blocks, k, force)
-        if body.load.shape[1] > 0:
-            x += body.load[U(0), i]
-            y += body.load[U(1), i]
-        vx, vy = v[U(0), i], v[U(1), i]
-        before = ax * vx + ay * vy
+    for n in range(max(first, elastic), last):
+        i = U(blocks.shared_begin + n)
+        x, y, ax, ay = _sums_at(blocks, U(n), force)
+        before = ax * v[U(0), i] + ay * v[U(1), i]
+        _move_node(i, x, y, u, v, body, u_next)
         half += before
         whole += before
-        mobility = body.mobility[i]
-        if mobility == 0.0:  # supported: `finish` adds the rest of its work
-            u_next[U(0), i] = x
-            u_next[U(1), i] = y
-        else:
-            vx = kick(vx, x, body.free[0] * mobility, 0.0)
-            vy = kick(vy, y, body.free[1] * mobility, 0.0)
-            whole += ax * vx + ay * vy
-            v[U(0), i] = vx
-            v[U(1), i] = vy
-            u_next[U(0), i] = u[U(0), i] + body.step * vx
-            u_next[U(1), i] = u[U(1), i] + body.step * vy
+        if body.mobility[i] > 0.0:  # `finish` adds that of supported ones
+            whole += ax * v[U(0), i] + ay * v[U(1), i]
     taken[2] = -0.5 * body.step * whole
     taken[3] = -0.5 * body.step * half
 
@@ -143,8 +162,9 @@ def _move_all_blocks(points, shape, blocks, absorber, force, space, taken, u, v,
     n = blocks.blocks
     for chunk in prange(CHUNKS):
         first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
-        own, result = space[get_thread_id()], taken[chunk]
-        _move_blocks(points, shape, blocks, absorber, force, first, last, u, v, body, u_next, own, result)
+        if first < last:
+            own, result = space[get_thread_id()], taken[chunk]
+            _move_blocks(points, shape, blocks, absorber, force, first, last, u, v, body, u_next, own, result)
 
 
 @njit(**PARALLEL)
@@ -174,7 +194,7 @@ def finish(grid, v, body, nodes, work):
         i = U(nodes[s])
         k = nodes[s] - begin
         if grid.blocks.shared_layer - begin <= k < grid.blocks.start.size - 1:
-            _, _, ax, ay = _sum_at(grid.blocks, U(k), grid.force)
+            _, _, ax, ay = _sums_at(grid.blocks, U(k), grid.force)
             late += ax * v[U(0), i] + ay * v[U(1), i]
     work[1, 1] += column_sum(grid.taken, 1) + column_sum(grid.taken, 3)
     work[0, 1] += column_sum(grid.taken, 0) + column_sum(grid.taken, 2) - 0.5 * body.step * late
@@ -206,7 +226,7 @@ def _fill(points, shape, blocks, force, space, u, result):
         _store_forces(points, shape, blocks, force, first, last, u, result, space[get_thread_id()])
     for chunk in prange(CHUNKS):
         for k in range(chunk * m // CHUNKS, (chunk + 1) * m // CHUNKS):
-            x, y, _, _ = _sum_at(blocks, U(k), force)
+            x, y = _sum_at(blocks, U(k), force)
             result[U(0), U(blocks.shared_begin + k)] = x
             result[U(1), U(blocks.shared_begin + k)] = y
 
@@ -241,5 +261,5 @@ def _energies(points, shape, blocks, space, u, energy):
 
 @njit(**FAST)
 def strain_energies(grid, u, energy):
-    """Fill energy (blocks,) J with the strain energy of every block at displacements u (3, slots), without memories."""
+    """Fill energy (k,) J with the strain energies of the first k blocks at displacements u (3, slots)."""
     _energies(grid.points, grid.shape, grid.blocks, grid.space, u, energy)

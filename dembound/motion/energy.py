@@ -143,7 +143,6 @@ class Ledger(Tracker):
         outside, damping, friction, crack, law_switch, turning = (float(work) for work in state.work[1])
         shift = system.spring_shift(u)
         outside += system.counted_outside(u) + shift
-        damping -= system.counted_as_damping(u)
         balance = turning + balancing - shift
         sides = np.column_stack([state.side_work[1], self._in_springs(run, u)])
         loads = 0.0

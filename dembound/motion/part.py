@@ -37,10 +37,6 @@ class Part(ABC):
     def stored(self, u: np.ndarray) -> tuple[float, float]:
         """Strain energy (J) at displacements (3, slots): in contacts and in bonds, of a bar in springs and in bonds."""
 
-    def counted_as_damping(self, u: np.ndarray) -> float:
-        """The part of the strain energy (J) at displacements (3, slots) that kernels count as taken by damping."""
-        return 0.0
-
     @abstractmethod
     def take_cracks(self, steps: int) -> Cracks:
         """The bonds that broke since this was last called; steps : number of steps done."""
@@ -130,10 +126,6 @@ class System:
     def counted_outside(self, u: np.ndarray) -> float:
         """Strain energy (J) of springs whose work kernels count as that of the outside, at displacements (3, slots)."""
         return 0.0
-
-    def counted_as_damping(self, u: np.ndarray) -> float:
-        """The part of the strain energy (J) at displacements (3, slots) that kernels count as taken by damping."""
-        return sum(part.counted_as_damping(u) for part in self.parts)
 
     def balancing_work(self, u: np.ndarray) -> float:
         """Work (J) up to displacements (3, slots) of forces that balance a settled stress, without their rotation."""

@@ -51,18 +51,14 @@ class GridPart(Part):
         """Nothing: its law is the same throughout."""
 
     def stored(self, u: np.ndarray) -> tuple[float, float]:
-        """Strain energy (J) of all elements at displacements (3, slots), those that absorb without their memories."""
-        return float(np.sum(self._energies(u))), 0.0
+        """Strain energy (J) at displacements (3, slots) of the elements that do not absorb.
 
-    def counted_as_damping(self, u: np.ndarray) -> float:
-        """Strain energy (J) of the elements that absorb, which kernels count as taken."""
-        return float(np.sum(self._energies(u)[len(self.body.blocks.elements) - self.body.blocks.layers :]))
-
-    def _energies(self, u: np.ndarray) -> np.ndarray:
-        """Strain energy (B,) J of every block."""
-        energy = np.empty(self._law.blocks.blocks)
+        What those that absorb have taken is counted as damping, once it has reached them.
+        """
+        blocks = self._law.blocks
+        energy = np.empty(blocks.blocks - blocks.layers)
         strain_energies(self._law, u, energy)
-        return energy
+        return float(np.sum(energy)), 0.0
 
     def take_cracks(self, steps: int) -> Cracks:
         """None: it does not break."""

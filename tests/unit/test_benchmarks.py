@@ -10,7 +10,16 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "benchmarks"
-COMMANDS = ("rates", "compare_revisions", "lammps_bar", "bar_rate", "pack_rate", "memory", "reductions")
+COMMANDS = (
+    "rates",
+    "compare_revisions",
+    "lammps_bar",
+    "bar_rate",
+    "continuum_rate",
+    "pack_rate",
+    "memory",
+    "reductions",
+)
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the benchmarks measure processes as Unix does")
 

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from dembound.boundaries.support import SupportBuilder
+from dembound.kernels.grid import move
+from dembound.kernels.tables import Body
 from dembound.motion.simulation import Simulation
 from dembound.outside.alone import GridScene
 from dembound.outside.body import GridBody
@@ -104,34 +106,37 @@ def test_elastic_forces(grid, noise, order: int, first_slot: int) -> None:
     assert not force[:, unused].any()
 
 
-@pytest.mark.parametrize("order", ORDERS)
-def test_strain_energies(grid, noise, order: int) -> None:
-    body = grid(order)
+def test_strain_energies(grid, noise) -> None:
+    body = grid()
     plain, u = Plain(body, STEP), noise(body)
     part, slots = GridPart(body, STEP), GridScene(body).layout.spread(u)
 
-    absorbs = body.mesh.absorbs.any(axis=1)
-    assert part.stored(slots)[0] == pytest.approx(plain.energy(u[:2], np.ones_like(absorbs)), rel=1e-12)
-    assert part.counted_as_damping(slots) == pytest.approx(plain.energy(u[:2], absorbs), rel=1e-12)
+    elastic = ~body.mesh.absorbs.any(axis=1)
+    assert part.stored(slots)[0] == pytest.approx(plain.energy(u[:2], elastic), rel=1e-12)
 
 
-@pytest.mark.parametrize("order", ORDERS)
+@pytest.mark.parametrize("order", [3, 4, 5])
 def test_steps_with_layers(grid, noise, order: int) -> None:
     """Memories, delay, both axes and corners; each φ is that of the node, whose elements have its parts."""
     body = grid(order)
     plain, u, v = Plain(body, STEP), noise(body, 1)[:2] * 1e-3, noise(body, 2)[:2]
     load = np.zeros((3, body.count))
     load[:2] = 1e4 * noise(body, 3)[:2]
-    simulation = Simulation(GridScene(body, load=load), STEP)
-    simulation.state.displacement, simulation.state.velocity = (np.pad(each, ((0, 1), (0, 0))) for each in (u, v))
-    simulation.run(5)
+    layout, law = GridScene(body).layout, body.law(STEP)
+    now, before, loads = (layout.spread(np.pad(each, ((0, 1), (0, 0)))) for each in (u, v, load[:2]))
+    mobility = layout.spread(STEP / body.mass)
+    moved = Body(mobility, mobility, np.array([1.0, 1.0, 0.0]), loads, 0.0, STEP)
+    after = np.zeros_like(now)
     for _ in range(5):
-        v = v + STEP / body.mass * (plain.forces(u, v) + load[:2] * ~body.mesh.held)
+        move(law, now, after, before, moved, np.zeros(0, dtype=np.int64))
+        now, after = after, now
+    for _ in range(5):
+        v = v + STEP / body.mass * (plain.forces(u, v) + load[:2])
         u = u + STEP * v
 
-    close(simulation.state.displacement[:2], u, 5)
-    close(simulation.state.velocity[:2], v, 5)
-    assert not simulation.state.displacement[2].any()
+    close(layout.gather(now)[:2], u, 5)
+    close(layout.gather(before)[:2], v, 5)
+    assert not now[2].any()
 
 
 @pytest.mark.parametrize("axis", [0, 1])

@@ -13,7 +13,21 @@ import pytest
 from numba import njit
 
 from dembound.kernels.common import FAST, U
-from dembound.kernels.lanes import LANES, at_most, bits, choose, lane, load, magnitude, root, splat, store, with_sign
+from dembound.kernels.lanes import (
+    LANES,
+    at_most,
+    bits,
+    choose,
+    combine,
+    combine_more,
+    lane,
+    load,
+    magnitude,
+    root,
+    splat,
+    store,
+    with_sign,
+)
 
 OPTIONS = {name: value for name, value in FAST.items() if name != "cache"}
 
@@ -56,6 +70,31 @@ def test_compiled_lanes_are_what_python_says(function: Callable) -> None:
     assert np.isnan(found[[0, 1, -1]]).all()
 
 
+@pytest.mark.parametrize("count", [2, 5])
+@pytest.mark.parametrize("function", [combine, combine_more])
+def test_compiled_products_with_a_matrix_are_what_python_says(function: Callable, count: int) -> None:
+    @njit(**OPTIONS)
+    def compiled(points, matrix, given, found):  # type: ignore[no-untyped-def]
+        function(points, matrix, given, U(3), found, U(1), U(LANES + 2))
+        function(points, matrix, found, U(1), found, U(1), U(LANES + 2))  # in place
+
+    rng = np.random.default_rng(0)
+    matrix, given, found = (rng.uniform(-2.0, 2.0, size) for size in (count**2, 60, 60))
+    points, expected = tuple(np.zeros(count).tolist()), found.copy()
+    function(points, matrix, given, 3, expected, 1, LANES + 2)
+    once = expected.copy()
+    function(points, matrix, expected, 1, expected, 1, LANES + 2)
+    compiled(points, matrix, given, found)
+
+    # sums of up to five products of two numbers up to 2, twice
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13)
+    assert (once != expected).any()
+    rows = [matrix.reshape(count, count) @ given[3 + k :: LANES + 2][:count] for k in range(LANES)]
+    first = np.array([once[1 + k :: LANES + 2][:count] for k in range(LANES)])
+    if function is combine:
+        np.testing.assert_allclose(first, rows, rtol=0.0, atol=1e-13)
+
+
 SCENE = """
 import numpy as np
 from dembound.api import case
@@ -86,6 +125,24 @@ simulation.run(3)
 result = simulation.state.velocity
 """
 
+CONTINUUM = """
+import numpy as np
+from dembound.motion.simulation import Simulation
+from dembound.outside.alone import GridScene
+from dembound.outside.body import GridBody
+from dembound.outside.medium import Medium
+from dembound.outside.mesh import Around, Mesh
+
+mesh = Mesh(order=4, element=(3.0, 2.0), cells=(3, 3), layer=Around(1, 1, 1, 0))
+body = GridBody(mesh=mesh, medium=Medium.isotropic(2500.0, 1000.0, 600.0))
+simulation = Simulation(GridScene(body), 1e-4)
+noise = np.random.default_rng(0).standard_normal((3, body.count)) * ~mesh.held
+noise[2] = 0.0
+simulation.state.velocity = noise
+simulation.run(3)
+result = simulation.state.velocity
+"""
+
 FEATURES = {"haswell": "+avx2,+fma", "x86-64": "+sse2"}
 """Two kinds of x86 processors: instructions for four doubles with fused multiply-adds, and for two without."""
 
@@ -108,8 +165,9 @@ def elsewhere(code: str, folder: Path, **environment: str) -> np.ndarray:
     return np.load(path)
 
 
-def test_kernels_run_without_being_compiled(tmp_path) -> None:
-    stepped, compiled = elsewhere(MOTION, tmp_path, NUMBA_DISABLE_JIT="1"), here(MOTION)
+@pytest.mark.parametrize("code", [MOTION, CONTINUUM], ids=["disks", "continuum"])
+def test_kernels_run_without_being_compiled(tmp_path, code: str) -> None:
+    stepped, compiled = elsewhere(code, tmp_path, NUMBA_DISABLE_JIT="1"), here(code)
 
     assert np.abs(stepped).max() > 0.0
     # some ten sums a step, which fused multiply-adds round otherwise

@@ -1,0 +1,96 @@
+"""How fast a continuum of spectral elements is stepped, elastic and absorbing.
+
+    python benchmarks/continuum_rate.py [--sides 8 16 32 64] [--orders 4] [--repeats 9] [--json FILE]
+
+Steps square meshes with noise in them, on one core, whole steps as in a run: without layers, with all but one row of
+elements absorbing along y, and with nearly all of them absorbing along both axes; last a mesh round a box with layers
+on three sides, as a scene has. Prints the CPU time of a step for each unique node, medians of blocks of steps; compiled
+first.
+"""
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+from timing import in_one_line, machine, median_time, show, write
+
+from dembound.motion.simulation import Simulation
+from dembound.outside.alone import GridScene
+from dembound.outside.body import GridBody
+from dembound.outside.medium import Medium
+from dembound.outside.mesh import Around, Mesh
+from dembound.outside.stability import step_limit
+
+ROCK = Medium.isotropic(2500.0, 1000.0, 600.0)
+ELEMENT = 30.0, 30.0
+NODE_STEPS = 4e6
+"""Of a block, about."""
+
+
+def meshes(order: int, side: int) -> Iterator[tuple[str, Mesh]]:
+    """Meshes of side × side elements and their names."""
+    half, whole = side // 2, (side, side)
+    yield "elastic", Mesh(order=order, element=ELEMENT, cells=whole)
+    along_one = Around(bottom=half, top=side - half - 1)
+    yield "absorbing along y", Mesh(order=order, element=ELEMENT, cells=whole, layer=along_one)
+    along_both = Around(half, side - half - 1, half, side - half - 1)
+    yield "absorbing along x and y", Mesh(order=order, element=ELEMENT, cells=whole, layer=along_both)
+
+
+def round_a_box(order: int) -> Mesh:
+    """Elements round 60 × 60 m at the free surface: one elastic, and three that absorb."""
+    return Mesh.around((0.0, 0.0, 60.0, 60.0), ELEMENT, order, margin=Around(1, 1, 1, 0), layer=Around(3, 3, 3, 0))
+
+
+def measure(name: str, mesh: Mesh, repeats: int) -> dict[str, Any]:
+    """CPU time of a step of a mesh, for each node."""
+    body = GridBody(mesh=mesh, medium=ROCK)
+    simulation = Simulation(GridScene(body), 0.9 * step_limit(body))
+    noise = np.zeros((3, body.count))
+    noise[:2] = 1e-5 * np.random.default_rng(0).standard_normal((2, body.count)) * ~mesh.held
+    simulation.state.velocity = noise
+    steps = max(10, int(NODE_STEPS / body.count))
+    simulation.advance(10)
+    taken = median_time(lambda: simulation.advance(steps), repeats)
+    return {
+        "mesh": name,
+        "order": mesh.order,
+        "elements": len(mesh.elements),
+        "absorbing": float(mesh.absorbs.any(axis=1).mean()),
+        "nodes": body.count,
+        "nanoseconds": 1e9 * taken / steps / body.count,
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sides", type=int, nargs="+", default=[8, 16, 32, 64])
+    parser.add_argument("--orders", type=int, nargs="+", default=[4])
+    parser.add_argument("--repeats", type=int, default=9)
+    parser.add_argument("--json", type=Path, default=Path("results/benchmarks/continuum.json"))
+    options = parser.parse_args()
+    numba.set_num_threads(1)
+    facts = machine()
+    print(in_one_line(facts))
+    rows = []
+    for order in options.orders:
+        cases = [case for side in options.sides for case in meshes(order, side)]
+        for name, mesh in [*cases, ("round a box", round_a_box(order))]:
+            rows.append(measure(name, mesh, options.repeats))
+    columns = {
+        "mesh": "{mesh}",
+        "order": "{order}",
+        "elements": "{elements:,}",
+        "absorbing": "{absorbing:.0%}",
+        "nodes": "{nodes:,}",
+        "ns per node and step": "{nanoseconds:.1f}",
+    }
+    show("Steps of a continuum, one thread", columns, rows)
+    write(options.json, {"machine": facts, "steps": rows})
+
+
+if __name__ == "__main__":
+    main()

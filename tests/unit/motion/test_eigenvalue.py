@@ -1,0 +1,52 @@
+"""The largest eigenvalue of a scene, for any forces, against dense ones."""
+
+import numpy as np
+import pytest
+
+from dembound.errors import RunError
+from dembound.motion import eigenvalue
+from dembound.motion.eigenvalue import TOLERANCE, largest_eigenvalue
+from dembound.motion.layout import Layout
+
+NODES, FREE = 60, np.array([1.0, 1.0, 0.0])
+
+
+def scene() -> tuple[Layout, np.ndarray, np.ndarray]:
+    """Slots in another order than the nodes, masses, and a stiffness matrix (2n, 2n) of both displacements."""
+    rng = np.random.default_rng(1)
+    layout = Layout(np.arange(NODES)[::-1] + 3, NODES + 8)
+    root = rng.standard_normal((2 * NODES, 2 * NODES))
+    return layout, rng.uniform(1.0, 3.0, NODES), root @ root.T
+
+
+@pytest.mark.parametrize("held", [0, 25])
+def test_it_is_that_of_the_matrix_without_what_is_held(held: int) -> None:
+    layout, mass, stiffness = scene()
+    moves = np.ones((3, NODES), dtype=np.bool_)
+    moves[:2, :held] = False
+    kept = moves[:2].ravel()
+
+    def fill(u: np.ndarray, force: np.ndarray) -> None:
+        force[:] = 0.0
+        force[:2, layout.slot] = (-stiffness @ layout.gather(u)[:2].ravel() * kept).reshape(2, NODES)
+
+    found = largest_eigenvalue(layout, mass, mass, FREE, moves, fill)
+    matrix = stiffness / np.tile(mass, 2)[:, None]
+    exact = np.linalg.eigvals(matrix[np.ix_(kept, kept)]).real.max()
+
+    assert 0.0 <= found / exact - 1.0 <= TOLERANCE
+
+
+def test_nothing_moves() -> None:
+    layout, mass, _ = scene()
+    moves = np.zeros((3, NODES), dtype=np.bool_)
+
+    assert largest_eigenvalue(layout, mass, mass, FREE, moves, lambda u, force: None) == 0.0
+
+
+def test_an_iteration_that_does_not_end_is_an_error(monkeypatch) -> None:
+    layout, mass, _ = scene()
+    monkeypatch.setattr(eigenvalue, "MOST", 1)
+    moves = np.ones((3, NODES), dtype=np.bool_)
+    with pytest.raises(RunError, match="was not found in 1 iterations"):
+        largest_eigenvalue(layout, mass, mass, FREE, moves, lambda u, force: np.copyto(force, -u))

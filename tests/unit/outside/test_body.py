@@ -1,0 +1,81 @@
+"""Masses and slots of a continuum, and its stable step."""
+
+import numpy as np
+import pytest
+
+from dembound.kernels.lanes import LANES
+from dembound.outside.body import GridBody
+from dembound.outside.layer import Absorption
+from dembound.outside.medium import Medium
+from dembound.outside.mesh import Around, Mesh
+from dembound.outside.stability import step_limit
+
+ROCK = Medium(2500.0, c11=9e9, c22=7e9, c12=2e9, c66=3e9, c16=0.4e9, c26=-0.3e9)
+
+
+def test_mass_is_that_of_the_medium_and_what_is_added(grid) -> None:
+    body = grid()
+    added = np.arange(body.count, dtype=float)
+
+    assert body.mass.sum() == pytest.approx(2500.0 * body.mesh.areas.sum())
+    np.testing.assert_allclose(grid(added_mass=added).mass, body.mass + added)
+
+
+@pytest.mark.parametrize("order", [3, 4, 6])
+@pytest.mark.parametrize("first_slot", [0, 40])
+def test_every_node_has_a_slot(grid, order: int, first_slot: int) -> None:
+    body = grid(order, first_slot=first_slot)
+    slot, mesh = body.blocks.slot, body.mesh
+
+    assert len(np.unique(slot)) == body.count
+    assert slot.min() >= first_slot
+    assert slot.max() == body.blocks.end - 1
+    # nodes of one element come first, eight elements side by side; those at rest last
+    inner = mesh.nodes[:, 1:-1, 1:-1].reshape(len(mesh.nodes), -1)
+    assert slot[inner].max() < body.blocks.shared_begin
+    assert (np.diff(slot[inner], axis=1) == LANES).all()
+    assert slot[mesh.held].min() == body.blocks.end - mesh.held.sum()
+
+
+def test_blocks_hold_elements_of_one_kind(grid) -> None:
+    body = grid()
+    kinds = body.mesh.absorbs @ [1, 2]
+    for elements, kind in zip(body.blocks.elements, body.blocks.kinds, strict=True):
+        assert (kinds[elements[elements >= 0]] == kind).all()
+    assert set(body.blocks.kinds) == {0, 1, 2, 3}
+    assert (np.diff(body.blocks.kinds) >= 0).all()
+    assert sorted(body.blocks.elements[body.blocks.elements >= 0]) == list(range(len(kinds)))
+
+
+def dense_limit(body: GridBody, delay: float) -> float:
+    """Largest stable step by a dense eigenvalue: ω² times 1 + 2kq² on the nodes of layers."""
+    n = body.count
+    columns = []
+    for component in (0, 1):
+        for node in range(n):
+            u, force = np.zeros((2, 3, body.blocks.end))
+            u[component, body.blocks.slot[node]] = 1.0
+            body.fill_forces(u, force)
+            columns.append(-force[:2, body.blocks.slot].ravel())
+    matrix = np.array(columns) / np.tile(body.mass, 2)[:, None]
+    q = body.mesh.depth.max(axis=1)
+    matrix *= np.tile(1.0 + 2.0 * delay * q**2, 2)[:, None]
+    kept = np.tile(~body.mesh.held, 2)
+    return float(2.0 / np.sqrt(np.linalg.eigvals(matrix[np.ix_(kept, kept)]).real.max()))
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.5])
+def test_the_step_limit_counts_the_delay(delay: float) -> None:
+    mesh = Mesh(order=3, element=(3.0, 2.0), cells=(3, 3), layer=Around(1, 1, 1, 0))
+    body = GridBody(mesh=mesh, medium=ROCK, absorption=Absorption(delay=delay))
+
+    # the iteration ends within 1e-3 of ω², on the safe side
+    assert 0.0 <= 1.0 - step_limit(body) / dense_limit(body, delay) < 5e-4
+
+
+def test_the_step_limit_of_large_square_elements() -> None:
+    """dt·c_p/h of p4 for ν = 0 is 0.110 (0.113 of a mesh of few elements with free edges)."""
+    medium = Medium.isotropic(2500.0, 1000.0, 1000.0 * np.sqrt(0.5))
+    mesh = Mesh(order=4, element=(10.0, 10.0), cells=(6, 6))
+
+    assert step_limit(GridBody(mesh=mesh, medium=medium)) * 100.0 == pytest.approx(0.112, abs=0.003)

@@ -1,0 +1,88 @@
+"""The part of a continuum: its memory, energies, fields, and what it refuses."""
+
+import numpy as np
+import pytest
+
+from dembound.boundaries.support import SupportBuilder
+from dembound.kernels.grid_tables import Grid
+from dembound.motion.energy import Ledger
+from dembound.motion.simulation import Simulation
+from dembound.outside.alone import GridScene
+from dembound.outside.part import GridPart
+from dembound.outside.stability import step_limit
+
+
+def test_it_gives_its_law_and_its_nodes(grid) -> None:
+    body = grid()
+    part = GridPart(body, 1e-4, first_node=7)
+
+    assert isinstance(part.law(), Grid)
+    assert part.nodes == slice(7, 7 + body.count)
+    assert len(part.take_cracks(3)) == 0
+
+
+def test_a_run_continued_from_memory_has_the_same_bits(grid, noise) -> None:
+    body = grid()
+    step = 0.9 * step_limit(body)
+    whole, first, second = (Simulation(GridScene(body), step) for _ in range(3))
+    for run in (whole, first):
+        run.state.velocity = noise(body)
+    whole.run(300)
+    first.run(120)
+    second.state.take(first.state.arrays())
+    first.run(150)  # does not change what was saved
+    second.run(300)
+
+    for name, values in whole.state.arrays().items():
+        np.testing.assert_array_equal(second.state.arrays()[name], values, err_msg=name)
+    assert np.abs(whole.system.parts[0].memory()["strain_memory"]).max() > 0.0
+    assert np.abs(whole.system.parts[0].memory()["force_memory"]).max() > 0.0
+
+
+def test_the_ledger_closes_with_supports_at_the_edge_of_a_layer(grid, noise) -> None:
+    """Nodes at the free surface of a layer and of its first edge, on springs and driven."""
+    body = grid()
+    mesh = body.mesh
+    surface = np.flatnonzero((mesh.positions[:, 1] == mesh.positions[:, 1].max()) & ~mesh.held)
+    of_layers = np.intersect1d(surface, mesh.nodes[mesh.absorbs[:, 0]])
+    builder = SupportBuilder()
+    builder.add(of_layers, 1, stiffness=1e9, damping=1e5)
+    builder.add(surface[:3], 0, drive=0.5, signal=np.cos, prescribed=True)
+    scene = GridScene(body, supports=builder.table())
+    simulation = Simulation(scene, 0.5 * step_limit(body))
+    simulation.state.velocity = noise(body)
+    ledger = Ledger(simulation, 50)
+    simulation.track(ledger)
+    simulation.run(501)
+
+    # rounding of sums over nodes and elements, step by step
+    change = [entry.error - ledger.entries[0].error for entry in ledger.entries]
+    largest = max(abs(getattr(entry, name)) for entry in ledger.entries for name in ("kinetic", "contact", "damping"))
+    assert np.abs(change).max() < 500 * np.finfo(float).eps * largest
+    assert abs(ledger.entries[-1].outside) > 1e-2 * largest
+
+
+def test_stress_of_a_uniform_strain(grid) -> None:
+    body = grid()
+    gradient = np.array([[1e-4, 3e-4], [-1e-4, -2e-4]])  # ∂u_a/∂b
+    displacement = np.zeros((3, 5 + body.count))
+    displacement[:2, 5:] = gradient @ body.mesh.positions.T
+    fields = GridPart(body, 1e-4, first_node=5).snapshot(displacement)
+
+    stress, unit = fields["stress"]
+    expected = body.medium.matrix @ [1e-4, -2e-4, 2e-4]
+    np.testing.assert_allclose(stress, np.tile(expected, (body.count, 1)), rtol=1e-9)
+    assert unit == "Pa"
+    absorbs = (body.mesh.depth > 0.0).any(axis=1)
+    assert 0 < absorbs.sum() < body.count
+    np.testing.assert_array_equal(fields["absorbs"][0], absorbs)
+
+
+def test_supports_that_cannot_be_accounted_for_are_refused(grid) -> None:
+    body = grid()
+    mesh = body.mesh
+    inside = mesh.nodes[mesh.absorbs[:, 1]][0, 2, 2]
+    with pytest.raises(ValueError, match="a supported node is inside an element that absorbs"):
+        GridPart(body, 1e-4, supported=np.array([inside]))
+    with pytest.raises(ValueError, match="a supported node is on a held edge"):
+        GridPart(body, 1e-4, supported=np.flatnonzero(mesh.held)[:1])

@@ -1,0 +1,55 @@
+"""The energy ledger of a continuum closes to rounding, and a layer takes all that waves bring to it."""
+
+import numpy as np
+import pytest
+
+from dembound.motion.energy import Entry, Ledger
+from dembound.motion.simulation import Simulation
+from dembound.outside.alone import GridScene
+from dembound.outside.body import GridBody
+from dembound.outside.medium import Medium
+from dembound.outside.mesh import NONE, Around, Mesh
+from dembound.outside.stability import step_limit
+
+STEPS = 2000
+
+
+def entries(layer: Around) -> list[Entry]:
+    """A run in which a bump of displacement, and a steady force at the surface, send waves into a continuum."""
+    mesh = Mesh(order=4, element=(10.0, 8.0), cells=(11, 8), layer=layer)
+    medium = Medium(2500.0, c11=2.5e9, c22=1.8e9, c12=0.6e9, c66=0.7e9, c16=0.3e9, c26=-0.2e9)
+    body = GridBody(mesh=mesh, medium=medium)
+    load = np.zeros((3, body.count))
+    top = np.flatnonzero(mesh.positions[:, 1] == mesh.positions[:, 1].max())
+    load[1, top[len(top) // 2]] = -1e6
+    simulation = Simulation(GridScene(body, load=load), 0.9 * step_limit(body))
+    start = np.zeros((3, body.count))
+    away = (mesh.positions - [50.0, 44.0]) / 10.0
+    start[:2] = 1e-3 * np.array([[1.0], [0.5]]) * np.exp(-0.5 * np.sum(away**2, axis=1))
+    simulation.state.displacement = start
+    ledger = Ledger(simulation, 20)
+    simulation.track(ledger)
+    simulation.run(STEPS + 1)
+    return ledger.entries
+
+
+@pytest.mark.parametrize("layer", [NONE, Around(3, 3, 3, 0)], ids=["elastic", "absorbing"])
+def test_books_close(layer: Around) -> None:
+    """Sums of at most some thousand numbers, rounded by ε of the total in each step."""
+    books = entries(layer)
+    largest = max(max(entry.kinetic, abs(entry.contact), abs(entry.load)) for entry in books)
+    error = np.array([entry.error for entry in books])
+
+    assert np.abs(error - error[0]).max() < STEPS * np.finfo(float).eps * largest
+    assert min(entry.contact for entry in books) < 0.0  # from the strain of the bump on
+    assert abs(books[-1].load) > 0.1 * largest
+    assert (books[-1].damping == 0.0) == (layer == NONE)
+
+
+def test_layers_take_the_energy_of_waves() -> None:
+    """What remains is the work of the load that goes into its static field."""
+    books = entries(Around(3, 3, 3, 0))
+    most = max(entry.kinetic for entry in books)
+
+    assert books[-1].kinetic < 1e-4 * most
+    assert books[-1].damping > most
