@@ -7,6 +7,7 @@ from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.fixed import Fixed
 from dembound.boundaries.free import Free
 from dembound.boundaries.free_field import FreeField
+from dembound.boundaries.outside import Outside
 from dembound.boundaries.periodic import Periodic
 from dembound.boundaries.roller import Roller
 from dembound.boundaries.sides import OPPOSITE, SIDES, Motion, axis_of_motion, normal_axis
@@ -27,6 +28,7 @@ TYPES: tuple[type[Boundary], ...] = (
     Viscoelastic,
     ViscoelasticInput,
     FreeField,
+    Outside,
 )
 """All types of sides."""
 
@@ -39,6 +41,7 @@ __all__ = [
     "Free",
     "FreeField",
     "Motion",
+    "Outside",
     "Periodic",
     "Roller",
     "Symmetry",

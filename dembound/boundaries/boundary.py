@@ -21,6 +21,7 @@ class Boundary(Table):
     is_free : whether no forces act on the side.
     is_periodic : whether the side is connected to the opposite side.
     is_mirror : whether the side is a mirror plane.
+    is_outside : whether the ground beyond the side is a continuum that is computed, too.
     needs_column : whether the side needs a free-field column, which moves with the waves of the ground.
     beyond_dashpots : text for reports, naming what `dashpots_alone` leaves out.
     """
@@ -30,6 +31,7 @@ class Boundary(Table):
     is_free: ClassVar[bool] = False
     is_periodic: ClassVar[bool] = False
     is_mirror: ClassVar[bool] = False
+    is_outside: ClassVar[bool] = False
     needs_column: ClassVar[bool] = False
     beyond_dashpots: ClassVar[str] = ""
 

@@ -16,6 +16,7 @@ from dembound.disks.layout import Rows
 from dembound.disks.loads import steady
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.row_plan import RowPlan, plan_rows
+from dembound.disks.surroundings import Surroundings
 from dembound.kernels.tables import LaneRows
 from dembound.motion.layout import Layout
 from dembound.motion.scene import Scene
@@ -40,6 +41,7 @@ class DiskBody(Scene):
     seam : the connection between the free-field column, whose particles come first in the arrays, and the body; None
     without a column.
     slots : the slots in which kernels hold its particles; None: in their order.
+    outside : the continuum on some sides, whose nodes follow the particles; None for none.
     """
 
     case: DiskCase
@@ -51,6 +53,7 @@ class DiskBody(Scene):
     monitors: Mapping[str, int]
     seam: Seam | None = None
     slots: Layout | None = None
+    outside: Surroundings | None = None
 
     kind = "disks"
     energy_unit = "J/m"
@@ -70,8 +73,8 @@ class DiskBody(Scene):
             "position": (assembly.positions, "m"),
             "radius": (assembly.radii, "m"),
             "brick_particle": (assembly.brick_particle, "1"),
-            "column": (np.arange(self.count) < (0 if self.seam is None else self.seam.count), "1"),
-            "bonds": (np.bincount(assembly.pairs.ravel(), minlength=self.count) * int(bonded), "1"),
+            "column": (np.arange(self.disk_count) < (0 if self.seam is None else self.seam.count), "1"),
+            "bonds": (np.bincount(assembly.pairs.ravel(), minlength=self.disk_count) * int(bonded), "1"),
         }
 
     @property
@@ -80,14 +83,31 @@ class DiskBody(Scene):
         return {monitor.name: monitor.position for monitor in self.case.monitor}
 
     @property
-    def count(self) -> int:
-        """Number of particles n."""
+    def disk_count(self) -> int:
+        """Number of its particles, which come first."""
         return len(self.assembly.radii)
 
     @property
-    def positions(self) -> np.ndarray:
+    def count(self) -> int:
+        """Number of particles and of nodes of the continuum, n."""
+        return self.disk_count + (0 if self.outside is None else self.outside.count)
+
+    @property
+    def recorded(self) -> int:
+        """The particles; nodes of the continuum are recorded apart."""
+        return self.disk_count
+
+    @property
+    def beside(self) -> dict[str, tuple[np.ndarray, str]]:
+        """Data of the nodes of the continuum for the record."""
+        return {} if self.outside is None else self.outside.columns
+
+    @cached_property
+    def positions(self) -> np.ndarray:  # type: ignore[override]  # computed once
         """(n, 2) m."""
-        return self.assembly.positions
+        if self.outside is None:
+            return self.assembly.positions
+        return np.vstack([self.assembly.positions, self.outside.body.mesh.positions])
 
     @property
     def size(self) -> np.ndarray:
@@ -97,7 +117,8 @@ class DiskBody(Scene):
     @cached_property
     def layout(self) -> Layout:  # type: ignore[override]  # computed once
         """Where kernels hold its particles."""
-        return Layout.plain(self.count) if self.slots is None else self.slots
+        layout = Layout.plain(self.disk_count) if self.slots is None else self.slots
+        return layout if self.outside is None else self.outside.laid_out(layout)
 
     @property
     def threads(self) -> int:
@@ -107,7 +128,7 @@ class DiskBody(Scene):
     @property
     def parts(self) -> dict[str, slice]:
         """The particles of each part: of the free-field column, if there is one, and of the body."""
-        return parts_of(self.count, self.seam)
+        return parts_of(self.disk_count, self.seam)
 
     @property
     def twin(self) -> np.ndarray | None:
@@ -131,6 +152,8 @@ class DiskBody(Scene):
     @cached_property
     def tied(self) -> dict[str, np.ndarray]:  # type: ignore[override]  # computed once
         """Particles (k,) with contacts across a free-field side, by this side."""
+        if self.outside is not None:
+            return self.outside.tied_by_side
         if self.seam is None:
             return {}
         node = self.seam.node
@@ -146,22 +169,28 @@ class DiskBody(Scene):
     @cached_property
     def mass(self) -> np.ndarray:
         """(n,) kg; half of it for particles on sides with half mass."""
-        return self.ground.mass[self.assembly.brick_particle] * self.cell_fraction
+        return self._with_nodes(self.ground.mass[self.assembly.brick_particle] * self.cell_fraction)
 
     @cached_property
     def inertia(self) -> np.ndarray:
-        """(n,) kg·m², halved with the mass."""
-        return self.ground.inertia[self.assembly.brick_particle] * self.cell_fraction
+        """(n,) kg·m², halved with the mass; of nodes of the continuum, which do not rotate, that of the mass at 1 m."""
+        return self._with_nodes(self.ground.inertia[self.assembly.brick_particle] * self.cell_fraction)
+
+    def _with_nodes(self, of_disks: np.ndarray) -> np.ndarray:
+        """Masses of the particles (m,), followed by those of the nodes of the continuum."""
+        return of_disks if self.outside is None else np.concatenate([of_disks, self.outside.body.mass])
 
     @cached_property
     def cell_fraction(self) -> np.ndarray:
         """(n,) part of a particle's cell inside the scene: 1, on a side of half cells ½, where two such meet ¼."""
-        return mass_factor(self.count, self.edges, self.case.boundary)
+        return mass_factor(self.disk_count, self.edges, self.case.boundary)
 
     @cached_property
     def steady_load(self) -> np.ndarray:
         """(3, n) forces and moments (N, N·m) of the loads without a wave."""
-        return steady(self.case, self.assembly, self.mass)
+        load = np.zeros((3, self.count))
+        load[:, : self.disk_count] = steady(self.case, self.assembly, self.mass[: self.disk_count])
+        return load
 
     @cached_property
     def free(self) -> np.ndarray:

@@ -10,6 +10,7 @@ from dembound.casefile.disks import SCHEMA, DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.breaks import first_break
 from dembound.disks.contact_mesh import contact_mesh
+from dembound.disks.continuum_mesh import continuum_mesh
 from dembound.disks.facts import disk_facts
 from dembound.disks.memory import expected_bytes
 from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
@@ -150,10 +151,12 @@ class Disks(Kind[DiskCase, DiskScene]):
         return disk_outcome(summary)
 
     def meshes(self, particles: Arrays, snapshot: Arrays, cracks: Arrays) -> dict[str, meshio.Mesh]:
-        """One vertex per disk, and one line per contact if the record has contacts."""
+        """One vertex per disk, one line per contact if the record has contacts, and the cells of a continuum."""
         meshes = {self.mesh_name: disk_mesh(particles, snapshot, cracks)}
         if "contacts/particles" in snapshot:
             meshes["contacts"] = contact_mesh(particles, snapshot)
+        if "continuum/position" in particles:
+            meshes["continuum"] = continuum_mesh(particles, snapshot)
         return meshes
 
     def pictures(self, record: Path) -> Iterator[tuple[str, Figure]]:

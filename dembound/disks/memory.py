@@ -68,7 +68,7 @@ class Sizes:
     def of(cls, scene: DiskScene) -> Sizes:
         """Those of a scene."""
         return cls(
-            disks=scene.count,
+            disks=scene.disk_count,
             slots=scene.layout.count,
             contacts=len(scene.assembly.pairs),
             supported=len(scene.supports),

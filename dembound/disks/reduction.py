@@ -91,6 +91,8 @@ def _never_smaller(scene: DiskScene) -> str:
         return f'under material.law = "{scene.case.material.law}" contacts may open, slide and break anywhere'
     if scene.case.static is not None:
         return "a static stage is computed for the whole scene"
+    if scene.outside is not None:
+        return "the body is stepped with the continuum round it"
     if scene.seam is not None:
         sides = " and ".join(side for side in SIDES if scene.case.side(side).needs_column)
         return f"the body is stepped with the free-field column of {sides}"

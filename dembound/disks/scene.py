@@ -18,6 +18,7 @@ from dembound.disks.loads import drive
 from dembound.disks.memory import Sizes, must_fit_here, run_bytes
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.stress import particle_stress
+from dembound.disks.surroundings import Surroundings, surroundings_of
 from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.holes import Hole
@@ -99,16 +100,19 @@ def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Ma
     count = len(assembly.radii)
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(assembly, ground, parts_of(count, seam), mass_factor(count, edges, case.boundary))
+    beyond = _outside_sides(case)
+    outside = surroundings_of(case, ground, assembly, slots, beyond) if beyond else None
     return DiskScene(
         case=case,
         ground=ground,
         assembly=assembly,
         rows=rows,
         edges=edges,
-        supports=_supports(case, ground, assembly, edges),
+        supports=_supports(case, ground, assembly, edges, outside),
         monitors=_monitors(case, assembly, seam),
         seam=seam,
         slots=slots,
+        outside=outside,
     )
 
 
@@ -140,6 +144,10 @@ def _free_field_sides(case: DiskCase) -> tuple[str, ...]:
     return tuple(side for side, table in case.boundary.items() if table.needs_column)
 
 
+def _outside_sides(case: DiskCase) -> tuple[str, ...]:
+    return tuple(side for side, table in case.boundary.items() if table.is_outside)
+
+
 def _hollowed(
     case: DiskCase, brick: Brick, body: Assembly, edges: Mapping[str, Edge], holes: tuple[Hole, ...]
 ) -> tuple[Assembly, dict[str, Edge], np.ndarray]:
@@ -159,12 +167,12 @@ def _hollowed(
 def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
     """The same body under the boundaries of another case; only [boundary.*] and [wave.*] of that case are used."""
     built_in = [
-        ([edge.side for edge in half_edges(scene.edges, each.boundary)], _free_field_sides(each))
+        ([edge.side for edge in half_edges(scene.edges, each.boundary)], _free_field_sides(each), _outside_sides(each))
         for each in (scene.case, case)
     ]
     if built_in[0] != built_in[1]:
         return build(case)  # masses, contacts and the column change with them
-    return replace(scene, case=case, supports=_supports(case, scene.ground, scene.assembly, scene.edges))
+    return replace(scene, case=case, supports=_supports(case, scene.ground, scene.assembly, scene.edges, scene.outside))
 
 
 def with_half_contacts(
@@ -204,7 +212,13 @@ def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> Bounda
     return BoundaryMedium(ground.density, p_speed, s_speed, mirror_stiffness)
 
 
-def _supports(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Mapping[str, Edge]) -> Supports:
+def _supports(
+    case: DiskCase,
+    ground: PackedMaterial,
+    assembly: Assembly,
+    edges: Mapping[str, Edge],
+    outside: Surroundings | None,
+) -> Supports:
     """The support table: rows of all sides and of all loads that follow a wave."""
     builder = SupportBuilder(held=ground.held)
     for side, table in case.boundary.items():
@@ -214,6 +228,8 @@ def _supports(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges:
     factor = mass_factor(len(assembly.radii), edges, case.boundary)
     builder.side = ""
     drive(case, assembly, ground.mass[assembly.brick_particle] * factor, builder)
+    if outside is not None:  # nodes do not rotate
+        builder.add(outside.disks + outside.wall.nodes, 2, prescribed=True)
     return builder.table()
 
 

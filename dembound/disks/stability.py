@@ -5,6 +5,7 @@ from functools import partial
 import numpy as np
 
 from dembound.disks.scene import DiskScene
+from dembound.disks.surroundings import Surroundings
 from dembound.errors import CaseError
 from dembound.kernels.contacts import CLOSING
 from dembound.kernels.elastic import contact_forces
@@ -18,6 +19,10 @@ period, and its overtone, sampled at whole steps, equals the motion running back
 energy grows by orders of magnitude within a thousand steps. Below this limit the loss at closing
 (`kernels.contacts.CLOSING`) exceeds the gain.
 """
+
+
+MOST_ROUNDS, CONVERGED = 6, 1e-3
+"""Rounds, and relative change of ω² at which they end, of the step limit with ties, whose dashpots depend on it."""
 
 
 def step_limit(scene: DiskScene, damp: float | None = None) -> float:
@@ -45,7 +50,36 @@ def _largest_eigenvalue(scene: DiskScene) -> float:
     moves = np.ones((3, scene.count), dtype=np.bool_)
     fixed = scene.supports.prescribed
     moves[scene.supports.component[fixed], scene.supports.node[fixed]] = False
-    return largest_eigenvalue(scene.layout, scene.mass, scene.inertia, scene.free, moves, partial(fill_forces, scene))
+    if scene.outside is None:
+        forces = partial(fill_forces, scene)
+        return largest_eigenvalue(scene.layout, scene.mass, scene.inertia, scene.free, moves, forces)
+    return _largest_with(scene, scene.outside, moves)
+
+
+def _largest_with(scene: DiskScene, outside: Surroundings, moves: np.ndarray) -> float:
+    """The same of a scene with a continuum: its delays count as less mass, the dashpots of ties as more stiffness.
+
+    A dashpot ηK that is half a step behind counts as a spring of K·2η/Δt beside K. So the step is on both sides of the
+    equation, and is found by iteration from below: each larger step makes the ties less stiff.
+    """
+    disks, body = scene.disk_count, outside.body
+    moves[2, disks:] = False
+    moves[:2, disks:] &= ~body.mesh.held
+    mass = np.concatenate([scene.mass[:disks], body.mass_for_limit])
+    times = 1.0
+    largest = 0.0
+    for _ in range(MOST_ROUNDS):
+
+        def forces(u: np.ndarray, force: np.ndarray, times: float = times) -> None:
+            fill_forces(scene, u, force)
+            outside.add_forces(scene.layout, u, force, times)
+
+        found = largest_eigenvalue(scene.layout, mass, scene.inertia, scene.free, moves, forces)
+        if found <= largest * (1.0 + CONVERGED):
+            return max(found, largest)
+        largest = found
+        times = 1.0 + outside.wall.lag * float(np.sqrt(largest))
+    return largest
 
 
 def fill_forces(scene: DiskScene, u: np.ndarray, force: np.ndarray) -> None:

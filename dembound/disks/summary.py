@@ -12,7 +12,7 @@ from dembound.motion.trackers import Run
 def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
     """Entries of a summary of disks in addition to those of every run: plain JSON values, SI units."""
     return {
-        "particles": scene.count,
+        "particles": scene.disk_count,
         "has_history": scene.has_history,
         "contacts": len(scene.assembly.pairs),
         "loose_disks_left_out": scene.assembly.loose,

@@ -17,11 +17,13 @@ from dembound.disks.layout import with_supports
 from dembound.disks.part import DiskPart, FreeFieldSeam
 from dembound.disks.rotation import turned_as_a_whole, turns_freely
 from dembound.disks.stress import part_stress
+from dembound.disks.surroundings import WallTie
 from dembound.kernels.common import BROKE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.contacts import REFERENCE, UPDATED
 from dembound.kernels.follower import turn_forces
 from dembound.motion.part import System
 from dembound.motion.state import Arrays, State, within
+from dembound.outside.part import GridPart
 
 
 @dataclass(frozen=True)
@@ -54,9 +56,6 @@ class DiskSystem(System):
     whether the elastic law is used again after a static stage that left it; refused : why not where it is asked for.
     """
 
-    parts: tuple[DiskPart, ...]
-    ties: tuple[FreeFieldSeam, ...]
-
     def __init__(
         self,
         scene: DiskBody,
@@ -69,8 +68,7 @@ class DiskSystem(System):
         lists: Mapping[str, ContactList] = {}
         if scene.has_history:
             lists = scene.contact_lists() if start is None else start.contacts
-        tied = np.zeros(0, dtype=np.int64) if scene.seam is None else scene.seam.node
-        supported = scene.layout.slot[np.union1d(scene.supports.node, tied)]
+        supported = scene.layout.slot[np.union1d(scene.supports.node, _tied(scene))]
         parts = [
             DiskPart(
                 name, scene.ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), scene.layout,
@@ -79,7 +77,10 @@ class DiskSystem(System):
             for (name, nodes), rows in zip(scene.parts.items(), scene.rows, strict=True)
         ]  # fmt: skip
         ties = [] if scene.seam is None else [FreeFieldSeam(scene.seam, parts[0])]
-        super().__init__(parts, ties, scene.steady_load if load is None else load)
+        self.disk_parts, self._seams = tuple(parts), tuple(ties)
+        others, walls = _around(scene, time_step)
+        super().__init__([*parts, *others], [*ties, *walls], scene.steady_load if load is None else load)
+        self._walls = walls
         self.balance: Balance | None = None
         self.is_elastic_again = False
         self.scene, self._time_step = scene, time_step
@@ -96,7 +97,7 @@ class DiskSystem(System):
         """Choose the first law, and the steady forces that belong to it."""
         scene, start = self.scene, self._start
         # a locked-in stress also acts through the seam of a free field, but not under the elastic law
-        through = bool(self.ties) and scene.case.material.locked_in is not None and not self._settling
+        through = bool(self._seams) and scene.case.material.locked_in is not None and not self._settling
         has_history = start is not None and start.has_history
         if has_history and not self._settling and scene.case.reduce.settled and not never_elastic_again(scene.case):
             reason = elastic_again(self.contacts.values(), state.datum)
@@ -125,15 +126,17 @@ class DiskSystem(System):
         if why == LAW_ENDS:
             self._switch(state)
         elif self.balance is not None and self.uses_history and why in (BROKE, LIST_ENDS):
-            self.balance.end_on_debris(self.parts, state.displacement, state.velocity, self._time_step, self.steady)
+            self.balance.end_on_debris(
+                self.disk_parts, state.displacement, state.velocity, self._time_step, self.steady
+            )
         super().react(why, steps, state)
 
     def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
         """Contact and seam forces and moments (3, n) of the elastic law at displacements (3, n)."""
         force = np.zeros_like(displacement)
-        for part in self.parts:
+        for part in self.disk_parts:
             part.add_elastic_forces(displacement, force)
-        for tie in self.ties:
+        for tie in self._seams:
             force[:, tie.nodes] += tie.elastic_forces(displacement)
         return force
 
@@ -145,14 +148,28 @@ class DiskSystem(System):
         return (f"law: elastic after settling, as nothing is open or slides, for {steps:,} of {state.step:,} steps",)
 
     @property
+    def law_name(self) -> str:
+        """Name of the law of the disks in use, for reports."""
+        return self.disk_parts[-1].law_name
+
+    def stored(self, u: np.ndarray) -> tuple[float, float]:
+        """Strain energy (J) at displacements (3, slots): in contacts, continuum and ties, and in bonds."""
+        contact, bond = super().stored(u)
+        return contact + self.counted_outside(u), bond
+
+    def counted_outside(self, u: np.ndarray) -> float:
+        """Strain energy (J) of the ties to a continuum at displacements (3, slots)."""
+        return sum(wall.stored(u) for wall in self._walls)
+
+    @property
     def uses_history(self) -> bool:
         """Whether the history-dependent law is in use."""
-        return all(part.uses_history for part in self.parts)
+        return all(part.uses_history for part in self.disk_parts)
 
     @property
     def contacts(self) -> dict[str, ContactList]:
         """The pairs of each part by name, empty if the material's law has no history."""
-        return {part.name: part.contacts for part in self.parts if part.contacts is not None}
+        return {part.name: part.contacts for part in self.disk_parts if part.contacts is not None}
 
     def last_forces(self, contacts: Mapping[str, ContactList]) -> np.ndarray:
         """Forces and moments (3, n) from the last forces of each part's pairs, those across a seam included."""
@@ -162,8 +179,8 @@ class DiskSystem(System):
         return force + self._across(contacts)
 
     def stress(self, displacement: np.ndarray) -> np.ndarray:
-        """Stress (n, 3) xx, yy, xy in Pa of all particles at displacements (3, n), tension positive."""
-        return np.concatenate([part_stress(self.scene, part, displacement) for part in self.parts])
+        """Stress (m, 3) xx, yy, xy in Pa of all particles at displacements (3, n), tension positive."""
+        return np.concatenate([part_stress(self.scene, part, displacement) for part in self.disk_parts])
 
     def contact_forces(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
         """The contacts and bonds of the whole scene at displacements (3, n) of this one, see `contact_columns`.
@@ -173,7 +190,7 @@ class DiskSystem(System):
         scene, whole = self.scene, self.scene.whole
         if not scene.case.output.contacts:
             return {}
-        lists = [(part.pairs, part.geometry) for part in self.parts]
+        lists = [(part.pairs, part.geometry) for part in self.disk_parts]
         if whole is not scene:
             assert isinstance(whole, DiskBody)
             displacement = scene.widened("displacement", displacement.T).T
@@ -183,10 +200,15 @@ class DiskSystem(System):
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
         """Fields of every disk at displacements (3, n) other than its motion; stress only with output.stress."""
-        known = super().snapshot(displacement)
+        each = [part.snapshot(displacement) for part in self.disk_parts]
+        known = {name: (np.concatenate([of[name][0] for of in each]), unit) for name, (_, unit) in each[0].items()}
         if self.scene.case.output.stress:
             known["stress"] = self.stress(displacement), "Pa"
         return known
+
+    def snapshot_beside(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
+        """Stress of the nodes of the continuum, if there is one, at displacements (3, n)."""
+        return next((part.snapshot(displacement) for part in self.parts if isinstance(part, GridPart)), {})
 
     def balancing_work(self, u: np.ndarray) -> float:
         """Work (J) up to displacements (3, slots) of forces that balance a settled stress, without their rotation."""
@@ -233,7 +255,7 @@ class DiskSystem(System):
     def _across(self, contacts: Mapping[str, ContactList]) -> np.ndarray:
         """Forces and moments (3, n) that act through the seam of a free field, from the pairs' last forces."""
         force = np.zeros((3, self.scene.count))
-        for tie in self.ties:
+        for tie in self._seams:
             if contacts:
                 force[:, tie.nodes] += tie.last_forces(contacts[tie.column.name])
         return force
@@ -250,11 +272,11 @@ class DiskSystem(System):
                 self.scene, state.displacement, state.velocity, state.datum
             )
         self._adopt(state.displacement, fresh)
-        for part in self.parts:
+        for part in self.disk_parts:
             part.uses_history = True
         self._watch_breaks()
         if self.balance is not None:
-            self.balance.count_breaks_from(self.parts)
+            self.balance.count_breaks_from(self.disk_parts)
         if before is not None:
             state.work[:, 4] += self._potential(state) - before
         self._adopt(state.displacement - self._time_step * state.velocity, fresh)  # its first push adds this step
@@ -276,7 +298,7 @@ class DiskSystem(System):
 
     def _watch_breaks(self) -> None:
         """Make the loop return after a break if balancing forces may have to end."""
-        for part in self.parts:
+        for part in self.disk_parts:
             part.stops_at_breaks = self.balance is not None
 
     def _follow(self) -> None:
@@ -293,3 +315,23 @@ class DiskSystem(System):
         """Energy (J) stored in contacts and bonds less the work of steady and balancing forces since the start."""
         steady = float(np.sum(self.load * (state.displacement - state.datum)))
         return sum(self.stored(state.u)) - steady - self.balancing_work(state.u)
+
+
+def _tied(scene: DiskBody) -> np.ndarray:
+    """Nodes (k,) of a scene that ties act on."""
+    tied = [np.zeros(0, dtype=np.int64)]
+    if scene.seam is not None:
+        tied.append(scene.seam.node)
+    if scene.outside is not None:
+        tied.append(scene.outside.tied)
+    return np.concatenate(tied)
+
+
+def _around(scene: DiskBody, time_step: float) -> tuple[list[GridPart], list[WallTie]]:
+    """The continuum round a scene and its ties, if it has one."""
+    if scene.outside is None:
+        return [], []
+    disks = scene.disk_count
+    tied = scene.outside.tied
+    part = GridPart(scene.outside.body, time_step, first_node=disks, supported=tied[tied >= disks] - disks)
+    return [part], [WallTie(scene.outside, scene.layout)]

@@ -23,9 +23,6 @@ from dembound.motion.layout import aligned_zeros
 from dembound.outside.mesh import Mesh
 from dembound.packings.cut import CutContacts
 
-DAMPING = 0.3
-"""Dashpot of the ties over ρc_pD: it takes out waves too short for the elements, and no others."""
-
 
 @dataclass(frozen=True, eq=False)
 class CutBonds:
@@ -35,7 +32,8 @@ class CutBonds:
     ----------
     particle : (t,) disk of the body. normal : (2, t) from its centre to that beyond. arm : (t,) m, to the contact.
     point : (t, 2) m, of the contact. stiffness : (3, t) N/m, N/m and N·m, of half the bond: twice that of the bond.
-    corrector : (3, 4, t) m and rad, c above per unit gradient xx, yy, xy, yx.
+    corrector : (3, 4, t) m and rad, c above per unit gradient xx, yy, xy, yx. side : (t,) int64, index in
+    `boundaries.SIDES` of the side that cuts the bond, of two the first.
     """
 
     particle: np.ndarray
@@ -44,6 +42,7 @@ class CutBonds:
     point: np.ndarray
     stiffness: np.ndarray
     corrector: np.ndarray
+    side: np.ndarray
 
     @classmethod
     def of(cls, ground: PackedMaterial, cut: CutContacts, positions: np.ndarray) -> CutBonds:
@@ -60,7 +59,7 @@ class CutBonds:
             for axis, gradient in enumerate(gradients):
                 corrector[component, gradient] += off[axis]
         stiffness = 2.0 * np.stack([law.normal[kind], law.shear[kind], law.bending[kind]])
-        return cls(cut.node, normal, arms[0], centre + (arms[0] * normal).T, stiffness, corrector)
+        return cls(cut.node, normal, arms[0], centre + (arms[0] * normal).T, stiffness, corrector, cut.side)
 
 
 def _middle(
@@ -173,7 +172,7 @@ class Wall:
         return start, np.repeat(LANES * start[:-1] - first[:-1], many) + np.arange(len(self.element))
 
 
-def usual_lag(ground: PackedMaterial) -> float:
-    """η (s) of the ties: with half bonds of normal stiffness 2K, a dashpot of `DAMPING`·ρc_pD for K = ρc_p²."""
+def lag_of(ground: PackedMaterial, damping: float) -> float:
+    """η (s) of the ties: with half bonds of normal stiffness 2K, dashpots of `damping`·ρc_pD for K = ρc_p²."""
     speed = float(np.sqrt(np.mean(np.diag(ground.material_tensor)[:2]) / ground.density))
-    return 0.5 * DAMPING * ground.brick.mean_diameter / speed
+    return 0.5 * damping * ground.brick.mean_diameter / speed

@@ -158,6 +158,10 @@ class System:
         each = [part.snapshot(displacement) for part in self.parts]
         return {name: (np.concatenate([known[name][0] for known in each]), unit) for name, (_, unit) in each[0].items()}
 
+    def snapshot_beside(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
+        """The same of the nodes after those that are recorded as particles, values (m, …); by default none."""
+        return {}
+
     def contact_forces(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
         """Columns of the contacts of the whole scene at displacements (3, n), by name: values (b, …) and unit.
 

@@ -53,6 +53,11 @@ class Scene(ABC):
         """Number of nodes n."""
 
     @property
+    def recorded(self) -> int:
+        """Number of its first nodes that are recorded as particles; by default all."""
+        return self.count
+
+    @property
     @abstractmethod
     def positions(self) -> np.ndarray:
         """(n, 2) m."""
@@ -106,6 +111,11 @@ class Scene(ABC):
     @abstractmethod
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
         """Data of every node for the record, by name: values (n, …) and unit."""
+
+    @property
+    def beside(self) -> dict[str, tuple[np.ndarray, str]]:
+        """Data of the nodes after the recorded ones, by name: values (m, …) and unit; by default none."""
+        return {}
 
     @property
     @abstractmethod

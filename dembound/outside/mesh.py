@@ -147,6 +147,13 @@ class Mesh:
         x, y = self._element_lines
         return self._numbers[y[:, :, None], x[:, None, :]]
 
+    @property
+    def node_cells(self) -> np.ndarray:
+        """(c, 4) nodes at the corners of the cells between neighbouring nodes, counterclockwise."""
+        nodes = self.nodes
+        corners = [nodes[:, :-1, :-1], nodes[:, :-1, 1:], nodes[:, 1:, 1:], nodes[:, 1:, :-1]]
+        return np.stack([corner.ravel() for corner in corners], axis=1)
+
     @cached_property
     def crossing(self) -> np.ndarray:
         """(n, 2) the lines across x and across y that every node lies on."""

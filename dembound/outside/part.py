@@ -65,10 +65,8 @@ class GridPart(Part):
         return NO_CRACKS
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
-        """Stress (m, 3) σ_xx, σ_yy, σ_xy, tension positive, and whether a node is in an absorbing layer."""
-        own = displacement[:2, self.nodes]
-        inside = (self.body.mesh.depth > 0.0).any(axis=1)
-        return {"stress": (stress(self.body, own), "Pa"), "absorbs": (inside.astype(float), "1")}
+        """Stress (m, 3) σ_xx, σ_yy, σ_xy, tension positive."""
+        return {"stress": (stress(self.body, displacement[:2, self.nodes]), "Pa")}
 
     def memory(self) -> Arrays:
         """The memories of the layers."""

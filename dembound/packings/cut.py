@@ -26,6 +26,7 @@ class CutContacts:
     other : (e,) int64, the disk of the brick that the one beyond is a copy of.
     tile : (e, 2) int64, in which copy of the brick it is, counted as in the body.
     image : (e, 2) int64, that copy less the one of the body's disk.
+    side : (e,) int64, the side it lies beyond: 0 left, 1 right, 2 bottom, 3 top; of two the first.
     """
 
     node: np.ndarray
@@ -34,6 +35,7 @@ class CutContacts:
     other: np.ndarray
     tile: np.ndarray
     image: np.ndarray
+    side: np.ndarray
 
     def only(self, chosen: np.ndarray) -> CutContacts:
         """Some of them, chosen (e,) bool."""
@@ -58,25 +60,22 @@ def cut_contacts(brick: Brick, body: Assembly, sides: Collection[str]) -> CutCon
     node, contact_type, is_second = np.repeat(edge, many), contact[entry], second[entry]
     other = np.where(is_second, brick.pairs[contact_type, 0], brick.pairs[contact_type, 1])
     image = np.where(is_second[:, None], -brick.images[contact_type], brick.images[contact_type])
-    found = CutContacts(node, contact_type, is_second, other, where[node] + image, image)
-    absent = ~np.isin(_key(found.tile, other, brick), _key(where, body.brick_particle, brick))
-    return found.only(absent & _is_beyond(found.tile, brick.edge_rows[other], body.copies, sides))
+    place = where[node] + image
+    out = _beyond(place, brick.edge_rows[other], body.copies)
+    found = CutContacts(node, contact_type, is_second, other, place, image, np.argmax(out, axis=1))
+    absent = ~np.isin(_key(place, other, brick), _key(where, body.brick_particle, brick))
+    allowed = np.array([side in sides for axis in BEYOND for side in axis])
+    return found.only(absent & out.any(axis=1) & ~(out & ~allowed).any(axis=1))
 
 
-def _is_beyond(tile: np.ndarray, closing: np.ndarray, copies: tuple[int, int], sides: Collection[str]) -> np.ndarray:
-    """Whether disks (e,) lie beyond some side, and only beyond such as are among these sides.
+def _beyond(tile: np.ndarray, closing: np.ndarray, copies: tuple[int, int]) -> np.ndarray:
+    """Whether disks (e,) lie beyond each of the sides of `BEYOND`, (e, 4).
 
     tile : (e, 2) in which copies of the brick they are; closing : (e, 2) bool, whether they are of its regular rows,
     which close the frame of a body, and so belong to it beyond its last bricks.
     """
-    beyond = np.zeros(len(tile), dtype=np.bool_)
-    allowed = np.ones(len(tile), dtype=np.bool_)
-    for axis, (low, high) in enumerate(BEYOND):
-        last = copies[axis] - 1 + closing[:, axis]
-        for side, out in ((low, tile[:, axis] < 0), (high, tile[:, axis] > last)):
-            beyond |= out
-            allowed &= ~out | (side in sides)
-    return beyond & allowed
+    last = np.array(copies) - 1 + closing
+    return np.stack([tile < 0, tile > last], axis=2).reshape(len(tile), 4)
 
 
 def _ends(brick: Brick) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -9,6 +9,8 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
     particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
                             column (n,), whether it belongs to a free-field column, of a bar's nodes volume (n,); if the
                             case asks for it peak_velocity (n,), the largest speed of each in the whole run
+    continuum/              of a continuum round the particles: position (m, 2), absorbs (m,), whether a node is in the
+                            layer that absorbs, cell (c, 4), nodes at the corners of the cells between them
     histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle,
                             position, wanted
     boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2); of the
@@ -17,7 +19,8 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             of a history-dependent law; stress (n, 3) if the case asks for it; on a bar stress (n,)
                             and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
                             on each particle; attribute time; of disks, if the case asks for them, contacts/ with the
-                            columns of `disks.contact_forces.contact_columns`
+                            columns of `disks.contact_forces.contact_columns`; with a continuum, continuum/ with
+                            displacement, velocity and stress (m, 3) of its nodes
     energy/                 time and the columns of `motion.energy.Entry`, (k,) each
     energy/sides/<side>/    the columns of `motion.energy.SideEntry`, (k,) each
     cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
@@ -48,6 +51,9 @@ if TYPE_CHECKING:
 
 DISPLACEMENT_UNIT = "m, m, rad"
 VELOCITY_UNIT = "m/s, m/s, rad/s"
+
+MOTION = ("displacement", "velocity")
+"""Names of what every snapshot has."""
 
 LONGEST_NAME = 64
 """Bytes of the name of a law."""
@@ -89,6 +95,8 @@ def begin_record(
     group = file.create_group("particles")
     for name, (values, unit) in scene.columns.items():
         write(group, name, values, unit)
+    for name, (values, unit) in scene.beside.items():
+        write(file.require_group("continuum"), name, values, unit)
     _write_inputs(file, scene)
     _make_histories(file, scene)
     _write_boundaries(file, scene, sides)

@@ -20,7 +20,7 @@ from dembound.motion.kind import Stage, StalledError
 from dembound.motion.trackers import Run
 from dembound.results.committed import FORMAT, CommittedFile
 from dembound.results.datasets import datasets_of, describe, extend, text, write
-from dembound.results.new_record import DISPLACEMENT_UNIT, SIDE_HISTORY, VELOCITY_UNIT, begin_record, header_of
+from dembound.results.new_record import DISPLACEMENT_UNIT, MOTION, SIDE_HISTORY, VELOCITY_UNIT, begin_record, header_of
 
 if TYPE_CHECKING:
     import h5py
@@ -175,9 +175,14 @@ class Recorder:
         state, snapshots = self.run.state, self.file["snapshots"]
         group = snapshots.create_group(f"{len(snapshots):04d}")
         group.attrs["time"] = self.run.time
-        widened = self.run.scene.widened
-        write(group, "displacement", widened("displacement", (state.displacement - state.datum).T), DISPLACEMENT_UNIT)
-        write(group, "velocity", widened("velocity", state.velocity.T), VELOCITY_UNIT)
+        widened, count = self.run.scene.widened, self.scene.recorded
+        moved = widened("displacement", (state.displacement - state.datum).T), widened("velocity", state.velocity.T)
+        for name, values, unit in zip(MOTION, moved, (DISPLACEMENT_UNIT, VELOCITY_UNIT), strict=True):
+            write(group, name, values[:count], unit)
+            if count < len(values):
+                write(group.require_group("continuum"), name, values[count:], unit)
+        for name, (values, unit) in self.run.system.snapshot_beside(state.displacement).items():
+            write(group["continuum"], name, values, unit)
         for name, (values, unit) in self.run.system.snapshot(state.displacement).items():
             write(group, name, widened(name, values), unit)
         for name, (values, unit) in self.run.system.contact_forces(state.displacement).items():
@@ -259,7 +264,7 @@ class Recorder:
         for side in self.scene.edges:
             self.file[f"boundaries/{side}/peak_velocity"][...] = self.run.edge_peaks(side)
         if self.scene.case.output.peaks:
-            speed = self.run.scene.widened("peak_velocity", self.run.state.top_speed)
+            speed = self.run.scene.widened("peak_velocity", self.run.state.top_speed)[: self.scene.recorded]
             if "peak_velocity" not in self.file["particles"]:
                 write(self.file["particles"], "peak_velocity", speed, "m/s")
             self.file["particles/peak_velocity"][...] = speed

@@ -57,6 +57,7 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
             return None
         folder.mkdir(parents=True, exist_ok=True)
         particles = {name: dataset[:] for name, dataset in file["particles"].items()}
+        particles |= {f"continuum/{name}": dataset[:] for name, dataset in file.get("continuum", {}).items()}
         cracks = cracks_until(file, np.inf)
         with ExitStack() as stack:
             series: dict[str, Callable[[str, float, meshio.Mesh], None]] = {}

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 VERSION = (2, 0)
 """Of the format."""
 
-CELL_TYPES = {"vertex": 1, "line": 3}
+CELL_TYPES = {"vertex": 1, "line": 3, "quad": 9}
 """VTK's numbers of the types of cells."""
 
 PART_SIZES = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")

@@ -6,6 +6,7 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
+from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.reduce import Reduce
 from dembound.casefile.disks.static import Static
 from dembound.casefile.model import Case
@@ -19,7 +20,7 @@ class DiskCase(Case):
 
     Attributes
     ----------
-    packing, material, motion, reduce : the tables of these names.
+    packing, material, motion, outside, reduce : the tables of these names.
     static : the table of this name; None: no static stage.
     hole : in the order of the file.
     """
@@ -27,6 +28,7 @@ class DiskCase(Case):
     packing: Packing
     material: Material
     motion: Motion = field(default_factory=Motion)
+    outside: OutsideTable = field(default_factory=OutsideTable)
     reduce: Reduce = field(default_factory=Reduce)
     static: Static | None = None
     hole: tuple[Hole, ...] = ()

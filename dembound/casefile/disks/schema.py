@@ -8,6 +8,7 @@ from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.model import DiskCase
 from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
+from dembound.casefile.disks.outside import OutsideTable
 from dembound.casefile.disks.problems import problems_between
 from dembound.casefile.disks.reduce import Reduce
 from dembound.casefile.disks.static import Static
@@ -25,6 +26,7 @@ SCHEMA = Schema(
         "packing": TypeAdapter(PackingTable),
         "material": TypeAdapter(Material),
         "motion": TypeAdapter(Motion),
+        "outside": TypeAdapter(OutsideTable),
         "reduce": TypeAdapter(Reduce),
         "run": TypeAdapter(Run),
         "output": TypeAdapter(Output),

@@ -6,7 +6,7 @@ import pytest
 from dembound.casefile.disks.material import Material
 from dembound.disks.homogenise import Network
 from dembound.disks.packed_material import PackedMaterial, make_packed_material
-from dembound.disks.wall import CutBonds, Wall, usual_lag
+from dembound.disks.wall import CutBonds, Wall, lag_of
 from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import tie_forces
 from dembound.outside.mesh import Around, Mesh
@@ -133,4 +133,4 @@ def test_every_tie_belongs_to_an_element_beside_the_box(ground) -> None:
 def test_the_dashpot_of_a_lattice_is_a_share_of_its_impedance() -> None:
     made = square()
     # half bonds of 2K with K = ρc_p²: η·2K = 0.3 ρc_pD
-    assert usual_lag(made) * 2.0 * made.stiffness.normal[0] == pytest.approx(0.3 * 2500.0 * 1000.0 * 0.5)
+    assert lag_of(made, 0.3) * 2.0 * made.stiffness.normal[0] == pytest.approx(0.3 * 2500.0 * 1000.0 * 0.5)

@@ -1,0 +1,34 @@
+"""A side beyond which the ground goes on as a continuum, tied to the bonds that it cuts (disks/surroundings.py)."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, Literal
+
+from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.sides import OPPOSITE
+
+
+class Outside(Boundary):
+    """A continuum of the packing's moduli, whose far part absorbs; its keys are those of the table ``[outside]``."""
+
+    is_outside: ClassVar[bool] = True
+
+    type: Literal["outside"]
+
+    @property
+    def is_artificial(self) -> bool:
+        """Always, as the ground goes on beyond it."""
+        return True
+
+    def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
+        """Sides and stages that a continuum cannot be beside."""
+        yield from super().problems(side, tables)
+        boundary = tables["boundary"]
+        for other, table in boundary.items():
+            if table and other != OPPOSITE[side] and (table.is_periodic or table.is_mirror or table.needs_column):
+                yield f'boundary.{other}.type: "{table.type}" has no continuum beside it, as boundary.{side} has'
+        if tables.get("static"):
+            yield f'boundary.{side}.type: "{self.type}" does not carry a settled stress; leave [static] out'
+        for axis, name in enumerate("xy"):
+            motion = tables.get("motion")
+            if motion and name in motion.held:
+                yield f'boundary.{side}.type: "{self.type}" moves along {"xy"[axis]}, which motion.held holds'
