@@ -26,6 +26,11 @@ class Outside(Boundary):
         for other, table in boundary.items():
             if table and other != OPPOSITE[side] and (table.is_periodic or table.is_mirror or table.needs_column):
                 yield f'boundary.{other}.type: "{table.type}" has no continuum beside it, as boundary.{side} has'
+            if table and table.waves:
+                yield f"boundary.{other}: brings in waves, which the continuum beyond boundary.{side} would not have"
+        for place, load in enumerate(tables["load"], 1):
+            if load and load.acceleration is not None:
+                yield f"load[{place}].acceleration: acts on the particles alone, not beyond boundary.{side}"
         if tables.get("static"):
             yield f'boundary.{side}.type: "{self.type}" does not carry a settled stress; leave [static] out'
         for axis, name in enumerate("xy"):

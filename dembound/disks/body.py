@@ -137,7 +137,9 @@ class DiskBody(Scene):
 
     @cached_property
     def sides(self) -> dict[str, Edge]:  # type: ignore[override]  # computed once
-        """The edges of the body, and of its free-field column those of bottom and top, as ``bottom.free_field``."""
+        """The edges of the body, of its free-field column bottom and top, as ``bottom.free_field``, and of a continuum."""
+        if self.outside is not None:
+            return dict(self.edges) | self.outside.edges
         if self.seam is None:
             return dict(self.edges)
         sides = {}

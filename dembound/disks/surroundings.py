@@ -9,11 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.boundaries.sides import SIDES
+from dembound.boundaries.sides import SIDES, normal_axis
+from dembound.boundaries.support import Edge
 from dembound.casefile.disks import DiskCase
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.wall import CutBonds, Wall, lag_of
 from dembound.errors import CaseError
+from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import tie_forces
 from dembound.motion.layout import Layout
@@ -26,7 +28,8 @@ from dembound.outside.mesh import Around, Mesh
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly
 
-LANES = 8
+CONTINUUM = ".continuum"
+"""Ending of the names of sides of the continuum."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,10 +69,34 @@ class Surroundings:
 
     @cached_property
     def tied_by_side(self) -> dict[str, np.ndarray]:
-        """Tied disks (k,) by side: each belongs to the side that its first bond is cut by."""
-        disk, first = np.unique(self.wall.bonds.particle, return_index=True)
-        side = self.wall.bonds.side[first]
-        return {name: disk[side == number] for number, name in enumerate(SIDES) if name in self.sides}
+        """Tied disks (k,) by side, and nodes (m,) of the continuum by ``<side>.continuum``, by number in the scene.
+
+        A disk belongs to the side that its first bond is cut by, a node to that of the first element it belongs to.
+        """
+        wall = self.wall
+        disk, first = np.unique(wall.bonds.particle, return_index=True)
+        _, begin = np.unique(wall.element, return_index=True)
+        nodes = self.body.mesh.nodes[wall.elements].reshape(len(wall.elements), -1)
+        node, entry = np.unique(nodes, return_index=True)
+        tied = {}
+        for number, name in enumerate(SIDES):
+            if name in self.sides:
+                tied[name] = disk[wall.bonds.side[first] == number]
+                tied[f"{name}{CONTINUUM}"] = (
+                    self.disks + node[wall.bonds.side[begin[entry // nodes.shape[1]]] == number]
+                )
+        return tied
+
+    @cached_property
+    def edges(self) -> dict[str, Edge]:
+        """The tied nodes as sides of their own, by ``<side>.continuum``."""
+        edges = {}
+        for name, tied in self.tied_by_side.items():
+            if name.endswith(CONTINUUM):
+                side, nodes = name.removesuffix(CONTINUUM), tied - self.disks
+                length = float(self.body.mesh.size[1 - normal_axis(side)])
+                edges[name] = Edge(side, tied, self.body.mesh.positions[nodes], np.ones(len(nodes)), length)
+        return edges
 
     def laid_out(self, layout: Layout) -> Layout:
         """The slots of the disks in a layout, and of the continuum's nodes behind them."""
@@ -116,11 +143,6 @@ class WallTie(Tie):
     def bundle(self, supported: np.ndarray) -> NamedTuple:
         """Its arrays for the kernels."""
         return self._surroundings.ties(self._layout, supported)
-
-    def stored(self, u: np.ndarray) -> float:
-        """Energy (J) of the half bonds at displacements (3, slots)."""
-        bundle = self._surroundings.ties(self._layout, self.nodes)
-        return float(tie_forces(bundle, u, np.zeros_like(u), np.zeros((len(self.nodes), 3)), 0.0))
 
 
 def medium_of(ground: PackedMaterial) -> Medium:

@@ -80,7 +80,6 @@ class DiskSystem(System):
         self.disk_parts, self._seams = tuple(parts), tuple(ties)
         others, walls = _around(scene, time_step)
         super().__init__([*parts, *others], [*ties, *walls], scene.steady_load if load is None else load)
-        self._walls = walls
         self.balance: Balance | None = None
         self.is_elastic_again = False
         self.scene, self._time_step = scene, time_step
@@ -151,15 +150,6 @@ class DiskSystem(System):
     def law_name(self) -> str:
         """Name of the law of the disks in use, for reports."""
         return self.disk_parts[-1].law_name
-
-    def stored(self, u: np.ndarray) -> tuple[float, float]:
-        """Strain energy (J) at displacements (3, slots): in contacts, continuum and ties, and in bonds."""
-        contact, bond = super().stored(u)
-        return contact + self.counted_outside(u), bond
-
-    def counted_outside(self, u: np.ndarray) -> float:
-        """Strain energy (J) of the ties to a continuum at displacements (3, slots)."""
-        return sum(wall.stored(u) for wall in self._walls)
 
     @property
     def uses_history(self) -> bool:
