@@ -2,7 +2,7 @@
 
 A block has six fields of N × N points in a work space: U and V are displacements along x and y, then A = ∂_x u_x,
 B = ∂_x u_y, C = ∂_y u_x and D = ∂_y u_y, of which A, B and D become the stresses σ_xx, σ_xy and σ_yy times the weights
-of the quadrature. Nodal forces replace U and V (Komatitsch & Tromp 1999, Geophys. J. Int. 139, 806–822, eqs 21 to 25).
+of the quadrature. Nodal forces replace U and V (Komatitsch & Tromp 1999, Geophys. J. Int. 139, 806–822).
 
 In elements that absorb, derivatives along x and y have memories of their own (outside/layer.py), and so have the nodal
 forces that belong to derivatives of the test functions along x and y. All elements at a node have the same coefficients

@@ -7,6 +7,7 @@ import numpy as np
 
 from dembound.kernels.grid_tables import Absorber, Blocks, Shape
 from dembound.kernels.lanes import LANES
+from dembound.motion.layout import aligned_zeros
 from dembound.outside.layer import Absorption, Profile
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Mesh
@@ -145,9 +146,9 @@ class ElementBlocks:
         return start, place.ravel()[order].astype(np.uint32)
 
 
-def shape_of(mesh: Mesh, medium: Medium) -> Shape:
+def shape_of(blocks: ElementBlocks, medium: Medium) -> Shape:
     """What all elements have in common, for the kernels."""
-    rule, blocks = mesh.rule, ElementBlocks(mesh)
+    mesh, rule = blocks.mesh, blocks.mesh.rule
     along = [2.0 / size * rule.derivative for size in mesh.element]
     area = 0.25 * mesh.element[0] * mesh.element[1]
     return Shape(
@@ -168,8 +169,7 @@ def absorber_of(blocks: ElementBlocks, medium: Medium, settings: Absorption, ste
     elements = blocks.elements[len(blocks.elements) - blocks.layers :]
     columns = np.zeros((3, len(elements), 2, count, LANES))  # B, A and τ
     for axis in (0, 1):
-        points = count - 1
-        lines = points * mesh.elements[elements, axis][:, None] + np.arange(count)[:, None]  # (L, N, 8)
+        lines = mesh.order * mesh.elements[elements, axis][:, None] + np.arange(count)[:, None]  # (L, N, 8)
         depth = mesh.line_depth(axis)[lines % len(mesh.line_depth(axis))]
         for side, thickness in zip((-1.0, 1.0), mesh.thickness(axis), strict=True):
             if thickness > 0.0:
@@ -180,4 +180,4 @@ def absorber_of(blocks: ElementBlocks, medium: Medium, settings: Absorption, ste
     size = len(elements) * 4 * count**2 * LANES
     decay, gain, delay = (column.ravel() for column in columns)
     axes = blocks.kinds[len(blocks.kinds) - blocks.layers :].astype(np.int64)
-    return Absorber(axes, decay, gain, delay, np.zeros(size), np.zeros(size))
+    return Absorber(axes, decay, gain, delay, aligned_zeros(size), aligned_zeros(size))

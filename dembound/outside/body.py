@@ -9,6 +9,7 @@ import numpy as np
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.grid import fill_forces
 from dembound.kernels.grid_tables import Absorber, Grid
+from dembound.kernels.lanes import LANES
 from dembound.motion.layout import aligned_zeros
 from dembound.outside.blocks import ElementBlocks, absorber_of, shape_of
 from dembound.outside.layer import USUAL, Absorption
@@ -61,8 +62,8 @@ class GridBody:
 
     def bundle(self, absorber: Absorber) -> Grid:
         """The arrays of its law."""
-        shape, blocks = shape_of(self.mesh, self.medium), self.blocks.bundle
-        space = 6 * len(shape.weight) * 8
+        shape, blocks = shape_of(self.blocks, self.medium), self.blocks.bundle
+        space = 6 * len(shape.weight) * LANES
         return Grid(
             points=tuple(self.mesh.rule.points.tolist()),
             shape=shape,

@@ -13,7 +13,7 @@ class Rule:
     """The points on [−1, 1] of elements of an order p, N = p + 1 of them.
 
     They are ±1 and the roots of P′_p, and integrate polynomials up to degree 2p − 1 exactly (Canuto et al. 2006,
-    Spectral Methods: Fundamentals in Single Domains, eqs 2.3.13 to 2.3.15 and 2.3.28).
+    Spectral Methods: Fundamentals in Single Domains, section 2.3).
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ ROCK = Medium.isotropic(2500.0, P_SPEED, S_SPEED)
 SIZE = 10.0
 """Of all elements, m."""
 
-FLOOR = 5e-4
+FLOOR = 6e-4
 """What elements and layer send back of a pulse with some 15 nodes to its shortest wavelength, at any small R0."""
 
 
