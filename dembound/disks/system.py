@@ -38,6 +38,10 @@ class Start:
     contacts: Mapping[str, ContactList] = field(default_factory=dict)
     has_history: bool = False
 
+    def __post_init__(self) -> None:
+        """Store displacements row after row, as in a record, so that sums over them have the same bits from there."""
+        object.__setattr__(self, "displacement", np.ascontiguousarray(self.displacement))
+
 
 class DiskSystem(System):
     """The parts of a scene of disks.

@@ -54,7 +54,10 @@ class Layout:
         return spread
 
     def gather(self, values: np.ndarray) -> np.ndarray:
-        """Values (..., slots) of slots as those of nodes (..., n), not to be written to; a view where it can be."""
-        gathered = values[...] if self.is_plain else values[..., self.slot]
+        """Values (..., slots) of slots as those of nodes (..., n), not to be written to; a view where it can be.
+
+        Row after row in memory, as in a checkpoint: the order in which numpy adds numbers up depends on it.
+        """
+        gathered = values[...] if self.is_plain else np.take(values, self.slot, axis=-1)
         gathered.flags.writeable = False
         return gathered

@@ -376,3 +376,11 @@ def test_a_system_goes_on_from_what_another_remembers(scene) -> None:
     assert np.array_equal(memory["steady"], system.steady)
     assert np.array_equal(memory["balance/force"], system.balance.force)
     assert system.balancing_work(state.displacement + 1.0) != other.balancing_work(state.displacement + 1.0)
+
+
+def test_displacements_of_a_start_lie_row_after_row_in_memory() -> None:
+    """As those that are read from a record do: sums of them then have one order of terms."""
+    moved = np.arange(12.0).reshape(4, 3).T
+    assert not moved.flags.c_contiguous
+    assert Start(moved).displacement.flags.c_contiguous
+    assert np.array_equal(Start(moved).displacement, moved)
