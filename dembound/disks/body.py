@@ -73,9 +73,14 @@ class DiskBody(Scene):
             "position": (assembly.positions, "m"),
             "radius": (assembly.radii, "m"),
             "brick_particle": (assembly.brick_particle, "1"),
-            "column": (np.arange(self.disk_count) < (0 if self.seam is None else self.seam.count), "1"),
+            "column": (self._in_column, "1"),
             "bonds": (np.bincount(assembly.pairs.ravel(), minlength=self.disk_count) * int(bonded), "1"),
         }
+
+    @property
+    def _in_column(self) -> np.ndarray:
+        """(m,) bool, whether each particle belongs to the free-field column."""
+        return np.arange(self.disk_count) < (0 if self.seam is None else self.seam.count)
 
     @property
     def places(self) -> dict[str, tuple[float, float]]:
@@ -137,7 +142,7 @@ class DiskBody(Scene):
 
     @cached_property
     def sides(self) -> dict[str, Edge]:  # type: ignore[override]  # computed once
-        """The edges of the body, of its free-field column bottom and top, as ``bottom.free_field``, and of a continuum."""
+        """The edges of the body, of its column bottom and top, as ``bottom.free_field``, and those of a continuum."""
         if self.outside is not None:
             return dict(self.edges) | self.outside.edges
         if self.seam is None:

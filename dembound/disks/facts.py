@@ -8,6 +8,7 @@ from dembound.disks.layout import fill
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.summary import describe_packing, describe_side
+from dembound.disks.surroundings import Surroundings
 from dembound.disks.warnings import particles_per_wavelength, strong_waves
 
 
@@ -18,6 +19,8 @@ def disk_facts(scene: DiskScene) -> dict[str, str]:
     if not scene.layout.is_plain:
         facts["rows of copies"] = f"{100.0 * fill(scene.layout):.0f} % of the lanes hold particles"
     facts |= _packing_facts(scene) | _law_facts(scene) | _hole_facts(case) | _static_facts(case)
+    if scene.outside is not None:
+        facts["continuum"] = _continuum_fact(scene.outside)
     for side in scene.edges:
         facts[f"{side} side"] = _side_fact(scene, side)
     facts |= _load_facts(scene)
@@ -26,6 +29,17 @@ def disk_facts(scene: DiskScene) -> dict[str, str]:
     for name, count in particles_per_wavelength(scene).items():
         facts[f"wave {name}"] = f"{count:.0f} particles per shortest wavelength"
     return facts
+
+
+def _continuum_fact(outside: Surroundings) -> str:
+    """Elements of the continuum beyond the sides, and how many of them absorb."""
+    mesh = outside.body.mesh
+    absorbing = 100.0 * float(mesh.absorbs.any(axis=1).mean())
+    width, height = mesh.element
+    return (
+        f"{outside.count:,} nodes in {len(mesh.elements):,} elements of order {mesh.order}, {width:.4g} m × "
+        f"{height:.4g} m, {absorbing:.0f} % of which absorb; {len(outside.wall.element):,} ties"
+    )
 
 
 def _monitor_facts(scene: DiskScene) -> dict[str, str]:
@@ -56,7 +70,7 @@ def _particles(scene: DiskScene) -> str:
     loose = scene.assembly.loose
     before = f", {scene.before.count:,} before the excavation" if scene.before is not None else ""
     severed = f"; {counted(loose, 'severed disk')} left out" if loose else ""
-    return f"{scene.count:,}{before}{severed}"
+    return f"{scene.disk_count:,}{before}{severed}"
 
 
 def _hole_facts(case: DiskCase) -> dict[str, str]:

@@ -31,7 +31,7 @@ def particle_stress(scene: DiskBody, contacts: Contacts, displacement: np.ndarra
     displacement : (3, n) m and rad.
     geometry : of the forces and vectors of the pairs, see `contact_forces.pieces`.
     """
-    moments = np.zeros((3, scene.count))
+    moments = np.zeros((3, scene.disk_count))
     for piece in pieces(scene.layout, contacts, displacement, geometry):
         (x, y), (pull_x, pull_y) = piece.vector, piece.force
         for total, dyad in zip(moments, (pull_x * x, pull_y * y, 0.5 * (pull_x * y + pull_y * x)), strict=True):

@@ -38,11 +38,12 @@ class Surroundings:
 
     Attributes
     ----------
-    sides : on which it is. body : elements, medium and layers. wall : the ties of cut bonds to it. disks : number of
+    sides : on which it is. element : largest side of an element, as given or chosen, m. body : elements, medium and layers. wall : the ties of cut bonds to it. disks : number of
     disks; the continuum's nodes follow in the scene.
     """
 
     sides: tuple[str, ...]
+    element: float
     body: GridBody
     wall: Wall
     disks: int
@@ -182,4 +183,4 @@ def surroundings_of(
         first_slot=-(-layout.count // LANES) * LANES,
     )
     wall = Wall.of(mesh, CutBonds.of(ground, cut, assembly.positions), lag_of(ground, keys.damping))
-    return Surroundings(tuple(sides), body, wall, len(assembly.radii))
+    return Surroundings(tuple(sides), largest, body, wall, len(assembly.radii))

@@ -267,12 +267,12 @@ def _pieces(scene: DiskScene, broken: np.ndarray) -> np.ndarray:
     broken (k, 2) particles; without any, the body is in one piece, as built.
     """
     if len(broken) == 0:
-        return np.zeros(scene.count, dtype=np.int8)
+        return np.zeros(scene.disk_count, dtype=np.int8)
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
     pairs = scene.assembly.pairs
-    listed, gone = (np.sort(each.astype(np.int64), axis=1) @ [scene.count, 1] for each in (pairs, broken))
+    listed, gone = (np.sort(each.astype(np.int64), axis=1) @ [scene.disk_count, 1] for each in (pairs, broken))
     pairs = pairs[~np.isin(listed, gone)]
-    joined = coo_matrix((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(scene.count, scene.count))
+    joined = coo_matrix((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(scene.disk_count, scene.disk_count))
     return connected_components(joined, directed=False)[1]

@@ -23,7 +23,7 @@ LOCK = "run.lock"
 OWN = re.compile(
     r"run\.(h5|h5\.new|h5\.log|h5\.log\.part|lock)|checkpoint\.npz(\.part)?|settled/[a-z.]+\.npz(\.part)?|summary\.json(\.part)?"
     r"|(scene|histories|histories_stress)\.png(\.part)?"
-    r"|paraview/((particles|contacts|bar)(_\d{4,}\.vtu|\.pvd|\.vtkhdf)|cracks\.vtu|view\.py)(\.part)?"
+    r"|paraview/((particles|contacts|bar|continuum)(_\d{4,}\.vtu|\.pvd|\.vtkhdf)|cracks\.vtu|view\.py)(\.part)?"
 )
 """The files that a run writes, by their paths in its folder; all others are somebody else's, and are kept."""
 

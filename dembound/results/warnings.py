@@ -91,7 +91,8 @@ def _braked(scene: Scene, pieces: np.ndarray) -> np.ndarray:
     """
     if scene.damp > 0.0:
         return np.ones(scene.count, dtype=np.bool_)
-    sides = [edge for side, edge in scene.edges.items() if scene.case.side(side).factors]
+    tables = {side: scene.case.side(side) for side in scene.edges}
+    sides = [scene.edges[side] for side, table in tables.items() if table.factors or table.is_outside]
     ends = np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in sides)])
     return np.isin(pieces, pieces[ends])
 

@@ -110,6 +110,8 @@ def of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
 def of_disk_case(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[str]]:
     """A body of disks under the linear law, and under the case's own if that has a history."""
     plain = replace(_at_rest(case), static=None, monitor=())
+    if (outside := build(case).outside) is not None:  # whose elements were chosen from the waves
+        plain = replace(plain, outside=case.outside.model_copy(update={"element": outside.element}))
     words = _left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
     if not full:
         plain, about = _reduced(plain)
