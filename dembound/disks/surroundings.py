@@ -38,8 +38,8 @@ class Surroundings:
 
     Attributes
     ----------
-    sides : on which it is. element : largest side of an element, as given or chosen, m. body : elements, medium and layers. wall : the ties of cut bonds to it. disks : number of
-    disks; the continuum's nodes follow in the scene.
+    sides : on which it is. element : largest side of an element, as given or chosen, m. body : elements, medium and
+    layers. wall : the ties of cut bonds to it. disks : number of disks; the continuum's nodes follow in the scene.
     """
 
     sides: tuple[str, ...]
