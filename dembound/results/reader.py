@@ -143,14 +143,23 @@ def place_in_words(place: Sequence[float], size: Sequence[float]) -> str:
     return f"{place[0]:.4g} m" if is_line(size) else "({:.2f}, {:.2f}) m".format(*place)
 
 
+def snapshots_of(file: h5py.File, *, required: bool = False) -> list[h5py.Group]:
+    """All snapshots of an open record in the order of time, that of their numbers: HDF5 lists 10000 before 1001.
+
+    Raises CaseError when one is required and there is none.
+    """
+    group = file.get("snapshots", {})
+    if required and len(group) == 0:
+        raise CaseError([f"{file.filename}: has no snapshots, run with output.snapshots above 0"])
+    return [group[number] for number in sorted(group, key=int)]
+
+
 def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
     """A snapshot of an open record by its number; negative ones count from the last.
 
     Raises CaseError when there is no such snapshot.
     """
-    snapshots = list(file.get("snapshots", {}).values())
-    if not snapshots:
-        raise CaseError([f"{file.filename}: has no snapshots, run with output.snapshots above 0"])
+    snapshots = snapshots_of(file, required=True)
     if not -len(snapshots) <= number < len(snapshots):
         raise CaseError([f"{file.filename}: has no snapshot {number}, they are 0 to {len(snapshots) - 1}"])
     return snapshots[number]
@@ -161,7 +170,7 @@ def snapshot_of_largest_motion(file: h5py.File, field: str) -> h5py.Group:
 
     Raises CaseError when there is no snapshot.
     """
-    groups = list(snapshot_of(file, -1).parent.values())
+    groups = snapshots_of(file, required=True)
     return max(groups, key=lambda group: float(np.abs(group[field][:, :2]).max()))
 
 
