@@ -27,7 +27,7 @@ from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
 from dembound.results.vtk import write_vtu
 from dembound.results.warnings import never_silent
-from dembound.running.disk_space import disk_facts, disk_warnings, results_bytes
+from dembound.running.disk_space import bytes_left, disk_facts, disk_warnings
 from dembound.running.planning import about, plan, require_stages, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
 from dembound.running.unfinished import Unfinished, find_unfinished
@@ -110,8 +110,7 @@ class _Job:
         with clock.with_compiling():
             planned = self._plan()
             require_stages(planned)
-            if self.found is None:
-                self._announce_size(planned)
+            self._announce_size(planned)
             with about(case), self.folder.writing(anew=self.found is None) as partial:
                 if self.found is not None:
                     self.found.copy_to(partial)
@@ -125,11 +124,11 @@ class _Job:
         return self.folder.final
 
     def _announce_size(self, planned: Plan) -> None:
-        """Warn if the disk has less space than the results need, and log their size if it is large."""
-        results = self.folder.final.parent
-        short = _passed_on(list(disk_warnings(planned, results)), self.progress)
-        if not short and sum(results_bytes(planned).values()) > LARGE:
-            logging.getLogger(__name__).info(f"{self.case.name}: {disk_facts(planned, results)}")
+        """Warn if the disk has less space than the results still need, and log their size if it is large."""
+        results, written = self.folder.final.parent, 0 if self.found is None else self.found.written
+        short = _passed_on(list(disk_warnings(planned, results, written)), self.progress)
+        if not short and sum(bytes_left(planned, written).values()) > LARGE:
+            logging.getLogger(__name__).info(f"{self.case.name}: {disk_facts(planned, results, written)}")
 
     def _plan(self) -> Plan:
         """The plan; that of a resumed run has the time step of its checkpoint."""

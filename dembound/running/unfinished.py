@@ -48,6 +48,13 @@ class Unfinished:
         here = {"stage": self.stage, "step": self.facts["step"]}
         return [*self.facts["resumed"], here]
 
+    @property
+    def written(self) -> int:
+        """Bytes that it has written to its partial folder; 0 of a complete run, which is copied there first."""
+        if self.path != self.folder.partial:
+            return 0
+        return sum(path.stat().st_size for path in self.path.rglob("*") if path.is_file())
+
     def arrays(self) -> Arrays:
         """The arrays of the checkpoint, read anew."""
         return Checkpoint.read(self.path / FILE).arrays
