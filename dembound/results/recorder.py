@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -148,6 +148,10 @@ class Recorder:
             self.flush()
         elif kept >= KEPT_BYTES:
             self._append_kept()
+
+    def note(self, facts: Mapping[str, Any]) -> None:
+        """Write attributes of the record."""
+        describe(self.file, facts)
 
     def flush(self, *, durable: bool = True) -> None:
         """Write everything up to now; the file can be read as of now, whatever happens next.
