@@ -126,11 +126,24 @@ def rerun(
     path = record if record.suffix == ".h5" else record / "run.h5"
     recorded = recorded_case(path)
     case = changed(recorded, changes, name)
+    if changes:
+        _require_another_folder(path, output, case.name)
     use_threads(threads)
     begun_for = recorded_beginning(path) if case.run.duration == recorded.run.duration else None
     if begun_for is not None:
         err.print(f"{case.name}: ledger and snapshots at the intervals of the run as it was begun, for {begun_for:g} s")
     _run(case, output, {}, begun_for)
+
+
+def _require_another_folder(record: Path, output: Path, name: str) -> None:
+    """Raise CaseError if a changed case would replace the results that it is read from."""
+    from dembound.results.folder import Folder
+
+    target = Folder(output, name)
+    if record.parent.resolve() in (target.final.resolve(), target.partial.resolve()):
+        raise CaseError(
+            [f"--set: would replace {record}, from which the case is read; give another --name or --output"]
+        )
 
 
 def _run(case: Case, output: Path, spent: dict[str, float], begun_for: float | None = None) -> None:
