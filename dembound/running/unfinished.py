@@ -14,9 +14,10 @@ from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.motion.state import Arrays
 from dembound.results.checkpoint import FILE, Checkpoint, differences
+from dembound.results.damage import require_readable
 from dembound.results.folder import PARTIAL, Folder, with_name
 from dembound.results.kept_stages import FOLDER as STAGES
-from dembound.results.reader import open_record, require_readable, text_of
+from dembound.results.reader import open_record, text_of
 
 SILENCE = ("until", "silent_level", "silent_for")
 """Keys of ``[run]`` that end a run before its duration."""
