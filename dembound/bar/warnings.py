@@ -16,7 +16,7 @@ from dembound.bar.scene import BarScene, end_supports
 from dembound.boundaries import OPPOSITE, normal_axis
 from dembound.casefile.bar import BarCase
 from dembound.casefile.magnitudes import grip_stress, stress_in_words, stress_warnings, time_warnings
-from dembound.results.reader import open_record
+from dembound.results.reader import open_record, snapshots_of
 from dembound.results.warnings import still_moving
 
 if TYPE_CHECKING:
@@ -171,7 +171,7 @@ def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
     foreseen = [*stress_beside_strength(case), *ends_too_soon(case)]
     if np.isinf(strength) or len(file["cracks/time"]) > 0 or foreseen:
         return
-    groups = [*file["histories"].values(), *file.get("snapshots", {}).values()]
+    groups = [*file["histories"].values(), *snapshots_of(file)]
     if not groups:
         return
     tension = max(0.0, *(float(np.max(group["stress"][:])) for group in groups))

@@ -72,6 +72,18 @@ def other_run(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def long_run(small_run, tmp_path_factory) -> Path:
+    """The record of that run with the last two of 10,001 snapshots, which HDF5 lists in the other order."""
+    path = tmp_path_factory.mktemp("long") / "run.h5"
+    path.write_bytes(small_run.read_bytes())
+    with h5py.File(path, "r+") as file:
+        for number, later in (("0000", "9999"), ("0001", "10000")):
+            file.move(f"snapshots/{number}", f"snapshots/{later}")
+        assert list(file["snapshots"]) == ["10000", "9999"]
+    return path
+
+
+@pytest.fixture(scope="session")
 def rich_run(small_run, tmp_path_factory) -> Path:
     """The record of that run with stresses in its snapshots, and with peaks."""
     path = tmp_path_factory.mktemp("rich") / "run.h5"
