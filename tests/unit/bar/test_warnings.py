@@ -48,7 +48,7 @@ def test_only_waves_in_use_can_be_too_short(spalling) -> None:
     case = spalling({**LONG, **ends, "wave.in": short, "wave.spare": short})
 
     warnings = bar_warnings(build_bar(case), 2e-5)
-    assert len([warning for warning in warnings if "cells" in warning]) == 1
+    assert len([warning for warning in warnings if "shortest wavelength" in warning]) == 1
     assert {warning.split(":")[0] for warning in warnings} == {"wave.in"}
 
 
@@ -60,7 +60,7 @@ def test_only_a_horizon_can_be_made_smaller(spalling) -> None:
         {"type": "patch", "horizon": 3},
     ):
         case = spalling({"method": method, "wave.hit.rise": 1e-6, "wave.hit.fall": 1e-6})
-        (warning,) = [each for each in bar_warnings(build_bar(case), 1e-7) if "cells" in each]
+        (warning,) = [each for each in bar_warnings(build_bar(case), 1e-7) if "shortest wavelength" in each]
         assert warning.endswith("take a smaller bar.spacing")
 
 
