@@ -121,6 +121,6 @@ def test_check_tells_of_the_run_and_the_bar(spalling) -> None:
 
     assert facts["steps"] == "60 for 0.0015 s"
     assert facts["time step"].startswith("2.5e-05 s, ")
-    assert facts["estimated time"] == "less than 1 s with 1 thread"
+    assert facts["estimated time"] == "less than 1 s with 1 thread, without building, pictures"
     assert facts["nodes"] == "41, 0.025 m apart"
     assert warnings == bar_warnings(build_bar(spalling()), 2.5e-5)
