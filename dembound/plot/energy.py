@@ -43,7 +43,7 @@ OF_SIDES: dict[str, tuple[str, dict[str, Any]]] = {
 }
 """Columns of every side, their names in the legend, in which {} is the side, and their lines; a side has one colour."""
 
-HUES = (*COLOURS, "#8C510A", "#999999", "#5E3C99", "#B2182B")
+HUES = (COLOURS[0], "#67001F", *COLOURS[1:], "#8C510A", "#999999", "#5E3C99")
 """A colour for each column of the ledger."""
 
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
@@ -52,6 +52,7 @@ PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 OWN_LOOKS: dict[str, dict[str, Any]] = {
     "contact": {"linestyle": "-", "linewidth": 4.0, "alpha": 0.7, "zorder": 1.9},
     "kinetic": {"zorder": 2.1},
+    "loads": {"linestyle": "-"},
 }
 """Energies of contacts and bonds are often equal, so the one is a thin line above the wide line of the other."""
 
