@@ -25,7 +25,7 @@ from dembound.cli.app import (
     changed,
     load_case,
     load_disks,
-    use_threads,
+    prepare_computing,
 )
 from dembound.cli.console import compact_table, err, out
 from dembound.errors import CaseError
@@ -46,7 +46,7 @@ def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None)
     from dembound.check import check
     from dembound.cli.progress import print_warning
 
-    use_threads(threads)
+    prepare_computing(threads)
     for case in [load_case(path, changes) for path in cases]:
         facts, warnings = check(case)
         table = compact_table(title=f"{case.name}: {case.title}" if case.title else case.name, show_header=False)
@@ -73,7 +73,7 @@ def run(
     from dembound.running import preflight
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
-    use_threads(threads)
+    prepare_computing(threads)
     loaded = [load_case(path, changes, name) for path in cases]
     if name is not None and len(cases) > 1:
         raise CaseError(["--name: names the results of one case, there are several here"])
@@ -104,7 +104,7 @@ def resume(
     from dembound.results.folder import Folder
     from dembound.running import resume_case
 
-    use_threads(threads)
+    prepare_computing(threads)
     for folder in results:
         _print_results(_watched(Folder.of(folder), partial(resume_case, folder, until)))
 
@@ -128,7 +128,7 @@ def rerun(
     case = changed(recorded, changes, name)
     if changes:
         _require_another_folder(path, output, case.name)
-    use_threads(threads)
+    prepare_computing(threads)
     begun_for = recorded_beginning(path) if case.run.duration == recorded.run.duration else None
     if begun_for is not None:
         err.print(f"{case.name}: ledger and snapshots at the intervals of the run as it was begun, for {begun_for:g} s")

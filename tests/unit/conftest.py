@@ -15,6 +15,7 @@ from typer.main import get_command
 
 from dembound import cli
 from dembound.casefile import Case
+from dembound.cli import compiling
 from dembound.disks.rows import contact_rows
 from dembound.disks.scene import DiskScene
 from dembound.kinds import loads, with_changes
@@ -227,6 +228,7 @@ def dembound(tmp_path, monkeypatch, capsys, command) -> Callable[..., Answer]:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys.modules["dembound.cli.app"], "app", command)
     monkeypatch.setattr(style, "DOTS_PER_INCH", 30)
+    monkeypatch.setattr(compiling, "report_compiling", lambda: None)  # else what is printed depends on earlier tests
 
     def run(*arguments: object) -> Answer:
         monkeypatch.setattr(sys, "argv", ["dembound", *map(str, arguments)])
