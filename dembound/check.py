@@ -37,8 +37,8 @@ def _run_facts(planned: Plan, results: Path) -> dict[str, str]:
         "steps": f"{planned.steps:,} for {scene.case.run.duration:g} s{_until_silent(planned)}",
         "memory": f"about {in_words(scene.largest_memory)} at its peak{_here()}",
         "disk": disk_facts(planned, results),
-        "estimated time": f"{duration_in_words(_estimate(planned))} {_threads_in_words(scene.threads)}"
-        f"{planned.kind.not_estimated(scene.case)}",
+        "estimated time": f"{duration_in_words(_estimate(planned))} {_threads_in_words(scene.threads)}, "
+        f"without {', '.join(['building', *planned.kind.not_estimated(scene.case), 'pictures'])}",
     }
     reductions = {"reduced": "; ".join(scene.reduced), "not reduced": "; ".join(planned.refused)}
     return facts | {name: words for name, words in reductions.items() if words}

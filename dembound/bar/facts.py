@@ -36,9 +36,8 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
     for side in scene.edges:
         facts[f"{side} end"] = side_in_words(describe_end(scene, side))
     for load in case.load:
-        largest = abs(load.pressure) * case.wave[load.wave].peak()
         facts[f"load {load.name}"] = (
-            f"up to {largest / 1e6:.4g} MPa, {stress_in_words(load.pressure)} times wave {load.wave}, "
+            f"{_pressure(load.pressure, case.wave[load.wave].peak())} times wave {load.wave}, "
             f"on {counted(load.nodes, 'node')} at the {load.side} end"
         )
     for name, node in scene.monitors.items():
@@ -48,6 +47,12 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
             f"{cells:.3g} cells in its shortest wavelength, {needed:.3g} needed for an error of {PERCENT}"
         )
     return facts
+
+
+def _pressure(pressure: float, peak: float) -> str:
+    """Pressure (Pa) of a load in words, and the largest stress if the peak of its wave is not 1."""
+    given, largest = stress_in_words(pressure), stress_in_words(abs(pressure) * peak)
+    return given if largest == stress_in_words(abs(pressure)) else f"up to {largest}: {given}"
 
 
 def method_in_words(case: BarCase) -> str:

@@ -45,6 +45,19 @@ def waves_used(case: Case) -> set[str]:
     return driving | {load.wave for load in case.load if load.wave is not None}
 
 
+def is_quasi_static(case: Case, name: str, travel: float) -> bool:
+    """Whether a wave is the constant velocity of grips alone in a run far longer than a wave's way through the scene.
+
+    The waves that its start sends, also those too short for the discretisation, then have a stress ρcv below 1/`SLOW`
+    of the stress ρc²u/L that the grips reach at the end of the run, u = vt.
+
+    travel : time (s) a wave takes through the scene.
+    """
+    driven = [case.boundary[side].type for side, waves in case.driving.items() if name in waves.values()]
+    grips_only = set(driven) == {"velocity"} and all(load.wave != name for load in case.load)
+    return case.wave[name].stays and grips_only and case.run.duration > SLOW * travel
+
+
 def time_warnings(case: Case, time_step: float, travel: float) -> Iterator[str]:
     """At most one warning for every wave far longer or shorter than the run, the step or the travel time.
 
@@ -75,7 +88,7 @@ def _too_long(wave: Wave, duration: float, travel: float) -> Iterator[str]:
 
 
 def _too_short(wave: Wave, duration: float, time_step: float, travel: float) -> Iterator[str]:
-    """Reasons why a wave is far too short, in words; times in s. A constant may have any rise: it is a sudden load."""
+    """Reasons why a wave is far too short, in words; times in s. A constant may be a sudden load."""
     if wave.stays:
         return
     length = wave.duration() - wave.start

@@ -164,8 +164,11 @@ def _setting(text: str) -> tuple[str, Any]:
     return key.strip(), value_of(value, f"--set {key.strip()}")
 
 
-def use_threads(threads: int | None) -> None:
-    """Set the number of threads, as far as there are that many."""
+def prepare_computing(threads: int | None) -> None:
+    """Set the number of threads, as far as there are that many, and have compiling reported."""
+    from dembound.cli.compiling import report_compiling
+
+    report_compiling()
     if threads is not None:
         import numba
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.table import Table
 
-from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, use_threads
+from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, prepare_computing
 from dembound.cli.console import out
 from dembound.errors import CaseError
 
@@ -75,7 +75,7 @@ def calibrate_sides(
     from dembound.studies.calibration import calibrate
 
     _one_or_all(boundary, every, wave)
-    use_threads(threads)
+    prepare_computing(threads)
     loaded = load_disks(case, changes, name)
     options: dict[str, Any] = {"method": method.value, "start": start, "tolerance": tolerance, "full": full}
     folder = output / f"{loaded.name.removesuffix(CALIBRATED)}_calibration"

@@ -25,7 +25,7 @@ from dembound.cli.app import (
     changed,
     load_case,
     load_disks,
-    use_threads,
+    prepare_computing,
 )
 from dembound.cli.console import compact_table, err, out
 from dembound.errors import CaseError
@@ -46,7 +46,7 @@ def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None)
     from dembound.check import check
     from dembound.cli.progress import print_warning
 
-    use_threads(threads)
+    prepare_computing(threads)
     for case in [load_case(path, changes) for path in cases]:
         facts, warnings = check(case)
         table = compact_table(title=f"{case.name}: {case.title}" if case.title else case.name, show_header=False)
@@ -73,7 +73,7 @@ def run(
     from dembound.running import preflight
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
-    use_threads(threads)
+    prepare_computing(threads)
     loaded = [load_case(path, changes, name) for path in cases]
     if name is not None and len(cases) > 1:
         raise CaseError(["--name: names the results of one case, there are several here"])
@@ -104,7 +104,7 @@ def resume(
     from dembound.results.folder import Folder
     from dembound.running import resume_case
 
-    use_threads(threads)
+    prepare_computing(threads)
     for folder in results:
         _print_results(_watched(Folder.of(folder), partial(resume_case, folder, until)))
 
@@ -117,21 +117,42 @@ def rerun(
     name: Name = None,
     threads: Threads = None,
 ) -> None:
-    """Run the case of a record again, from the record alone: case, seeds and wave files are in it."""
-    from dembound.running.recorded import recorded_case
+    """Run the case of a record again, from the record alone: case, seeds and wave files are in it.
 
-    case = recorded_case(record if record.suffix == ".h5" else record / "run.h5")
-    use_threads(threads)
-    _run(changed(case, changes, name), output, {})
+    Ledger and snapshots of a run that was continued have the intervals of the record, unless the duration is changed.
+    """
+    from dembound.running.recorded import recorded_beginning, recorded_case
+
+    path = record if record.suffix == ".h5" else record / "run.h5"
+    recorded = recorded_case(path)
+    case = changed(recorded, changes, name)
+    if changes:
+        _require_another_folder(path, output, case.name)
+    prepare_computing(threads)
+    begun_for = recorded_beginning(path) if case.run.duration == recorded.run.duration else None
+    if begun_for is not None:
+        err.print(f"{case.name}: ledger and snapshots at the intervals of the run as it was begun, for {begun_for:g} s")
+    _run(case, output, {}, begun_for)
 
 
-def _run(case: Case, output: Path, spent: dict[str, float]) -> None:
-    """Run a case, with its progress, and print its outcome; spent : seconds before, by section."""
+def _require_another_folder(record: Path, output: Path, name: str) -> None:
+    """Raise CaseError if a changed case would replace the results that it is read from."""
+    from dembound.results.folder import Folder
+
+    target = Folder(output, name)
+    if record.parent.resolve() in (target.final.resolve(), target.partial.resolve()):
+        raise CaseError(
+            [f"--set: would replace {record}, from which the case is read; give another --name or --output"]
+        )
+
+
+def _run(case: Case, output: Path, spent: dict[str, float], begun_for: float | None = None) -> None:
+    """Run a case, with its progress, and print its outcome; spent : seconds before, by section; begun_for : s."""
     from dembound.results.folder import Folder
     from dembound.running import run_case
 
     folder = Folder(output, case.name)
-    _print_results(_watched(folder, partial(run_case, case, output, seconds=spent)))
+    _print_results(_watched(folder, partial(run_case, case, output, seconds=spent, begun_for=begun_for)))
 
 
 def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:

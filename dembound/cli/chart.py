@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Column
 
-from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case, use_threads
+from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case, prepare_computing
 from dembound.cli.console import compact_table, err, out
 from dembound.results.interrupts import exit_code_of
 
@@ -93,7 +93,7 @@ def chart(
     from dembound.studies.chart.study import Options
     from dembound.studies.chart.study import chart as make
 
-    use_threads(threads)
+    prepare_computing(threads)
     loaded = load_case(case, changes, name)
     options = Options(
         named=combinations(loaded, parsed(vary)) if vary else None,

@@ -10,7 +10,7 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from dembound.cli.app import PICTURE, PictureTitle, Settings, Threads, app, load_case, use_threads, writable
+from dembound.cli.app import PICTURE, PictureTitle, Settings, Threads, app, load_case, prepare_computing, writable
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import compact_table, err, out
 from dembound.errors import RunError
@@ -42,7 +42,7 @@ def stability(
     from dembound.plot.table import write_lines
     from dembound.studies.stability import measure
 
-    use_threads(threads)
+    prepare_computing(threads)
     loaded = load_case(case, changes)
     found, words = measure(loaded, steps=steps, full=full, report=lambda line: err.print(line))
     out.print(_overview(found, f"{loaded.name}: {words[0]}"))

@@ -27,7 +27,8 @@ def disk_facts(scene: DiskScene) -> dict[str, str]:
     facts |= _monitor_facts(scene)
     facts |= _tension_facts(scene)
     for name, count in particles_per_wavelength(scene).items():
-        facts[f"wave {name}"] = f"{count:.0f} particles per shortest wavelength"
+        few = f"{count:.0f} particles per" if count >= 1.0 else "less than one particle per"
+        facts[f"wave {name}"] = f"{few} shortest wavelength"
     return facts
 
 

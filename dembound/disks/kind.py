@@ -119,12 +119,12 @@ class Disks(Kind[DiskCase, DiskScene]):
         """Packing, law, loads and boundaries."""
         return disk_facts(scene)
 
-    def not_estimated(self, case: DiskCase) -> str:
+    def not_estimated(self, case: DiskCase) -> list[str]:
         """The static stage, and a law that replaces the elastic one later."""
         later = ["the static stage"] * (case.static is not None)
         if LAWS[case.material.law].has_history and case.material.elastic_start:
             later.append(f"the additional time of {case.material.law} once it begins")
-        return f", without {' and '.join(later)}" if later else ""
+        return later
 
     def warnings_before(self, scene: DiskScene, time_step: float) -> list[str]:
         """Warnings that are known before the run."""

@@ -15,12 +15,22 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
         facts += _settled(static, "settled" if before is None else "after the excavation")
     if summary["has_history"]:
         facts.append(laws_in_words([(used["law"], used["from"]) for used in summary["laws"]]))
-        tension, shear = summary["cracks"]["tension"], summary["cracks"]["shear"]
-        if tension + shear > 0:
-            facts.append(f"{tension + shear:,} bonds broke ({tension:,} tension, {shear:,} shear)")
+        facts += _broken(summary["cracks"], static)
         if error := summary["energy"]["relative_error"]:  # zero if no energy was supplied
             facts.append(f"energy closes to {100.0 * error:.2g} %")
     return facts
+
+
+def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None) -> list[str]:
+    """Number of all broken bonds and their modes, after those of the static stages, which have their own numbers."""
+    count = cracks["tension"] + cracks["shear"]
+    if count == 0:
+        return []
+    modes = f"({cracks['tension']:,} tension, {cracks['shear']:,} shear)"
+    stages = [] if static is None else [each["cracks"] for each in (static, static["before"]) if each is not None]
+    if [count] == stages:
+        return [f"bonds broke only while settling {modes}"]
+    return [f"{count:,} bonds broke{' in all' if any(stages) else ''} {modes}"]
 
 
 def _settled(static: Mapping[str, Any], words: str) -> list[str]:

@@ -9,11 +9,13 @@ import numpy as np
 
 from dembound.boundaries import SIDES, Motion, axis_of_motion
 from dembound.casefile.disks.load import Load
-from dembound.casefile.magnitudes import grip_stress, stress_in_words, stress_warnings, time_warnings
+from dembound.casefile.magnitudes import grip_stress, is_quasi_static, stress_in_words, stress_warnings, time_warnings
 from dembound.disks.matching import homogenised_beta, reflected
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.results.reader import open_record
 from dembound.results.warnings import still_moving
+from dembound.waves.constant import Constant
+from dembound.waves.spectrum import HANN_FADE
 
 FEWEST_PER_WAVELENGTH = 20.0
 """Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
@@ -103,13 +105,27 @@ def _tension(scene: DiskScene) -> Iterator[str]:
 
 
 def _too_few_per_wavelength(scene: DiskScene) -> Iterator[str]:
-    """Waves that are too short for the size of the particles."""
+    """Waves that are too short for the size of the particles, except for those of a slow grip."""
+    travel = _travel_time(scene)
     for name, count in particles_per_wavelength(scene).items():
-        if count < FEWEST_PER_WAVELENGTH:
-            yield (
-                f"wave.{name}: has {count:.1f} particles in its shortest wavelength, fewer than "
-                f"{FEWEST_PER_WAVELENGTH:g}; the packing will disperse it"
-            )
+        if count < FEWEST_PER_WAVELENGTH and not is_quasi_static(scene.case, name, travel):
+            wave = scene.case.wave[name]
+            words = _too_sudden(scene, wave) if isinstance(wave, Constant) else _too_short(count)
+            yield f"wave.{name}: {words}; the packing will disperse it"
+
+
+def _too_short(count: float) -> str:
+    """What is wrong with a wave with this number of particles in its shortest wavelength."""
+    if count < 1.0:
+        return "has a shortest wavelength below the diameter of a particle"
+    return f"has {count:.1f} particles in its shortest wavelength, fewer than {FEWEST_PER_WAVELENGTH:g}"
+
+
+def _too_sudden(scene: DiskScene, wave: Constant) -> str:
+    """What is wrong with a constant that rises too fast for the particles, and which rise is long enough."""
+    least = FEWEST_PER_WAVELENGTH * HANN_FADE * scene.ground.brick.mean_diameter / _slowest(scene)
+    rise = f"rises within {wave.rise:g} s" if wave.rise > 0.0 else "is a step (rise = 0)"
+    return f"{rise}, which is shorter than the particles can follow, {least:.2g} s"
 
 
 def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
@@ -223,12 +239,18 @@ def _travel_time(scene: DiskScene) -> float:
 
 def particles_per_wavelength(scene: DiskScene) -> dict[str, float]:
     """Shortest wavelength of every wave, at its highest frequency and the scene's slowest speed, in diameters."""
-    speeds = [c for axis in (0, 1) for c in scene.ground.wave_speeds(axis) if np.isfinite(c)]
+    speed = _slowest(scene)
     spacing = scene.ground.brick.mean_diameter
     return {
-        name: min(speeds) / wave.highest_frequency() / spacing if speeds else np.inf
+        name: speed / wave.highest_frequency() / spacing if np.isfinite(speed) else np.inf
         for name, wave in scene.case.wave.items()
     }
+
+
+def _slowest(scene: DiskScene) -> float:
+    """Lowest wave speed of the scene along x or y, m/s; inf if no motion is possible."""
+    speeds = [speed for axis in (0, 1) for speed in scene.ground.wave_speeds(axis) if np.isfinite(speed)]
+    return min(speeds, default=np.inf)
 
 
 def strong_waves(scene: DiskScene) -> dict[str, str]:

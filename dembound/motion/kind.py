@@ -203,9 +203,9 @@ class Kind(ABC, Generic[C, S]):
     def facts(self, scene: S, time_step: float) -> dict[str, str]:
         """Facts about a case with a time step (s), as text by name; printed by `dembound check`."""
 
-    def not_estimated(self, case: C) -> str:
-        """Text naming what the time estimate from a trial of the first steps does not include."""
-        return ""
+    def not_estimated(self, case: C) -> list[str]:
+        """What steps of a run the time estimate from a trial of the first ones does not include, in words."""
+        return []
 
     @abstractmethod
     def warnings_before(self, scene: S, time_step: float) -> list[str]:

@@ -26,7 +26,7 @@ from dembound.plot.style import (
     styled,
     time_unit,
 )
-from dembound.results.reader import cracks_until, laws_of, open_record, snapshot_of, text_of
+from dembound.results.reader import cracks_until, laws_of, open_record, snapshot_of, snapshots_of, text_of
 
 MILLI, MEGA = 1e-3, 1e6
 
@@ -128,8 +128,7 @@ def read_course(run: Path, fields: Sequence[str], snapshot: int | None = None) -
     Raises CaseError when the file cannot be read or has no such snapshot.
     """
     with open_record(run) as file:
-        chosen = snapshot_of(file, -1 if snapshot is None else snapshot)
-        groups = list(chosen.parent.values()) if snapshot is None else [chosen]
+        groups = snapshots_of(file, required=True) if snapshot is None else [snapshot_of(file, snapshot)]
         time = np.array([group.attrs["time"] for group in groups])
         cracks = cracks_until(file, time[-1])
         unit = time_unit(time[-1])

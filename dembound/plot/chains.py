@@ -14,7 +14,7 @@ from dembound.plot.disks import SMALLEST_PIXELS, Window, draw_disks
 from dembound.plot.field import Disks, read_disks
 from dembound.plot.scene import DRAWING, LONG, part_around
 from dembound.plot.style import COLOURS, new_figure, outside_legend, styled
-from dembound.results.reader import open_record, snapshot_of
+from dembound.results.reader import open_record, snapshot_of, snapshots_of
 
 COLUMN = "contacts/normal_force"
 """Of a snapshot."""
@@ -101,7 +101,7 @@ def plot_chains(run: Path, snapshot: int | None = None) -> Figure:
 
 def read_chains(file: h5py.File, snapshot: int | None) -> Chains:
     """The contacts of an open record at a snapshot, see `plot_chains`."""
-    groups = list(snapshot_of(file, -1).parent.values())
+    groups = snapshots_of(file, required=True)
     if COLUMN not in groups[0]:
         raise CaseError([f"{file.filename}: holds no contacts; runs with output.contacts = true do"])
     if snapshot is None:

@@ -1,17 +1,20 @@
 """Stored, supplied and dissipated energy of a run, and the error of its balance."""
 
+from collections.abc import Iterator
+from math import floor, log10
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, MaxNLocator, StrMethodFormatter
+from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 
-from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled, time_unit
-from dembound.results.reader import energy_of, is_line, open_record, text_of
+from dembound.plot.style import COLOURS, REFERENCE, Powers, line_style, new_figure, outside_legend, styled, time_unit
+from dembound.results.reader import energy_of, is_line, open_record, side_energies_of, text_of
 
 COLUMNS = {
     "outside": "in: boundaries and driven loads",
+    "loads": "in: driven loads",
     "load": "in: steady loads",
     "balance": "in: forces that balance the settled stress",
     "kinetic": "kinetic",
@@ -33,12 +36,23 @@ BAR_COLUMNS = COLUMNS | {
 }
 """The same for a bar."""
 
-HUES = (*COLOURS, "#8C510A", "#999999", "#5E3C99")
-"""A colour for each of them."""
+OF_SIDES: dict[str, tuple[str, dict[str, Any]]] = {
+    "came_in": ("in: through the {}", {"marker": "^"}),
+    "absorbed": ("absorbed by the {}", {"marker": "v", "linestyle": "--"}),
+    "stored": ("stored in springs of the {}", {"marker": "s", "linestyle": ":"}),
+}
+"""Columns of every side, their names in the legend, in which {} is the side, and their lines; a side has one colour."""
+
+HUES = (COLOURS[0], "#67001F", *COLOURS[1:], "#8C510A", "#999999", "#5E3C99")
+"""A colour for each column of the ledger."""
+
+PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+"""Prefixes of the unit of energy, by their power of ten."""
 
 OWN_LOOKS: dict[str, dict[str, Any]] = {
-    "contact": {"linewidth": 4.0, "alpha": 0.7, "zorder": 1.9},
+    "contact": {"linestyle": "-", "linewidth": 4.0, "alpha": 0.7, "zorder": 1.9},
     "kinetic": {"zorder": 2.1},
+    "loads": {"linestyle": "-"},
 }
 """Energies of contacts and bonds are often equal, so the one is a thin line above the wide line of the other."""
 
@@ -46,11 +60,21 @@ NEGLIGIBLE = 1e-6
 """A column that stays below this share of the largest is left out."""
 
 
+class EnergyLine(NamedTuple):
+    """A line of the picture: its name in the legend, energies (k,) in J or J/m, and how it is drawn."""
+
+    label: str
+    values: np.ndarray
+    looks: dict[str, Any]
+
+
 @styled
 def plot_energy(run: Path) -> Figure:
     """The energy ledger of a run against time; below, its error over the supplied energy.
 
-    Columns that are negligible during the whole run are left out, as are those that an earlier version did not write.
+    The work from outside is divided into what came in through every side and by driven loads, and what each side
+    absorbed or stores in springs; it is one line where the record does not have this. Columns that are negligible
+    during the whole run are left out, as are those that an earlier version did not write.
 
     Parameters
     ----------
@@ -61,24 +85,55 @@ def plot_energy(run: Path) -> Figure:
     """
     with open_record(run) as file:
         name, columns, bar = text_of(file.attrs["name"]), energy_of(file), is_line(file.attrs["size"])
+        sides = side_energies_of(file)
+    lines = _not_negligible([*_of_ledger(columns, bar, bool(sides)), *_of_sides(sides, bar)])
     unit = time_unit(columns["time"][-1])
     time = columns["time"] / unit.seconds
+    power = _power_of_unit(max((float(np.abs(line.values).max()) for line in lines), default=0.0))
     figure = new_figure(9.0, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[4, 1])
-    largest = {column: float(np.abs(columns[column]).max()) for column in COLUMNS if column in columns}
-    least = NEGLIGIBLE * max(largest.values())
-    for index, (column, label) in enumerate((BAR_COLUMNS if bar else COLUMNS).items()):
-        if largest.get(column, 0.0) > least:
-            looks = line_style(index) | {"color": HUES[index]} | OWN_LOOKS.get(column, {})
-            upper.plot(time, columns[column], label=label, gid=label, **looks)
+    for line in lines:
+        upper.plot(time, line.values / 10.0**power, label=line.label, gid=line.label, **line.looks)
     lower.plot(time, columns["relative_error"], color=REFERENCE, gid="error of the balance")
     lower.yaxis.set_major_locator(MaxNLocator(nbins=3))
     lower.yaxis.set_major_formatter(StrMethodFormatter("{x:.3g}"))  # each with its own power, none next to the title
-    upper.set_ylabel("energy (J)" if bar else "energy per metre of thickness (J/m)")
-    upper.yaxis.set_major_formatter(EngFormatter())
+    joule = f"{PREFIXES[power]}J"
+    upper.set_ylabel(f"energy ({joule})" if bar else f"energy per metre of thickness ({joule}/m)")
+    upper.yaxis.set_major_formatter(Powers())
     lower.set_ylabel("error (–)")
     lower.set_xlabel(unit.label)
     lower.set_title("error of the balance, in parts of the most that came in", loc="left", fontsize=9, pad=3)
     figure.suptitle(f"{name}: where its energy is, and where it went", fontsize=11)
     outside_legend(figure, [upper], columns=3)
     return figure
+
+
+def _of_ledger(columns: dict[str, np.ndarray], bar: bool, divided: bool) -> Iterator[EnergyLine]:
+    """The columns of the ledger; `divided`: the work from outside is drawn by sides, with that of loads."""
+    left_out = "outside" if divided else "loads"
+    for index, (column, label) in enumerate((BAR_COLUMNS if bar else COLUMNS).items()):
+        if column in columns and column != left_out:
+            looks = line_style(index) | {"color": HUES[index]} | OWN_LOOKS.get(column, {})
+            yield EnergyLine(label, columns[column], looks)
+
+
+def _of_sides(sides: dict[str, dict[str, np.ndarray]], bar: bool) -> Iterator[EnergyLine]:
+    """What came in through every side, what it absorbed, and what is stored in its springs."""
+    for column, (label, looks) in OF_SIDES.items():
+        for index, (side, energies) in enumerate(sides.items()):
+            name, _, beside = side.partition(".")
+            place = f"{name} {'end' if bar else 'side'}" + (" of the column" if beside else "")
+            own = {"color": COLOURS[index % len(COLOURS)], "markersize": 5.0, "markevery": (3 * index, 12)}
+            yield EnergyLine(label.format(place), energies[column], looks | own)
+
+
+def _not_negligible(lines: list[EnergyLine]) -> list[EnergyLine]:
+    """Those of the lines that exceed a small share of the largest."""
+    largest = [float(np.abs(line.values).max(initial=0.0)) for line in lines]
+    return [line for line, each in zip(lines, largest, strict=True) if each > NEGLIGIBLE * max(largest)]
+
+
+def _power_of_unit(largest: float) -> int:
+    """The power of ten of the unit in which the largest energy (J or J/m) is from 1 to below 1000, if there is one."""
+    power = 3 * floor(log10(largest) / 3.0) if largest > 0.0 else 0
+    return min(max(power, min(PREFIXES)), max(PREFIXES))

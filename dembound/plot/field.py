@@ -10,7 +10,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.plot.disks import Window
 from dembound.results.histories import FREE_FIELD, UNITS
-from dembound.results.reader import COMPONENTS, cracks_until, laws_in_words, laws_of, snapshot_of, text_of
+from dembound.results.reader import COMPONENTS, cracks_until, laws_in_words, laws_of, snapshot_of, snapshots_of, text_of
 
 FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced"]
 
@@ -109,7 +109,7 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
         raise CaseError([f"field: is {name}, must be one of {', '.join((*get_args(FieldName), FORCES))} for disks"])
     if name == "peak":
         return _peak(file, snapshot)
-    groups = list(snapshot_of(file, -1).parent.values())
+    groups = snapshots_of(file, required=True)
     dataset = "stress" if name in STRESSES else name
     if dataset not in groups[0]:
         having = "static stages that stalled" if name == "unbalanced" else "runs with output.stress = true"

@@ -1,6 +1,7 @@
 """The lines of a picture as numbers, in the units of the picture."""
 
 import csv
+from collections import Counter
 from collections.abc import Iterator
 from itertools import zip_longest
 from pathlib import Path
@@ -34,7 +35,10 @@ def write_lines(figure: Figure, path: Path) -> None:
 
 
 def columns_of(figure: Figure) -> Iterator[Column]:
-    """The columns of that table: for each group of lines with the same x values these, then the values of the lines."""
+    """The columns of that table: for each group of lines with the same x values these, then the values of the lines.
+
+    The heads of lines that are drawn against two quantities name the quantity.
+    """
     groups: list[tuple[np.ndarray, list[tuple[Axes, Line2D]]]] = []
     for panel, line in _lines(figure):
         along = np.asarray(line.get_xdata(), dtype=float)
@@ -45,11 +49,14 @@ def columns_of(figure: Figure) -> Iterator[Column]:
         else:
             groups.append((along, [(panel, line)]))
     heads = [_x_label(lines[0][0]) for _, lines in groups]
+    names = Counter(_head(figure, panel, line) for _, lines in groups for panel, line in lines)
     for head, (along, lines) in zip(heads, groups, strict=True):
         of = f" of {lines[0][1].get_label()}" if heads.count(head) > 1 else ""
         yield f"{head}{of}", along
         for panel, line in lines:
-            yield _head(figure, panel, line), np.asarray(line.get_ydata(), dtype=float)
+            name = _head(figure, panel, line)
+            against = f", against {head}" if names[name] > 1 and len(set(heads)) > 1 else ""
+            yield f"{name}{against}", np.asarray(line.get_ydata(), dtype=float)
 
 
 def _lines(figure: Figure) -> Iterator[tuple[Axes, Line2D]]:

@@ -47,6 +47,11 @@ def problem_of(name: str) -> str:
     return ""
 
 
+def with_name(path: Path) -> Path:
+    """A path that ends in the name of its folder, also of the current folder and the one above."""
+    return path if path.name not in ("", "..") else path.resolve()
+
+
 class Folder:
     """The folder ``results/<name>`` of a run.
 
@@ -63,7 +68,7 @@ class Folder:
     @classmethod
     def of(cls, path: Path) -> Self:
         """The folder of a run from the path of the complete or the partial one, which may be the current folder."""
-        named = path if path.name not in ("", "..") else path.resolve()
+        named = with_name(path)
         return cls(named.parent, named.name.removesuffix(PARTIAL))
 
     def check(self) -> None:

@@ -4,7 +4,8 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
 
     /                       attributes: name, title, case (its text), keys (all, as JSON), kind ("disks", "bar"),
                             version, size, time_step, step_limit, steps, complete; of disks seed, of a bar density,
-                            section, wave_speed, attenuation, loaded, which of its ends is, and ends, their types
+                            section, wave_speed, attenuation, loaded, which of its ends is, and ends, their types; of
+                            a run that was continued to another time regular_steps, those of the run as it was begun
     inputs/<number>         bytes of a file that the case refers to; attribute path
     particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
                             column (n,), whether it belongs to a free-field column, of a bar's nodes volume (n,); if the

@@ -12,6 +12,7 @@ import numpy as np
 
 from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.results.committed import CommittedFile, log_of
+from dembound.results.damage import damage_in_words, is_of_checksum, require_readable
 from dembound.results.datasets import datasets_of
 
 if TYPE_CHECKING:
@@ -63,14 +64,18 @@ def reading(path: Path) -> Iterator[h5py.File]:
         raise RecordError([f"{path}: cannot be read as a record of results: there is no such file"])
     try:
         with h5py.File(CommittedFile(path, "r") if log_of(path).is_file() else path, "r") as file:
-            yield file
+            try:
+                yield file
+            except OSError as error:
+                if is_of_checksum(error):
+                    require_readable(file)
+                raise
     except DemboundError:
         raise
     except Exception as error:  # h5py and numpy raise nearly anything for damaged contents
         if isinstance(error, OSError) and error.filename not in (None, str(path)):
             raise
-        reason = str(error) or type(error).__name__
-        raise RecordError([f"{path}: cannot be read as a record of results: {reason[:200]}"]) from error
+        raise RecordError([f"{path}: {damage_in_words(error, path.stat().st_size)}"]) from error
 
 
 def require_sound(file: h5py.File) -> None:
@@ -85,20 +90,6 @@ def require_sound(file: h5py.File) -> None:
             _ = item.attrs[name]
         if hasattr(item, "keys"):
             waiting += [item[name] for name in item]
-
-
-def require_readable(file: h5py.File) -> None:
-    """Read all numbers of a record, whose checksums are then compared; raises what h5py raises if they differ."""
-    import h5py
-
-    def read(name: str, item: h5py.Group | h5py.Dataset) -> None:
-        if isinstance(item, h5py.Dataset):
-            try:
-                item[()]
-            except OSError as error:
-                raise RecordError([f"{file.filename}: is damaged in {name}: {error}"]) from None
-
-    file.visititems(read)
 
 
 def text_of(value: str | bytes) -> str:
@@ -143,14 +134,23 @@ def place_in_words(place: Sequence[float], size: Sequence[float]) -> str:
     return f"{place[0]:.4g} m" if is_line(size) else "({:.2f}, {:.2f}) m".format(*place)
 
 
+def snapshots_of(file: h5py.File, *, required: bool = False) -> list[h5py.Group]:
+    """All snapshots of an open record in the order of time, that of their numbers: HDF5 lists 10000 before 1001.
+
+    Raises CaseError when one is required and there is none.
+    """
+    group = file.get("snapshots", {})
+    if required and len(group) == 0:
+        raise CaseError([f"{file.filename}: has no snapshots, run with output.snapshots above 0"])
+    return [group[number] for number in sorted(group, key=int)]
+
+
 def snapshot_of(file: h5py.File, number: int) -> h5py.Group:
     """A snapshot of an open record by its number; negative ones count from the last.
 
     Raises CaseError when there is no such snapshot.
     """
-    snapshots = list(file.get("snapshots", {}).values())
-    if not snapshots:
-        raise CaseError([f"{file.filename}: has no snapshots, run with output.snapshots above 0"])
+    snapshots = snapshots_of(file, required=True)
     if not -len(snapshots) <= number < len(snapshots):
         raise CaseError([f"{file.filename}: has no snapshot {number}, they are 0 to {len(snapshots) - 1}"])
     return snapshots[number]
@@ -161,7 +161,7 @@ def snapshot_of_largest_motion(file: h5py.File, field: str) -> h5py.Group:
 
     Raises CaseError when there is no snapshot.
     """
-    groups = list(snapshot_of(file, -1).parent.values())
+    groups = snapshots_of(file, required=True)
     return max(groups, key=lambda group: float(np.abs(group[field][:, :2]).max()))
 
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from dembound.motion.trackers import Run
 from dembound.results.committed import FORMAT, CommittedFile
 from dembound.results.datasets import datasets_of, describe, extend, text, write
 from dembound.results.new_record import DISPLACEMENT_UNIT, MOTION, SIDE_HISTORY, VELOCITY_UNIT, begin_record, header_of
+from dembound.results.reader import snapshot_of, snapshots_of
 
 if TYPE_CHECKING:
     import h5py
@@ -148,6 +149,10 @@ class Recorder:
         elif kept >= KEPT_BYTES:
             self._append_kept()
 
+    def note(self, facts: Mapping[str, Any]) -> None:
+        """Write attributes of the record."""
+        describe(self.file, facts)
+
     def flush(self, *, durable: bool = True) -> None:
         """Write everything up to now; the file can be read as of now, whatever happens next.
 
@@ -192,7 +197,7 @@ class Recorder:
         """Write the scene at the end of a stage that stalled, with unbalanced forces and cracks."""
         self.snapshot()
         self._append_cracks(stalled.cracks, self.run.time_step)
-        write(list(self.file["snapshots"].values())[-1], "unbalanced", stalled.unbalanced, "N")
+        write(snapshot_of(self.file, -1), "unbalanced", stalled.unbalanced, "N")
 
     def _cut(self, counts: Mapping[str, int]) -> None:
         """Remove what was written after the state that the run continues from."""
@@ -205,8 +210,8 @@ class Recorder:
             _cut(datasets_of(self.file[name]), counts[name])
         for side in self.file.get("energy/sides", {}).values():
             _cut(side, counts["energy"])
-        for number in list(self.file["snapshots"])[counts["snapshots"] :]:
-            del self.file["snapshots"][number]
+        for snapshot in snapshots_of(self.file)[counts["snapshots"] :]:
+            del self.file[snapshot.name]
         self.file.attrs["complete"] = False
         header = header_of(self.run)
         describe(self.file, {name: header[name] for name in ("case", "keys")})  # it may run for longer

@@ -9,7 +9,16 @@ import h5py
 import numpy as np
 
 from dembound.errors import CaseError, RecordError
-from dembound.results.reader import datasets_in, energy_of, laws_of, open_record, reading, side_energies_of, text_of
+from dembound.results.reader import (
+    datasets_in,
+    energy_of,
+    laws_of,
+    open_record,
+    reading,
+    side_energies_of,
+    snapshots_of,
+    text_of,
+)
 
 
 class Arrays(Mapping[str, np.ndarray]):
@@ -77,7 +86,7 @@ class Results:
             self.particles = Arrays(self._record, file["particles"])
             self.histories = self._arrays(file, "histories")
             self.boundaries = self._arrays(file, "boundaries")
-            self.snapshots = list(self._arrays(file, "snapshots").values())
+            self.snapshots = [Arrays(self._record, group) for group in snapshots_of(file)]
             self.cracks = Arrays(self._record, file["cracks"])
             self.laws: list[tuple[str, float]] = laws_of(file)
 

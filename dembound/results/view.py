@@ -18,6 +18,7 @@ from dembound.results.reader import (
     replacing,
     snapshot_of,
     snapshot_of_largest_motion,
+    snapshots_of,
     text_of,
 )
 
@@ -120,7 +121,7 @@ def make_plotter(
     from vtkmodules.vtkCommonCore import vtkLogger
 
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)  # no warnings about drawing without a display
-    snapshots = list(file["snapshots"].values())
+    snapshots = snapshots_of(file)
     label = LABELS[field]
     disks = disk_mesh(file["particles/position"][:], file["particles/radius"][:])
     still = disks.points.copy()

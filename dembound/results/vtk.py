@@ -26,10 +26,11 @@ import numpy as np
 
 from dembound.motion.kind import Kind
 from dembound.motion.state import Arrays
-from dembound.results.reader import cracks_until, datasets_in, open_record, replacing, until
+from dembound.results.reader import cracks_until, datasets_in, open_record, replacing, snapshots_of, until
 from dembound.results.vtkhdf import temporal_file
 
 if TYPE_CHECKING:
+    import h5py
     import meshio
 
 
@@ -41,9 +42,9 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
     run
         the ``run.h5`` of a run.
     folder
-        created if it does not exist; receives ``particles_0000.vtu`` …, ``particles.pvd``, ``particles.vtkhdf``,
-        ``view.py`` and, where bonds broke, ``cracks.vtu``; the same of ``contacts`` if the record has them; of a bar
-        ``bar_0000.vtu`` … in place of ``particles``.
+        created if it does not exist; receives ``particles_0000.vtu`` …, all with the digits of the last one,
+        ``particles.pvd``, ``particles.vtkhdf``, ``view.py`` and, where bonds broke, ``cracks.vtu``; the same of
+        ``contacts`` if the record has them; of a bar ``bar_0000.vtu`` … in place of ``particles``.
     kind
         the kind of body that the run is of.
 
@@ -52,9 +53,10 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
     Raises CaseError when the record cannot be read, OSError when a file cannot be written.
     """
     with open_record(run) as file:
-        snapshots = file.get("snapshots", {})
-        if len(snapshots) == 0:
+        snapshots = {_number_of(snapshot): snapshot for snapshot in snapshots_of(file)}
+        if not snapshots:
             return None
+        digits = max(map(len, snapshots))
         folder.mkdir(parents=True, exist_ok=True)
         particles = {name: dataset[:] for name, dataset in file["particles"].items()}
         particles |= {f"continuum/{name}": dataset[:] for name, dataset in file.get("continuum", {}).items()}
@@ -67,11 +69,16 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
                 for name, mesh in kind.meshes(particles, fields, until(cracks, time)).items():
                     if name not in series:
                         series[name] = stack.enter_context(_series(folder, name))
-                    series[name](number, time, mesh)
+                    series[name](number.zfill(digits), time, mesh)
         if len(cracks["time"]) > 0:
             _write(folder / "cracks.vtu", _cracks(cracks))
     (folder / "view.py").write_text(kind.view_script, encoding="utf-8")
     return folder / f"{kind.mesh_name}.pvd"
+
+
+def _number_of(snapshot: h5py.Group) -> str:
+    """The number of a snapshot, as it is written in the record."""
+    return str(snapshot.name).rsplit("/", maxsplit=1)[-1]
 
 
 @contextmanager

@@ -1,4 +1,7 @@
-"""The size of the results of a run, computed from its plan, and the free space of the disk they are written to."""
+"""The size of the results of a run, computed from its plan, and the free space of the disk they are written to.
+
+Of a run that is continued, the size is that of what is still to be written.
+"""
 
 from collections.abc import Iterator
 from dataclasses import fields
@@ -20,17 +23,19 @@ MOTION = 8 + 24 + 24
 def results_bytes(planned: Plan) -> dict[str, float]:
     """Bytes of the results of a run, by the key of the case that determines how many; they are an estimate.
 
-    While a checkpoint is written, there are two of them; they contain the ledger.
+    While a checkpoint is written, there are two of them; they contain the ledger. A run that is continued to a later
+    time keeps the interval of its snapshots.
     """
     kind, scene, case = planned.kind, planned.scene, planned.scene.case
     whole, stepped = kind.storage(scene), kind.storage(planned.stepped)
     samples = planned.steps / max(1, round(case.output.history_interval / planned.time_step))
     row = len(scene.monitors) * (MOTION + 8 * (scene.record_width > 6))
     entry = 8 * (len(fields(Entry)) + len(SideEntry._fields) * len(scene.edges))
+    snapshots = min(case.output.snapshots, planned.regular_steps) * planned.steps / planned.regular_steps
     copies = 2 if case.run.checkpoint > 0.0 else 0
     settled = len(kind.stage_names(scene)) if copies and kind.stages_from(case) is None else 0
     return {
-        "output.snapshots": min(case.output.snapshots, planned.steps) * whole.snapshot,
+        "output.snapshots": snapshots * whole.snapshot,
         "output.history_interval": samples * row,
         "output.side_interval": planned.steps / steps_between_samples(planned) * len(scene.edges) * (MOTION - 8),
         "output.energy_interval": planned.steps / steps_between_entries(planned) * entry * (1 + copies),
@@ -39,9 +44,21 @@ def results_bytes(planned: Plan) -> dict[str, float]:
     }
 
 
-def disk_facts(planned: Plan, results: Path) -> str:
-    """The size of the results of a run as text, and the free space where they are written."""
-    return f"about {in_words(sum(results_bytes(planned).values()))} of results{_free(results)}"
+def bytes_left(planned: Plan, written: float = 0.0) -> dict[str, float]:
+    """The same of what is still to be written by a run that has written so many bytes; all keys have an equal share."""
+    sizes = results_bytes(planned)
+    share = max(0.0, 1.0 - written / sum(sizes.values()))
+    return {key: share * size for key, size in sizes.items()}
+
+
+def disk_facts(planned: Plan, results: Path, written: float = 0.0) -> str:
+    """The size of the results of a run as text, less the bytes already written, and the free space for them."""
+    size = in_words(sum(bytes_left(planned, written).values()))
+    return f"about {size}{_more(written)} of results{_free(results)}"
+
+
+def _more(written: float) -> str:
+    return " more" if written > 0.0 else ""
 
 
 def _free(results: Path) -> str:
@@ -49,13 +66,13 @@ def _free(results: Path) -> str:
     return "" if free is None else f"; the disk has {in_words(free)} free"
 
 
-def disk_warnings(planned: Plan, results: Path) -> Iterator[str]:
-    """A warning about results that are larger than the free space of their disk."""
-    sizes, free = results_bytes(planned), disk_free(results)
+def disk_warnings(planned: Plan, results: Path, written: float = 0.0) -> Iterator[str]:
+    """A warning about results that are, without the bytes already written, larger than the free space of their disk."""
+    sizes, free = bytes_left(planned, written), disk_free(results)
     need = sum(sizes.values())
     if free is not None and need > free:
         key = max(filter(None, sizes), key=lambda name: sizes[name])
         yield (
-            f"{key}: the results take about {in_words(need)}, {in_words(sizes[key])} of them by this key; "
-            f"the disk has {in_words(free)} free"
+            f"{key}: the results take about {in_words(need)}{_more(written)}, "
+            f"{in_words(sizes[key])} of them by this key; the disk has {in_words(free)} free"
         )

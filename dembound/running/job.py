@@ -27,7 +27,7 @@ from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
 from dembound.results.vtk import write_vtu
 from dembound.results.warnings import never_silent
-from dembound.running.disk_space import disk_facts, disk_warnings, results_bytes
+from dembound.running.disk_space import bytes_left, disk_facts, disk_warnings
 from dembound.running.planning import about, plan, require_stages, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
 from dembound.running.unfinished import Unfinished, find_unfinished
@@ -43,7 +43,11 @@ RESUMED_SECTIONS = ("settle", "step", "record")
 
 
 def run_case(
-    case: Case, results: Path, progress: Progress | None = None, seconds: Mapping[str, float] | None = None
+    case: Case,
+    results: Path,
+    progress: Progress | None = None,
+    seconds: Mapping[str, float] | None = None,
+    begun_for: float | None = None,
 ) -> Path:
     """Run a case and write ``results/<case name>/``; returns that folder.
 
@@ -52,7 +56,8 @@ def run_case(
     stalls it contains a snapshot of the state it reached. A run that a signal or the end of its process has stopped is
     continued by `resume_case` from its last checkpoint.
 
-    All warnings are sent to the progress and written to the summary; seconds: time already spent, by `SECTIONS`.
+    All warnings are sent to the progress and written to the summary; seconds: time already spent, by `SECTIONS`;
+    begun_for: s, the duration from which the intervals of ledger and snapshots are found, by default that of the case.
 
     Raises the errors of `plan`, RunError when the static stage does not settle or the motion grows without bound,
     Stopped after a signal, CaseError when another run is writing the same folder, and OSError when a file cannot be
@@ -60,7 +65,7 @@ def run_case(
     """
     folder = Folder(results, case.name)
     folder.check()
-    return _Job(case, folder, progress or Progress(), seconds or {}).run()
+    return _Job(case, folder, progress or Progress(), seconds or {}, begun_for=begun_for).run()
 
 
 def resume_case(
@@ -87,7 +92,7 @@ class _Job:
     Parameters
     ----------
     case : to be run; folder : of its results; progress : is informed; seconds : spent before, by section.
-    found : an unfinished run of the case; None: a new run.
+    found : an unfinished run of the case; None: a new run. begun_for : of a new run, as of `run_case`.
     """
 
     def __init__(
@@ -97,8 +102,10 @@ class _Job:
         progress: Progress,
         seconds: Mapping[str, float],
         found: Unfinished | None = None,
+        begun_for: float | None = None,
     ) -> None:
         self.case, self.folder, self.progress, self.found = case, folder, progress, found
+        self.begun_for = begun_for
         self.clock = Clock()
         self.clock.seconds.update(dict.fromkeys(SECTIONS, 0.0) | dict(seconds))
         for section, spent in (found.facts["seconds"] if found else {}).items():
@@ -110,8 +117,7 @@ class _Job:
         with clock.with_compiling():
             planned = self._plan()
             require_stages(planned)
-            if self.found is None:
-                self._announce_size(planned)
+            self._announce_size(planned)
             with about(case), self.folder.writing(anew=self.found is None) as partial:
                 if self.found is not None:
                     self.found.copy_to(partial)
@@ -125,17 +131,19 @@ class _Job:
         return self.folder.final
 
     def _announce_size(self, planned: Plan) -> None:
-        """Warn if the disk has less space than the results need, and log their size if it is large."""
-        results = self.folder.final.parent
-        short = _passed_on(list(disk_warnings(planned, results)), self.progress)
-        if not short and sum(results_bytes(planned).values()) > LARGE:
-            logging.getLogger(__name__).info(f"{self.case.name}: {disk_facts(planned, results)}")
+        """Warn if the disk has less space than the results still need, and log their size if it is large."""
+        results, written = self.folder.final.parent, 0 if self.found is None else self.found.written
+        short = _passed_on(list(disk_warnings(planned, results, written)), self.progress)
+        if not short and sum(bytes_left(planned, written).values()) > LARGE:
+            logging.getLogger(__name__).info(f"{self.case.name}: {disk_facts(planned, results, written)}")
 
     def _plan(self) -> Plan:
         """The plan; that of a resumed run has the time step of its checkpoint."""
         planned = plan(self.case, self.clock)
         if self.found is None:
-            return planned
+            if self.begun_for is None:
+                return planned
+            return replace(planned, regular_steps=max(1, round(self.begun_for / planned.time_step)))
         time_step, regular_steps = (self.found.facts[name] for name in ("time_step", "regular_steps"))
         if abs(planned.time_step - time_step) > 1e-9 * time_step:
             raise CaseError([f"run.time_step: is {planned.time_step} s here, and {time_step} s in the checkpoint"])
@@ -168,6 +176,8 @@ class _Job:
                 partial / "run.h5", simulation, planned.step_limit, case.output.history_interval, ledger,
                 beginning.stages, counts,
             ) as recorder:  # fmt: skip
+                if planned.regular_steps != steps:
+                    recorder.note({"regular_steps": planned.regular_steps})
                 checkpoints = self._checkpoints(planned, partial, interrupts, None, recorder)
                 snapshots = Snapshots(recorder, case.output.snapshots, planned.regular_steps)
                 simulation.track(Histories(recorder), ledger, snapshots, Reports(self.progress, steps), checkpoints)

@@ -28,3 +28,11 @@ def recorded_case(record: Path) -> Case:
     if data.get("static", {}).pop("from", None) is not None:
         text = tomli_w.dumps(data)
     return loads(text, name=name, files=files)
+
+
+def recorded_beginning(record: Path) -> float | None:
+    """The duration (s) for which the run of a record was begun, if it was continued to another time; else None."""
+    with open_record(record) as file:
+        if "regular_steps" not in file.attrs:
+            return None
+        return float(file.attrs["regular_steps"] * file.attrs["time_step"])

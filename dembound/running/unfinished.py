@@ -14,9 +14,10 @@ from dembound.errors import CaseError
 from dembound.kinds import loads
 from dembound.motion.state import Arrays
 from dembound.results.checkpoint import FILE, Checkpoint, differences
-from dembound.results.folder import PARTIAL, Folder
+from dembound.results.damage import require_readable
+from dembound.results.folder import PARTIAL, Folder, with_name
 from dembound.results.kept_stages import FOLDER as STAGES
-from dembound.results.reader import open_record, require_readable, text_of
+from dembound.results.reader import open_record, text_of
 
 SILENCE = ("until", "silent_level", "silent_for")
 """Keys of ``[run]`` that end a run before its duration."""
@@ -48,6 +49,13 @@ class Unfinished:
         here = {"stage": self.stage, "step": self.facts["step"]}
         return [*self.facts["resumed"], here]
 
+    @property
+    def written(self) -> int:
+        """Bytes that it has written to its partial folder; 0 of a complete run, which is copied there first."""
+        if self.path != self.folder.partial:
+            return 0
+        return sum(path.stat().st_size for path in self.path.rglob("*") if path.is_file())
+
     def arrays(self) -> Arrays:
         """The arrays of the checkpoint, read anew."""
         return Checkpoint.read(self.path / FILE).arrays
@@ -74,20 +82,31 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
     """
     results = Folder.of(folder)
     results.require_unused()
-    path = folder if (folder / FILE).is_file() else results.partial
-    if not (path / FILE).is_file():
-        raise CaseError([f"{folder}: has no checkpoint ({FILE}); is run.checkpoint 0, or had the run not begun?"])
+    path = _place_of_checkpoint(with_name(folder), results.partial)
     facts = dict(Checkpoint.read(path / FILE).facts)
+    case = replace(_case_of(facts, path), name=results.name)
     is_complete = not path.name.endswith(PARTIAL)
     if until is None and is_complete:
         raise CaseError([f"{path}: is complete; --until continues it to a later time"])
     reached = facts["step"] * facts["time_step"] if facts["stage"] is None else 0.0
     if until is not None and until <= reached:
         raise CaseError([f"--until: is {until:g} s, must be after {reached:g} s, which the run has reached"])
-    case = replace(_case_of(facts, path), name=results.name)
     if until is not None:
         case = _lasting(case, until)
     return Unfinished(case, results, path, facts)
+
+
+def _place_of_checkpoint(folder: Path, partial: Path) -> Path:
+    """The folder that has a checkpoint: the one that was given, or the partial one; raises CaseError if none has."""
+    places = [place for place in (folder, partial) if place.is_dir()]
+    if not places:
+        raise CaseError([f"{folder}: there is no such folder of results"])
+    if found := [place for place in places if (place / FILE).is_file()]:
+        return found[0]
+    records = [place / "run.h5" for place in places if (place / "run.h5").is_file()]
+    anew = f"; `dembound rerun {records[0]}` runs its case anew" if records else ""
+    reasons = "as of a run with run.checkpoint = 0, or of one that ended before it could write one"
+    raise CaseError([f"{folder}: has no checkpoint ({FILE}), {reasons}{anew}"])
 
 
 def _case_of(facts: dict[str, Any], path: Path) -> Case:

@@ -15,6 +15,7 @@ from typer.main import get_command
 
 from dembound import cli
 from dembound.casefile import Case
+from dembound.cli import compiling
 from dembound.disks.rows import contact_rows
 from dembound.disks.scene import DiskScene
 from dembound.kinds import loads, with_changes
@@ -72,6 +73,18 @@ def small_run(tmp_path_factory) -> Path:
 def other_run(tmp_path_factory) -> Path:
     """The record of a shorter run called ``other``, without snapshots."""
     return record(tmp_path_factory.mktemp("other") / "run.h5", "other", 0)
+
+
+@pytest.fixture(scope="session")
+def long_run(small_run, tmp_path_factory) -> Path:
+    """The record of that run with the last two of 10,001 snapshots, which HDF5 lists in the other order."""
+    path = tmp_path_factory.mktemp("long") / "run.h5"
+    path.write_bytes(small_run.read_bytes())
+    with h5py.File(path, "r+") as file:
+        for number, later in (("0000", "9999"), ("0001", "10000")):
+            file.move(f"snapshots/{number}", f"snapshots/{later}")
+        assert list(file["snapshots"]) == ["10000", "9999"]
+    return path
 
 
 @pytest.fixture(scope="session")
@@ -245,6 +258,7 @@ def dembound(tmp_path, monkeypatch, capsys, command) -> Callable[..., Answer]:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys.modules["dembound.cli.app"], "app", command)
     monkeypatch.setattr(style, "DOTS_PER_INCH", 30)
+    monkeypatch.setattr(compiling, "report_compiling", lambda: None)  # else what is printed depends on earlier tests
 
     def run(*arguments: object) -> Answer:
         monkeypatch.setattr(sys, "argv", ["dembound", *map(str, arguments)])

@@ -18,7 +18,7 @@ def test_facts_are_those_of_the_run_and_of_the_scene(bar) -> None:
     assert facts["time step"] == f"0.0001 s, {1e-4 / planned.step_limit:.3f} of the limit {planned.step_limit:.6g} s"
     assert facts["memory"].startswith(f"about {in_words(planned.stepped.largest_memory)} at its peak")
     assert facts["reduced"] == "rows: 2 identical rows are stepped as one, 20 of 40 disks"
-    assert facts["estimated time"] == "less than 1 s with 1 thread"
+    assert facts["estimated time"] == "less than 1 s with 1 thread, without building, pictures"
     own = disk_facts(planned.scene)
     assert {name: fact for name, fact in facts.items() if name in own} == own
     assert set(facts) - set(own) == {"time step", "steps", "memory", "disk", "estimated time", "reduced"}
@@ -51,15 +51,15 @@ def test_a_bar_is_told_of_as_a_bar(spalling) -> None:
     ("changes", "without"),
     [
         ({}, ""),
-        ({"static": {"stress": [-1e6, -2e6, 0.0]}}, ", without the static stage"),
-        ({"material.law": "linearpbond"}, ", without the additional time of linearpbond once it begins"),
+        ({"static": {"stress": [-1e6, -2e6, 0.0]}}, " the static stage,"),
+        ({"material.law": "linearpbond"}, " the additional time of linearpbond once it begins,"),
         ({"material.law": "linearpbond", "material.elastic_start": False}, ""),
     ],
 )
 def test_the_estimate_says_what_it_is_without(bar, changes: dict, without: str) -> None:
     facts, _ = check(bar(changes))
 
-    assert facts["estimated time"].endswith(f" with 1 thread{without}")
+    assert facts["estimated time"].endswith(f" with 1 thread, without building,{without} pictures")
 
 
 def test_checking_writes_nothing(bar, tmp_path, monkeypatch) -> None:

@@ -15,6 +15,7 @@ from dembound.results.checkpoint import Checkpoints
 from dembound.results.folder import Folder
 from dembound.results.interrupts import Stopped
 from dembound.running import job, preflight, resume_case, run_case
+from dembound.running.recorded import recorded_beginning, recorded_case
 
 PACKING, MATERIAL, INPUT = GRAINS["packing"], GRAINS["material"], GRAINS["boundary"]["bottom"]
 BRITTLE = MATERIAL | {"law": "linearpbond", "pb_ten": 3e5, "pb_coh": 6e5, "fric": 0.3}
@@ -161,6 +162,20 @@ def test_a_complete_run_is_continued_as_if_it_had_been_longer(whole, tmp_path) -
         taken = [round(group.attrs["time"] / file.attrs["time_step"]) for group in file["snapshots"].values()]
         assert taken == [steps * k // snapshots for k in range(1, 7) if steps * k // snapshots <= file.attrs["steps"]]
         assert file.attrs["complete"]
+
+
+@pytest.mark.parametrize("name", ["law changes, bonds break", "switch"])
+def test_the_record_of_a_continued_run_is_run_again_to_the_same_bits(tmp_path, name) -> None:
+    case = case_of(name, output=CASES[name]["output"] | {"snapshots": 3, "energy_interval": 0.0})
+    first = resume_case(run_case(case, tmp_path / "one"), until=1.7 * case.run.duration)
+    begun_for = recorded_beginning(first / "run.h5")
+    assert begun_for == pytest.approx(case.run.duration, rel=1e-2)  # rounded up to whole steps
+
+    again = run_case(recorded_case(first / "run.h5"), tmp_path / "two", begun_for=begun_for)
+    assert differences(again, first) == []
+    otherwise = differences(run_case(recorded_case(first / "run.h5"), tmp_path / "three"), first)
+    assert {"energy/time", "snapshots/0004/velocity"} <= set(otherwise)
+    assert recorded_beginning(run_case(case, tmp_path / "four") / "run.h5") is None
 
 
 NAMES = {re.sub(r"\W+", "_", name): name for name in CASES}

@@ -30,7 +30,7 @@ def test_what_would_stop_a_run_is_found_before_it(spalling) -> None:
 
 
 def test_a_short_trial_shows_a_whole_run(spalling) -> None:
-    assert Bars().not_estimated(spalling()) == ""
+    assert Bars().not_estimated(spalling()) == []
 
 
 def test_stress_is_drawn_where_there_are_monitors(spalled_run, tmp_path) -> None:

@@ -48,8 +48,18 @@ def test_only_waves_in_use_can_be_too_short(spalling) -> None:
     case = spalling({**LONG, **ends, "wave.in": short, "wave.spare": short})
 
     warnings = bar_warnings(build_bar(case), 2e-5)
-    assert len([warning for warning in warnings if "cells" in warning]) == 1
+    assert len([warning for warning in warnings if "shortest wavelength" in warning]) == 1
     assert {warning.split(":")[0] for warning in warnings} == {"wave.in"}
+
+
+def test_a_step_has_less_than_one_cell_and_is_allowed_to_a_slow_grip(spalling) -> None:
+    step = {"type": "constant", "amplitude": 1e-4, "rise": 0.0}
+    ends = {"boundary.right": {"type": "velocity", "wave_p": "in"}}
+    for duration, few in ((0.099, 1), (0.101, 0)):  # at 1000 m/s, 100 ways of 1 m are 0.1 s
+        case = spalling({**LONG, **ends, "wave.in": step, "run.duration": duration})
+        found = [each for each in of_key("wave.in", bar_warnings(build_bar(case), 2e-5)) if "wavelength" in each]
+        assert len(found) == few
+        assert all("has less than one cell in its shortest wavelength" in each for each in found)
 
 
 def test_only_a_horizon_can_be_made_smaller(spalling) -> None:
@@ -60,7 +70,7 @@ def test_only_a_horizon_can_be_made_smaller(spalling) -> None:
         {"type": "patch", "horizon": 3},
     ):
         case = spalling({"method": method, "wave.hit.rise": 1e-6, "wave.hit.fall": 1e-6})
-        (warning,) = [each for each in bar_warnings(build_bar(case), 1e-7) if "cells" in each]
+        (warning,) = [each for each in bar_warnings(build_bar(case), 1e-7) if "shortest wavelength" in each]
         assert warning.endswith("take a smaller bar.spacing")
 
 

@@ -96,8 +96,7 @@ def test_a_run_that_another_process_writes_is_not_resumed(dembound, written, tmp
         done.set()
         other.join()
     answer = dembound("resume", "results/bar")
-    assert answer.code == 2
-    assert "has no checkpoint" in answer.err
+    assert (answer.code, answer.err) == (2, "results/bar: there is no such folder of results\n")
 
 
 @pytest.mark.parametrize("name", ["", "CON", "nul.txt", "bar.", "bar ", "a:b", "a/b", "a\\b", "..", "a*"])
@@ -134,3 +133,26 @@ def test_the_ledger_of_an_earlier_version_is_called_so(dembound, written) -> Non
     assert answer.code == 5
     (line,) = answer.err.splitlines()
     assert "is of another version of dembound, its energy ledger has no supplied" in line
+
+
+def test_a_changed_rerun_does_not_replace_the_record_it_is_read_from(dembound, written, tmp_path) -> None:
+    assert dembound("run", written()).code == 0
+    record = tmp_path / "results" / "bar" / "run.h5"
+    before = record.read_bytes()
+    change = ("--set", "run.safety=0.5")
+    for arguments in (
+        ("results/bar/run.h5", *change),
+        ("results/bar", *change),
+        (tmp_path / "results" / "bar", *change, "--output", "./results", "--name", "bar"),
+    ):
+        answer = dembound("rerun", *arguments)
+        assert answer.code == 2
+        (line,) = answer.err.splitlines()
+        assert line.startswith("--set: would replace ")
+        assert line.endswith("bar/run.h5, from which the case is read; give another --name or --output")
+    assert record.read_bytes() == before
+
+    for arguments in (("--name", "half", *change), ("--output", "other", *change), ()):
+        assert dembound("rerun", "results/bar", *arguments).code == 0
+    assert (tmp_path / "results" / "half" / "run.h5").is_file()
+    assert (tmp_path / "other" / "bar" / "run.h5").is_file()

@@ -21,8 +21,17 @@ def test_only_what_applies_is_told() -> None:
     assert disk_outcome(elastic | quiet | broken) == [
         f"{stage}, breaking 1,100 bonds",
         "elastic law all through",
-        "1,230 bonds broke (1,200 tension, 30 shear)",
+        "1,230 bonds broke in all (1,200 tension, 30 shear)",
     ]
+    later = broken | {"static": settled}
+    assert disk_outcome(elastic | quiet | later)[-1] == "1,230 bonds broke (1,200 tension, 30 shear)"
+    at_rest = {"cracks": {"tension": 20, "shear": 4}, "static": settled | {"cracks": 24}}
+    assert disk_outcome(elastic | quiet | at_rest)[::2] == [
+        f"{stage}, breaking 24 bonds",
+        "bonds broke only while settling (20 tension, 4 shear)",
+    ]
+    excavated = {"static": settled | {"cracks": 24, "before": settled | {"cracks": 3}}}  # of which some are dug away
+    assert disk_outcome(elastic | quiet | at_rest | excavated)[-1] == "24 bonds broke in all (20 tension, 4 shear)"
     pressed = {"static": settled | {"asked": [-1e6, -2e6, 0.0], "stress": [-0.5e6, -2e6, 1e-3]}}
     assert disk_outcome(elastic | pressed) == [
         f"{stage} and a stress of (-0.5, -2, 0) where (-1, -2, 0) MPa was asked for"

@@ -51,6 +51,43 @@ def test_waves_with_fewer_than_twenty_particles_are_warned_of(bar, count: float,
     assert warned(bar({"wave.pulse.period": period, "run.duration": 0.1})) == few * [said]
 
 
+GRIPPED = {
+    "wave.pulse": {"type": "constant", "amplitude": 1e-3, "rise": 0.0},
+    "boundary.left": {"type": "velocity", "wave_p": "pulse"},
+}
+
+
+def short_waves(case: Case) -> list[str]:
+    return [warning for warning in warned(case) if "disperse" in warning]
+
+
+@pytest.mark.parametrize(
+    ("rise", "said"), [(0.0, "is a step (rise = 0)"), (1e-8, "rises within 1e-08 s"), (0.06, "rises within 0.06 s")]
+)
+def test_a_rise_too_short_for_the_particles_is_named_with_one_that_is_long_enough(bar, rise, said) -> None:
+    # 20 disks of 0.5 m at 500 m/s, times 3.27
+    changes = {"wave.pulse": {"type": "constant", "amplitude": 1e-3, "rise": rise}, "run.duration": 0.01}
+    expected = (
+        f"wave.pulse: {said}, which is shorter than the particles can follow, 0.065 s; the packing will disperse it"
+    )
+    assert short_waves(bar(changes)) == [expected]
+    assert short_waves(bar({**changes, "wave.pulse.rise": 0.066})) == []
+
+
+def test_a_period_below_that_of_one_disk_has_no_count(bar) -> None:
+    found = short_waves(bar({"wave.pulse.period": 1e-4, "run.duration": 0.01}))
+    assert found[0].startswith("wave.pulse: has a shortest wavelength below the diameter of a particle; ")
+
+
+def test_a_slow_grip_may_start_suddenly(bar) -> None:
+    # at 1000 m/s, 100 ways of 10 m are 1 s
+    for duration, sudden in ((0.99, 1), (1.01, 0)):
+        assert len(short_waves(bar({**GRIPPED, "run.duration": duration}))) == sudden
+    load = [{"name": "tap", "position": [5.0, 0.5], "force": [1.0, 0.0], "wave": "pulse"}]
+    assert len(short_waves(bar({**GRIPPED, "run.duration": 1.01, "load": load}))) == 1
+    assert len(short_waves(bar({**GRIPPED, "run.duration": 1.01, "boundary.left.type": "viscous_input"}))) == 1
+
+
 def test_a_wave_stronger_than_the_locked_in_stress_is_warned_of(bar) -> None:
     # the default locks in 10 MPa; ρcv = 2500·1000·v reaches that at 4 m/s; packings meet it within 0.05 %
     for amplitude, strong in ((3.99, False), (4.01, True)):

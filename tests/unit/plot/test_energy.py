@@ -6,20 +6,27 @@ import pytest
 
 from dembound.errors import CaseError
 from dembound.plot.energy import COLUMNS, NEGLIGIBLE, plot_energy
+from dembound.plot.table import columns_of
 from dembound.results.datasets import datasets_of
 
 
+def ledger_of(run):
+    with h5py.File(run) as file:
+        return {name: values[:] for name, values in datasets_of(file["energy"]).items() if "/" not in name}
+
+
 def test_every_column_that_is_not_zero_is_a_line(cracked_run):
-    figure = plot_energy(cracked_run)
-    upper, lower = figure.axes
+    upper, lower = plot_energy(cracked_run).axes
     drawn = {line.get_label(): line for line in upper.lines}
-    with h5py.File(cracked_run) as file:
-        ledger = {name: values[:] for name, values in datasets_of(file["energy"]).items()}
-    assert ledger.keys() == {"time", "loads", "supplied", "error", *COLUMNS}
+    ledger = ledger_of(cracked_run)
+    assert ledger.keys() == {"time", "supplied", "error", *COLUMNS}
     largest = {name: np.abs(ledger[name]).max() for name in COLUMNS}
+    unit = 1e3 if upper.get_ylabel() == "energy per metre of thickness (kJ/m)" else 1.0
     for name, label in COLUMNS.items():
-        if largest[name] > NEGLIGIBLE * max(largest.values()):
-            np.testing.assert_array_equal(drawn.pop(label).get_data(), [ledger["time"] / 1e-3, ledger[name]])
+        if name != "loads" and largest[name] > NEGLIGIBLE * max(largest.values()):  # of one side: all is outside
+            np.testing.assert_allclose(
+                drawn.pop(label).get_data(), [ledger["time"] / 1e-3, ledger[name] / unit], rtol=1e-14
+            )
     assert drawn == {}
     assert np.any(ledger["kinetic"])
     assert not np.any(ledger["damping"])
@@ -27,12 +34,73 @@ def test_every_column_that_is_not_zero_is_a_line(cracked_run):
     np.testing.assert_array_equal(error.get_ydata(), ledger["error"] / ledger["supplied"][-1])
 
 
+@pytest.fixture
+def divided(cracked_run, tmp_path):
+    """A record with two sides and the column of one, and all columns of the ledger 1 J/m."""
+    run = tmp_path / "run.h5"
+    run.write_bytes(cracked_run.read_bytes())
+    with h5py.File(run, "r+") as file:
+        file["energy"].pop("sides", None)
+        for name in COLUMNS:
+            file["energy"][name][:] = 1.0
+        count = len(file["energy/time"])
+        for side, values in SIDES.items():
+            for name, value in zip(("came_in", "absorbed", "stored"), values, strict=True):
+                file[f"energy/sides/{side}/{name}"] = np.full(count, value)
+    return run
+
+
+SIDES = {"bottom": (5.0, 2.0, 0.0), "left": (0.0, 3.0, 0.25), "bottom.free_field": (-0.5, 1.5, 0.0)}
+
+
+def test_what_came_in_and_what_was_absorbed_is_drawn_for_every_side(divided):
+    drawn = {line.get_label(): line for line in plot_energy(divided).axes[0].lines}
+    assert COLUMNS["outside"] not in drawn  # else the same energy was there twice
+    assert drawn[COLUMNS["loads"]].get_ydata()[-1] == 1.0
+    of_sides = {label: line.get_ydata()[-1] for label, line in drawn.items() if label not in COLUMNS.values()}
+    assert of_sides == {
+        "in: through the bottom side": 5.0,
+        "in: through the bottom side of the column": -0.5,
+        "absorbed by the bottom side": 2.0,
+        "absorbed by the left side": 3.0,
+        "absorbed by the bottom side of the column": 1.5,
+        "stored in springs of the left side": 0.25,
+    }
+    looks = {(line.get_color(), line.get_linestyle(), line.get_marker()) for line in drawn.values()}
+    assert len(looks) == len(drawn)
+    heads = [head for head, _ in columns_of(plot_energy(divided))]
+    assert "absorbed by the left side: energy per metre of thickness (J/m)" in heads
+    assert len(set(heads)) == len(heads)
+
+
+@pytest.mark.parametrize(
+    ("largest", "joule", "drawn"),
+    [
+        (0.0, "J", 0.0),
+        (999.0, "J", 999.0),
+        (1e3, "kJ", 1.0),
+        (0.5, "mJ", 500.0),
+        (3e-14, "nJ", 3e-5),
+        (2e16, "TJ", 2e4),
+    ],
+)
+def test_the_unit_of_the_axis_has_the_prefix(divided, largest, joule, drawn):
+    with h5py.File(divided, "r+") as file:
+        del file["energy/sides"]
+        for name in COLUMNS:
+            file["energy"][name][:] = largest if name == "kinetic" else 0.0
+    upper = plot_energy(divided).axes[0]
+    assert upper.get_ylabel() == f"energy per metre of thickness ({joule}/m)"
+    assert [line.get_ydata()[-1] for line in upper.lines] == pytest.approx([drawn] if largest else [], rel=1e-12)
+    assert not any(letter.isalpha() for letter in upper.yaxis.get_major_formatter()(20.0))
+
+
 def test_units_and_the_name_are_told(cracked_run):
     figure = plot_energy(cracked_run)
     upper, lower = figure.axes
-    assert (upper.get_ylabel(), lower.get_xlabel()) == ("energy per metre of thickness (J/m)", "time (ms)")
+    assert upper.get_ylabel() in ("energy per metre of thickness (J/m)", "energy per metre of thickness (kJ/m)")
+    assert lower.get_xlabel() == "time (ms)"
     assert figure.get_suptitle().startswith("cracked: ")
-    assert [upper.yaxis.get_major_formatter()(value) for value in (0.0, 20.0, 5e4)] == ["0", "20", "50 k"]
 
 
 def test_what_is_negligible_is_left_out_and_no_two_colours_are_alike(cracked_run, tmp_path):
@@ -43,7 +111,8 @@ def test_what_is_negligible_is_left_out_and_no_two_colours_are_alike(cracked_run
             file["energy"][name][:] = 1.0
         file["energy/friction"][:] = 1e-7
     lines = plot_energy(run).axes[0].lines
-    assert [line.get_label() for line in lines] == [label for name, label in COLUMNS.items() if name != "friction"]
+    left_out = ("friction", "loads")  # the latter is a part of outside
+    assert [line.get_label() for line in lines] == [label for name, label in COLUMNS.items() if name not in left_out]
     assert len({line.get_color() for line in lines}) == len(lines)
 
 
@@ -67,7 +136,7 @@ def test_a_bar_keeps_its_books_in_its_own_words(spalled_run, tmp_path):
         "taken by attenuation",
         "in: added by a change of method",
     } <= labels
-    assert len({line.get_color() for line in upper.lines}) == len(COLUMNS)
+    assert len({line.get_color() for line in upper.lines}) == len(upper.lines) == len(COLUMNS) - 1
 
 
 def test_equal_shares_of_contacts_and_bonds_are_both_visible(cracked_run):

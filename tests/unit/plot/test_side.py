@@ -61,13 +61,21 @@ def test_both_quantities_are_drawn_with_their_units(run) -> None:
 
 def test_the_table_has_units_and_each_stress_its_own_sign(run) -> None:
     heads = [head for head, _ in columns_of(plot_side([run], "top", "stress"))]
+    strain = "strain to the opposite side, extension positive (%)"
     assert heads == [
         "time (ms)",
-        "pulled, normal, tension positive: mean stress (MPa)",
+        "pulled, normal, tension positive: mean stress (MPa), against time (ms)",
         "pulled, shear, xy: mean stress (MPa)",
-        "strain to the opposite side, extension positive (%)",
-        "pulled, normal, tension positive: mean stress (MPa)",
+        strain,
+        f"pulled, normal, tension positive: mean stress (MPa), against {strain}",
     ]
+
+
+def test_no_two_columns_of_two_runs_have_the_same_head(run, tmp_path) -> None:
+    other = run_case(loads(tomli_w.dumps(CASE), name="again"), tmp_path) / "run.h5"
+    for quantity in ("stress", "displacement"):
+        heads = [head for head, _ in columns_of(plot_side([run, other], "top", quantity))]
+        assert len(set(heads)) == len(heads)
 
 
 def test_other_sides_and_quantities_are_refused(run, small_run) -> None:

@@ -19,8 +19,10 @@ from dembound.results.reader import (
     record_names,
     replacing,
     snapshot_of,
+    snapshots_of,
     text_of,
 )
+from dembound.results.results import Results
 
 
 def test_what_is_no_record_is_refused_by_name(tmp_path):
@@ -91,6 +93,16 @@ def test_a_place_on_a_bar_is_one_number():
 def test_snapshots_go_by_number_from_either_end(small_run, number, name):
     with open_record(small_run) as file:
         assert snapshot_of(file, number) == file[f"snapshots/{name}"]
+
+
+def test_more_than_ten_thousand_snapshots_are_in_the_order_of_time(long_run):
+    with open_record(long_run) as file:
+        first, last = snapshots_of(file)
+        assert (first.name, last.name) == ("/snapshots/9999", "/snapshots/10000")
+        assert first.attrs["time"] < last.attrs["time"]
+        assert snapshot_of(file, -1) == last
+    times = [each.attributes["time"] for each in Results(long_run).snapshots]
+    assert times == sorted(times)
 
 
 @pytest.mark.parametrize("number", [2, -3])

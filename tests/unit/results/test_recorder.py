@@ -274,6 +274,26 @@ def test_trackers_keep_histories_and_snapshots(tmp_path, simulation) -> None:
             assert np.array_equal(group["displacement"], displacement)
 
 
+def test_what_is_cut_of_more_than_ten_thousand_snapshots_is_the_last(tmp_path, simulation) -> None:
+    path = tmp_path / "run.h5"
+    with recorder(path, simulation) as kept:
+        kept.append(simulation.advance(10))
+        kept.snapshot()
+        counts = kept.counts
+        kept.append(simulation.advance(5))
+        kept.snapshot()
+    with h5py.File(path, "r+") as file:
+        for number, later in (("0000", "9999"), ("0001", "10000")):
+            file.move(f"snapshots/{number}", f"snapshots/{later}")
+
+    with Recorder(path, simulation, step_limit=4e-4, counts=counts):
+        pass
+
+    with h5py.File(path) as file:
+        assert list(file["snapshots"]) == ["9999"]
+        assert file["snapshots/9999"].attrs["time"] == 10 * STEP
+
+
 def test_cracks_laws_and_coordination_are_kept(tmp_path, bar) -> None:
     simulation = breaking(bar)
     steps = 60

@@ -26,6 +26,18 @@ def test_the_index_lists_files_and_times(small_run, exported):
     assert pyvista.get_reader(exported).time_values == times
 
 
+def test_more_than_ten_thousand_files_are_in_the_order_of_time_by_name_too(small_run, long_run, tmp_path):
+    write_vtu(small_run, tmp_path / "few", Disks())
+    index = write_vtu(long_run, tmp_path / "many", Disks())
+    entries = ElementTree.parse(index).getroot().findall("Collection/DataSet")
+    assert [entry.get("file") for entry in entries] == ["particles_09999.vtu", "particles_10000.vtu"]
+    times = [float(entry.get("timestep")) for entry in entries]
+    with h5py.File(tmp_path / "many" / "particles.vtkhdf") as file:
+        assert times == sorted(times) == file["VTKHDF/Steps/Values"][:].tolist()
+    last = (tmp_path / "many" / "particles_10000.vtu").read_bytes()
+    assert last == (tmp_path / "few" / "particles_0001.vtu").read_bytes()
+
+
 def test_the_folder_holds_the_view_script_and_no_leftovers(exported):
     names = sorted(path.name for path in exported.parent.iterdir())
     assert names == ["particles.pvd", "particles.vtkhdf", "particles_0000.vtu", "particles_0001.vtu", "view.py"]

@@ -1,12 +1,15 @@
 """The size of results is known before the run, and a disk that has less is warned of with both numbers."""
 
 import logging
+from dataclasses import replace
 
 import pytest
 
 from dembound import check
+from dembound.kinds import with_changes
+from dembound.motion.kind import Plan
 from dembound.motion.memory import in_words
-from dembound.running import disk_space, plan, run_case, warnings_before
+from dembound.running import disk_space, plan, resume_case, run_case, warnings_before
 from dembound.running.disk_space import ALWAYS, disk_warnings, results_bytes
 
 LAW = {"material.law": "linearpbond", "material.elastic_start": False, "material.pb_ten": 1e9, "material.pb_coh": 1e9}
@@ -80,6 +83,43 @@ def test_a_run_warns_before_it_begins(bar, tmp_path, monkeypatch, caplog) -> Non
     with caplog.at_level(logging.INFO):
         run_case(bar(), tmp_path)
     assert [record.message for record in caplog.records if "of results; the disk has" in record.message]
+
+
+def test_a_continued_run_warns_of_what_it_will_add(bar, tmp_path, monkeypatch, caplog) -> None:
+    from dembound.running import Progress, job
+
+    heard = []
+    progress = Progress()
+    monkeypatch.setattr(progress, "warned", heard.append)
+    case = bar({"output.snapshots": 9})
+    folder, longer = run_case(case, tmp_path), 3.0 * case.run.duration
+    first, whole = results_bytes(plan(case)), results_bytes(_continued(case, longer))
+    for name in ("output.snapshots", "output.energy_interval"):  # steps, some 30 at first, are rounded up
+        assert whole[name] == pytest.approx(3.0 * first[name], rel=1.0 / 30)
+
+    partial = folder.rename(folder.with_name(f"{folder.name}.partial"))
+    left = sum(whole.values()) - sum(written(partial).values())
+    with monkeypatch.context() as small_disk:
+        small_disk.setattr(disk_space, "disk_free", lambda path: left - 1e3)
+        resume_case(partial, longer, progress)
+    assert f"the results take about {in_words(left)} more, " in heard[0]
+    heard.clear()
+
+    monkeypatch.setattr(disk_space, "disk_free", lambda path: left + 1e3)  # the complete run is copied
+    resume_case(folder, longer + case.run.duration, progress)
+    assert "the results take about" in heard[0]
+    assert " more, " not in heard[0]
+
+    monkeypatch.undo()
+    monkeypatch.setattr(job, "LARGE", 1e5)
+    with caplog.at_level(logging.INFO):
+        resume_case(folder, longer + 2.0 * case.run.duration)
+    assert [record.message for record in caplog.records if "of results; the disk has" in record.message]
+
+
+def _continued(case, until: float) -> Plan:
+    """The plan of a run that is continued to a time in s."""
+    return replace(plan(with_changes(case, {"run.duration": until})), regular_steps=plan(case).steps)
 
 
 def test_outputs_more_often_than_steps_are_mentioned(bar) -> None:

@@ -11,6 +11,7 @@ import sys
 import time
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -24,6 +25,7 @@ from dembound.results.folder import LOCK, OWN
 from dembound.results.interrupts import Interrupts, Stopped
 from dembound.results.reader import open_record
 from dembound.running import job, resume_case, run_case
+from dembound.running.recorded import recorded_case
 
 OFTEN = {"run.duration": 0.02, "run.checkpoint": 1e-9, "output.snapshots": 3, "output.energy_interval": 4e-3}
 """Changes of a bar: a longer run, with a checkpoint after every block of steps."""
@@ -229,7 +231,7 @@ def test_a_second_signal_acts_at_once() -> None:
 
 
 def test_what_cannot_be_resumed_is_refused_with_the_reason(case, tmp_path) -> None:
-    with pytest.raises(CaseError, match="has no checkpoint"):
+    with pytest.raises(CaseError, match="nothing: there is no such folder of results"):
         resume_case(tmp_path / "nothing")
     folder = run_case(case, tmp_path)
     with pytest.raises(CaseError, match=r"is complete; --until continues it"):
@@ -240,8 +242,9 @@ def test_what_cannot_be_resumed_is_refused_with_the_reason(case, tmp_path) -> No
     checkpoint = (folder / "checkpoint.npz").read_bytes()
     other = pulled("other", bar__strength=9e6)
     shutil.copy(run_case(other, tmp_path) / "run.h5", folder / "run.h5")
-    with pytest.raises(CaseError, match=r"bar\.strength: is 8000000\.0 here, and 9000000\.0 there"):
-        resume_case(folder, until=0.05)
+    for until in (None, 0.001, 0.05):
+        with pytest.raises(CaseError, match=r"bar\.strength: is 8000000\.0 here, and 9000000\.0 there"):
+            resume_case(folder, until=until)
     (folder / "checkpoint.npz").write_bytes(re.sub(rb'("version": ")[^"]+', version_of_equal_length, checkpoint))
     with pytest.raises(RecordError, match="is damaged: Bad CRC-32"):
         resume_case(folder, until=0.05)
@@ -298,6 +301,29 @@ def test_without_checkpoints_nothing_is_kept(case, tmp_path) -> None:
     folder = run_case(pulled(run__checkpoint=0.0), tmp_path)
     assert not (folder / "checkpoint.npz").exists()
     assert json.loads((folder / "summary.json").read_text())["resumed"] == []
+
+
+def test_without_a_checkpoint_the_run_is_begun_anew_from_its_record(case, tmp_path) -> None:
+    partial = run_case(case, tmp_path).rename(tmp_path / "bar.partial")
+    (partial / "checkpoint.npz").unlink()
+    rerun = re.escape(f"; `dembound rerun {partial / 'run.h5'}` runs its case anew")
+    for folder in (partial, tmp_path / "bar"):
+        with pytest.raises(CaseError, match=rf"{folder.name}: has no checkpoint \(checkpoint\.npz\), .*{rerun}$"):
+            resume_case(folder)
+    run_case(recorded_case(partial / "run.h5"), tmp_path)
+    assert (tmp_path / "bar" / "run.h5").is_file()
+
+    partial.mkdir()
+    (tmp_path / "bar" / "run.h5").unlink()
+    (tmp_path / "bar" / "checkpoint.npz").unlink()
+    with pytest.raises(CaseError, match=r"ended before it could write one$"):
+        resume_case(tmp_path / "bar")
+
+
+def test_a_run_is_resumed_in_its_own_folder(case, tmp_path, monkeypatch) -> None:
+    partial = run_case(case, tmp_path).rename(tmp_path / "bar.partial")
+    monkeypatch.chdir(partial)
+    assert resume_case(Path()) == tmp_path / "bar"
 
 
 def test_checksums_find_a_changed_byte(case, tmp_path) -> None:

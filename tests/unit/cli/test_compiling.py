@@ -1,0 +1,39 @@
+"""Compiling is reported when a kernel is compiled, and only then."""
+
+import os
+import subprocess
+import sys
+from types import SimpleNamespace
+
+from numba.core import event
+
+from dembound.cli.compiling import MESSAGE, FirstCompilation
+
+COMPUTE = """
+import numpy as np
+from dembound.cli.app import prepare_computing
+prepare_computing(None)
+prepare_computing(None)
+from dembound.kernels.common import column_sum, largest
+column_sum(np.ones((2, 2)), 0)
+largest(np.ones(2))
+"""
+
+
+def test_only_the_first_kernel_compiled_is_reported(tmp_path) -> None:
+    def printed() -> str:
+        kept = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+        return subprocess.run(
+            [sys.executable, "-c", COMPUTE], capture_output=True, text=True, check=True, env=kept
+        ).stderr
+
+    assert printed() == f"{MESSAGE}\n"
+    assert printed() == ""  # loaded
+
+
+def test_functions_of_other_packages_are_not_reported(capsys) -> None:
+    listener = FirstCompilation()
+    for module, said in (("scipy.special", ""), ("dembound.kernels.loop", f"{MESSAGE}\n"), ("dembound.machine", "")):
+        dispatcher = SimpleNamespace(py_func=SimpleNamespace(__module__=module))
+        listener.notify(event.Event("numba:compile", event.EventStatus.START, {"dispatcher": dispatcher}))
+        assert capsys.readouterr().err == said
