@@ -24,7 +24,8 @@ class Outside(Boundary):
         yield from super().problems(side, tables)
         boundary = tables["boundary"]
         for other, table in boundary.items():
-            if table and other != OPPOSITE[side] and (table.is_periodic or table.is_mirror or table.needs_column):
+            beside = other != OPPOSITE[side] and table and (table.is_periodic or table.is_mirror)
+            if beside or (table and table.needs_column):
                 yield f'boundary.{other}.type: "{table.type}" has no continuum beside it, as boundary.{side} has'
             if table and table.waves:
                 yield f"boundary.{other}: brings in waves, which the continuum beyond boundary.{side} would not have"
@@ -33,7 +34,6 @@ class Outside(Boundary):
                 yield f"load[{place}].acceleration: acts on the particles alone, not beyond boundary.{side}"
         if tables.get("static"):
             yield f'boundary.{side}.type: "{self.type}" does not carry a settled stress; leave [static] out'
-        for axis, name in enumerate("xy"):
-            motion = tables.get("motion")
-            if motion and name in motion.held:
-                yield f'boundary.{side}.type: "{self.type}" moves along {"xy"[axis]}, which motion.held holds'
+        motion = tables.get("motion")
+        for held in motion.held if motion else ():
+            yield f'boundary.{side}.type: "{self.type}" moves freely, but motion.held holds {held}'

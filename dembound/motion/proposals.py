@@ -118,7 +118,7 @@ def _movable(ground: Ground) -> Iterator[str]:
     case = ground.planned.scene.case
     for side in SIDES:
         table = case.side(side)
-        if table.is_artificial and not table.waves and normal_axis(side) in ground.axes:
+        if table.is_artificial and not (table.is_outside or table.waves) and normal_axis(side) in ground.axes:
             yield side
 
 

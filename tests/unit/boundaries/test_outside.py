@@ -1,0 +1,60 @@
+"""Sides with a continuum beyond them: what cannot be beside them."""
+
+import pytest
+
+from dembound.boundaries import Outside
+from dembound.errors import CaseError
+from dembound.kinds import loads
+
+CASE = """
+[packing]
+pattern = "A"
+size = [10.0, 5.0]
+radius = 0.5
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+[boundary.left]
+type = "outside"
+[wave.w]
+type = "cosine"
+amplitude = 1.0
+period = 0.1
+[run]
+duration = 0.1
+"""
+
+
+def problems(more: str) -> str:
+    with pytest.raises(CaseError) as error:
+        loads(CASE + more)
+    return str(error.value)
+
+
+def test_it_is_artificial_and_has_no_keys() -> None:
+    side = Outside(type="outside")
+    assert side.is_artificial
+    assert side.is_outside
+    assert not side.factors
+    assert not side.waves
+    assert loads(CASE).side("left").is_outside
+
+
+@pytest.mark.parametrize(
+    ("more", "line"),
+    [
+        ('[boundary.bottom]\ntype = "viscous_input"\nwave_s = "w"\n', "boundary.bottom: brings in waves, which"),
+        ('[boundary.right]\ntype = "velocity"\nwave_p = "w"\n', "boundary.right: brings in waves, which"),
+        ('[boundary.bottom]\ntype = "symmetry"\n', 'boundary.bottom.type: "symmetry" has no continuum beside it'),
+        (
+            '[boundary.bottom]\ntype = "periodic"\n[boundary.top]\ntype = "periodic"\n',
+            'boundary.bottom.type: "periodic" has no continuum beside it',
+        ),
+        ('[boundary.right]\ntype = "free_field"\n', 'boundary.right.type: "free_field" has no continuum'),
+        ('[motion]\nheld = ["y"]\n', 'boundary.left.type: "outside" moves freely, but motion.held holds y'),
+        ("[static]\nstress = [-1e6, -1e6, 0.0]\n", 'boundary.left.type: "outside" does not carry a settled stress'),
+        ('[[load]]\nname = "g"\nacceleration = [0.0, -9.81]\n', "load[1].acceleration: acts on the particles alone"),
+    ],
+)
+def test_what_it_cannot_be_beside_gets_one_line(more: str, line: str) -> None:
+    assert line in problems(more)
