@@ -15,6 +15,7 @@ from dembound.running import job
 IMPORTED = """
 import os, signal, sys
 signal.signal(signal.SIGHUP, signal.{hangups})
+signal.signal(signal.SIGINT, signal.default_int_handler)  # tests may be run where it is ignored
 class Signals:
     def find_spec(self, name, path=None, target=None):
         if name == "numpy":

@@ -99,7 +99,7 @@ class Rope(NamedTuple):
 
 
 @njit(**HERE)
-def haul(rope, u, force):
+def haul(rope, u, v, force):
     for s in range(rope.share.size):
         for c in range(3):
             force[s, c] += rope.share[s] * rope.force[c]
