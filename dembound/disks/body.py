@@ -207,6 +207,15 @@ class DiskBody(Scene):
         return free
 
     @property
+    def moves(self) -> np.ndarray:
+        """(3, n) bool, False for components that are held or prescribed; nodes of a continuum do not rotate."""
+        moves = super().moves
+        if self.outside is not None:
+            moves[2, self.disk_count :] = False
+            moves[:2, self.disk_count :] &= ~self.outside.body.mesh.held
+        return moves
+
+    @property
     def has_history(self) -> bool:  # type: ignore[override]  # a constant of other kinds
         """Whether the scene's law is history-dependent: contacts that open and slide, bonds that break."""
         return self.ground.law.has_history

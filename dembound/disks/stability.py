@@ -47,25 +47,19 @@ def step_limit(scene: DiskScene, damp: float | None = None) -> float:
 
 def _largest_eigenvalue(scene: DiskScene) -> float:
     """The largest eigenvalue of M⁻¹K (1/s²), see `motion.eigenvalue`."""
-    moves = np.ones((3, scene.count), dtype=np.bool_)
-    fixed = scene.supports.prescribed
-    moves[scene.supports.component[fixed], scene.supports.node[fixed]] = False
     if scene.outside is None:
         forces = partial(fill_forces, scene)
-        return largest_eigenvalue(scene.layout, scene.mass, scene.inertia, scene.free, moves, forces)
-    return _largest_with(scene, scene.outside, moves)
+        return largest_eigenvalue(scene.layout, scene.mass, scene.inertia, scene.free, scene.moves, forces)
+    return _largest_with(scene, scene.outside)
 
 
-def _largest_with(scene: DiskScene, outside: Surroundings, moves: np.ndarray) -> float:
+def _largest_with(scene: DiskScene, outside: Surroundings) -> float:
     """The same of a scene with a continuum: its delays count as less mass, the dashpots of ties as more stiffness.
 
     A dashpot ηK that is half a step behind counts as a spring of K·2η/Δt beside K. So the step is on both sides of the
     equation, and is found by iteration from below: each larger step makes the ties less stiff.
     """
-    disks, body = scene.disk_count, outside.body
-    moves[2, disks:] = False
-    moves[:2, disks:] &= ~body.mesh.held
-    mass = np.concatenate([scene.mass[:disks], body.mass_for_limit])
+    mass = np.concatenate([scene.mass[: outside.disks], outside.body.mass_for_limit])
     times = 1.0
     largest = 0.0
     for _ in range(MOST_ROUNDS):
@@ -74,7 +68,7 @@ def _largest_with(scene: DiskScene, outside: Surroundings, moves: np.ndarray) ->
             fill_forces(scene, u, force)
             outside.add_forces(scene.layout, u, force, times)
 
-        found = largest_eigenvalue(scene.layout, mass, scene.inertia, scene.free, moves, forces)
+        found = largest_eigenvalue(scene.layout, mass, scene.inertia, scene.free, scene.moves, forces)
         if found <= largest * (1.0 + CONVERGED):
             return max(found, largest)
         largest = found

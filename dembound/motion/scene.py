@@ -83,6 +83,14 @@ class Scene(ABC):
         """(3,) 1 for a component that moves, 0 for one held everywhere."""
 
     @property
+    def moves(self) -> np.ndarray:
+        """(3, n) bool, False for components that are held or whose motion is prescribed."""
+        moves = np.repeat(self.free[:, None] > 0.0, self.count, axis=1)
+        fixed = self.supports.prescribed
+        moves[self.supports.component[fixed], self.supports.node[fixed]] = False
+        return moves
+
+    @property
     @abstractmethod
     def damp(self) -> float:
         """Local damping coefficient."""

@@ -59,6 +59,9 @@ OWN_LOOKS: dict[str, dict[str, Any]] = {
 NEGLIGIBLE = 1e-6
 """A column that stays below this share of the largest is left out."""
 
+BESIDE = {"free_field": " of the column", "continuum": " of the continuum"}
+"""By the ending of their names, what sides belong to other than the body."""
+
 
 class EnergyLine(NamedTuple):
     """A line of the picture: its name in the legend, energies (k,) in J or J/m, and how it is drawn."""
@@ -122,7 +125,7 @@ def _of_sides(sides: dict[str, dict[str, np.ndarray]], bar: bool) -> Iterator[En
     for column, (label, looks) in OF_SIDES.items():
         for index, (side, energies) in enumerate(sides.items()):
             name, _, beside = side.partition(".")
-            place = f"{name} {'end' if bar else 'side'}" + (" of the column" if beside else "")
+            place = f"{name} {'end' if bar else 'side'}" + BESIDE.get(beside, "")
             own = {"color": COLOURS[index % len(COLOURS)], "markersize": 5.0, "markevery": (3 * index, 12)}
             yield EnergyLine(label.format(place), energies[column], looks | own)
 

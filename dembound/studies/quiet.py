@@ -59,10 +59,8 @@ class Trial:
         """
         scene = self.scene
         mass = np.stack([scene.mass, scene.mass, scene.inertia])
-        velocity = np.random.default_rng(0).standard_normal(mass.shape) * scene.free[:, None]
+        velocity = np.random.default_rng(0).standard_normal(mass.shape) * scene.moves
         velocity *= NOISE * np.sqrt(scene.mass.mean() / mass)
-        held = scene.supports.prescribed
-        velocity[scene.supports.component[held], scene.supports.node[held]] = 0.0
         if part is not None:
             chosen = np.zeros(scene.count, dtype=bool)
             chosen[next(each.nodes for each in self.system(self.step).parts if each.name == part)] = True

@@ -112,3 +112,17 @@ def test_noise_decays(lab, pattern) -> None:
         energy.append(float(np.sum(scene.mass * simulation.state.velocity[:2] ** 2)))
     assert all(later < 0.5 * earlier for earlier, later in pairwise(energy))
     assert energy[-1] > 0.0
+
+
+def test_noise_in_the_continuum_alone_decays(lab) -> None:
+    """All that can move is absorbed: rotations and outer edges of the continuum, which are at rest, have no noise."""
+    scene = build(surrounded(lab))
+    assert not scene.moves[2, scene.recorded :].any()
+    assert 0 < np.count_nonzero(~scene.moves[0, scene.recorded :]) < 0.2 * scene.outside.count
+    simulation = Simulation(scene, choose_step(scene)[0])
+    noise = np.random.default_rng(8).normal(size=(3, scene.count)) * scene.moves
+    noise[:, : scene.recorded] = 0.0
+    simulation.state.velocity = noise
+    first = float(np.sum(scene.mass * noise[:2] ** 2))
+    simulation.run(3000)
+    assert float(np.sum(scene.mass * simulation.state.velocity[:2] ** 2)) < 1e-2 * first
