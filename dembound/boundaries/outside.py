@@ -20,15 +20,17 @@ class Outside(Boundary):
         return True
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """Sides and stages that a continuum cannot be beside."""
+        """What a continuum cannot be beside.
+
+        Its own edges next to those of the body are free or go on, so the sides of the body there must do the same.
+        """
         yield from super().problems(side, tables)
         boundary = tables["boundary"]
         for other, table in boundary.items():
-            beside = other != OPPOSITE[side] and table and (table.is_periodic or table.is_mirror)
+            beside = other not in (side, OPPOSITE[side]) and table and not (table.is_free or table.is_outside)
             if beside or (table and table.needs_column):
-                yield f'boundary.{other}.type: "{table.type}" has no continuum beside it, as boundary.{side} has'
-            if table and table.waves:
-                yield f"boundary.{other}: brings in waves, which the continuum beyond boundary.{side} would not have"
+                must = f'beside boundary.{side} it must be "free" or "{self.type}"'
+                yield f'boundary.{other}.type: is "{table.type}"; {must}'
         for place, load in enumerate(tables["load"], 1):
             if load and load.acceleration is not None:
                 yield f"load[{place}].acceleration: acts on the particles alone, not beyond boundary.{side}"

@@ -25,6 +25,7 @@ from dembound.holes import Hole
 from dembound.kernels.contacts import REFERENCE
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
+from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly, tile
 
 
@@ -161,6 +162,10 @@ def _hollowed(
         seam = with_column(brick, body, sides)[1]
         if not np.isin(seam.node - seam.count, kept).all():
             raise CaseError([f"hole: reaches the free field of {' or '.join(sides)}, which has no hole"])
+    if sides := _outside_sides(case):
+        before, after = (len(cut_contacts(brick, each, sides).node) for each in (body, left))
+        if after < before:
+            raise CaseError([f"hole: reaches the continuum of {' or '.join(sides)}, which has no hole"])
     return left, {side: edge_without(edge, kept) for side, edge in edges.items()}, kept
 
 

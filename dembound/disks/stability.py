@@ -60,13 +60,14 @@ def _largest_with(scene: DiskScene, outside: Surroundings) -> float:
     equation, and is found by iteration from below: each larger step makes the ties less stiff.
     """
     mass = np.concatenate([scene.mass[: outside.disks], outside.body.mass_for_limit])
+    add = outside.adds_forces(scene.layout)
     times = 1.0
     largest = 0.0
     for _ in range(MOST_ROUNDS):
 
         def forces(u: np.ndarray, force: np.ndarray, times: float = times) -> None:
             fill_forces(scene, u, force)
-            outside.add_forces(scene.layout, u, force, times)
+            add(u, force, times)
 
         found = largest_eigenvalue(scene.layout, mass, scene.inertia, scene.free, scene.moves, forces)
         if found <= largest * (1.0 + CONVERGED):

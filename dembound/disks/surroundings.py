@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -110,19 +110,22 @@ class Surroundings:
         line[layout.slot[supported]] = np.arange(len(supported))
         return self.wall.ties(layout.slot[: self.disks], layout.slot[self.disks :], line, None)
 
-    def add_forces(self, layout: Layout, u: np.ndarray, force: np.ndarray, times: float = 1.0) -> float:
-        """Fill in force (3, slots) those of the continuum at displacements u, and add those of ties `times` to all.
+    def adds_forces(self, layout: Layout) -> Callable[[np.ndarray, np.ndarray, float], None]:
+        """A function of displacements u (3, slots), forces (3, slots) and a factor.
 
-        Returns the energy (J) of the ties.
+        It fills the forces on the continuum, and adds those of the ties times the factor to all.
         """
-        slot = self.body.blocks.slot
-        own = np.zeros_like(force)
-        self.body.fill_forces(u, own)
-        force[:, slot] = own[:, slot]
-        of_ties = np.zeros((len(self.tied), 3))
-        energy = tie_forces(self.ties(layout, self.tied), u, np.zeros_like(u), of_ties, 0.0)
-        force[:, layout.slot[self.tied]] += times * of_ties.T
-        return float(energy)
+        slot, tied = self.body.blocks.slot, layout.slot[self.tied]
+        ties = self.ties(layout, self.tied)
+
+        def add(u: np.ndarray, force: np.ndarray, times: float) -> None:
+            own, of_ties = np.zeros_like(force), np.zeros((len(tied), 3))
+            self.body.fill_forces(u, own)
+            force[:, slot] = own[:, slot]
+            tie_forces(ties, u, np.zeros_like(u), of_ties, 0.0)
+            force[:, tied] += times * of_ties.T
+
+        return add
 
 
 class WallTie(Tie):

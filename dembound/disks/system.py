@@ -151,6 +151,11 @@ class DiskSystem(System):
         return (f"law: elastic after settling, as nothing is open or slides, for {steps:,} of {state.step:,} steps",)
 
     @property
+    def recorded_parts(self) -> tuple[DiskPart, ...]:
+        """The parts of disks."""
+        return self.disk_parts
+
+    @property
     def law_name(self) -> str:
         """Name of the law of the disks in use, for reports."""
         return self.disk_parts[-1].law_name
@@ -194,8 +199,7 @@ class DiskSystem(System):
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
         """Fields of every disk at displacements (3, n) other than its motion; stress only with output.stress."""
-        each = [part.snapshot(displacement) for part in self.disk_parts]
-        known = {name: (np.concatenate([of[name][0] for of in each]), unit) for name, (_, unit) in each[0].items()}
+        known = super().snapshot(displacement)
         if self.scene.case.output.stress:
             known["stress"] = self.stress(displacement), "Pa"
         return known

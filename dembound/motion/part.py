@@ -99,6 +99,11 @@ class System:
         """Name of the law in use, for reports; all parts change it together."""
         return self.parts[-1].law_name
 
+    @property
+    def recorded_parts(self) -> tuple[Part, ...]:
+        """The parts whose nodes are recorded as particles; by default all."""
+        return self.parts
+
     def laws(self) -> tuple[NamedTuple, ...]:
         """The bundles of all parts."""
         return tuple(part.law() for part in self.parts)
@@ -155,7 +160,7 @@ class System:
 
     def snapshot(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
         """Fields of every node at displacements (3, n) other than its motion, by name: values (n, …) and unit."""
-        each = [part.snapshot(displacement) for part in self.parts]
+        each = [part.snapshot(displacement) for part in self.recorded_parts]
         return {name: (np.concatenate([known[name][0] for known in each]), unit) for name, (_, unit) in each[0].items()}
 
     def snapshot_beside(self, displacement: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:

@@ -6,7 +6,7 @@ from dembound.table import Table, quantity
 class OutsideTable(Table):
     """The continuum beyond sides of type "outside": spectral elements, the outer ones of which absorb.
 
-    Zeros are chosen from the waves and loads of the case.
+    An element size of zero is chosen from the waves of the case.
     """
 
     order: int = quantity(4, unit="1", help="order of the elements, nodes along a side less one", ge=3, le=6)

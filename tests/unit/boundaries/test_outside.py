@@ -3,6 +3,7 @@
 import pytest
 
 from dembound.boundaries import Outside
+from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import loads
 
@@ -43,14 +44,13 @@ def test_it_is_artificial_and_has_no_keys() -> None:
 @pytest.mark.parametrize(
     ("more", "line"),
     [
-        ('[boundary.bottom]\ntype = "viscous_input"\nwave_s = "w"\n', "boundary.bottom: brings in waves, which"),
-        ('[boundary.right]\ntype = "velocity"\nwave_p = "w"\n', "boundary.right: brings in waves, which"),
-        ('[boundary.bottom]\ntype = "symmetry"\n', 'boundary.bottom.type: "symmetry" has no continuum beside it'),
         (
-            '[boundary.bottom]\ntype = "periodic"\n[boundary.top]\ntype = "periodic"\n',
-            'boundary.bottom.type: "periodic" has no continuum beside it',
+            '[boundary.bottom]\ntype = "viscous_input"\nwave_s = "w"\n',
+            'boundary.bottom.type: is "viscous_input"; beside',
         ),
-        ('[boundary.right]\ntype = "free_field"\n', 'boundary.right.type: "free_field" has no continuum'),
+        ('[boundary.top]\ntype = "fixed"\n', 'boundary.top.type: is "fixed"; beside boundary.left it must be "free"'),
+        ('[boundary.bottom]\ntype = "symmetry"\n', 'boundary.bottom.type: is "symmetry"; beside'),
+        ('[boundary.right]\ntype = "free_field"\n', 'boundary.right.type: is "free_field"; beside'),
         ('[motion]\nheld = ["y"]\n', 'boundary.left.type: "outside" moves freely, but motion.held holds y'),
         ("[static]\nstress = [-1e6, -1e6, 0.0]\n", 'boundary.left.type: "outside" does not carry a settled stress'),
         ('[[load]]\nname = "g"\nacceleration = [0.0, -9.81]\n', "load[1].acceleration: acts on the particles alone"),
@@ -58,3 +58,15 @@ def test_it_is_artificial_and_has_no_keys() -> None:
 )
 def test_what_it_cannot_be_beside_gets_one_line(more: str, line: str) -> None:
     assert line in problems(more)
+
+
+@pytest.mark.parametrize("kind", ['"fixed"', '"symmetry"', '"viscous"', '"velocity"\nwave_p = "w"', '"outside"'])
+def test_the_opposite_side_may_be_anything_but_a_free_field(kind: str) -> None:
+    assert loads(f"{CASE}[boundary.right]\ntype = {kind}\n").side("left").is_outside
+
+
+def test_a_hole_that_reaches_it_is_refused() -> None:
+    hole = '[[hole]]\nname = "h"\ntype = "circle"\nradius = 1.0\ncentre = '
+    with pytest.raises(CaseError, match="hole: reaches the continuum of left"):
+        build(loads(CASE + hole + "[0.5, 2.5]\n"))
+    assert build(loads(CASE + hole + "[5.0, 2.5]\n")).outside is not None
