@@ -40,7 +40,7 @@ def near_pairs(
 def cells_of(
     positions: np.ndarray, radii: np.ndarray, numbers: np.ndarray, periods: tuple[float | None, float | None]
 ) -> Cells:
-    """Cells of disks at positions (n, 2) m with radii (n,) m, which kernels know by their numbers (n,)."""
+    """Cells of disks at positions (n, 2) m with radii (n,) m, by their numbers (n,) in kernels."""
     low, diameter = positions.min(axis=0), 2.0 * float(radii.max())
     wraps = np.array([length is not None for length in periods])
     extent = np.array([np.ptp(x) if length is None else length for x, length in zip(positions.T, periods, strict=True)])

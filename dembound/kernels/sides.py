@@ -19,23 +19,8 @@ PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED = range(6)
 
 
 @njit(**FAST, forceinline=True)
-def _needed(c, lines, constants, old, new, push, across):
-    """Of prescribed motion, without ties, the sums of `_of_batch`."""
-    force = 0.0
-    power = 0.0
-    before = 0.0
-    for e in range(lines.size):
-        s = U(lines[e])
-        f = constants[e] * (push[c, s] - across[s, c])
-        force += f
-        power += f * 0.5 * (old[c, s] + new[c, s])
-        before += f * old[c, s]
-    return force, power, before, 0.0
-
-
-@njit(**FAST, forceinline=True)
 def _dashpots(c, lines, constants, old, new, incident):
-    """The same of dashpots through which a wave of the velocity `incident` (m/s) enters.
+    """Of dashpots, the sums of `_of_batch`: through them a wave of the velocity `incident` (m/s) enters.
 
     Of a mean velocity v they absorb C(v − v_i)², the power of the outgoing wave, and C v_i² comes in.
     """
@@ -83,29 +68,16 @@ def _springs(c, lines, constants, nodes, u):
 
 
 @njit(**FAST, forceinline=True)
-def _driven(c, lines, constants, old, new, signal):
-    """The same of forces constants·signal."""
+def _exerted(kind, c, lines, constants, moved, across, signal):
+    """The same of prescribed motion (the force needed, without ties), of drives (constants·signal), and of seams."""
     force = 0.0
     power = 0.0
     before = 0.0
+    old, new, push = moved[0], moved[1], moved[2]
     for e in range(lines.size):
         s = U(lines[e])
-        f = constants[e] * signal
-        force += f
-        power += f * 0.5 * (old[c, s] + new[c, s])
-        before += f * old[c, s]
-    return force, power, before, 0.0
-
-
-@njit(**FAST, forceinline=True)
-def _tied(c, lines, constants, old, new, across):
-    """The same of seams."""
-    force = 0.0
-    power = 0.0
-    before = 0.0
-    for e in range(lines.size):
-        s = U(lines[e])
-        f = constants[e] * across[s, c]
+        of_one = push[c, s] - across[s, c] if kind == PRESCRIBED else signal if kind == DRIVE else across[s, c]
+        f = constants[e] * of_one
         force += f
         power += f * 0.5 * (old[c, s] + new[c, s])
         before += f * old[c, s]
@@ -135,8 +107,6 @@ def _of_batch(b, c, signal, lines, constants, u, supports, across, followed, mov
     """Force (N) of batch b on component c, its power (W), that with velocities before the step, and absorbed power."""
     kind = sides.kind[b]
     old, new = moved[0], moved[1]
-    if kind == PRESCRIBED:
-        return _needed(c, lines, constants, old, new, moved[2], across)
     if kind == DASHPOT:
         return _dashpots(c, lines, constants, old, new, signal)
     if kind == FOLLOWING:
@@ -144,9 +114,7 @@ def _of_batch(b, c, signal, lines, constants, u, supports, across, followed, mov
         return _following(c, lines, constants, follow, old, new, followed, signal)
     if kind == SPRING:
         return _springs(c, lines, constants, supports.nodes, u)
-    if kind == DRIVE:
-        return _driven(c, lines, constants, old, new, signal)
-    return _tied(c, lines, constants, old, new, across)
+    return _exerted(kind, c, lines, constants, moved, across, signal)
 
 
 @njit(**FAST, forceinline=True)

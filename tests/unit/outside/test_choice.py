@@ -23,10 +23,10 @@ def case(**waves: Cosine) -> Case:
     return Case(run=Run(duration=1.0), name="waves", wave=waves)
 
 
-def test_the_cut_off_of_the_cosine_pulse_is_twice_its_frequency() -> None:
-    # 99.9 % of the energy of (1 − cos 2πt/T)/2 lies below 1.6/T; frequencies are multiples of 1/(4T)
+def test_the_cut_off_of_the_cosine_pulse_is_nearly_twice_its_frequency() -> None:
+    # 99.9 % of the energy of (1 − cos 2πt/T)/2 lies below 1.734/T (64 times finer); here in multiples of 1/(4T)
     whole = cutoff(pulse())
-    assert 1.25 / 0.5 <= whole <= 2.0 / 0.5
+    assert whole == pytest.approx(1.75 / 0.5)
     assert cutoff(pulse(amplitude=-7.0)) == whole
     assert cutoff(pulse(period=0.05)) == pytest.approx(10.0 * whole)
 
