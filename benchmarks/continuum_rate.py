@@ -5,7 +5,7 @@
 Steps square meshes with noise in them, on one core, whole steps as in a run: without layers, with all but one row of
 elements absorbing along y, and with nearly all of them absorbing along both axes; last a mesh round a box with layers
 on three sides, as a scene has. Prints the CPU time of a step for each unique node, medians of blocks of steps; compiled
-first.
+first. So it does for each tie of bodies of disks, lattices and random packings, and for whole steps of them.
 """
 
 import argparse
@@ -17,6 +17,11 @@ import numba
 import numpy as np
 from timing import in_one_line, machine, median_time, show, write
 
+from dembound import api
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
+from dembound.kernels.tables import WallTies
+from dembound.kernels.wall import wall_forces
 from dembound.motion.simulation import Simulation
 from dembound.outside.alone import GridScene
 from dembound.outside.body import GridBody
@@ -33,11 +38,11 @@ NODE_STEPS = 4e6
 def meshes(order: int, side: int) -> Iterator[tuple[str, Mesh]]:
     """Meshes of side × side elements and their names."""
     half, whole = side // 2, (side, side)
-    yield "elastic", Mesh(order=order, element=ELEMENT, cells=whole)
+    yield "elastic", Mesh.uniform(order=order, element=ELEMENT, cells=whole)
     along_one = Around(bottom=half, top=side - half - 1)
-    yield "absorbing along y", Mesh(order=order, element=ELEMENT, cells=whole, layer=along_one)
+    yield "absorbing along y", Mesh.uniform(order=order, element=ELEMENT, cells=whole, layer=along_one)
     along_both = Around(half, side - half - 1, half, side - half - 1)
-    yield "absorbing along x and y", Mesh(order=order, element=ELEMENT, cells=whole, layer=along_both)
+    yield "absorbing along x and y", Mesh.uniform(order=order, element=ELEMENT, cells=whole, layer=along_both)
 
 
 def round_a_box(order: int) -> Mesh:
@@ -65,6 +70,54 @@ def measure(name: str, mesh: Mesh, repeats: int) -> dict[str, Any]:
     }
 
 
+def tied(pattern: str, order: int) -> api.Case:
+    """60 m × 60 m of disks of 1 m at the free surface of a continuum with elements of 30 m."""
+    packing: dict[str, Any] = {"pattern": pattern, "size": [60.0, 60.0], "radius": 0.5}
+    if pattern != "A":
+        packing |= {"radius_ratio": 1.5, "brick": [20.0, 20.0], "seed": 1}
+    return api.case(
+        packing=packing,
+        material={"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
+        boundary={side: {"type": "outside"} for side in ("left", "right", "bottom")},
+        outside={"element": ELEMENT[0], "order": order},
+        run={"duration": 1.0},
+    )
+
+
+@numba.njit
+def repeat(times: int, ties: WallTies, u: np.ndarray, force: np.ndarray) -> None:
+    for _ in range(times):
+        wall_forces(ties, u, u, force)
+
+
+def measure_ties(pattern: str, order: int, repeats: int) -> dict[str, Any]:
+    """CPU time of the forces of each tie, and of a whole step with disks and continuum."""
+    scene = build(tied(pattern, order))
+    outside = scene.outside
+    assert outside is not None
+    kernel = outside.ties(scene.layout, outside.tied)
+    u, force, many = np.zeros((3, scene.layout.count)), np.zeros((len(outside.tied), 3)), len(outside.wall.element)
+    times = max(10, int(NODE_STEPS / 4 / many))
+    repeat(1, kernel, u, force)
+    alone = median_time(lambda: repeat(times, kernel, u, force), repeats) / times
+    simulation = Simulation(scene, choose_step(scene)[0])
+    noise = 1e-5 * np.random.default_rng(0).standard_normal((3, scene.count))
+    simulation.state.velocity = noise * scene.moves
+    steps = max(10, int(NODE_STEPS / scene.count))
+    simulation.advance(10)
+    whole = median_time(lambda: simulation.advance(steps), repeats) / steps
+    return {
+        "pattern": pattern,
+        "order": order,
+        "disks": scene.recorded,
+        "nodes": outside.count,
+        "ties": many,
+        "nanoseconds": 1e9 * alone / many,
+        "step": 1e6 * whole,
+        "share": alone / whole,
+    }
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--sides", type=int, nargs="+", default=[8, 16, 32, 64])
@@ -89,7 +142,19 @@ def main() -> None:
         "ns per node and step": "{nanoseconds:.1f}",
     }
     show("Steps of a continuum, one thread", columns, rows)
-    write(options.json, {"machine": facts, "steps": rows})
+    bodies = [measure_ties(pattern, order, options.repeats) for order in options.orders for pattern in "AB"]
+    of_ties = {
+        "pattern": "{pattern}",
+        "order": "{order}",
+        "disks": "{disks:,}",
+        "nodes": "{nodes:,}",
+        "ties": "{ties:,}",
+        "ns per tie": "{nanoseconds:.1f}",
+        "µs per whole step": "{step:.1f}",
+        "share of ties": "{share:.0%}",
+    }
+    show("Ties between disks and a continuum, one thread", of_ties, bodies)
+    write(options.json, {"machine": facts, "steps": rows, "ties": bodies})
 
 
 if __name__ == "__main__":

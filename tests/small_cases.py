@@ -64,6 +64,17 @@ GRAINS: Tables = {
 """Two bricks of random disks that a wave enters from below."""
 
 
+SURROUNDED: Tables = {
+    "packing": {"pattern": "A", "size": [12.0, 6.0], "radius": 0.5},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
+    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+    "outside": {"element": 3.0, "order": 3, "margin": 1, "layers": 2},
+    "monitor": [{"name": "middle", "position": [6.5, 3.5]}],
+    "run": {"duration": 0.01},
+}
+"""A lattice of 12 × 6 disks in a continuum of 40 elements, whose outer ones absorb."""
+
+
 def small(tables: Tables, name: str = "small", changes: Mapping[str, Any] | None = None) -> Case:
     """The case of tables, with some keys changed; its name has no other characters than a folder may have."""
     case = loads(tomli_w.dumps(tables), name=re.sub(r"\W+", "_", name))

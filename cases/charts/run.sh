@@ -16,7 +16,7 @@ chart() { # CASE [OPTION ...]
 
 tunnel() { # PATTERN P_WAVE_SPEED PACKING LEFT RIGHT BOTTOM: in another pattern, in which S waves run at 600 m/s, too
     chart tunnel --repeats 1 --name "tunnel_${1,,}" \
-        --set "title=\"A tunnel under an SV wave, pattern $1: sides and larger models\"" \
+        --set "title=\"A tunnel under an SV wave, pattern $1: sides and wider models\"" \
         --set material.p_wave_speed="$2" --set "packing={pattern=\"$1\",size=[300.0,300.0],radius=1.0$3}" \
         --set "boundary.left={type=\"free_field\",$4}" --set "boundary.right={type=\"free_field\",$5}" \
         --set "boundary.bottom={type=\"viscous_input\",wave_s=\"pulse\",$6}"

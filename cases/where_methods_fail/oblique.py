@@ -35,16 +35,26 @@ def forces_by(scene: DiskScene, disk: int, component: int) -> np.ndarray:
     return scene.layout.gather(force)
 
 
-def column_matrices(scene: DiskScene, column: int, wavenumber: float) -> dict[int, np.ndarray]:
-    """For a wave along y: offset of a column -> matrix (3, 3) of the forces its displacements cause in `column`."""
+def couplings(scene: DiskScene, column: int) -> list[tuple[int, int, np.ndarray]]:
+    """Columns and rows from a disk of `column` to each neighbour and itself, and the forces (3, 3) on it per motion."""
     x, y = np.round(scene.positions.T / DIAMETER - 0.5).astype(int)
     disk = int(np.flatnonzero((x == column) & (y == 3))[0])
+    return [
+        (
+            int(x[other] - column),
+            int(y[other] - 3),
+            np.stack([forces_by(scene, int(other), component)[:, disk] for component in range(3)], axis=1),
+        )
+        for other in np.flatnonzero((abs(x - column) <= 1) & (abs(y - 3) <= 1))
+    ]
+
+
+def column_matrices(couplings: list[tuple[int, int, np.ndarray]], wavenumber: float) -> dict[int, np.ndarray]:
+    """For a wave along y: offset of a column -> matrix (3, 3) of the forces its displacements cause on a disk."""
     found: dict[int, np.ndarray] = {}
-    for other in np.flatnonzero((abs(x - column) <= 1) & (abs(y - 3) <= 1)):
-        phase = np.exp(1j * wavenumber * DIAMETER * (y[other] - 3))
-        block = np.stack([forces_by(scene, other, component)[:, disk] for component in range(3)], axis=1)
-        offset = int(x[other] - column)
-        found[offset] = found.get(offset, np.zeros((3, 3), complex)) + phase * block
+    for across, up, block in couplings:
+        phase = np.exp(1j * wavenumber * DIAMETER * up)
+        found[across] = found.get(across, np.zeros((3, 3), complex)) + phase * block
     return found
 
 
@@ -79,13 +89,13 @@ def reflection(
     frequency = 2.0 * np.pi * speed / (per_wavelength * DIAMETER)
     along = frequency / speed * np.sin(np.radians(angle))
     inertia = np.stack([scene.mass, scene.mass, scene.inertia])
-    factor, shape, flow = waves(column_matrices(scene, 2, along), inertia[:, x == 2][:, 3], frequency)
+    factor, shape, flow = waves(column_matrices(couplings(scene, 2), along), inertia[:, x == 2][:, 3], frequency)
     runs = np.abs(np.abs(factor) - 1.0) < 1e-8
     turns = np.abs(np.angle(factor))
     incoming = np.flatnonzero(runs & (flow > 0.0))
     incoming = incoming[np.argsort(turns[incoming])][0 if motion == "p" else -1]
     leaving = np.flatnonzero(np.where(runs, flow < 0.0, np.abs(factor) > 1.0))
-    edge = column_matrices(scene, 4, along)
+    edge = column_matrices(couplings(scene, 4), along)
     disk = int(np.flatnonzero(x == 4)[3])
     rows = scene.supports
     damping = np.zeros(3)  # springs are in the forces

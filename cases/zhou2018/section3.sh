@@ -22,6 +22,13 @@ dembound plot "$results"/lamb_{exact,extended,viscoelastic,viscous} --quantity d
     --output "$figures/fig16_lamb_isotropic.png"
 dembound compare "$results"/lamb_{exact,extended,viscoelastic,viscous} --quantity displacement
 
+echo "== A continuum beyond the sides, and disks only at the load"
+dembound run "$cases/lamb_viscous.toml" --set 'boundary.right={type="outside"}' \
+    --set 'boundary.bottom={type="outside"}' --name lamb_outside --output "$results"
+dembound run "$cases/lamb_window.toml" --output "$results"
+dembound compare "$results"/lamb_{exact,outside,window} --quantity displacement
+dembound compare "$results"/lamb_{extended,window} --quantity displacement
+
 echo "== Figure 16 on the paper's lattice: no friction, so contacts carry no shear"
 for law in elastic linearpbond; do
     for sides in extended viscoelastic viscous; do

@@ -63,4 +63,9 @@ for case in tunnel tunnel_b tunnel_a; do
 done
 dembound run "$cases/tunnel_a.toml" "${wide[@]}" "${isotropic[@]}" --name tunnel_a_isotropic_extended
 errors tunnel_a_isotropic tunnel_a_isotropic_extended
+echo "== Disks only round the tunnel, the rest a continuum, beside ground all of disks with a continuum beyond its sides"
+dembound run "$cases/tunnel_window.toml" --output "$results"
+dembound run "$cases/tunnel_window.toml" --set 'packing.size=[300.0,300.0]' --set 'packing.origin=[0.0,0.0]' \
+    --set 'boundary.top={type="free"}' --set output.snapshots=0 --name tunnel_ground --output "$results"
+errors tunnel_window tunnel_ground
 echo "figures are in $figures"

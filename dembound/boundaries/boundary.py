@@ -62,6 +62,11 @@ class Boundary(Table):
         """
         return {}
 
+    def waves_by_axis(self, normal_axis: int) -> tuple[str | None, str | None]:
+        """Wave names for x and y motion, given the axis of the side's normal; None for none."""
+        p, s = self.waves.get("p"), self.waves.get("s")
+        return (p, s) if normal_axis == 0 else (s, p)
+
     @property
     def factors(self) -> Mapping[Motion, float]:
         """The factors β of the side's dashpots: kind of wave -> β; by default it has none."""

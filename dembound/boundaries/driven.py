@@ -10,20 +10,14 @@ from dembound.boundaries.sides import Motion, axis_of_motion
 from dembound.table import quantity
 
 
-class Driven(Boundary):
-    """A side that names its waves by type: P moves along the side's normal, S across it.
+class Drivable(Boundary):
+    """A side that may name waves by type: P moves along the side's normal, S across it.
 
     Positive velocities point along +x and +y on every side. Both waves may be given together.
     """
 
     wave_p: str | None = quantity(None, unit="1", help="name of the wave that moves along the side's normal")
     wave_s: str | None = quantity(None, unit="1", help="name of the wave that moves across the side's normal")
-
-    @model_validator(mode="after")
-    def _names_a_wave(self) -> "Driven":
-        if self.wave_p is None and self.wave_s is None:
-            raise ValueError("names no wave; give wave_p (along the normal), wave_s (across it) or both")
-        return self
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
         """Waves along a direction in which nothing can move."""
@@ -39,6 +33,12 @@ class Driven(Boundary):
         named: dict[Motion, str | None] = {"p": self.wave_p, "s": self.wave_s}
         return {motion: name for motion, name in named.items() if name is not None}
 
-    def waves_by_axis(self, normal_axis: int) -> tuple[str | None, str | None]:
-        """Wave names for x and y motion, given the axis of the side's normal."""
-        return (self.wave_p, self.wave_s) if normal_axis == 0 else (self.wave_s, self.wave_p)
+
+class Driven(Drivable):
+    """A side that needs at least one wave."""
+
+    @model_validator(mode="after")
+    def _names_a_wave(self) -> "Driven":
+        if self.wave_p is None and self.wave_s is None:
+            raise ValueError("names no wave; give wave_p (along the normal), wave_s (across it) or both")
+        return self

@@ -3,12 +3,16 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
-from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.driven import Drivable
+from dembound.boundaries.free import Free
 from dembound.boundaries.sides import OPPOSITE
 
 
-class Outside(Boundary):
-    """A continuum of the packing's moduli, whose far part absorbs; its keys are those of the table ``[outside]``."""
+class Outside(Drivable):
+    """A continuum of the packing's moduli, whose far part absorbs; its settings are those of the table ``[outside]``.
+
+    Through the bottom of a body that is periodic sideways plane waves may enter from below (disks/incident.py).
+    """
 
     is_outside: ClassVar[bool] = True
 
@@ -20,22 +24,39 @@ class Outside(Boundary):
         return True
 
     def problems(self, side: str, tables: Mapping[str, Any]) -> Iterator[str]:
-        """What a continuum cannot be beside.
+        """What a continuum cannot be beside, and waves that cannot enter through it.
 
-        Its own edges next to those of the body are free or go on, so the sides of the body there must do the same.
+        Its own edges next to those of the body are free, periodic, mirror planes, or go on, so the sides of the body
+        there must do the same.
         """
         yield from super().problems(side, tables)
         boundary = tables["boundary"]
         for other, table in boundary.items():
-            beside = other not in (side, OPPOSITE[side]) and table and not (table.is_free or table.is_outside)
-            if beside or (table and table.needs_column):
-                must = f'beside boundary.{side} it must be "free" or "{self.type}"'
+            allowed = table is None or table.is_free or table.is_periodic or table.is_mirror or table.is_outside
+            if (other not in (side, OPPOSITE[side]) and not allowed) or (table and table.needs_column):
+                must = f'beside boundary.{side} it must be "free", "periodic", "symmetry" or "{self.type}"'
                 yield f'boundary.{other}.type: is "{table.type}"; {must}'
-        for place, load in enumerate(tables["load"], 1):
-            if load and load.acceleration is not None:
-                yield f"load[{place}].acceleration: acts on the particles alone, not beyond boundary.{side}"
-        if tables.get("static"):
-            yield f'boundary.{side}.type: "{self.type}" does not carry a settled stress; leave [static] out'
+            if table and table.is_mirror and _has_column(tables):
+                yield f'boundary.{other}.type: is "{table.type}", which takes [static] and loads on all disks out'
+        across = {each: boundary.get(each, Free()) for each in ("left", "right")}
+        sideways = all(table and (table.is_periodic or table.is_outside) for table in across.values())
+        if self.waves and side != "bottom":
+            yield f'boundary.{side}.type: is "{self.type}", through which waves enter at the bottom only'
+        elif self.waves and not sideways:
+            must = f'boundary.left and right are both "{self.type}" or periodic'
+            yield f"boundary.{side}.type: waves enter through it only where {must}"
+        for other, table in across.items():
+            if table and table.is_free and side in ("bottom", "top") and _has_column(tables):
+                yield (
+                    f'boundary.{other}.type: is "{table.type}", but [static] and loads on all disks also act on the '
+                    f'ground beyond boundary.{side}, which has no end there; must be "{self.type}" or periodic'
+                )
         motion = tables.get("motion")
         for held in motion.held if motion else ():
             yield f'boundary.{side}.type: "{self.type}" moves freely, but motion.held holds {held}'
+
+
+def _has_column(tables: Mapping[str, Any]) -> bool:
+    """Whether the ground beyond a continuum rests under forces of its own: by a static stage or a load on all of it."""
+    loads = [load for load in tables["load"] if load]
+    return bool(tables.get("static")) or any(load.position is None and load.region is None for load in loads)

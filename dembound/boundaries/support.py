@@ -11,6 +11,7 @@ up, and a prescribed row replaces all others.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -19,6 +20,29 @@ from dembound.boundaries.sides import normal_axis
 
 Signal = Callable[[np.ndarray], np.ndarray]
 """A time function: times (k,) in s -> values (k,)."""
+
+
+class Signals(Protocol):
+    """Signals that are computed together."""
+
+    @property
+    def count(self) -> int:
+        """Their number q."""
+
+    def __call__(self, times: np.ndarray) -> np.ndarray:
+        """Their values (k, q) at times (k,) s."""
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """One of several signals."""
+
+    signals: Signals
+    number: int
+
+    def __call__(self, times: np.ndarray) -> np.ndarray:
+        """Its values (k,) at times (k,) s."""
+        return self.signals(times)[:, self.number]
 
 
 class Incident(Protocol):
@@ -102,12 +126,13 @@ class Shares:
     Attributes
     ----------
     side : (a,) the side's index in `sides`; call : (a,) number of the call that added it, with which all rows of a call
-    have the component and the signal in common.
+    have the component in common.
     node, component, damping, follow, stiffness, prescribed, drive : (a,) as given; damping, follow, stiffness and drive
     are zero where a prescribed row has replaced them, and of several prescribed rows only one is listed.
     signal : (a,) index of the signal of the drive, −1 for none; incident : (a,) bool, whether it is the velocity of a
     wave that enters through the dashpot.
-    sides : their names.
+    sides : their names. power : side -> index of the signal that is the power (W) of the waves that enter through it
+    other than through dashpots.
     """
 
     side: np.ndarray
@@ -122,6 +147,7 @@ class Shares:
     signal: np.ndarray
     incident: np.ndarray
     sides: tuple[str, ...]
+    power: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -130,7 +156,8 @@ class Supports:
 
     Of rows: node; component (0 x, 1 y, 2 rotation); damping, follow N·s/m; stiffness N/m (N·m/rad of a rotation);
     prescribed bool. Of drives, any number to a row: drive_row; drive N (m/s where prescribed) per unit of signal;
-    drive_signal, the signal's index. shares : what each side adds to the rows; None in a table made from another one.
+    drive_signal, the signal's index. behind : indices of signals that are velocities half a step behind, as ties see
+    them. shares : what each side adds to the rows; None in a table made from another one.
     """
 
     node: np.ndarray
@@ -143,6 +170,7 @@ class Supports:
     drive: np.ndarray
     drive_signal: np.ndarray
     signals: tuple[Signal, ...] = ()
+    behind: frozenset[int] = frozenset()
     shares: Shares | None = None
 
     def __len__(self) -> int:
@@ -154,19 +182,46 @@ class Supports:
         force[self.component, self.node] = self.stiffness * displacement[self.component, self.node]
         return force
 
-    def sample(self, times: np.ndarray, half_step: float) -> np.ndarray:
-        """Sum of the drives of every row at each time, (steps, r): forces at `times`, velocities half a step later.
+    def sampled(self, times: np.ndarray, half_step: float) -> np.ndarray:
+        """Values (steps, q) of all signals at each time: of forces at `times`, of prescribed velocities later.
 
-        Forces act at whole steps; velocities are defined at half steps, so prescribed velocities are sampled there.
+        Forces act at whole steps; velocities are defined at half steps, so prescribed velocities are sampled half a
+        step later, and those that ties see half a step earlier.
         """
-        values = np.zeros((len(times), len(self)))
-        late = self.prescribed[self.drive_row]
-        for index, signal in enumerate(self.signals):
-            for prescribed, shift in ((False, 0.0), (True, half_step)):
-                chosen = np.flatnonzero((self.drive_signal == index) & (late == prescribed))
-                if len(chosen):  # a signal drives a row only once, so no row occurs twice here
-                    values[:, self.drive_row[chosen]] += signal(times + shift)[:, None] * self.drive[chosen]
+        ahead = set(self.drive_signal[self.prescribed[self.drive_row]].tolist())
+        values = np.zeros((len(times), len(self.signals)))
+        first = 0
+        while first < len(self.signals):
+            at = times + half_step * ((first in ahead) - (first in self.behind))
+            signal = self.signals[first]
+            if isinstance(signal, OneOf):  # those of one group follow each other
+                count = signal.signals.count
+                values[:, first : first + count] = signal.signals(at)
+            else:
+                count = 1
+                values[:, first] = signal(at)
+            first += count
         return values
+
+    def sample(self, times: np.ndarray, half_step: float) -> np.ndarray:
+        """Sum of the drives of every row at each time, (steps, r), see `sampled`."""
+        return self.driven(self.sampled(times, half_step))
+
+    def driven(self, signals: np.ndarray) -> np.ndarray:
+        """Sum of the drives of every row, (steps, r), from the values (steps, q) of all signals."""
+        values = np.zeros((len(signals), len(self)))
+        for chosen in self._rounds:
+            values[:, self.drive_row[chosen]] += signals[:, self.drive_signal[chosen]] * self.drive[chosen]
+        return values
+
+    @cached_property
+    def _rounds(self) -> list[np.ndarray]:
+        """All drives, first those that are the first of their row, then the second ones, and so on."""
+        order = np.argsort(self.drive_row, kind="stable")
+        begin = np.searchsorted(self.drive_row[order], self.drive_row[order])
+        place = np.empty(len(order), dtype=np.int64)
+        place[order] = np.arange(len(order)) - begin
+        return [np.flatnonzero(place == number) for number in range(place.max(initial=-1) + 1)]
 
 
 @dataclass
@@ -183,7 +238,9 @@ class SupportBuilder:
     side: str = ""
     _rows: list[dict[str, np.ndarray]] = field(default_factory=list)
     _signals: list[Signal] = field(default_factory=list)
+    _behind: set[int] = field(default_factory=set)
     _sides: list[str] = field(default_factory=list)
+    _power: dict[str, int] = field(default_factory=dict)
 
     def add(
         self,
@@ -210,8 +267,54 @@ class SupportBuilder:
         if incident is not None:
             signal, drive = incident, 2.0 * damping
         if signal is not None:
-            index = len(self._signals)
-            self._signals.append(signal)
+            index = self._number_of_signal(signal)
+        self._append(
+            nodes,
+            component=component,
+            damping=damping,
+            follow=follow,
+            stiffness=stiffness,
+            prescribed=prescribed,
+            drive=drive,
+            signal=index,
+            incident=incident is not None,
+        )
+
+    def add_forces(self, nodes: np.ndarray, component: np.ndarray, forces: Signals, *, behind: bool = False) -> None:
+        """Add forces (N, or N·m) with a signal each on components (k,) of nodes (k,), each degree of freedom once.
+
+        behind : whether they follow from velocities half a step behind, as the forces of ties do.
+        """
+        first = len(self._signals)
+        self._signals += [OneOf(forces, number) for number in range(forces.count)]
+        if behind:
+            self._behind |= set(range(first, len(self._signals)))
+        for each in sorted(set(component.tolist()) - set(self.held)):
+            chosen = np.flatnonzero(component == each)
+            self._append(nodes[chosen], component=each, drive=1.0, signal=first + chosen)
+
+    def add_power(self, side: str, power: Signal) -> None:
+        """The power (W) of waves that enter through a side by forces alone, for its energies."""
+        self._power[side] = self._number_of_signal(power)
+
+    def _number_of_signal(self, signal: Signal) -> int:
+        """The index of a new signal."""
+        self._signals.append(signal)
+        return len(self._signals) - 1
+
+    def _append(
+        self,
+        nodes: np.ndarray,
+        component: int,
+        signal: int | np.ndarray,
+        drive: float | np.ndarray,
+        damping: float | np.ndarray = 0.0,
+        follow: float | np.ndarray = 0.0,
+        stiffness: float | np.ndarray = 0.0,
+        prescribed: bool = False,
+        incident: bool = False,
+    ) -> None:
+        """Append rows, one per node (k,), as one call."""
         columns: dict[str, float | np.ndarray] = {
             "node": nodes,
             "component": component,
@@ -220,12 +323,17 @@ class SupportBuilder:
             "stiffness": stiffness,
             "prescribed": prescribed,
             "drive": drive,
-            "signal": index,
-            "incident": incident is not None,
+            "signal": signal,
+            "incident": incident,
             "side": self._number_of_side(),
             "call": len(self._rows),
         }
         self._rows.append({name: np.broadcast_to(value, np.shape(nodes)) for name, value in columns.items()})
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """The nodes (k,) of all rows added so far, ascending."""
+        return np.unique(self._column("node", np.int64))
 
     def _number_of_side(self) -> int:
         """The present side's index, −1 for loads."""
@@ -259,6 +367,7 @@ class SupportBuilder:
             drive=drive[driven],
             drive_signal=signal[driven],
             signals=tuple(self._signals),
+            behind=frozenset(self._behind),
             shares=self._shares(np.flatnonzero(kept & (side >= 0))),
         )
 
@@ -273,7 +382,7 @@ class SupportBuilder:
             )
             for name in names
         }
-        return Shares(**columns, sides=tuple(self._sides))
+        return Shares(**columns, sides=tuple(self._sides), power=dict(self._power))
 
     def _is_along_normal(self, side: np.ndarray, component: np.ndarray) -> np.ndarray:
         """Whether the component of each row is along its side's normal; all (a,)."""

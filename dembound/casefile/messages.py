@@ -138,9 +138,9 @@ def show(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def corners(width: float, height: float) -> str:
-    """Two corners of a scene (m) as text, without the rounding errors of whole bricks: ``[0, 0] to [10, 5] (m)``."""
-    return f"[0, 0] to [{width:.10g}, {height:.10g}] (m)"
+def corners(left: float, bottom: float, right: float, top: float) -> str:
+    """Two corners of a box (m) as text, without the rounding errors of whole bricks: ``[0, 0] to [10, 5] (m)``."""
+    return f"[{left:.10g}, {bottom:.10g}] to [{right:.10g}, {top:.10g}] (m)"
 
 
 def allowed(schema: Mapping[str, Any]) -> str:

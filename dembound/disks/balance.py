@@ -85,9 +85,10 @@ class Balance:
         displacement (3, n) and velocity (3, n) are those after a step (s). The ended forces are removed from load (3,
         n), all steady forces; forces that still act through a seam are cancelled by their constant part.
         """
-        self._torn |= _freshly_torn(parts)  # called in the step of every break, so that none is missed
         loose = np.zeros(len(self._ended), dtype=np.bool_)
         for part in parts:
+            if part.contacts is not None:
+                self._torn[part.nodes] |= part.contacts.freshly_torn()  # called in the step of every break: all of them
             body = part.nodes
             slot = part.layout.slot[body]
             piece = pieces(part.pairs, slot.min(), slot.max() + 1)[slot - slot.min()]
@@ -134,7 +135,7 @@ class Balance:
         node = node[(node >= body.start) & (node < body.stop) & ~self._ended[node]]
         if len(node) < 2:
             return borne
-        places = self._scene.assembly.positions.T + self.datum[:2]
+        places = self._scene.positions.T + self.datum[:2]
         middle = places[:, node].mean(axis=1, keepdims=True)
         arm, lost = places - middle, change[:, body]
         x, y = arm[:, body]
@@ -153,11 +154,6 @@ _EVOLVING = ("ended", "torn")
 
 _FOLLOWING = ("twin", "arm", "force", "steady", "extra")
 """The arrays of its followers that change."""
-
-
-def _freshly_torn(parts: Sequence[DiskPart]) -> np.ndarray:
-    """Particles (n,) bool with a bond that has broken since cracks were last recorded."""
-    return np.concatenate([part.contacts.freshly_torn() for part in parts if part.contacts is not None])
 
 
 def mean_rotations(scene: DiskBody, moved: np.ndarray) -> dict[str, float]:
@@ -181,7 +177,7 @@ def _followers(
 ) -> Followers:
     """The forces on the sides of a body; a force at a corner is shared equally by its two sides. See `Balance`."""
     sides = _body_sides(scene)
-    places = scene.assembly.positions.T + datum[:2]
+    places = scene.positions.T + datum[:2]
     arms = [places[:, nodes] - places[:, nodes].mean(axis=1, keepdims=True) for nodes in sides.values()]
     members = np.concatenate([np.zeros(0, np.int64), *sides.values()])
     node, side = _side_numbers(scene, sides)

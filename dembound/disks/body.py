@@ -1,27 +1,30 @@
 """The arrays of a body of disks. Only this file defines their names, shapes and units."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from dembound.boundaries import normal_axis
 from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.contacts import ContactList
+from dembound.disks.ground_motion import GroundMotion
 from dembound.disks.layout import Rows
 from dembound.disks.loads import steady
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.row_plan import RowPlan, plan_rows
 from dembound.disks.surroundings import Surroundings
 from dembound.kernels.tables import LaneRows
+from dembound.motion.between import Between
 from dembound.motion.layout import Layout
 from dembound.motion.scene import Scene
 from dembound.motion.threads import thread_count_for
-from dembound.packings.column import Seam
+from dembound.packings.column import Seam, nearest_in_column
 from dembound.packings.tiling import Assembly
 
 
@@ -37,11 +40,13 @@ class DiskBody(Scene):
     rows : contacts of the elastic law for the kernels, of each part.
     edges : side -> its exposed particles, for every side that is not periodic.
     supports : the table of forces from outside, loads that follow a wave included.
-    monitors : name -> particle.
+    monitors : name -> particle, or the nearest node of the continuum.
     seam : the connection between the free-field column, whose particles come first in the arrays, and the body; None
     without a column.
     slots : the slots in which kernels hold its particles; None: in their order.
     outside : the continuum on some sides, whose nodes follow the particles; None for none.
+    foot : the continuum below the free-field column, whose nodes come last; None for none.
+    between : name -> place, of the monitors in the continuum.
     """
 
     case: DiskCase
@@ -54,6 +59,8 @@ class DiskBody(Scene):
     seam: Seam | None = None
     slots: Layout | None = None
     outside: Surroundings | None = None
+    foot: Surroundings | None = None
+    between: Mapping[str, Between] = field(default_factory=dict)
 
     kind = "disks"
     energy_unit = "J/m"
@@ -94,8 +101,21 @@ class DiskBody(Scene):
 
     @property
     def count(self) -> int:
-        """Number of particles and of nodes of the continuum, n."""
-        return self.disk_count + (0 if self.outside is None else self.outside.count)
+        """Number of particles and of nodes of continua, n."""
+        return self.disk_count + sum(each.count for each in self.continua)
+
+    @property
+    def continua(self) -> tuple[Surroundings, ...]:
+        """The continua, in the order of their nodes."""
+        return tuple(each for each in (self.outside, self.foot) if each is not None)
+
+    @cached_property
+    def on_foot(self) -> np.ndarray:
+        """Disks (k,) of the body that have the forces of the foot on their twins in the column, ascending."""
+        if self.foot is None or self.seam is None:
+            return np.zeros(0, dtype=np.int64)
+        disks = np.arange(self.seam.count, self.disk_count)
+        return disks[np.isin(self.seam.twin[disks], self.foot.wall.bonds.particle)]
 
     @property
     def recorded(self) -> int:
@@ -103,16 +123,52 @@ class DiskBody(Scene):
         return self.disk_count
 
     @property
+    def nodes_beside(self) -> slice:
+        """The nodes of the continuum round the body."""
+        return slice(self.count, self.count) if self.outside is None else self.outside.nodes
+
+    @cached_property
+    def twin_beside(self) -> np.ndarray | None:
+        """(m,) disk of the free-field column nearest to each node of the continuum round the body, modulo its width.
+
+        −1 below the ground that the column stands for; None without one.
+        """
+        if self.outside is None or self.seam is None:
+            return None
+        return nearest_in_column(self.assembly, self.outside.body.mesh.positions)
+
+    def motion_beside(self, values: np.ndarray) -> dict[str, np.ndarray]:
+        """Motion (m, 3) of the nodes of the continuum, from that of all nodes (n, 3).
+
+        Beside a free-field column it is "scattered_", and "" the sum of it and that of the column at the same height.
+        """
+        own = values[self.nodes_beside]
+        if self.outside is None:
+            return {}
+        if self.seam is None or self.twin_beside is None:
+            return {"": own}
+        ground = self._ground_motion.at_heights(values[: self.seam.count])
+        return {"": own + ground * (self.twin_beside >= 0)[:, None], "scattered_": own}
+
+    @property
     def beside(self) -> dict[str, tuple[np.ndarray, str]]:
         """Data of the nodes of the continuum for the record."""
-        return {} if self.outside is None else self.outside.columns
+        if self.outside is None:
+            return {}
+        twin = {} if self.twin_beside is None else {"twin": (self.twin_beside, "1")}
+        return {**self.outside.columns, **twin}
+
+    @cached_property
+    def _ground_motion(self) -> GroundMotion:
+        """At the nodes of the continuum."""
+        assert self.seam is not None
+        column, up = slice(0, self.seam.count), self.positions[:, 1]
+        return GroundMotion(up[column], self.mass[column], self.ground.brick.mean_diameter, up[self.nodes_beside])
 
     @cached_property
     def positions(self) -> np.ndarray:  # type: ignore[override]  # computed once
         """(n, 2) m."""
-        if self.outside is None:
-            return self.assembly.positions
-        return np.vstack([self.assembly.positions, self.outside.body.mesh.positions])
+        return np.vstack([self.assembly.positions, *(each.body.mesh.positions for each in self.continua)])
 
     @property
     def size(self) -> np.ndarray:
@@ -122,8 +178,15 @@ class DiskBody(Scene):
     @cached_property
     def layout(self) -> Layout:  # type: ignore[override]  # computed once
         """Where kernels hold its particles."""
-        layout = Layout.plain(self.disk_count) if self.slots is None else self.slots
-        return layout if self.outside is None else self.outside.laid_out(layout)
+        layout = self._disk_layout
+        for each in self.continua:
+            layout = each.laid_out(layout)
+        return layout
+
+    @property
+    def _disk_layout(self) -> Layout:
+        """Where kernels hold its particles, without the nodes of continua."""
+        return Layout.plain(self.disk_count) if self.slots is None else self.slots
 
     @property
     def threads(self) -> int:
@@ -137,30 +200,45 @@ class DiskBody(Scene):
 
     @property
     def twin(self) -> np.ndarray | None:
-        """(n,) twin of each particle in the free-field column, for those of the column themselves; None without it."""
-        return None if self.seam is None else self.seam.twin
+        """(n,) twin of each particle in the free-field column, of other nodes themselves; None without a column."""
+        if self.seam is None:
+            return None
+        return np.concatenate([self.seam.twin, np.arange(self.disk_count, self.count)])
 
     @cached_property
     def sides(self) -> dict[str, Edge]:  # type: ignore[override]  # computed once
-        """The edges of the body, of its column bottom and top, as ``bottom.free_field``, and those of a continuum."""
+        """The edges of the body, of its column bottom and top, as ``bottom.free_field``, and those of continua."""
+        sides = dict(self.edges)
+        if self.seam is not None:
+            sides = {}
+            for side, edge in self.edges.items():
+                beside = edge.nodes < self.seam.count
+                width = self.seam.width if edge.axis == 1 else 0.0
+                sides[side] = edge.only(~beside, edge.length - width)
+                if beside.any():
+                    sides[f"{side}{FREE_FIELD}"] = edge.only(beside, width)
         if self.outside is not None:
-            return dict(self.edges) | self.outside.edges
-        if self.seam is None:
-            return dict(self.edges)
-        sides = {}
-        for side, edge in self.edges.items():
-            beside = edge.nodes < self.seam.count
-            width = self.seam.width if edge.axis == 1 else 0.0
-            sides[side] = edge.only(~beside, edge.length - width)
-            if beside.any():
-                sides[f"{side}{FREE_FIELD}"] = edge.only(beside, width)
+            if self.seam is not None:  # in the ground the column's ends are not at the level of the body's
+                sides |= {side: self._tied_edge(side) for side in self.outside.sides}
+            sides |= self.outside.edges
+        if self.foot is not None:
+            sides |= {name.replace("bottom", f"bottom{FREE_FIELD}"): edge for name, edge in self.foot.edges.items()}
         return sides
+
+    def _tied_edge(self, side: str) -> Edge:
+        """The disks of a side that ties act on."""
+        nodes, length = self.tied[side], float(self.assembly.extent[1 - normal_axis(side)])
+        return Edge(side, nodes, self.assembly.positions[nodes], 2.0 * self.assembly.radii[nodes], length)
 
     @cached_property
     def tied(self) -> dict[str, np.ndarray]:  # type: ignore[override]  # computed once
-        """Particles (k,) with contacts across a free-field side, by this side."""
+        """Nodes (k,) that ties act on, by side: particles beside a free field or a continuum, nodes of continua."""
         if self.outside is not None:
-            return self.outside.tied_by_side
+            tied = dict(self.outside.tied_by_side)
+            if self.foot is not None:
+                of_foot = self.foot.tied_by_side
+                tied |= {name.replace("bottom", f"bottom{FREE_FIELD}"): nodes for name, nodes in of_foot.items()}
+            return tied
         if self.seam is None:
             return {}
         node = self.seam.node
@@ -184,8 +262,8 @@ class DiskBody(Scene):
         return self._with_nodes(self.ground.inertia[self.assembly.brick_particle] * self.cell_fraction)
 
     def _with_nodes(self, of_disks: np.ndarray) -> np.ndarray:
-        """Masses of the particles (m,), followed by those of the nodes of the continuum."""
-        return of_disks if self.outside is None else np.concatenate([of_disks, self.outside.body.mass])
+        """Masses of the particles (m,), followed by those of the nodes of continua."""
+        return np.concatenate([of_disks, *(each.body.mass for each in self.continua)])
 
     @cached_property
     def cell_fraction(self) -> np.ndarray:
@@ -195,9 +273,7 @@ class DiskBody(Scene):
     @cached_property
     def steady_load(self) -> np.ndarray:
         """(3, n) forces and moments (N, N·m) of the loads without a wave."""
-        load = np.zeros((3, self.count))
-        load[:, : self.disk_count] = steady(self.case, self.assembly, self.mass[: self.disk_count])
-        return load
+        return steady(self.case, self.assembly, self.mass, self.outside)
 
     @cached_property
     def free(self) -> np.ndarray:
@@ -210,9 +286,9 @@ class DiskBody(Scene):
     def moves(self) -> np.ndarray:
         """(3, n) bool, False for components that are held or prescribed; nodes of a continuum do not rotate."""
         moves = super().moves
-        if self.outside is not None:
-            moves[2, self.disk_count :] = False
-            moves[:2, self.disk_count :] &= ~self.outside.body.mesh.held
+        moves[2, self.disk_count :] = False
+        for each in self.continua:
+            moves[:2, each.nodes] &= ~each.body.mesh.held
         return moves
 
     @property
@@ -227,8 +303,8 @@ class DiskBody(Scene):
     def _contact_list(self, name: str, nodes: slice) -> ContactList:
         """The pairs of one part."""
         wide, high = self.assembly.size.tolist()
-        periodic = (self.case.side("left").is_periodic, self.case.side("bottom").is_periodic)
-        along_x, along_y = (length if wraps else None for length, wraps in zip((wide, high), periodic, strict=True))
+        sides = zip((wide, high), self.case.periodic, strict=True)
+        along_x, along_y = (length if wraps else None for length, wraps in sides)
         held = None
         if self.seam is not None and name == "column":
             along_x, held = self.seam.width, self.seam.pairs(self.ground.brick)
@@ -240,7 +316,7 @@ class DiskBody(Scene):
             (along_x, along_y),
             nodes.start,
             held,
-            self.layout,
+            self._disk_layout,
             self._row_plan(name, part),
         )
 

@@ -51,7 +51,8 @@ class ContactList:
     periods : length (m) of the part along x and y where it is periodic, else None.
     begin : number of its first particle in the scene.
     held : first, second (k,) particles of the part and vectors (k, 2) m of pairs that stay listed at any distance.
-    layout : the slots in which kernels hold the scene's particles; None: in their order.
+    layout : the slots in which kernels hold the scene's particles; None: in their order. Nodes of continua, which
+        follow the particles, are not among them, as there may be fewer of these in a static stage.
     plan : the rows of copies in which the part's particles are held, and their first block; None: one by one.
 
     Attributes
@@ -117,9 +118,13 @@ class ContactList:
             self._plan = PairPlan.of(first, second, pairs.contact_type, len(self.bonds), *plan)
             self._list(pairs, *(self.of(name) for name in ("state", "shear", "slip", "cracked")))
 
+    def _spread(self, displacement: np.ndarray) -> np.ndarray:
+        """Displacements (3, n) of all nodes as those (3, slots) of the particles."""
+        return self.layout.spread(displacement[:, : len(self.layout.slot)])
+
     def start_from_displacements(self, displacement: np.ndarray) -> None:
         """Set the pairs to the state of the elastic law at displacements (3, n), without any slip or with that kept."""
-        kernel.start_from_displacements(self.layout.spread(displacement), self.arrays, self.keeps_slip)
+        kernel.start_from_displacements(self._spread(displacement), self.arrays, self.keeps_slip)
 
     def settled_slip(self, displacement: np.ndarray) -> np.ndarray | str:
         """The slip, in the places of `arrays`, with which the elastic law holds again at displacements (3, n).
@@ -133,7 +138,7 @@ class ContactList:
             return "a bond broke in the static stage"
         if np.count_nonzero(own) < len(self.assembly.pairs):
             return "disks that touched at the start are far apart"
-        now, u = self.arrays, self.layout.spread(displacement)
+        now, u = self.arrays, self._spread(displacement)
         small = now._replace(shear=now.shear.copy(), slip=now.slip.copy())
         kernel.start_from_displacements(u, small, True)
         along_path = (self.limits.geometry == UPDATED) | (now.state != INTACT)
@@ -155,7 +160,7 @@ class ContactList:
         """
         elastic = self.limits._replace(geometry=REFERENCE, tension=np.inf, cohesion=np.inf)
         limits = elastic if reference else self.limits
-        u = self.layout.spread(displacement)
+        u = self._spread(displacement)
         still = np.zeros_like(u)
         if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 2))) > 0:
             kernel.note_places(u, 0, self.arrays)
@@ -168,7 +173,7 @@ class ContactList:
 
     def is_old(self, displacement: np.ndarray) -> bool:
         """Whether at displacements (3, n) a particle has moved so far that pairs may be missing."""
-        u = self.layout.spread(displacement)
+        u = self._spread(displacement)
         return self.skin - approach(u, self._slots.start, self.origin, self.cells) < 0.0
 
     def search(self, displacement: np.ndarray) -> None:

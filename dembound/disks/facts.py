@@ -4,11 +4,12 @@ from dembound.boundaries.words import side_in_words
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.casefile.messages import counted
+from dembound.disks.continuum_facts import continuum_facts
 from dembound.disks.layout import fill
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
+from dembound.disks.smallest_box import smallest_box
 from dembound.disks.summary import describe_packing, describe_side
-from dembound.disks.surroundings import Surroundings
 from dembound.disks.warnings import particles_per_wavelength, strong_waves
 
 
@@ -20,7 +21,9 @@ def disk_facts(scene: DiskScene) -> dict[str, str]:
         facts["rows of copies"] = f"{100.0 * fill(scene.layout):.0f} % of the lanes hold particles"
     facts |= _packing_facts(scene) | _law_facts(scene) | _hole_facts(case) | _static_facts(case)
     if scene.outside is not None:
-        facts["continuum"] = _continuum_fact(scene.outside)
+        facts |= continuum_facts(scene)
+    if box := smallest_box(scene):
+        facts["smaller box"] = box
     for side in scene.edges:
         facts[f"{side} side"] = _side_fact(scene, side)
     facts |= _load_facts(scene)
@@ -32,26 +35,15 @@ def disk_facts(scene: DiskScene) -> dict[str, str]:
     return facts
 
 
-def _continuum_fact(outside: Surroundings) -> str:
-    """Elements of the continuum beyond the sides, and how many of them absorb."""
-    mesh = outside.body.mesh
-    absorbing = 100.0 * float(mesh.absorbs.any(axis=1).mean())
-    width, height = mesh.element
-    return (
-        f"{outside.count:,} nodes in {len(mesh.elements):,} elements of order {mesh.order}, {width:.4g} m × "
-        f"{height:.4g} m, {absorbing:.0f} % of which absorb; {len(outside.wall.element):,} ties"
-    )
-
-
 def _monitor_facts(scene: DiskScene) -> dict[str, str]:
-    """The particle of each monitor, its place, and its twin in the free-field column."""
-    facts = {}
-    for monitor in scene.case.monitor:
-        node = scene.monitors[monitor.name]
-        x, y = scene.assembly.positions[node]
-        twin = scene.monitors.get(f"{monitor.name}{FREE_FIELD}")
+    """The particle of each monitor or that it is in the continuum, its place, and its twin in the free-field column."""
+    facts, places = {}, scene.monitored
+    for name in (monitor.name for monitor in scene.case.monitor):
+        what = "in the continuum" if name in scene.between else f"particle {scene.monitors[name]}"
+        x, y = places[name]
+        twin = scene.monitors.get(f"{name}{FREE_FIELD}")
         beside = "" if twin is None else f", in the free-field column {twin}"
-        facts[f"monitor {monitor.name}"] = f"particle {node} at ({x:.3f}, {y:.3f}) m{beside}"
+        facts[f"monitor {name}"] = f"{what} at ({x:.3f}, {y:.3f}) m{beside}"
     return facts
 
 
@@ -149,13 +141,15 @@ def _static_facts(case: DiskCase) -> dict[str, str]:
 
 
 def _load_facts(scene: DiskScene) -> dict[str, str]:
-    """Particles each load acts on, its whole force, and its time factor."""
+    """What each load acts on, its whole force, and its time factor."""
     facts = {}
     for load in scene.case.load:
-        nodes, forces = forces_of(load, scene.assembly, scene.mass)
+        nodes, forces = forces_of(load, scene.assembly, scene.mass, scene.outside)
+        what = "particle" if nodes[0] < scene.disk_count else "node"
+        on = counted(len(nodes), what) + (" of the continuum" if what == "node" else "")
         fx, fy = forces.sum(axis=0)
         factor = "steady" if load.wave is None else f"times wave {load.wave}"
-        facts[f"load {load.name}"] = f"({fx:.4g}, {fy:.4g}) N/m on {counted(len(nodes), 'particle')}, {factor}"
+        facts[f"load {load.name}"] = f"({fx:.4g}, {fy:.4g}) N/m on {on}, {factor}"
     return facts
 
 

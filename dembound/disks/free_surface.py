@@ -2,51 +2,78 @@
 
 Where a packing is cut, contacts are missing, so the disks at the surface are a soft skin, in which surface waves are
 slower than in the continuum. A continuum whose surface lies deeper by the skin's depth δ has the packing's stiffness
-along the surface; the mass ρδ of the skin then belongs on its surface.
+along the surface; the mass ρδ of the skin then belongs on its surface. Stiffness and mass of a surface act on waves
+that are long beside its thickness as those of a thin layer (Gurtin & Murdoch 1975, Arch. Rational Mech. Anal. 57,
+291–323).
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from dembound.disks.homogenise import Network
+from dembound.disks.outside_settings import Box
 from dembound.laws import Stiffness
+from dembound.outside.mesh import Mesh
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import tile
 
-BRICKS = 2
-"""Height of the strip in bricks: both its surfaces are then apart."""
+SLENDER = 2.0
+"""Least height of the strip over its width, so that its surfaces are apart: what one surface changes decays with the
+depth y at least as exp(−2πy/width)."""
+
+FAINT = 1e-9
+"""See `Network.relaxed`: in packings without bonds a disk at a surface may have one contact only."""
+
+LEAST_MASS = 0.5
+"""Part of its medium's mass that a node keeps where a skin is stiff, of negative depth."""
+
+TURNED = [1, 0, 3, 2]
+"""The gradients xx, yy, xy, yx where x and y are exchanged."""
 
 
-class Skin(NamedTuple):
-    """Depths (m) of the free surface of the equivalent continuum at the bottom and at the top of a packing."""
+def skin_depths(brick: Brick, stiffness: Stiffness, tensor: np.ndarray, axis: int = 1) -> tuple[float, float]:
+    """Depths δ (m) of a packing cut across x (axis 0), at left and right, or across y (1), at bottom and top.
 
-    bottom: float
-    top: float
-
-
-def skin_of(brick: Brick, stiffness: Stiffness, tensor: np.ndarray, bricks: int = BRICKS) -> Skin:
-    """The skin of a packing that is cut along x, from a strip one brick wide that is periodic along x.
-
-    The strip is stretched along x by a unit mean strain while all else relaxes. A layer of the continuum with the same
-    force N and the same moment M of σ_xx about the strip's middle is thinner by δ_bottom + δ_top = H − N/E′ and lies
-    higher by ½(δ_bottom − δ_top) = M/N, where E′ is the modulus along x without stress across it.
+    A strip of height H (along the axis) and one brick wide, periodic along its cut sides, is stretched along them by a
+    unit mean strain while all else relaxes. A layer of the continuum with the same force N along the sides and the same
+    moment M of this force about the strip's middle is thinner by δ_bottom + δ_top = H − N/E′ and lies higher by
+    ½(δ_bottom − δ_top) = M/N, where E′ is the modulus along the sides without stress across them.
 
     stiffness : of the brick's contacts; tensor : (4, 4) Pa, its continuum's.
+
+    Raises CaseError when the packing has no stiffness along the sides.
     """
-    strip = tile(brick, (1, bricks), (True, False))
+    if axis == 0:
+        brick, tensor = _turned(brick), tensor[np.ix_(TURNED, TURNED)]
+    width, height = brick.size.tolist()
+    strip = tile(brick, (1, int(np.ceil(SLENDER * width / height))), (True, False))
     network = Network.of_assembly(brick, stiffness, strip)
     stretched = network.gradient_matrix()[:, :1]
-    elongations = stretched + network.motion_matrix() @ network.relaxed(stretched)
+    elongations = stretched + network.motion_matrix() @ network.relaxed(stretched, faint=FAINT)
     force = network.springs * elongations[:, 0]
-    height = float(strip.extent[1])
-    middle = 0.5 * float(strip.size[1])
-    normal = float(stretched[:, 0] @ force) / brick.size[0]
-    moment = float(_curved(network, strip.positions, middle) @ force) / brick.size[0]
-    thinner, higher = height - normal / _along(tensor), moment / normal
-    return Skin(0.5 * thinner + higher, 0.5 * thinner - higher)
+    normal = float(stretched[:, 0] @ force) / width
+    moment = float(_curved(network, strip.positions, 0.5 * float(strip.size[1])) @ force) / width
+    thinner, higher = float(strip.extent[1]) - normal / _along(tensor), moment / normal
+    return 0.5 * thinner + higher, 0.5 * thinner - higher
+
+
+def inset(box: Box, skins: Mapping[str, float]) -> Box:
+    """A box without the skins at some of its sides: side -> depth, m."""
+    left, bottom, right, top = (skins.get(side, 0.0) for side in ("left", "bottom", "right", "top"))
+    return box[0] + left, box[1] + bottom, box[2] - right, box[3] - top
+
+
+def mass_of(skins: Mapping[str, float], mesh: Mesh, density: float) -> np.ndarray:
+    """Mass ρδ (n,) kg of skins on the nodes of a mesh's outer edges: side -> depth (m), of this density (kg/m³).
+
+    Where the skin is stiff, nodes keep half their mass; only elements smaller than some two diameters are that light.
+    """
+    added = sum((depth * density * mesh.edge_lengths(side) for side, depth in skins.items()), np.zeros(mesh.count))
+    return np.maximum(added, (LEAST_MASS - 1.0) * density * mesh.areas)
 
 
 def _curved(network: Network, positions: np.ndarray, middle: float) -> np.ndarray:
@@ -66,3 +93,9 @@ def _along(tensor: np.ndarray) -> float:
     across = np.ix_([1, 2], [1, 2])
     coupling = tensor[0, [1, 2]]
     return float(tensor[0, 0] - coupling @ np.linalg.solve(tensor[across], coupling))
+
+
+def _turned(brick: Brick) -> Brick:
+    """The brick's mirror image in which x and y are exchanged; the constants of its contacts are the same."""
+    columns = ("size", "positions", "images", "edge_rows")
+    return replace(brick, **{name: getattr(brick, name)[..., ::-1] for name in columns}, stress=brick.stress[[1, 0, 2]])

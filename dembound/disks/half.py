@@ -89,7 +89,7 @@ class HalfScene(SmallerScene):
 
     def observed(self, record: np.ndarray) -> np.ndarray:
         """The motion of the monitors, some of which are images."""
-        image = self.image[list(self.of.monitors.values())]
+        image = self.image[self.of.probes]
         return self.of.observed(record * np.where(image[:, None], np.tile(self.signs, 2), 1.0))
 
     def tracked_peaks(self, peaks: np.ndarray) -> np.ndarray:

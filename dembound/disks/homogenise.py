@@ -91,8 +91,11 @@ class Network(NamedTuple):
             ]
         )
 
-    def relaxed(self, elongations: np.ndarray, held: tuple[int, ...] = ()) -> np.ndarray:
+    def relaxed(self, elongations: np.ndarray, held: tuple[int, ...] = (), faint: float = 0.0) -> np.ndarray:
         """Motions (3n, k) of least energy in addition to elongations (3b, k), with some components held.
+
+        faint : springs against every single motion, over those of the contacts; with them disks that hang by one
+        contact and can roll do not make the solve singular.
 
         Raises CaseError when disks can move without resistance, as without bonds and friction.
         """
@@ -106,6 +109,7 @@ class Network(NamedTuple):
         k = diags(self.springs)
         ways = self.motion_matrix()[:, free]
         matrix: csc_matrix = (ways.T @ k @ ways).tocsc()
+        matrix += faint * diags(matrix.diagonal(), format="csc")
         try:
             solver = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         except RuntimeError:  # raised by SuperLU for a singular matrix

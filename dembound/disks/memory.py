@@ -7,14 +7,20 @@ no memory: steady forces without loads, work space for contacts that are compute
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
+from dembound.disks.outside_settings import mesh_of, settings_of, signals_of
+from dembound.disks.packed_material import nominal_moduli
 from dembound.kernels.lanes import LANES
 from dembound.motion.memory import largest, ledger_bytes, motion_bytes, must_fit, record_bytes
+from dembound.outside.medium import Medium
+from dembound.outside.memory import GridSizes, body_bytes, header_bytes, snapshot_bytes
+from dembound.packings.base import TYPED
 
 if TYPE_CHECKING:
     from dembound.disks.scene import DiskScene
@@ -30,7 +36,8 @@ NEAR = 1.08
 class Sizes:
     """Numbers of disks, of the slots that hold them, of contacts, and of lines of the support table.
 
-    in_rows : whether copies of a disk stand side by side, see layout.py.
+    in_rows : whether copies of a disk stand side by side, see layout.py. grid : those of a continuum beyond the sides,
+    None without it. ties : number of half bonds to it.
     """
 
     disks: float
@@ -38,6 +45,13 @@ class Sizes:
     contacts: float
     supported: float
     in_rows: bool
+    grid: GridSizes | None = None
+    ties: int = 0
+
+    @property
+    def moving(self) -> float:
+        """Number of slots of all that moves."""
+        return self.slots + (0 if self.grid is None else self.grid.nodes)
 
     @classmethod
     def expected(cls, case: DiskCase) -> Sizes:
@@ -50,8 +64,8 @@ class Sizes:
         disks = packing.expected_disks
         lanes = LANES * columns_of(min(across, up), max(across, up)) / (across * up)  # slots for each disk
         in_rows = across * up > 1 and lanes * LEAST_FILL <= 1.0
-        if any(table.needs_column for table in case.boundary.values()):
-            disks *= 1.0 + 1.0 / across
+        if case.column_sides:
+            disks *= 1.0 + case.column_rows[1] / (across * up)
         everywhere = any(load.wave is not None and load.position is None for load in case.load)
         width, height = packing.extent
         lengths = {"left": height, "right": height, "bottom": width, "top": width}
@@ -62,24 +76,49 @@ class Sizes:
             contacts=disks * packing.expected_contacts,
             supported=min(3.0 * disks if everywhere else sides, 3.0 * disks),
             in_rows=in_rows,
+            grid=_expected_grid(case),
         )
 
     @classmethod
     def of(cls, scene: DiskScene) -> Sizes:
         """Those of a scene."""
+        continua = scene.continua
         return cls(
             disks=scene.disk_count,
-            slots=scene.layout.count,
+            slots=scene.disk_count if scene.slots is None else scene.slots.count,
             contacts=len(scene.assembly.pairs),
             supported=len(scene.supports),
-            in_rows=not scene.layout.is_plain,
+            in_rows=not (scene.slots is None or scene.slots.is_plain),
+            grid=GridSizes.all_of([each.body.mesh for each in continua]) if continua else None,
+            ties=sum(len(each.wall.element) for each in continua),
         )
+
+
+def _expected_grid(case: DiskCase) -> GridSizes | None:
+    """Those of a continuum in a medium of the nominal speed of P waves; S waves have half of it, or more."""
+    sides = [side for side, table in case.boundary.items() if table.is_outside]
+    if not sides or (case.outside.element is None and not signals_of(case)):  # which cannot be built
+        return None
+    material = case.material
+    moduli = nominal_moduli(material)
+    speed = material.p_wave_speed or math.sqrt((moduli.emod + moduli.pb_emod) / material.density)
+    medium = Medium.isotropic(material.density, speed, 0.5 * speed)
+    box, surface = case.packing.box, None
+    if "top" in sides and box[3] < (1.0 - TYPED) * case.size[1]:
+        surface = case.size[1]
+    settings = settings_of(case, medium, 2.0 * case.packing.radius, box, sides)
+    return GridSizes.of(mesh_of(settings, box, sides, surface=surface, periodic=case.periodic))
 
 
 def must_fit_here(case: DiskCase) -> None:
     """Raise CaseError if a run of a case needs more memory than is free here; nothing is built for this."""
     key = "packing.size" if case.packing.size is not None else "packing.bricks"
-    must_fit(expected_bytes(case), key, f"{Sizes.expected(case).disks:.3g} disks")
+    expected = Sizes.expected(case)
+    things = f"{expected.disks:.3g} disks"
+    if expected.grid is not None:
+        things += f" and {expected.grid.nodes:.3g} nodes of the continuum beyond them"
+        key = "outside" if expected.grid.nodes > expected.disks else key
+    must_fit(expected_bytes(case), key, things)
 
 
 def expected_bytes(case: DiskCase) -> float:
@@ -114,6 +153,8 @@ def scene_bytes(case: DiskCase, z: Sizes) -> float:
     Pairs and types (12 b), for the kernels one by one 4 n + 16 b; in rows the node of each slot. Steady loads (3, n).
     """
     rows = 8 * z.slots if z.in_rows else 4 * z.disks + 16 * z.contacts
+    if z.grid is not None:
+        rows += body_bytes(z.grid) + (354 + 32 * (z.grid.order + 1)) * z.ties  # half bonds, and these for the kernels
     return (36 + 8 + 24 + 24 * bool(case.load)) * z.disks + 12 * z.contacts + rows
 
 
@@ -164,17 +205,17 @@ def stress_bytes(z: Sizes) -> float:
 
 
 def checkpoint_bytes(z: Sizes, *, history: bool) -> float:
-    """Of a checkpoint: displacements and velocities by disk (48 n), and the columns of the pairs with their forces.
+    """Of a checkpoint: displacements and velocities of disks and nodes (48 n), columns of pairs with their forces.
 
     The columns are numbers, types, images and states (12 p), shear, slip and step (24 p), and forces (32 p).
     """
-    return 48 * z.disks + (68 * _pairs(z)[0] if history else 0.0)
+    return 48 * (z.disks + z.moving - z.slots) + (68 * _pairs(z)[0] if history else 0.0)
 
 
 def _run_bytes(case: DiskCase, whole: Sizes, z: Sizes) -> float:
     """Motion, ledger and record of the stepped scene, its pairs, and the fields of a snapshot of the whole one."""
-    moving = motion_bytes(z.slots) + ledger_bytes(z.slots) + record_bytes(len(case.monitor), 256, 6, z.supported)
-    moving += 8 * z.slots * case.output.peaks
+    moving = motion_bytes(z.moving) + ledger_bytes(z.moving) + record_bytes(len(case.monitor), 256, 6, z.supported)
+    moving += 8 * z.moving * case.output.peaks
     snapshot = 48.0 * whole.disks
     if not _has_history(case):
         pairs = 13 * z.contacts  # for the strain energy
@@ -186,8 +227,12 @@ def _run_bytes(case: DiskCase, whole: Sizes, z: Sizes) -> float:
     settled = 2 * 24 * z.disks * (case.static is not None)  # datum and balancing forces
     if case.output.stress:
         snapshot = max(snapshot, 24 * z.disks + stress_bytes(z))
+    header = 0.0
+    if whole.grid is not None:
+        snapshot += snapshot_bytes(whole.grid)
+        header = header_bytes(whole.grid)
     checkpoint = checkpoint_bytes(z, history=_has_history(case)) if case.run.checkpoint > 0.0 else 0.0
-    kept = max(snapshot * bool(case.output.snapshots), checkpoint)
+    kept = max(snapshot * bool(case.output.snapshots), checkpoint, header)
     return moving + kept + pairs + steady + settled
 
 

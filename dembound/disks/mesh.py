@@ -24,7 +24,8 @@ To see disks in ParaView, run ``paraview --script=view.py`` in the folder, or op
 Apply and run ``view.py`` from the Python shell (Run Script). By hand: representation *Point Gaussian*, shader
 preset *Plain circle*, scale by array ``radii``, no scale function, Gaussian radius 1. As solid geometry: filter
 *Glyph*, type *2D Glyph* (circle, filled), no orientation, scale array ``radii``, scale factor 2, all points.
-*Warp By Vector* with ``displacement`` and factor k − 1 shows displacements k times as large.
+*Warp By Vector* with ``displacement`` and factor k − 1 shows displacements k times as large. The script also shows the
+continuum of ``continuum.pvd``, see `disks.continuum_mesh`.
 """
 
 from __future__ import annotations
@@ -40,7 +41,10 @@ if TYPE_CHECKING:
     import meshio
 
 VIEW_SCRIPT = '''\
-"""Shows the disks of particles.pvd in ParaView: paraview --script=view.py, or Run Script once it is open."""
+"""Shows the disks of particles.pvd in ParaView, and in the same colours the continuum of continuum.pvd if there is one.
+
+paraview --script=view.py, or Run Script once it is open.
+"""
 
 from pathlib import Path
 
@@ -59,9 +63,19 @@ shown.SetScaleArray = ["POINTS", "radii"]
 shown.ScaleByArray = 1
 shown.UseScaleFunction = 0
 shown.GaussianRadius = 1.0
+all_shown = [shown]
 
-ColorBy(shown, ("POINTS", "linVelVec", "Magnitude"))
-shown.RescaleTransferFunctionToDataRangeOverTime()
+if (folder / "continuum.pvd").exists():
+    cells = Show(PVDReader(FileName=str(folder / "continuum.pvd")), view)
+    cells.SetRepresentationType("Surface")
+    all_shown.append(cells)
+
+largest = []
+for each in all_shown:
+    ColorBy(each, ("POINTS", "linVelVec", "Magnitude"))
+    each.RescaleTransferFunctionToDataRangeOverTime()
+    largest.append(GetColorTransferFunction("linVelVec").RGBPoints[-4])
+GetColorTransferFunction("linVelVec").RescaleTransferFunction(0.0, max(largest))
 shown.SetScalarBarVisibility(view, True)
 view.ResetCamera()
 Render()
@@ -91,7 +105,7 @@ def disk_mesh(particles: Arrays, snapshot: Arrays, cracks: Arrays) -> meshio.Mes
     if "coordination" in snapshot:
         data["coordNumber"] = snapshot["coordination"]
     if "stress" in snapshot:
-        data["stress"] = _tensors(snapshot["stress"])
+        data["stress"] = tensors(snapshot["stress"])
     if "peak_velocity" in particles:
         data["peakVelocity"] = particles["peak_velocity"]
     return vertices(places_of(particles, snapshot), shown(data))
@@ -102,7 +116,7 @@ def places_of(particles: Arrays, snapshot: Arrays) -> np.ndarray:
     return in_space(particles["position"] + snapshot["displacement"][:, :2])
 
 
-def _tensors(stress: np.ndarray) -> np.ndarray:
+def tensors(stress: np.ndarray) -> np.ndarray:
     """Stresses (n, 3) xx, yy, xy as (n, 6), in VTK's order of symmetric tensors: xx, yy, zz, xy, yz, xz."""
     tensors = np.zeros((len(stress), 6))
     tensors[:, [0, 1, 3]] = stress

@@ -12,9 +12,10 @@ from functools import cached_property
 
 import numpy as np
 
+from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
-from dembound.disks.free_surface import Skin, skin_of
+from dembound.disks.free_surface import skin_depths
 from dembound.disks.homogenise import Continuum, homogenise
 from dembound.errors import CaseError
 from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
@@ -44,6 +45,7 @@ class PackedMaterial:
     moduli: Moduli
     law: Law
     held: tuple[int, ...] = ()
+    _skins: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _continua: dict[tuple[int, ...], Continuum] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
@@ -93,10 +95,12 @@ class PackedMaterial:
         """The continuum that the brick is equivalent to, with both translations free."""
         return self._continuum(tuple(component for component in self.held if component == 2))
 
-    @cached_property
-    def skin(self) -> Skin:
-        """Depths of the continuum's free surfaces at bottom and top, see `skin_of`."""
-        return skin_of(self.brick, self.stiffness, self.material_tensor)
+    def skin(self, side: str) -> float:
+        """Depth (m) of the continuum's free surface at a side that cuts no brick, see `skin_depths`."""
+        axis, last = divmod(SIDES.index(side), 2)
+        if axis not in self._skins:
+            self._skins[axis] = skin_depths(self.brick, self.stiffness, self.material_tensor, axis)
+        return self._skins[axis][last]
 
     def _continuum(self, held: tuple[int, ...]) -> Continuum:
         """The continuum with some components held, computed once."""

@@ -167,7 +167,8 @@ class FreeFieldSeam(Tie):
         start = np.zeros(len(supported) + 1, dtype=np.uint32)
         np.cumsum(counts, out=start[1:])
         if not self.column.uses_history:
-            twin = self.column.layout.slot[seam.twin[supported]]
+            twin = np.zeros(len(supported), dtype=np.int64)  # of no use where there are no contacts
+            twin[counts > 0] = self.column.layout.slot[seam.twin[supported[counts > 0]]]
             return Seam(twin, start, self._neighbour, self._row, self._constants)
         assert self.column.contacts is not None
         ends = self.ends(self.column.contacts).astype(np.uint32)

@@ -16,6 +16,8 @@ from dembound.disks.edges import edge_without, edges_beside_column, find_edges
 from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive
 from dembound.disks.memory import Sizes, must_fit_here, run_bytes
+from dembound.disks.monitors import monitors_of
+from dembound.disks.outside_mesh import mesh_beyond
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.stress import particle_stress
 from dembound.disks.surroundings import Surroundings, surroundings_of
@@ -23,10 +25,14 @@ from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.holes import Hole
 from dembound.kernels.contacts import REFERENCE
+from dembound.motion.layout import Layout
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly, tile
+
+UPRIGHT = (True, False)
+"""Along which axes a free-field column is periodic."""
 
 
 @dataclass(frozen=True)
@@ -76,9 +82,8 @@ def build(case: DiskCase) -> DiskScene:
     """
     must_fit_here(case)
     ground = ground_of(case)
-    periodic = (case.side("left").is_periodic, case.side("bottom").is_periodic)
-    body = tile(ground.brick, case.packing.copies, periodic)
-    edges = find_edges(body, periodic, case.packing.regular_sides)
+    body = tile(ground.brick, case.packing.copies, case.periodic, case.packing.origin)
+    edges = find_edges(body, case.periodic, case.packing.regular_sides)
     first, later = (tuple(hole for hole in case.hole if hole.stage == stage) for stage in ("before", "after"))
     if first:
         body, edges, _ = _hollowed(case, ground.brick, body, edges, first)
@@ -92,61 +97,72 @@ def build(case: DiskCase) -> DiskScene:
 
 
 def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Mapping[str, Edge]) -> DiskScene:
-    """The scene of a body and its sides, with a free-field column if the case has such sides."""
-    seam = None
-    if sides := _free_field_sides(case):
-        assembly, seam = with_column(ground.brick, assembly, sides)
+    """The scene of a body and its sides, with a free-field column and a continuum if the case has such sides."""
+    body, seam, beyond = assembly, None, case.outside_sides
+    mesh = mesh_beyond(case, ground, body, beyond, case.periodic) if beyond else None
+    if sides := case.column_sides:
+        left = 0.0 if mesh is None else mesh.origin[0]
+        assembly, seam = with_column(ground.brick, body, sides, case.column_rows, left)
         edges = edges_beside_column(assembly, seam, edges)
     assembly, seam = with_half_contacts(case, ground.brick, assembly, seam, edges)
     count = len(assembly.radii)
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(assembly, ground, parts_of(count, seam), mass_factor(count, edges, case.boundary))
-    beyond = _outside_sides(case)
-    outside = surroundings_of(case, ground, assembly, slots, beyond) if beyond else None
-    return DiskScene(
+    outside = None
+    if mesh is not None:
+        first, twin = (0, None) if seam is None else (seam.count, seam.twin)
+        outside = surroundings_of(case, ground, body, mesh, slots, beyond, first, twin)
+    foot = None
+    if seam is not None and "bottom" in beyond:
+        foot = _foot(case, ground, assembly, seam, slots if outside is None else outside.laid_out(slots))
+    monitors, between = monitors_of(case, ground, assembly, seam, outside)
+    scene = DiskScene(
         case=case,
         ground=ground,
         assembly=assembly,
         rows=rows,
         edges=edges,
-        supports=_supports(case, ground, assembly, edges, outside),
-        monitors=_monitors(case, assembly, seam),
+        supports=SupportBuilder().table(),
+        monitors=monitors,
         seam=seam,
         slots=slots,
         outside=outside,
+        foot=foot,
+        between=between,
     )
+    return replace(scene, supports=_supports(scene))
+
+
+def _foot(case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam, layout: Layout) -> Surroundings:
+    """The continuum below the free-field column, which is as wide; layout : of all nodes before its own."""
+    column, sides = assembly.part(slice(0, seam.count)), ("bottom",)
+    mesh = mesh_beyond(case, ground, column, sides, UPRIGHT)
+    return surroundings_of(case, ground, column, mesh, layout, sides)
 
 
 def column_alone(scene: DiskScene) -> DiskScene:
     """The free-field column of a body as a separate scene, with boundaries only at its bottom and top.
 
-    Its particles are numbered as in the body's scene; only loads that act on all particles act on it.
+    Its particles are numbered as in the body's scene; only loads that act on all particles act on it. It has no
+    continuum at its ends and no column of its own: a side of type "outside" is free.
     """
     case, brick = scene.case, scene.ground.brick
     sides = {"left": Periodic(type="periodic"), "right": Periodic(type="periodic")}
-    upright = {side: table for side, table in case.boundary.items() if side not in sides}
+    upright = {side: table for side, table in case.boundary.items() if side not in sides and not table.is_outside}
     static = case.static
     if static is not None:
         ends = {side: table for side, table in static.boundary.items() if side not in sides}
         static = static.model_copy(update={"boundary": ends})
     everywhere = tuple(load for load in case.load if load.position is None and load.region is None)
     alone = replace(case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=())
-    column = tile(brick, (1, scene.assembly.copies[1]), (True, False))
-    return _scene(alone, scene.ground, column, find_edges(column, (True, False), case.packing.regular_sides))
+    column = tile(brick, (1, case.column_rows[1]), UPRIGHT)
+    return _scene(alone, scene.ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))
 
 
 def ground_of(case: DiskCase) -> PackedMaterial:
     """The case's brick, packed or from the cache, with its material."""
     brick = case.packing.pack(nominal_moduli(case.material).emod)
     return make_packed_material(brick, case.material, case.motion.held)
-
-
-def _free_field_sides(case: DiskCase) -> tuple[str, ...]:
-    return tuple(side for side, table in case.boundary.items() if table.needs_column)
-
-
-def _outside_sides(case: DiskCase) -> tuple[str, ...]:
-    return tuple(side for side, table in case.boundary.items() if table.is_outside)
 
 
 def _hollowed(
@@ -158,12 +174,12 @@ def _hollowed(
     """
     removed = np.logical_or.reduce([hole.contains(body.positions) for hole in holes])
     left, kept = body.without(removed)
-    if sides := _free_field_sides(case):
-        seam = with_column(brick, body, sides)[1]
+    if sides := case.free_field_sides:
+        seam = with_column(brick, body, sides, case.column_rows)[1]
         if not np.isin(seam.node - seam.count, kept).all():
             raise CaseError([f"hole: reaches the free field of {' or '.join(sides)}, which has no hole"])
-    if sides := _outside_sides(case):
-        before, after = (len(cut_contacts(brick, each, sides).node) for each in (body, left))
+    if sides := case.outside_sides:
+        before, after = (len(cut_contacts(brick, each, sides, case.periodic).node) for each in (body, left))
         if after < before:
             raise CaseError([f"hole: reaches the continuum of {' or '.join(sides)}, which has no hole"])
     return left, {side: edge_without(edge, kept) for side, edge in edges.items()}, kept
@@ -172,12 +188,13 @@ def _hollowed(
 def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:
     """The same body under the boundaries of another case; only [boundary.*] and [wave.*] of that case are used."""
     built_in = [
-        ([edge.side for edge in half_edges(scene.edges, each.boundary)], _free_field_sides(each), _outside_sides(each))
+        ([edge.side for edge in half_edges(scene.edges, each.boundary)], each.free_field_sides, each.outside_sides)
         for each in (scene.case, case)
     ]
     if built_in[0] != built_in[1]:
         return build(case)  # masses, contacts and the column change with them
-    return replace(scene, case=case, supports=_supports(case, scene.ground, scene.assembly, scene.edges, scene.outside))
+    other = replace(scene, case=case)
+    return replace(other, supports=_supports(other))
 
 
 def with_half_contacts(
@@ -217,36 +234,40 @@ def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> Bounda
     return BoundaryMedium(ground.density, p_speed, s_speed, mirror_stiffness)
 
 
-def _supports(
-    case: DiskCase,
-    ground: PackedMaterial,
-    assembly: Assembly,
-    edges: Mapping[str, Edge],
-    outside: Surroundings | None,
-) -> Supports:
-    """The support table: rows of all sides and of all loads that follow a wave."""
-    builder = SupportBuilder(held=ground.held)
+def _supports(scene: DiskScene) -> Supports:
+    """The support table: rows of all sides, of all loads that follow a wave, and of continua."""
+    case, ground, builder = scene.case, scene.ground, SupportBuilder(held=scene.ground.held)
     for side, table in case.boundary.items():
-        if side in edges:
-            edge, builder.side = edges[side], side
+        if side in scene.edges:
+            edge, builder.side = scene.edges[side], side
             table.support(edge, boundary_medium(case, ground, edge.axis), case.wave, builder)
-    factor = mass_factor(len(assembly.radii), edges, case.boundary)
     builder.side = ""
-    drive(case, assembly, ground.mass[assembly.brick_particle] * factor, builder)
-    if outside is not None:  # nodes do not rotate
-        builder.add(outside.disks + outside.wall.nodes, 2, prescribed=True)
+    drive(case, scene.assembly, scene.mass, scene.outside, builder)
+    for each in scene.continua:
+        each.support(builder)
+    bottom = case.side("bottom")
+    if bottom.is_outside and bottom.waves:
+        _let_in(scene, bottom.waves_by_axis(1), builder)
     return builder.table()
 
 
-def _monitors(case: DiskCase, assembly: Assembly, seam: Seam | None) -> dict[str, int]:
-    """The particle of the body nearest to each monitor's position, and its twin in the free-field column."""
-    if not case.monitor:
-        return {}
-    from scipy.spatial import cKDTree
+def _let_in(scene: DiskScene, names: tuple[str | None, str | None], builder: SupportBuilder) -> None:
+    """Add the waves along x and y, by their names, that enter through the continuum below to the support table.
 
-    first = 0 if seam is None else seam.count
-    _, nodes = cKDTree(assembly.positions[first:]).query([m.position for m in case.monitor])
-    monitors = {m.name: first + int(node) for m, node in zip(case.monitor, nodes, strict=True)}
-    if seam is not None:
-        monitors |= {f"{name}{FREE_FIELD}": int(seam.twin[node]) for name, node in monitors.items()}
-    return monitors
+    Beside a free-field column they enter through its foot, and the body's disks that stand on the ground below have the
+    forces of their twins.
+    """
+    beneath = scene.outside if scene.foot is None else scene.foot
+    assert beneath is not None
+    x, y = (None if name is None else scene.case.wave[name] for name in names)
+    incident = beneath.incident((x, y))
+    builder.side = "bottom"
+    incident.add_to_disks(builder, incident.disk)
+    incident.add_to_nodes(builder, beneath.first + incident.node)
+    if len(scene.on_foot) and scene.twin is not None:
+        place = np.searchsorted(incident.disk, scene.twin[scene.on_foot])
+        incident.at(place).add_to_disks(builder, scene.on_foot)
+    left, right, *_ = beneath.body.mesh.sides
+    width = beneath.body.thickness * (right - left)
+    side = "bottom" if scene.foot is None else f"bottom{FREE_FIELD}"
+    builder.add_power(side, lambda times: width * incident.waves.power(times))

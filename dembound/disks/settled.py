@@ -63,7 +63,7 @@ class Settled:
             pairs.recall(within(memory, f"contacts/{part}"))
         cracks = within(memory, "cracks")
         return cls(
-            start=Start(memory["displacement"].copy(), contacts, bool(memory["has_history"])),
+            start=Start(among(memory["displacement"], scene), contacts, bool(memory["has_history"])),
             steps=int(memory["steps"]),
             ratio=float(memory["ratio"]),
             mean_reaction=float(memory["mean_reaction"]),
@@ -74,11 +74,22 @@ class Settled:
         )
 
 
+def among(displacement: np.ndarray, scene: DiskScene) -> np.ndarray:
+    """Displacements (3, …) of a scene's disks as those of all its nodes, zero for those of continua.
+
+    The displacement of a continuum is counted from rest: what its ties carry then is a part of what is balanced.
+    """
+    of_all = np.zeros((3, scene.count))
+    of_all[:, : scene.disk_count] = displacement[:, : scene.disk_count]
+    return of_all
+
+
 def settling_keys(scene: DiskScene) -> dict[str, Any]:
     """What the result of a scene's static stage depends on, as plain JSON values by key.
 
-    Of the boundaries these are free fields, which settle too, half cells, whose mass is halved, and sides that belong
-    to the packing; of the loads the steady ones.
+    Of the boundaries these are free fields, which settle too, half cells, whose mass is halved, sides that belong to
+    the packing, and continua that settle beside a free-field column, with all settings, also chosen ones; of the loads
+    the steady ones.
     """
     case = scene.case
     if case.static is None:
@@ -89,6 +100,9 @@ def settling_keys(scene: DiskScene) -> dict[str, Any]:
     joined = {side: {"type": t.type} for side, t in case.boundary.items() if t.is_periodic or t.is_mirror}
     halved = {side: True for side, table in case.boundary.items() if table.half_cells}
     keys = {**tables, "load": loads, "boundary": sides | joined, "half_mass": halved}
-    settling = every_key(keys) | {"particles": scene.count, "reduced": list(scene.reduced)}
+    if scene.outside is not None and scene.outside.twin is not None:
+        keys["outside"] = case.outside.model_copy(update=scene.outside.settings.given)
+        keys["outside_sides"] = scene.outside.sides
+    settling = every_key(keys) | {"particles": scene.disk_count, "reduced": list(scene.reduced)}
     del settling["static"]["from"]
     return settling

@@ -38,6 +38,15 @@ class SmallerScene(DiskScene):
         """Values (m, …) of its disks as those of the disks (n, …) of the larger scene; name : of the quantity."""
         return values[self.like]
 
+    @property
+    def probes(self) -> np.ndarray:
+        """(p,) disks whose motion is recorded, in place of those of the larger scene."""
+        return self.like[self.of.probes]
+
+    def observed(self, record: np.ndarray) -> np.ndarray:
+        """The motion of the monitors."""
+        return self.of.observed(record)
+
     def tracked_peaks(self, peaks: np.ndarray) -> np.ndarray:
         """Smallest and largest velocities (p, 3, 2) of its `tracked` disks as those of the larger scene's."""
         return peaks[np.searchsorted(self.tracked, self.like[self.of.tracked])]
@@ -132,4 +141,5 @@ def supports_at(place: np.ndarray, table: Supports, share: np.ndarray) -> Suppor
         drive=np.where(prescribed, 1.0, share[node])[drive_row] * table.drive[drives],
         drive_signal=table.drive_signal[drives],
         signals=table.signals,
+        behind=table.behind,
     )

@@ -14,7 +14,7 @@ from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.casefile.disks.static import Static
 from dembound.disks.contacts import ContactList
 from dembound.disks.scene import DiskScene, boundary_medium, column_alone
-from dembound.disks.settled import Settled
+from dembound.disks.settled import Settled, among
 from dembound.disks.stability import step_limit
 from dembound.disks.system import DiskSystem, Start
 from dembound.disks.tractions import Tractions, mean_stress
@@ -106,7 +106,7 @@ def _excavate(scene: DiskScene, before: Start) -> Start:
 def _beside(scene: DiskScene, column: Start) -> Start:
     """The state in which a body with a settled column begins to settle: every particle and pair as its twin."""
     assert scene.seam is not None
-    displacement = column.displacement[:, scene.seam.twin]
+    displacement = column.displacement[:, scene.seam.twin]  # of the disks
     contacts = scene.contact_lists() if column.contacts else {}
     if column.has_history:
         for pairs in contacts.values():
@@ -127,7 +127,10 @@ def _settle(
     assert static is not None
     body = _StaticScene(scene, static, tractions)
     step = SAFETY * step_limit(body.scene, damp=static.damp)
-    datum = np.zeros((3, scene.count)) if start is None else start.displacement
+    datum = np.zeros((3, body.scene.count))
+    if start is not None:
+        start = replace(start, displacement=among(start.displacement, body.scene))
+        datum = start.displacement
     system = DiskSystem(body.scene, step, start, settling=True, load=body.load(datum))
     simulation = Simulation(body.scene, step, system=system, datum=datum, damp=static.damp)
     rest = _UntilAtRest(body, system, stage.on_look, stage.name)
@@ -135,10 +138,10 @@ def _settle(
     stage.stages.begin(stage.key, simulation)
     simulation.run(static.max_steps)
     displacement, forces = simulation.state.displacement, rest.forces
-    unbalanced = np.hypot(*(forces + scene.steady_load)[:2])
+    unbalanced = np.hypot(*(forces + body.scene.steady_load)[:2, : scene.disk_count])
     held = body.held
     settled = Settled(
-        start=Start(displacement, system.contacts, system.uses_history),
+        start=Start(among(displacement, scene), system.contacts, system.uses_history),
         steps=simulation.state.step,
         ratio=rest.ratio,
         mean_reaction=float(unbalanced[held].mean()) if held.any() else 0.0,
@@ -220,11 +223,11 @@ class _UntilAtRest(Tracker):
         return joined([pairs.take_cracks() for pairs in self._contacts.values()])
 
     def _contact_forces(self, displacement: np.ndarray) -> np.ndarray:
-        """Contact forces and moments (3, n) now, under the elastic law with the locked-in forces."""
+        """Forces and moments (3, n) of contacts and ties now, under the elastic law with the locked-in forces."""
         if not self._system.uses_history:
             for pairs in self._contacts.values():
                 pairs.push(displacement, reference=True)
-        return self._system.last_forces(self._contacts)
+        return self._system.last_forces(self._contacts) + self._system.tie_forces(displacement)
 
 
 def _where_it_ended(static: Static, run: Run, ratio: float, unbalanced: np.ndarray, cracks: Cracks) -> str:
@@ -261,6 +264,21 @@ def _lacking(run: Run, unbalanced: np.ndarray) -> str:
     return "\n".join([*worst, share])
 
 
+def _without_own_continua(scene: DiskScene) -> DiskScene:
+    """A scene without continua that are tied by the motion of its disks itself, in place of which supports hold it.
+
+    Those tied by the motion relative to the free-field column stay, as a hole moves the ground round it.
+    """
+    beyond = scene.outside if scene.outside is not None and scene.outside.twin is not None else None
+    return replace(scene, outside=beyond, foot=None)
+
+
+def _of_disks(supports: Supports, disks: int) -> np.ndarray:
+    """The disks (k,) with prescribed components."""
+    node = supports.node[supports.prescribed]
+    return node[node < disks]
+
+
 class _StaticScene:
     """A scene under its static supports and tractions."""
 
@@ -273,24 +291,26 @@ class _StaticScene:
                 edge = scene.edges[side]
                 table.support(edge, boundary_medium(case, scene.ground, edge.axis), case.wave, builder)
         self.static = static
-        self._steady = scene.steady_load
         self._tractions = None if static.stress is None else Tractions(scene, static.stress, tractions)
-        self.scene = replace(scene, supports=builder.table())
-        self.held = np.zeros(scene.count, dtype=bool)
+        self.scene = _without_own_continua(scene)
+        for each in self.scene.continua:
+            each.support(builder)
+        self.scene = replace(self.scene, supports=builder.table())
+        self.held = np.zeros(scene.disk_count, dtype=bool)
         for edge in scene.edges.values():
             self.held[edge.nodes] = static.stress is not None
         supports: Supports = self.scene.supports
-        self.held[supports.node[supports.prescribed]] = True  # dashpots have no force at rest
+        self.held[_of_disks(supports, scene.disk_count)] = True  # dashpots have no force at rest
         self._floats = len(supports) == 0
         held = bool((scene.free[:2] == 0.0).any())
         self._by_tractions_alone = self._floats and not held and not scene.steady_load.any()
-        self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.count, axis=1)
+        self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.disk_count, axis=1)
         across = (supports.component < 2) & supports.prescribed
         self._moves[supports.component[across], supports.node[across]] = False
 
     def load(self, displacement: np.ndarray) -> np.ndarray:
         """All steady forces (3, n) N and N·m at displacements (3, n)."""
-        return self._steady + (0.0 if self._tractions is None else self._tractions.forces(displacement))
+        return self.scene.steady_load + (0.0 if self._tractions is None else self._tractions.forces(displacement))
 
     @property
     def applied(self) -> np.ndarray | None:
@@ -338,8 +358,8 @@ class _StaticScene:
         state.velocity = velocity - rate * np.stack([-arm[1], arm[0], np.ones(self.scene.count)])
 
     def unbalanced(self, system: DiskSystem, forces: np.ndarray) -> np.ndarray:
-        """Unbalanced forces (2, n) N along the directions in which particles can move, for contact forces (3, n)."""
-        return np.where(self._moves, (forces + system.load)[:2], 0.0)
+        """Unbalanced forces (2, m) N on disks along the directions in which they can move, for forces (3, n)."""
+        return np.where(self._moves, (forces + system.load)[:2, : self._moves.shape[1]], 0.0)
 
     def force_ratio(self, system: DiskSystem, forces: np.ndarray, contacts: Mapping[str, ContactList]) -> float:
         """Mean unbalanced force over the mean contact force, for contact forces (3, n) and the pairs of each part."""

@@ -4,8 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from dembound.disks.near_ties import OPENED
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.disks.settled import Settled
+from dembound.disks.system import DiskSystem
 from dembound.motion.trackers import Run
 
 
@@ -70,8 +72,9 @@ def describe_packing(scene: DiskScene) -> dict[str, Any]:
 
 def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
     """One side in numbers: type, particles, diameters (m), ΣD/H, and the numbers of its table."""
-    edge = scene.edges[side]
-    table, medium = scene.case.side(side), boundary_medium(scene.case, scene.ground, edge.axis)
+    table = scene.case.side(side)
+    edge = (scene.sides if table.is_outside else scene.edges)[side]
+    medium = boundary_medium(scene.case, scene.ground, edge.axis)
     described: dict[str, Any] = {
         "type": table.type,
         "particles": len(edge.nodes),
@@ -85,9 +88,15 @@ def describe_side(scene: DiskScene, side: str) -> dict[str, Any]:
 
 
 def _describe_edge(scene: DiskScene, run: Run, side: str) -> dict[str, Any]:
-    """A side in numbers, with mean and standard deviation of its particles' largest |velocity| in x and y."""
+    """A side in numbers, with mean and standard deviation of its particles' largest |velocity| in x and y.
+
+    With a continuum also when and where the first contacts near its ties opened or slid.
+    """
     described = describe_side(scene, side)
     largest = np.abs(run.edge_peaks(side)[:, :2]).max(axis=2)
+    watch = run.system.near_ties if isinstance(run.system, DiskSystem) else None
+    if watch is not None and scene.case.side(side).is_outside:
+        described[OPENED] = watch.describe(side, run.time_step)
     described["peak_velocity"] = largest.mean(axis=0).tolist()
     described["peak_velocity_deviation"] = largest.std(axis=0).tolist()
     return described

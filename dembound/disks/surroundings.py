@@ -2,34 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
-from dembound.boundaries.support import Edge
+from dembound.boundaries.support import Edge, Incident, SupportBuilder
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.outside import CONTINUUM
+from dembound.disks.free_surface import mass_of
+from dembound.disks.incident import IncidentForces
+from dembound.disks.outside_mesh import Rim, Sizes, box_of, mass_extent, medium_of
+from dembound.disks.outside_settings import Settings
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.wall import CutBonds, Wall, lag_of
 from dembound.errors import CaseError
 from dembound.kernels.lanes import LANES
-from dembound.kernels.tables import WallTies
+from dembound.kernels.tables import Repeats, WallTies
 from dembound.kernels.wall import tie_forces
 from dembound.motion.layout import Layout
 from dembound.motion.part import Tie
 from dembound.outside.body import GridBody
-from dembound.outside.choice import element_size
-from dembound.outside.layer import Absorption
-from dembound.outside.medium import Medium
-from dembound.outside.mesh import Around, Mesh
+from dembound.outside.mesh import Mesh
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly
 
-CONTINUUM = ".continuum"
-"""Ending of the names of sides of the continuum."""
+ROUNDING = 1e-9
+"""Distance over the size of the mesh up to which places are the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,35 +40,67 @@ class Surroundings:
 
     Attributes
     ----------
-    sides : on which it is. element : largest side of an element, as given or chosen, m. body : elements, medium and
-    layers. wall : the ties of cut bonds to it. disks : number of disks; the continuum's nodes follow in the scene.
+    sides : on which it is. settings : as given or chosen. body : elements, medium and layers. wall : the ties of cut
+    bonds to it, by the numbers of disks in the scene. first : number of its first node in the scene. box : left,
+    bottom, right and top of the body, m; waves from below pass its lower side at their own time. skins : how deep free
+    edges lie below those of the packing, m, by side. twin : (m,) of each disk the twin in the free-field column,
+    relative to which it is tied; None: tied by its own motion.
     """
 
     sides: tuple[str, ...]
-    element: float
+    settings: Settings
     body: GridBody
     wall: Wall
-    disks: int
+    first: int
+    box: tuple[float, float, float, float]
+    skins: Mapping[str, float]
+    twin: np.ndarray | None = None
 
     @property
     def count(self) -> int:
         """Number of nodes."""
         return self.body.count
 
+    def is_beyond(self, places: np.ndarray) -> np.ndarray:
+        """Whether places (k, 2) m are outside the body's box, (k,)."""
+        low, high = np.array(self.box[:2]), np.array(self.box[2:])
+        return np.any((places < low - self._near) | (places > high + self._near), axis=1)
+
+    def allowed(self, places: np.ndarray) -> np.ndarray:
+        """The places (k, 2) m, those in layers or beyond moved to the nearest ones outside all layers."""
+        mesh = self.body.mesh
+        (low, high), thickness = mesh.between_layers, np.array([axis.thickness for axis in mesh.axes])
+        too_low = (thickness[:, 0] > 0.0) & (places < low - self._near)
+        too_high = (thickness[:, 1] > 0.0) & (places > high + self._near)
+        return np.where(too_low, low, np.where(too_high, high, places))
+
+    @property
+    def _near(self) -> float:
+        """Distance (m) up to which places are the same."""
+        return ROUNDING * float(self.body.mesh.size.max())
+
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
-        """Data for the record: positions (m, 2), whether nodes absorb (m,), and corners of the cells between them."""
+        """Data for the record: of nodes (m, …), of cells and elements, of its free surface, and of ties.
+
+        Positions (m, 2) and whether nodes absorb (m,); corners (c, 4) of the cells between them; rectangles (e, 4) and
+        nodes (e, N, N) of elements, by row and column; ends (k, 4) of free sides; points (t, 2) at which ties act.
+        """
         mesh = self.body.mesh
         return {
             "position": (mesh.positions, "m"),
             "absorbs": (np.any(mesh.depth > 0.0, axis=1), "1"),
             "cell": (mesh.node_cells, "1"),
+            "element": (mesh.rectangles, "m"),
+            "node": (mesh.nodes, "1"),
+            "surface": (mesh.free_sides, "m"),
+            "tie": (self.wall.bonds.point, "m"),
         }
 
     @cached_property
     def tied(self) -> np.ndarray:
         """Disks and nodes (k,) that ties act on, by their numbers in the scene, ascending."""
-        return np.union1d(self.wall.bonds.particle, self.disks + self.wall.nodes)
+        return np.union1d(self.wall.bonds.particle, self.first + self.wall.nodes)
 
     @cached_property
     def tied_by_side(self) -> dict[str, np.ndarray]:
@@ -84,7 +118,7 @@ class Surroundings:
             if name in self.sides:
                 tied[name] = disk[wall.bonds.side[first] == number]
                 tied[f"{name}{CONTINUUM}"] = (
-                    self.disks + node[wall.bonds.side[begin[entry // nodes.shape[1]]] == number]
+                    self.first + node[wall.bonds.side[begin[entry // nodes.shape[1]]] == number]
                 )
         return tied
 
@@ -94,21 +128,50 @@ class Surroundings:
         edges = {}
         for name, tied in self.tied_by_side.items():
             if name.endswith(CONTINUUM):
-                side, nodes = name.removesuffix(CONTINUUM), tied - self.disks
+                side, nodes = name.removesuffix(CONTINUUM), tied - self.first
                 length = float(self.body.mesh.size[1 - normal_axis(side)])
                 edges[name] = Edge(side, tied, self.body.mesh.positions[nodes], np.ones(len(nodes)), length)
         return edges
 
     def laid_out(self, layout: Layout) -> Layout:
-        """The slots of the disks in a layout, and of the continuum's nodes behind them."""
+        """The slots of a layout, and those of the continuum's nodes behind them."""
         slots = np.concatenate([layout.slot, self.body.blocks.slot])
         return Layout(slots, -(-self.body.blocks.end // LANES) * LANES)
+
+    @property
+    def nodes(self) -> slice:
+        """The range of its nodes in the scene."""
+        return slice(self.first, self.first + self.count)
 
     def ties(self, layout: Layout, supported: np.ndarray) -> WallTies:
         """The ties for the kernels; supported (k,) are the nodes of the support table, ascending."""
         line = np.zeros(layout.count, dtype=np.int64)
         line[layout.slot[supported]] = np.arange(len(supported))
-        return self.wall.ties(layout.slot[: self.disks], layout.slot[self.disks :], line, None)
+        return self.wall.ties(
+            layout.slot, layout.slot[self.nodes], line, None if self.twin is None else layout.slot[self.twin]
+        )
+
+    def add_tie_forces(self, layout: Layout, u: np.ndarray, force: np.ndarray) -> None:
+        """Add the forces (3, n) of its ties on all nodes of the scene at displacements u (3, slots), at rest."""
+        of_ties = np.zeros((len(self.tied), 3))
+        tie_forces(self.ties(layout, self.tied), u, np.zeros_like(u), of_ties, 0.0)
+        force[:, self.tied] += of_ties.T
+
+    def support(self, builder: SupportBuilder) -> None:
+        """Add rows of its nodes with ties or drives, or on planes of symmetry, to the support table.
+
+        They do not rotate, nor move across the planes.
+        """
+        builder.side = ""
+        for axis in (0, 1):
+            builder.add(self.first + self.body.mesh.on_mirrors(axis), axis, prescribed=True)
+        others = builder.nodes
+        others = others[(others >= self.nodes.start) & (others < self.nodes.stop)]
+        builder.add(np.union1d(self.first + self.wall.nodes, others), 2, prescribed=True)
+
+    def incident(self, waves: tuple[Incident | None, Incident | None]) -> IncidentForces:
+        """Forces by which waves along x and y (None for none) enter from below."""
+        return IncidentForces.of(self.wall, self.body.medium, self.box[1], waves)
 
     def adds_forces(self, layout: Layout) -> Callable[[np.ndarray, np.ndarray, float], None]:
         """A function of displacements u (3, slots), forces (3, slots) and a factor.
@@ -116,7 +179,7 @@ class Surroundings:
         It fills the forces on the continuum, and adds those of the ties times the factor to all.
         """
         slot, tied = self.body.blocks.slot, layout.slot[self.tied]
-        ties = self.ties(layout, self.tied)
+        ties = replace(self, twin=None).ties(layout, self.tied)  # twins do not move with the body
 
         def add(u: np.ndarray, force: np.ndarray, times: float) -> None:
             own, of_ties = np.zeros_like(force), np.zeros((len(tied), 3))
@@ -138,6 +201,7 @@ class WallTie(Tie):
 
     def __init__(self, surroundings: Surroundings, layout: Layout) -> None:
         self._surroundings, self._layout = surroundings, layout
+        self._last: tuple[np.ndarray, WallTies] | None = None
 
     @property
     def nodes(self) -> np.ndarray:
@@ -146,44 +210,62 @@ class WallTie(Tie):
 
     def bundle(self, supported: np.ndarray) -> NamedTuple:
         """Its arrays for the kernels."""
-        return self._surroundings.ties(self._layout, supported)
+        if self._last is None or self._last[0] is not supported:  # it is asked for at every return of the loop
+            self._last = supported, self._surroundings.ties(self._layout, supported)
+        return self._last[1]
 
 
-def medium_of(ground: PackedMaterial) -> Medium:
-    """The continuum that a packing is equivalent to, with all six constants."""
-    c = ground.material_tensor
-    return Medium(ground.density, c[0, 0], c[1, 1], c[0, 1], c[2, 2], c[0, 2], c[1, 2])
+class TwinTie(Tie):
+    """Repeats the forces that earlier ties exert on the twins of some disks on these disks.
+
+    Parameters
+    ----------
+    disks : (k,) ascending. twin : (n,) twin of each of the scene's nodes.
+    """
+
+    def __init__(self, disks: np.ndarray, twin: np.ndarray) -> None:
+        self._disks, self._twin = disks, twin
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """The disks (k,)."""
+        return self._disks
+
+    def bundle(self, supported: np.ndarray) -> NamedTuple:
+        """Its arrays for the kernels."""
+        return Repeats(*(np.searchsorted(supported, nodes) for nodes in (self._twin[self._disks], self._disks)))
 
 
 def surroundings_of(
-    case: DiskCase, ground: PackedMaterial, assembly: Assembly, layout: Layout, sides: Sequence[str]
+    case: DiskCase,
+    ground: PackedMaterial,
+    body: Assembly,
+    mesh: Mesh,
+    layout: Layout,
+    sides: Sequence[str],
+    first: int = 0,
+    twin: np.ndarray | None = None,
 ) -> Surroundings:
-    """The continuum on some sides of a body whose disks have a layout.
+    """The continuum on a mesh beyond some sides of a body.
 
-    Raises CaseError if no element size suits the waves, or the packing's sides cut no bonds.
+    layout : of the nodes before its own, of which the body's disks are those from number `first` on. twin : (m,) of
+    each disk that in the free-field column; None without a column.
+
+    Raises CaseError if the packing's sides cut no bonds.
     """
-    keys = case.outside
-    medium = medium_of(ground)
-    width, height = assembly.extent.tolist()
-    largest = keys.element or element_size(case, medium, ground.brick.mean_diameter, keys.order, keys.accuracy)
-    element = tuple(length / np.ceil(length / largest - 1e-9) for length in (width, height))
-    there = [side in sides for side in ("left", "right", "bottom", "top")]
-    low = 0.5 * (assembly.size - assembly.extent)
-    mesh = Mesh.around(
-        (float(low[0]), float(low[1]), float(low[0]) + width, float(low[1]) + height),
-        (float(element[0]), float(element[1])),
-        keys.order,
-        margin=Around(*(keys.margin * each for each in there)),
-        layer=Around(*(keys.layers * each for each in there)),
-    )
-    cut = cut_contacts(ground.brick, assembly, sides)
+    size = Sizes.of(case, ground, body, sides, mesh.periodic)
+    rim = Rim.of(case, ground, body, sides, size)
+    cut = cut_contacts(ground.brick, body, sides, mesh.periodic)
     if len(cut.node) == 0:
         raise CaseError([f"boundary.{sides[0]}: cuts no bonds, so nothing can be tied to the continuum"])
-    body = GridBody(
+    grid = GridBody(
         mesh=mesh,
-        medium=medium,
-        absorption=Absorption(reflection=keys.reflection),
+        medium=medium_of(ground),
+        absorption=size.settings.absorption,
+        thickness=float(np.prod(mass_extent(ground, body) / size.box)),
+        added_mass=mass_of(rim.massless, mesh, ground.density),
         first_slot=-(-layout.count // LANES) * LANES,
     )
-    wall = Wall.of(mesh, CutBonds.of(ground, cut, assembly.positions), lag_of(ground, keys.damping))
-    return Surroundings(tuple(sides), largest, body, wall, len(assembly.radii))
+    bonds = CutBonds.of(ground, cut, body.positions).between(mesh.sides).numbered_from(first)
+    wall = Wall.of(mesh, bonds, lag_of(ground, size.settings.damping), size.narrow)
+    return Surroundings(tuple(sides), size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, twin)

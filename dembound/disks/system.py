@@ -14,14 +14,15 @@ from dembound.disks.contact_forces import contact_columns, pieces
 from dembound.disks.contacts import ContactList, plain_contacts
 from dembound.disks.elastic_again import elastic_again, never_elastic_again, settled_refused
 from dembound.disks.layout import with_supports
+from dembound.disks.near_ties import NearTies
 from dembound.disks.part import DiskPart, FreeFieldSeam
 from dembound.disks.rotation import turned_as_a_whole, turns_freely
 from dembound.disks.stress import part_stress
-from dembound.disks.surroundings import WallTie
+from dembound.disks.surroundings import TwinTie, WallTie
 from dembound.kernels.common import BROKE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.contacts import REFERENCE, UPDATED
 from dembound.kernels.follower import turn_forces
-from dembound.motion.part import System
+from dembound.motion.part import System, Tie
 from dembound.motion.state import Arrays, State, within
 from dembound.outside.part import GridPart
 
@@ -58,6 +59,7 @@ class DiskSystem(System):
     ----------
     balance : the forces that balance those in a settled body; None for a body as built or settling. is_elastic_again :
     whether the elastic law is used again after a static stage that left it; refused : why not where it is asked for.
+    near_ties : what leaves the elastic range near ties to a continuum; None without one, or without a history.
     """
 
     def __init__(
@@ -82,12 +84,15 @@ class DiskSystem(System):
         ]  # fmt: skip
         ties = [] if scene.seam is None else [FreeFieldSeam(scene.seam, parts[0])]
         self.disk_parts, self._seams = tuple(parts), tuple(ties)
-        others, walls = _around(scene, time_step)
-        super().__init__([*parts, *others], [*ties, *walls], scene.steady_load if load is None else load)
+        super().__init__(
+            [*parts, *_grids(scene, time_step)], [*_walls(scene), *ties], scene.steady_load if load is None else load
+        )
         self.balance: Balance | None = None
         self.is_elastic_again = False
         self.scene, self._time_step = scene, time_step
         self._start, self._settling = start, settling
+        watches = scene.outside is not None and scene.has_history and not settling
+        self.near_ties = NearTies(scene, self.contacts["body"]) if watches else None
 
     def apply(self, load: np.ndarray) -> None:
         """Replace the steady forces and moments (3, n) of a settling body."""
@@ -107,7 +112,7 @@ class DiskSystem(System):
             self.is_elastic_again, has_history = reason == "", reason != ""
             self.refused = settled_refused(reason)
         if start is not None and not self._settling:
-            springs = scene.supports.springs_at(state.datum)
+            springs = self._offset(state.datum)
             resting = self._resting_force(state.datum, has_history=has_history)
             self._balance(springs - resting - self.load, state.datum)
             steady = springs - self.elastic_forces(state.datum)
@@ -133,6 +138,8 @@ class DiskSystem(System):
                 self.disk_parts, state.displacement, state.velocity, self._time_step, self.steady
             )
         super().react(why, steps, state)
+        if self.near_ties is not None and self.uses_history:
+            self.near_ties.look(state, self.contacts["body"])
 
     def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
         """Contact and seam forces and moments (3, n) of the elastic law at displacements (3, n)."""
@@ -213,11 +220,11 @@ class DiskSystem(System):
         return 0.0 if self.balance is None else self.balance.work(self.scene.layout.gather(u))
 
     def spring_shift(self, u: np.ndarray) -> float:
-        """Work (J) up to displacements (3, slots) of the part of the balancing forces that shifts springs to rest."""
+        """Work (J) up to displacements (3, slots) of the balancing forces that shift springs and ties to rest."""
         if self.balance is None:
             return 0.0
         moved = self.scene.layout.gather(u) - self.balance.datum
-        return float(np.sum(self.scene.supports.springs_at(self.balance.datum) * moved))
+        return float(np.sum(self._offset(self.balance.datum) * moved))
 
     @property
     def balancing_force(self) -> np.ndarray | None:
@@ -226,16 +233,34 @@ class DiskSystem(System):
 
     def memory(self) -> Arrays:
         """All arrays that change during a run except the motion, by name."""
-        balance = {} if self.balance is None else self.balance.memory()
-        return {**super().memory(), **{f"balance/{name}": values for name, values in balance.items()}}
+        memory = dict(super().memory())
+        for owner, kept in (("balance", self.balance), ("near_ties", self.near_ties)):
+            memory |= {} if kept is None else {f"{owner}/{name}": values for name, values in kept.memory().items()}
+        return memory
 
     def recall(self, memory: Arrays) -> None:
         """Restore what `memory` has returned in another run of the same case."""
         super().recall(memory)
         kept = within(memory, "balance")
         self.balance = Balance.recalled(self.scene, kept) if kept else None
+        if self.near_ties is not None:
+            self.near_ties.recall(within(memory, "near_ties"))
         self._watch_breaks()
         self._follow()
+
+    def tie_forces(self, displacement: np.ndarray) -> np.ndarray:
+        """Forces and moments (3, n) of the ties to continua at displacements (3, n), at rest."""
+        force, u = np.zeros_like(displacement), self.scene.layout.spread(displacement)
+        for each in self.scene.continua:
+            each.add_tie_forces(self.scene.layout, u, force)
+        if self.scene.foot is not None:
+            assert self.scene.twin is not None
+            force[:, self.scene.on_foot] += force[:, self.scene.twin[self.scene.on_foot]]
+        return force
+
+    def _offset(self, datum: np.ndarray) -> np.ndarray:
+        """Forces (3, n) that shift the zero of springs and ties to the datum."""
+        return self.scene.supports.springs_at(datum) - self.tie_forces(datum)
 
     def _resting_force(self, datum: np.ndarray, *, has_history: bool) -> np.ndarray:
         """Contact forces (3, n) of the body at rest at the datum."""
@@ -278,6 +303,8 @@ class DiskSystem(System):
         if before is not None:
             state.work[:, 4] += self._potential(state) - before
         self._adopt(state.displacement - self._time_step * state.velocity, fresh)  # its first push adds this step
+        if self.near_ties is not None:
+            self.near_ties.begin(self.contacts["body"])
         self.steady = self.load + (0.0 if self.balance is None else self.balance.force)
         self._follow()
         if before is not None and self.turning is not None:
@@ -317,19 +344,26 @@ class DiskSystem(System):
 
 def _tied(scene: DiskBody) -> np.ndarray:
     """Nodes (k,) of a scene that ties act on."""
-    tied = [np.zeros(0, dtype=np.int64)]
+    tied = [np.zeros(0, dtype=np.int64), *(each.tied for each in scene.continua), scene.on_foot]
     if scene.seam is not None:
         tied.append(scene.seam.node)
-    if scene.outside is not None:
-        tied.append(scene.outside.tied)
     return np.concatenate(tied)
 
 
-def _around(scene: DiskBody, time_step: float) -> tuple[list[GridPart], list[WallTie]]:
-    """The continuum round a scene and its ties, if it has one."""
-    if scene.outside is None:
-        return [], []
-    disks = scene.disk_count
-    tied = scene.outside.tied
-    part = GridPart(scene.outside.body, time_step, first_node=disks, supported=tied[tied >= disks] - disks)
-    return [part], [WallTie(scene.outside, scene.layout)]
+def _grids(scene: DiskBody, time_step: float) -> list[GridPart]:
+    """The continua of a scene."""
+    return [
+        GridPart(each.body, time_step, name=name, first_node=each.first, supported=each.wall.nodes)
+        for each, name in ((scene.outside, "continuum"), (scene.foot, "foot"))
+        if each is not None
+    ]
+
+
+def _walls(scene: DiskBody) -> list[Tie]:
+    """Their ties, and those that repeat the forces of the column's foot on the body."""
+    walls: list[Tie] = [] if scene.outside is None else [WallTie(scene.outside, scene.layout)]
+    if scene.foot is not None:
+        assert scene.twin is not None
+        foot = WallTie(scene.foot, scene.layout)
+        walls = [foot, TwinTie(scene.on_foot, scene.twin), *walls]  # these forces are there before they are repeated
+    return walls

@@ -95,12 +95,12 @@ def _is_wide(scene: DiskScene) -> bool:
 def _inside(scene: DiskScene) -> np.ndarray:
     """Particles (n,) bool inside the rim along the sides; all of a small scene."""
     depth = RIM * scene.ground.brick.mean_diameter
-    inside = np.ones(scene.count, dtype=bool)
+    inside = np.ones(scene.disk_count, dtype=bool)
     for axis, low in enumerate(("left", "bottom")):
         if low in scene.edges:
-            place = scene.assembly.positions[:, axis]
+            place = scene.assembly.positions[:, axis] - scene.assembly.origin[axis]
             inside &= (place > depth) & (place < scene.assembly.size[axis] - depth)
-    return inside if inside.any() else np.ones(scene.count, dtype=bool)
+    return inside if inside.any() else np.ones(scene.disk_count, dtype=bool)
 
 
 def _without_torque(force: np.ndarray, positions: np.ndarray, loaded: np.ndarray) -> np.ndarray:

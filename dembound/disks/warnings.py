@@ -10,9 +10,11 @@ import numpy as np
 from dembound.boundaries import SIDES, Motion, axis_of_motion
 from dembound.casefile.disks.load import Load
 from dembound.casefile.magnitudes import grip_stress, is_quasi_static, stress_in_words, stress_warnings, time_warnings
+from dembound.disks.continuum_facts import continuum_warnings
 from dembound.disks.matching import homogenised_beta, reflected
+from dembound.disks.near_ties import near_tie_warnings
 from dembound.disks.scene import DiskScene, boundary_medium
-from dembound.results.reader import open_record
+from dembound.results.reader import cracks_until, open_record
 from dembound.results.warnings import still_moving
 from dembound.waves.constant import Constant
 from dembound.waves.spectrum import HANN_FADE
@@ -49,6 +51,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *_stress_beside_strength(scene),
         *_default_factors(scene),
         *_speed_of_the_packing(scene),
+        *continuum_warnings(scene, scene.case.run.duration / time_step),
     ]
 
 
@@ -166,7 +169,7 @@ def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
     factor = 1.0 if load.wave is None else scene.case.wave[load.wave].peak()
     low, high = np.zeros(2), scene.size
     if load.region is not None:
-        low, high = np.maximum(low, load.region[:2]), np.minimum(high, load.region[2:])
+        low, high = np.array(load.region[:2]), np.array(load.region[2:])
     extent = np.abs(load.vector) * factor
     if load.acceleration is not None:
         return "its stress ρaL", float(scene.ground.density * (extent * (high - low)).max())
@@ -280,7 +283,9 @@ def _confinement(scene: DiskScene) -> float | None:
 def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: Path) -> list[str]:
     """Warnings from the summary and record of a run of disks, one line each."""
     with open_record(record) as file:
-        return list(still_moving(scene, summary["duration"], file, _pieces(scene, file["cracks/particles"][:])))
+        cracks = cracks_until(file, np.inf)
+        moving = still_moving(scene, summary["duration"], file, _pieces(scene, cracks["particles"]))
+        return [*moving, *near_tie_warnings(scene, summary, cracks)]
 
 
 def _pieces(scene: DiskScene, broken: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from typing import Any
 from numba import njit
 
 from dembound.kernels.common import FAST, U
+from dembound.kernels.grid_tables import ALONG, Shape
 from dembound.kernels.lane_step import larger
 from dembound.kernels.lanes import LANES, combine, combine_more, load, store
 
@@ -21,6 +22,22 @@ WITHIN: dict[str, Any] = FAST | {"forceinline": True}
 """Options of functions that are called for each block: passing their arrays would take as long as a few nodes."""
 
 _STEP = U(LANES)
+
+
+@njit(**WITHIN)
+def shape_of(elements, blocks, block):
+    """The shape that the elements of a block have."""
+    k = U(blocks.shapes[block])
+    return Shape(
+        elements.gradient_x[k],
+        elements.gradient_y[k],
+        elements.divergence_x[k],
+        elements.divergence_y[k],
+        elements.weight[k],
+        elements.moduli,
+        elements.core,
+        elements.rim,
+    )
 
 
 @njit(**WITHIN)
@@ -125,9 +142,10 @@ def remember(points, shape, absorber, layer, memory, space):
         if axes & (1 << axis) == 0:
             continue
         first = (U(2) * U(layer) + U(axis)) * U(count) * _STEP
+        by_row = (axis == 1) != (axes & (ALONG << axis) != 0)
         for r in range(count):
             for c in range(count):
-                at = first + U(r if axis == 1 else c) * _STEP
+                at = first + U(r if by_row else c) * _STEP
                 decay, gain = load(absorber.decay, at), load(absorber.gain, at)
                 i = U(r * count + c) * _STEP
                 for component in range(2):

@@ -12,7 +12,7 @@ from numba import get_thread_id, njit, prange
 
 from dembound.kernels import lane_step
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
-from dembound.kernels.elements import WITHIN, absorbing_forces, block_forces, gather
+from dembound.kernels.elements import WITHIN, absorbing_forces, block_forces, gather, shape_of
 from dembound.kernels.grid_tables import Grid
 from dembound.kernels.lanes import LANES, at_most, choose, lane, load, splat, store
 from dembound.kernels.law import is_law
@@ -70,15 +70,17 @@ def _move_core(shape, blocks, block, space, u, v, body, u_next):
 
 
 @njit(**FAST)
-def _move_blocks(points, shape, blocks, absorber, force, first, last, u, v, body, u_next, space, taken):
+def _move_blocks(points, elements, blocks, absorber, force, first, last, u, v, body, u_next, space, taken):
     """Compute the forces of blocks first to last − 1, and move their core nodes."""
     elastic = blocks.blocks - blocks.layers
     for block in range(first, min(last, elastic)):
+        shape = shape_of(elements, blocks, block)
         block_forces(points, shape, blocks, block, u, space)
         _store_rim(shape, block, space, force)
         _move_core(shape, blocks, block, space, u, v, body, u_next)
     whole, half = splat(0.0), splat(0.0)
     for block in range(max(first, elastic), last):
+        shape = shape_of(elements, blocks, block)
         absorbing_forces(points, shape, blocks, absorber, block, u, v, space)
         _store_rim(shape, block, space, force)
         before, after = _move_core(shape, blocks, block, space, u, v, body, u_next)
@@ -158,13 +160,13 @@ def _move_shared(blocks, force, first, last, u, v, body, u_next, taken):
 
 
 @njit(**PARALLEL)
-def _move_all_blocks(points, shape, blocks, absorber, force, space, taken, u, v, body, u_next):
+def _move_all_blocks(points, elements, blocks, absorber, force, space, taken, u, v, body, u_next):
     n = blocks.blocks
     for chunk in prange(CHUNKS):
         first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
         if first < last:
             own, result = space[get_thread_id()], taken[chunk]
-            _move_blocks(points, shape, blocks, absorber, force, first, last, u, v, body, u_next, own, result)
+            _move_blocks(points, elements, blocks, absorber, force, first, last, u, v, body, u_next, own, result)
 
 
 @njit(**PARALLEL)
@@ -178,8 +180,8 @@ def _move_all_shared(blocks, force, taken, u, v, body, u_next):
 @njit(**FAST)
 def move(grid, u, u_next, v, body, nodes):
     """One step of all nodes, see law.move."""
-    points, shape, blocks, absorber, force, space, taken = grid
-    _move_all_blocks(points, shape, blocks, absorber, force, space, taken, u, v, body, u_next)
+    points, elements, blocks, absorber, force, space, taken = grid
+    _move_all_blocks(points, elements, blocks, absorber, force, space, taken, u, v, body, u_next)
     _move_all_shared(blocks, force, taken, u, v, body, u_next)
 
 
@@ -204,10 +206,11 @@ is_law(Grid, move=move, finish=finish)
 
 
 @njit(**FAST)
-def _store_forces(points, shape, blocks, force, first, last, u, result, space):
+def _store_forces(points, elements, blocks, force, first, last, u, result, space):
     """Store the elastic forces of blocks first to last − 1, those on core nodes in result (3, slots)."""
-    size = U(shape.weight.size) * _STEP
     for block in range(first, last):
+        shape = shape_of(elements, blocks, block)
+        size = U(shape.weight.size) * _STEP
         block_forces(points, shape, blocks, block, u, space)
         _store_rim(shape, block, space, force)
         slot = U(blocks.core_begin) + U(block) * U(shape.core.size) * _STEP
@@ -219,11 +222,11 @@ def _store_forces(points, shape, blocks, force, first, last, u, result, space):
 
 
 @njit(**PARALLEL)
-def _fill(points, shape, blocks, force, space, u, result):
+def _fill(points, elements, blocks, force, space, u, result):
     n, m = blocks.blocks, blocks.start.size - 1
     for chunk in prange(CHUNKS):
         first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
-        _store_forces(points, shape, blocks, force, first, last, u, result, space[get_thread_id()])
+        _store_forces(points, elements, blocks, force, first, last, u, result, space[get_thread_id()])
     for chunk in prange(CHUNKS):
         for k in range(chunk * m // CHUNKS, (chunk + 1) * m // CHUNKS):
             x, y = _sum_at(blocks, U(k), force)
@@ -234,14 +237,15 @@ def _fill(points, shape, blocks, force, space, u, result):
 @njit(**FAST)
 def fill_forces(grid, u, result):
     """Fill result (3, slots) with the elastic forces (N) of all elements at displacements u; none on outer edges."""
-    _fill(grid.points, grid.shape, grid.blocks, grid.force, grid.space, u, result)
+    _fill(grid.points, grid.elements, grid.blocks, grid.force, grid.space, u, result)
 
 
 @njit(**FAST)
-def _block_energies(points, shape, blocks, first, last, u, energy, space):
+def _block_energies(points, elements, blocks, first, last, u, energy, space):
     """Strain energies of blocks first to last − 1: −½Σ u·F."""
-    size = U(shape.weight.size) * _STEP
     for block in range(first, last):
+        shape = shape_of(elements, blocks, block)
+        size = U(shape.weight.size) * _STEP
         block_forces(points, shape, blocks, block, u, space)
         gather(shape, blocks, block, u, space, 2)
         doubled = splat(0.0)
@@ -252,14 +256,14 @@ def _block_energies(points, shape, blocks, first, last, u, energy, space):
 
 
 @njit(**PARALLEL)
-def _energies(points, shape, blocks, space, u, energy):
+def _energies(points, elements, blocks, space, u, energy):
     n = energy.size
     for chunk in prange(CHUNKS):
         first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
-        _block_energies(points, shape, blocks, first, last, u, energy, space[get_thread_id()])
+        _block_energies(points, elements, blocks, first, last, u, energy, space[get_thread_id()])
 
 
 @njit(**FAST)
 def strain_energies(grid, u, energy):
     """Fill energy (k,) J with the strain energies of the first k blocks at displacements u (3, slots)."""
-    _energies(grid.points, grid.shape, grid.blocks, grid.space, u, energy)
+    _energies(grid.points, grid.elements, grid.blocks, grid.space, u, energy)

@@ -10,8 +10,24 @@ from typing import NamedTuple
 import numpy as np
 
 
+class Elements(NamedTuple):
+    """The elements of a grid, which have S shapes: widths and heights. Its arrays are those of `Shape`.
+
+    gradient_x, gradient_y, divergence_x, divergence_y : (S, N·N). weight : (S, Q). moduli, core, rim : of all elements.
+    """
+
+    gradient_x: np.ndarray
+    gradient_y: np.ndarray
+    divergence_x: np.ndarray
+    divergence_y: np.ndarray
+    weight: np.ndarray
+    moduli: np.ndarray
+    core: np.ndarray
+    rim: np.ndarray
+
+
 class Shape(NamedTuple):
-    """What all elements have in common.
+    """What the elements of a block have in common.
 
     gradient_x, gradient_y, divergence_x, divergence_y : (N·N,) matrices, row by row, that make derivatives (1/m) along
     an axis of displacements of a line of points, and nodal forces of fluxes. weight : (Q,) m², of the quadrature.
@@ -31,6 +47,7 @@ class Shape(NamedTuple):
 class Blocks(NamedTuple):
     """B blocks of eight elements and the slots of their nodes; the last `layers` blocks absorb.
 
+    shapes : (B,) int64, which of the S shapes the elements of a block have.
     core_begin : slot of the first core node; block by block, those of each core point are in eight consecutive slots.
     rim_slot : (B·R·8,) slots of the rim nodes, block by block, point by point. In lanes without an element core slots
     have no node, and those of the rim are among them.
@@ -42,6 +59,7 @@ class Blocks(NamedTuple):
 
     blocks: int
     layers: int
+    shapes: np.ndarray
     core_begin: int
     rim_slot: np.ndarray
     shared_begin: int
@@ -51,10 +69,15 @@ class Blocks(NamedTuple):
     entry_layer: int
 
 
+ALONG = 4
+"""See Absorber.axes."""
+
+
 class Absorber(NamedTuple):
     """The absorbing layer in the last blocks, L of them; see outside/layer.py.
 
-    axes : (L,) 1 for blocks whose elements absorb along x, 2 along y, 3 along both. decay, gain, delay : (L·2·N·8,)
+    axes : (L,) 1 for blocks whose elements absorb along x, 2 along y, 3 along both, and ALONG times that of an axis
+    whose coefficients are those at the points along the other one. decay, gain, delay : (L·2·N·8,)
     B, A and τ (s) at the points of the elements along x, then along y. strain_memory, force_memory : (L·4·Q·8,) ψ of
     ∂_x u_x, ∂_x u_y, ∂_y u_x, ∂_y u_y, and φ of the forces along x and y of the fluxes through sides across x, then y.
     """
@@ -76,7 +99,7 @@ class Grid(NamedTuple):
     """
 
     points: tuple[float, ...]
-    shape: Shape
+    elements: Elements
     blocks: Blocks
     absorber: Absorber
     force: np.ndarray

@@ -14,7 +14,7 @@ from dembound.kernels.common import FAST, FASTMATH, U
 _REORDERED: Any = FAST | {"fastmath": FASTMATH | {"reassoc"}}
 """Compiler options of sums whose order of terms depends on their number alone."""
 
-PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED = range(6)
+PRESCRIBED, DASHPOT, FOLLOWING, SPRING, DRIVE, TIED, POWER = range(7)
 """Kinds of elements, see `tables.Sides`."""
 
 
@@ -68,7 +68,7 @@ def _springs(c, lines, constants, nodes, u):
 
 
 @njit(**FAST, forceinline=True)
-def _exerted(kind, c, lines, constants, moved, across, signal):
+def _exerted(kind, c, lines, constants, moved, across, sign, signals, columns):
     """The same of prescribed motion (the force needed, without ties), of drives (constants·signal), and of seams."""
     force = 0.0
     power = 0.0
@@ -76,8 +76,10 @@ def _exerted(kind, c, lines, constants, moved, across, signal):
     old, new, push = moved[0], moved[1], moved[2]
     for e in range(lines.size):
         s = U(lines[e])
-        of_one = push[c, s] - across[s, c] if kind == PRESCRIBED else signal if kind == DRIVE else across[s, c]
-        f = constants[e] * of_one
+        if kind == DRIVE:
+            f = constants[e] * sign * signals[U(columns[e])]
+        else:
+            f = constants[e] * (push[c, s] - across[s, c] if kind == PRESCRIBED else across[s, c])
         force += f
         power += f * 0.5 * (old[c, s] + new[c, s])
         before += f * old[c, s]
@@ -103,9 +105,14 @@ def _steady(c, sides, o, load):
 
 
 @njit(**FAST, forceinline=True)
-def _of_batch(b, c, signal, lines, constants, u, supports, across, followed, moved, sides):
-    """Force (N) of batch b on component c, its power (W), that with velocities before the step, and absorbed power."""
+def _of_batch(b, c, step, signal, lines, constants, u, supports, across, followed, moved, sides):
+    """Force (N) of batch b on component c, its power (W), that with velocities before the step, and absorbed power.
+
+    The power of incident waves adds to no force; it comes in once what leaves by forces is added to what is absorbed.
+    """
     kind = sides.kind[b]
+    if kind == POWER:
+        return 0.0, 0.0, 0.0, signal
     old, new = moved[0], moved[1]
     if kind == DASHPOT:
         return _dashpots(c, lines, constants, old, new, signal)
@@ -114,7 +121,8 @@ def _of_batch(b, c, signal, lines, constants, u, supports, across, followed, mov
         return _following(c, lines, constants, follow, old, new, followed, signal)
     if kind == SPRING:
         return _springs(c, lines, constants, supports.nodes, u)
-    return _exerted(kind, c, lines, constants, moved, across, signal)
+    columns = sides.column[sides.start[b] : sides.start[b + 1]]
+    return _exerted(kind, c, lines, constants, moved, across, sides.sign[b], sides.signals[step], columns)
 
 
 @njit(**FAST, forceinline=True)
@@ -124,7 +132,7 @@ def _of_side(b, step, u, supports, across, followed, moved, sides):
     signal = sides.sign[b] * sides.signals[step, sides.signal[b]] if sides.signal[b] >= 0 else 0.0
     lines, constants = sides.line[first:last], sides.constant[first:last]
     c = U(sides.component[b])
-    return _of_batch(b, c, signal, lines, constants, u, supports, across, followed, moved, sides)
+    return _of_batch(b, c, step, signal, lines, constants, u, supports, across, followed, moved, sides)
 
 
 @njit(**FAST)
@@ -161,6 +169,8 @@ def note_side_halves(step, u, supports, across, followed, moved, body, sides):
         _, power, before, absorbed = _of_side(b, step, u, supports, across, followed, moved, sides)
         # of dashpots without a wave all is absorbed, also in half a step
         half = power + absorbed if sides.kind[b] == DASHPOT else before + absorbed
+        if sides.leaves[b]:
+            half = 0.0
         work[1, sides.side[b], 0] += 0.5 * body.step * half
         work[1, sides.side[b], 1] += 0.5 * body.step * (half - before)
 
@@ -171,5 +181,7 @@ def note_side_work(step, u, supports, across, followed, moved, body, sides):
     for b in range(sides.kind.size):
         if sides.kind[b] != SPRING:
             _, power, _, absorbed = _of_side(b, step, u, supports, across, followed, moved, sides)
+            if sides.leaves[b]:
+                absorbed = -power
             sides.work[0, sides.side[b], 0] += body.step * (power + absorbed)
             sides.work[0, sides.side[b], 1] += body.step * absorbed

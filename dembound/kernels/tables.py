@@ -218,14 +218,22 @@ class WallTies(NamedTuple):
     own: np.ndarray
 
 
+class Repeats(NamedTuple):
+    """Forces on lines of the support table that are repeated on others: source and target, (r,) each."""
+
+    source: np.ndarray
+    target: np.ndarray
+
+
 class Sides(NamedTuple):
     """Forces on s sides of a body in b batches of e elements, and their m members; see sides.py.
 
     A batch has elements of one kind on one component, of one side. kind, side, component, sign, signal : (b,), sign −1
-    where the forces are those on an image; signal the column of signals (steps, q) that drives it, −1 for none.
+    where the forces are those on an image; signal the column of signals (steps, q) of its incident wave or power, −1
+    for none. leaves : (b,) bool, whether energy that does not come in by its forces counts as absorbed.
     start : (b + 1,) elements of each batch in line (e,), the line of each in the support table; constant (e,), by kind:
     N of forces needed over those of the nodes stepped; N·s/m of dashpots, twice; N/m of springs, from rest 0; N per
-    unit of signal; N of ties over those on the nodes stepped; follow (e,) N·s/m.
+    unit of signal; N of ties over those on the nodes stepped; follow (e,) N·s/m; column (e,) of the signals of drives.
     member_start : (s + 1,) members of each side in member (m,), nodes; weight (3, m) of their displacements in the
     mean, sign of images included. offset : (s, 2) N, added to the force on each side. bearer_start : (s + 1,) nodes of
     each side in bearer (q,) whose steady forces are added too, times share (2, q); none if these do not change.
@@ -239,11 +247,13 @@ class Sides(NamedTuple):
     component: np.ndarray
     sign: np.ndarray
     signal: np.ndarray
+    leaves: np.ndarray
     signals: np.ndarray
     start: np.ndarray
     line: np.ndarray
     constant: np.ndarray
     follow: np.ndarray
+    column: np.ndarray
     member_start: np.ndarray
     member: np.ndarray
     weight: np.ndarray
@@ -266,11 +276,13 @@ class Sides(NamedTuple):
             component=number,
             sign=value,
             signal=number,
+            leaves=np.zeros(0, dtype=np.bool_),
             signals=np.zeros((0, 0)),
             start=np.zeros(1, dtype=np.int64),
             line=number,
             constant=value,
             follow=value,
+            column=number,
             member_start=np.zeros(1, dtype=np.int64),
             member=number,
             weight=np.zeros((3, 0)),

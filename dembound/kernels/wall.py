@@ -21,7 +21,7 @@ from numba import njit
 from dembound.kernels.common import FAST, U
 from dembound.kernels.lanes import LANES, load, splat, store
 from dembound.kernels.law import is_tie
-from dembound.kernels.tables import WallTies
+from dembound.kernels.tables import Repeats, WallTies
 
 _WITHIN: dict[str, Any] = FAST | {"forceinline": True}
 """Options of functions that are called for each block: passing their arrays would take as long as a few ties."""
@@ -190,4 +190,13 @@ def wall_forces(ties, u, v, force):
     tie_forces(ties, u, v, force, ties.lag)
 
 
+@njit(**FAST)
+def repeated_forces(repeats, u, v, force):
+    """Add to force (k, 3) at some lines what it has from earlier ties at others; u, v : (3, n), of no use."""
+    for r in range(repeats.source.size):
+        for c in range(3):
+            force[repeats.target[r], c] += force[repeats.source[r], c]
+
+
 is_tie(WallTies, across=wall_forces)
+is_tie(Repeats, across=repeated_forces)

@@ -3,12 +3,14 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile import Case
+from dembound.motion.between import Between
 from dembound.motion.layout import Layout
 from dembound.motion.part import System
 
@@ -27,7 +29,8 @@ class Scene(ABC):
     case : the case it was built from.
     edges : side -> its exposed nodes, for every side that is not periodic.
     supports : the table of forces from outside, loads that follow a wave included.
-    monitors : name -> node.
+    monitors : name -> node, the nearest one for a place between nodes.
+    between : name -> place, of the monitors at places between nodes.
     kind : name of the kind of body in records.
     energy_unit : the unit of its energies.
     record_width : columns of a probe's record, see kernels.tables.Log.
@@ -40,6 +43,7 @@ class Scene(ABC):
     edges: Mapping[str, Edge]
     supports: Supports
     monitors: Mapping[str, int]
+    between: Mapping[str, Between] = MappingProxyType({})
     kind: str
     energy_unit: str
     record_width: int
@@ -121,14 +125,40 @@ class Scene(ABC):
         """Data of every node for the record, by name: values (n, …) and unit."""
 
     @property
+    def nodes_beside(self) -> slice:
+        """The range of its nodes that are recorded apart, those of a continuum; by default none."""
+        return slice(self.count, self.count)
+
+    def motion_beside(self, values: np.ndarray) -> dict[str, np.ndarray]:
+        """Motion (m, 3) of the nodes that are recorded apart, from that of all nodes (n, 3), by the kind of motion.
+
+        "" is what they move by. By default none.
+        """
+        return {}
+
+    @property
     def beside(self) -> dict[str, tuple[np.ndarray, str]]:
-        """Data of the nodes after the recorded ones, by name: values (m, …) and unit; by default none."""
+        """Data of the nodes that are recorded apart, by name: values (m, …) and unit; by default none."""
         return {}
 
     @property
     @abstractmethod
     def places(self) -> dict[str, tuple[float, float]]:
         """The positions given for the monitors, m."""
+
+    @property
+    def monitored(self) -> dict[str, np.ndarray]:
+        """The places (2,) m whose motion the monitors record."""
+        return {
+            name: self.between[name].place if name in self.between else self.positions[node]
+            for name, node in self.monitors.items()
+        }
+
+    @property
+    def probes(self) -> np.ndarray:
+        """(p,) nodes whose motion is recorded at every step: of one monitor after the other those it needs."""
+        each = [self.between[name].node if name in self.between else [node] for name, node in self.monitors.items()]
+        return np.concatenate([np.zeros(0, dtype=np.int64), *each])
 
     @abstractmethod
     def system(self, time_step: float) -> System:
@@ -159,8 +189,16 @@ class Scene(ABC):
         return np.zeros((self.whole.count, 3), dtype=np.bool_)
 
     def observed(self, record: np.ndarray) -> np.ndarray:
-        """The record (k, p, 6 or 7) of the p monitors of the whole scene, from that of the nodes in `monitors`."""
-        return record
+        """The record (s, m, 6 or 7) of the m monitors of the whole scene, from that of the probes (s, p, 6 or 7)."""
+        if not self.between:
+            return record
+        columns, first = [], 0
+        for name in self.monitors:
+            place = self.between.get(name)
+            last = first + (1 if place is None else len(place.node))
+            columns.append(record[:, first] if place is None else place.motion(record[:, first:last]))
+            first = last
+        return np.stack(columns, axis=1)
 
     @property
     def twin(self) -> np.ndarray | None:

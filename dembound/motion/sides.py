@@ -31,6 +31,8 @@ class _Batch(NamedTuple):
     line: np.ndarray
     constant: np.ndarray
     follow: np.ndarray
+    column: np.ndarray
+    leaves: bool = False
 
 
 class Samples(NamedTuple):
@@ -86,13 +88,8 @@ class NodeSides:
         self._springs = [batch for batch in batches if batch.kind == kinds.SPRING]
         self._table = self._laid_out(batches)
 
-    def sampled(self, times: np.ndarray) -> np.ndarray:
-        """Values (steps, q) of the signals of the support table at `times` (steps,) s."""
-        columns = [signal(times) for signal in self._whole.supports.signals]
-        return np.stack([np.zeros(len(times)), *columns], axis=1)[:, 1:].copy()
-
     def table(self, signals: np.ndarray, system: System, samples: Samples, work: np.ndarray) -> tables.Sides:
-        """The arrays for steps with these signals (steps, q); samples and work (2, s, 2) are filled."""
+        """The arrays for steps with these signals (steps, q) of the table; samples and work (2, s, 2) are filled."""
         table, offset = self._table, np.zeros((len(self.names), 2))
         if system.turning is not None:  # then steady forces are loads and rotated balancing forces
             table, offset = self._bearing(table), self._borne(-system.load)
@@ -141,29 +138,32 @@ class NodeSides:
 
     def _batches(self) -> Iterator[_Batch]:
         """All batches, side by side."""
+        shares = self._whole.supports.shares
         for number, (name, edge) in enumerate(self._sides.items()):
-            if self._whole.supports.shares is not None:
-                yield from self._of_supports(number, edge, self._whole.supports.shares)
-            if name in self._whole.tied:
-                node = self._whole.tied[name]
-                for component in range(3):
-                    one = np.ones(len(node))
-                    yield from self._split(kinds.TIED, number, component, -1, node, one)
+            tied = self._whole.tied.get(name, np.zeros(0, dtype=np.int64))
+            batches: list[_Batch] = []
+            if shares is not None:
+                batches += self._of_supports(number, edge, np.union1d(edge.nodes, tied), shares)
+            for component in range(3):
+                batches += self._split(kinds.TIED, number, component, -1, tied, np.ones(len(tied)))
+            if shares is not None and name in shares.power:
+                yield _with_power(number, shares.power[name])
+                batches = [batch._replace(leaves=True) for batch in batches]
+            yield from batches
 
-    def _of_supports(self, number: int, edge: Edge, shares: Shares) -> Iterator[_Batch]:
-        """The batches of one side: what it adds to the rows of the support table."""
+    def _of_supports(self, number: int, edge: Edge, nodes: np.ndarray, shares: Shares) -> Iterator[_Batch]:
+        """The batches of one side: what it adds to the rows of the support table at nodes (k,)."""
         if edge.side not in shares.sides:
             return
-        own = (shares.side == shares.sides.index(edge.side)) & np.isin(shares.node, edge.nodes)
+        own = (shares.side == shares.sides.index(edge.side)) & np.isin(shares.node, nodes)
         for call in np.unique(shares.call[own]):
             rows = np.flatnonzero(own & (shares.call == call))
             node, component = shares.node[rows], int(shares.component[rows[0]])
             signal, incident = int(shares.signal[rows[0]]), bool(shares.incident[rows[0]])
             damping, follow, stiffness = shares.damping[rows], shares.follow[rows], shares.stiffness[rows]
-            at = (kinds.PRESCRIBED, number, component, signal)
             if shares.prescribed[rows].any():
-                needed = shares.prescribed[rows]
-                yield from self._split(*at, node[needed], self._times(component, node[needed]))
+                node = node[shares.prescribed[rows]]
+                yield from self._split(kinds.PRESCRIBED, number, component, -1, node, self._times(component, node))
                 continue
             through = signal if incident else -1
             if follow.any():
@@ -173,7 +173,8 @@ class NodeSides:
             if stiffness.any():
                 yield from self._split(kinds.SPRING, number, component, -1, node, stiffness)
             if signal >= 0 and not incident:
-                yield from self._split(kinds.DRIVE, number, component, signal, node, shares.drive[rows])
+                column = shares.signal[rows]
+                yield from self._split(kinds.DRIVE, number, component, -1, node, shares.drive[rows], column=column)
 
     def _times(self, component: int, node: np.ndarray) -> np.ndarray:
         """Mass, or moment of inertia, of nodes (k,) of the whole scene over that of the node stepped in their place."""
@@ -189,21 +190,24 @@ class NodeSides:
         node: np.ndarray,
         constant: np.ndarray,
         follow: np.ndarray | None = None,
+        column: np.ndarray | None = None,
     ) -> Iterator[_Batch]:
         """Elements at nodes (k,) of the whole scene with constants (k,) as batches of lines of the support table.
 
-        Nodes of which a smaller scene supports none have no force on them.
+        Nodes of which a smaller scene supports none have no force on them. column : (k,) of the signals of drives.
         """
         follow = np.zeros(len(node)) if follow is None else follow
+        column = np.full(len(node), -1) if column is None else column
         stepped, sign = self._like[node], self._signs[node, component]
         line = np.searchsorted(self._nodes, stepped).clip(max=max(0, len(self._nodes) - 1))
         is_there = self._nodes[line] == stepped if len(self._nodes) else np.zeros(len(node), dtype=np.bool_)
         for of in (1.0, -1.0):
             chosen = is_there & (sign == of) & ~self._still[node, component]
             if chosen.any():
-                lines, element = np.unique(line[chosen], return_inverse=True)
-                sums = (np.bincount(element, values[chosen], len(lines)) for values in (constant, follow))
-                yield _Batch(kind, number, component, of, signal, lines, *sums)
+                alike = np.stack([line[chosen], column[chosen]])
+                (lines, columns), element = np.unique(alike, axis=1, return_inverse=True)
+                sums = [np.bincount(element.ravel(), values[chosen], len(lines)) for values in (constant, follow)]
+                yield _Batch(kind, number, component, of, signal, lines, sums[0], sums[1], columns)
 
     def _laid_out(self, batches: list[_Batch]) -> tables.Sides:
         """All batches and members in one table."""
@@ -222,15 +226,23 @@ class NodeSides:
             component=column("component", np.int64),
             signal=column("signal", np.int64),
             sign=column("sign", np.float64),
+            leaves=column("leaves", np.bool_),
             start=np.cumsum([0, *(len(batch.line) for batch in batches)]),
             line=elements("line", np.int64),
             constant=elements("constant", np.float64),
             follow=elements("follow", np.float64),
+            column=elements("column", np.int64),
             member_start=np.cumsum([0, *(len(node) for node in nodes)]),
             member=np.concatenate([np.zeros(0, np.int64), *nodes]),
             weight=np.concatenate([np.zeros((3, 0)), *(weight for _, weight in self._members)], axis=1),
             bearer_start=np.zeros(len(nodes) + 1, dtype=np.int64),
         )
+
+
+def _with_power(number: int, signal: int) -> _Batch:
+    """The power of the waves that enter through a side by forces alone, a signal."""
+    nothing = np.zeros(0, dtype=np.int64)
+    return _Batch(kinds.POWER, number, 0, 1.0, signal, nothing, np.zeros(0), np.zeros(0), nothing)
 
 
 def _has_loads(scene: Scene) -> bool:

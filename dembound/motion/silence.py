@@ -40,8 +40,9 @@ def silent_rule(scene: Scene, sources: Sequence[Source]) -> Silent:
 
 
 def monitored(scene: Scene) -> np.ndarray:
-    """Places (k, 2) m of the nodes of the case's monitors, without those of a free-field column."""
-    return scene.positions[[scene.monitors[monitor.name] for monitor in scene.case.monitor]].reshape(-1, 2)
+    """Places (k, 2) m whose motion the case's monitors record, without those of a free-field column."""
+    places = scene.monitored
+    return np.array([places[monitor.name] for monitor in scene.case.monitor]).reshape(-1, 2)
 
 
 def _passed(source: Source, places: np.ndarray) -> float:
@@ -62,7 +63,7 @@ def _longest(scene: Scene, sources: Sequence[Source], places: np.ndarray) -> flo
 
 
 class Silence(Tracker):
-    """Ends a run when all probes have been silent for long enough; a probe that has not moved yet is silent, too.
+    """Ends a run when all monitors have been silent for long enough; one that has not moved yet is silent, too.
 
     It looks after every return of the loop, which it neither makes nor changes, so histories have the same bits.
 
@@ -84,8 +85,8 @@ class Silence(Tracker):
         """Does nothing, as it is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
-        """Find the last step at which any probe was loud, and end the run if that is long ago."""
-        speeds = np.abs(record[:, :, 3:5]).max(axis=2)
+        """Find the last step at which any monitor was loud, and end the run if that is long ago."""
+        speeds = np.abs(run.scene.observed(record)[:, :, 3:5]).max(axis=2)
         peaks = self._peaks if self._peaks.size else np.zeros(speeds.shape[1])
         so_far = np.maximum(np.maximum.accumulate(speeds, axis=0), peaks)
         loud = np.flatnonzero((speeds > self._level * so_far).any(axis=1))
@@ -97,7 +98,7 @@ class Silence(Tracker):
             run.stopped = True
 
     def memory(self) -> Arrays:
-        """The largest speed of every probe so far, and the last step at which one was loud."""
+        """The largest speed of every monitor so far, and the last step at which one was loud."""
         return {**super().memory(), "peaks": self._peaks, "loud": np.array(self._loud)}
 
     def recall(self, memory: Arrays) -> None:

@@ -155,8 +155,8 @@ class Simulation:
     def _advance(self, record: np.ndarray) -> None:
         """Do as many steps as the record (k, p, 6 or 7) has rows, with changes of law if necessary."""
         times = (self.state.step + np.arange(len(record))) * self.time_step
-        supports = self._supports.table(times)
-        signals = np.zeros((0, 0)) if self.sides is None else self.sides.sampled(times)
+        signals = self._supports.sampled(times)
+        supports = self._supports.table(signals)
         done = 0
         while done < len(record):
             remaining = supports._replace(drive=supports.drive[done:])

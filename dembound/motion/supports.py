@@ -42,10 +42,14 @@ class NodeSupports:
         self.mobility = moves / (self.inertia + 0.5 * damping)
         self.keep = moves * (self.inertia - 0.5 * damping) / (self.inertia + 0.5 * damping)
 
-    def table(self, times: np.ndarray) -> tables.Supports:
-        """The table for steps that begin at `times` (steps,) s."""
-        drive = np.zeros((len(times), len(self.nodes), 3))
-        drive[:, self._at[0], self._at[1]] = self._rows.sample(times, self._half_step)
+    def sampled(self, times: np.ndarray) -> np.ndarray:
+        """Values (steps, q) of all signals for steps that begin at `times` (steps,) s."""
+        return self._rows.sampled(times, self._half_step)
+
+    def table(self, signals: np.ndarray) -> tables.Supports:
+        """The table for steps with these values (steps, q) of all signals."""
+        drive = np.zeros((len(signals), len(self.nodes), 3))
+        drive[:, self._at[0], self._at[1]] = self._rows.driven(signals)
         return tables.Supports(
             nodes=self.slots,
             inertia=self.inertia,

@@ -72,6 +72,11 @@ class GridScene(Scene):
         return np.array([1.0, 1.0, 0.0])
 
     @property
+    def moves(self) -> np.ndarray:
+        """(3, n) bool, False for rotations, and on the outer edges of layers."""
+        return super().moves & ~self.body.mesh.held
+
+    @property
     def damp(self) -> float:
         """None."""
         return 0.0

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.kernels.grid_tables import Absorber, Blocks, Shape
+from dembound.kernels.grid_tables import ALONG, Absorber, Blocks, Elements
 from dembound.kernels.lanes import LANES
 from dembound.motion.layout import aligned_zeros
 from dembound.outside.layer import Absorption, Profile
@@ -18,6 +18,8 @@ NO_ELEMENT = -1
 @dataclass(frozen=True, eq=False)
 class ElementBlocks:
     """The elements of a mesh in blocks: first all elastic ones, then those that absorb along x, y, and both.
+
+    Within each kind they are sorted by shape.
 
     Attributes
     ----------
@@ -35,10 +37,10 @@ class ElementBlocks:
 
     @cached_property
     def elements(self) -> np.ndarray:
-        """(B, 8) the elements of every block, −1 for none; those of a block are of one kind."""
+        """(B, 8) the elements of every block, −1 for none; those of a block are of one kind and shape."""
         blocks = []
-        for kind in range(4):
-            members = np.flatnonzero(self._kinds == kind)
+        for kind, shape in np.ndindex(4, len(self.mesh.shapes)):
+            members = np.flatnonzero((self._kinds == kind) & (self.mesh.element_shape == shape))
             padded = np.full(-(-len(members) // LANES) * LANES, NO_ELEMENT)
             padded[: len(members)] = members
             blocks.append(padded.reshape(-1, LANES))
@@ -124,6 +126,7 @@ class ElementBlocks:
         return Blocks(
             blocks=len(nodes),
             layers=self.layers,
+            shapes=self.mesh.element_shape[self.elements[:, 0]],
             core_begin=self.begin,
             rim_slot=np.where(nodes < 0, unused, self.slot[nodes]).astype(np.uint32).ravel(),
             shared_begin=self.shared_begin,
@@ -146,17 +149,18 @@ class ElementBlocks:
         return start, place.ravel()[order].astype(np.uint32)
 
 
-def shape_of(blocks: ElementBlocks, medium: Medium) -> Shape:
-    """What all elements have in common, for the kernels."""
-    mesh, rule = blocks.mesh, blocks.mesh.rule
-    along = [2.0 / size * rule.derivative for size in mesh.element]
-    area = 0.25 * mesh.element[0] * mesh.element[1]
-    return Shape(
-        gradient_x=along[0].ravel(),
-        gradient_y=along[1].ravel(),
-        divergence_x=-along[0].T.ravel(),
-        divergence_y=-along[1].T.ravel(),
-        weight=area * np.outer(rule.weights, rule.weights).ravel(),
+def elements_of(blocks: ElementBlocks, medium: Medium, thickness: float = 1.0) -> Elements:
+    """The elements of each shape, of a thickness (m), for the kernels."""
+    rule, sizes = blocks.mesh.rule, blocks.mesh.shapes
+    along_x, along_y = (2.0 / size[:, None, None] * rule.derivative for size in sizes.T)
+    volumes = 0.25 * thickness * np.prod(sizes, axis=1)
+    flat = len(sizes), -1
+    return Elements(
+        gradient_x=along_x.reshape(flat),
+        gradient_y=along_y.reshape(flat),
+        divergence_x=-along_x.swapaxes(1, 2).reshape(flat),
+        divergence_y=-along_y.swapaxes(1, 2).reshape(flat),
+        weight=volumes[:, None] * np.outer(rule.weights, rule.weights).ravel(),
         moduli=medium.moduli,
         core=blocks.core,
         rim=blocks.rim,
@@ -170,14 +174,20 @@ def absorber_of(blocks: ElementBlocks, medium: Medium, settings: Absorption, ste
     columns = np.zeros((3, len(elements), 2, count, LANES))  # B, A and τ
     for axis in (0, 1):
         lines = mesh.order * mesh.elements[elements, axis][:, None] + np.arange(count)[:, None]  # (L, N, 8)
-        depth = mesh.line_depth(axis)[lines % len(mesh.line_depth(axis))]
-        for side, thickness in zip((-1.0, 1.0), mesh.thickness(axis), strict=True):
+        depth = mesh.axes[axis].depth[lines % mesh.axes[axis].lines]
+        for side, thickness in zip((-1.0, 1.0), mesh.axes[axis].thickness, strict=True):
             if thickness > 0.0:
                 profile = Profile(thickness, medium.normal_speed(axis), mesh.inner, settings)
                 q = np.clip(side * depth, 0.0, 1.0)
                 values = profile.decay(q, step), profile.gain(q, step), profile.delay(q, step)
                 columns[:, :, axis] = np.where(side * depth > 0.0, values, columns[:, :, axis])
+                if mesh.periodic[1 - axis]:
+                    along = [of(q, step, settings.along) for of in (profile.decay, profile.gain)]
+                    columns[:2, :, 1 - axis] = np.where(side * depth > 0.0, along, columns[:2, :, 1 - axis])
     size = len(elements) * 4 * count**2 * LANES
     decay, gain, delay = (column.ravel() for column in columns)
     axes = blocks.kinds[len(blocks.kinds) - blocks.layers :].astype(np.int64)
+    for axis in (0, 1):
+        if mesh.periodic[axis]:
+            axes |= (1 | ALONG) << axis
     return Absorber(axes, decay, gain, delay, aligned_zeros(size), aligned_zeros(size))

@@ -11,7 +11,7 @@ from dembound.kernels.grid import fill_forces
 from dembound.kernels.grid_tables import Absorber, Grid
 from dembound.kernels.lanes import LANES
 from dembound.motion.layout import aligned_zeros
-from dembound.outside.blocks import ElementBlocks, absorber_of, shape_of
+from dembound.outside.blocks import ElementBlocks, absorber_of, elements_of
 from dembound.outside.layer import USUAL, Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Mesh
@@ -19,12 +19,13 @@ from dembound.outside.mesh import Mesh
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class GridBody:
-    """A continuum on a mesh, one metre thick.
+    """A continuum on a mesh.
 
     Attributes
     ----------
     mesh, medium : its elements, and density and moduli.
     absorption : settings of the layers of the mesh.
+    thickness : m, across the plane; by default that of the disks.
     added_mass : (n,) kg on nodes, beyond that of the medium; by default none.
     first_slot : slot of its first node in the scene; multiples of eight are fastest.
     """
@@ -32,6 +33,7 @@ class GridBody:
     mesh: Mesh
     medium: Medium
     absorption: Absorption = USUAL
+    thickness: float = 1.0
     added_mass: np.ndarray | float = 0.0
     first_slot: int = 0
 
@@ -43,7 +45,7 @@ class GridBody:
     @cached_property
     def mass(self) -> np.ndarray:
         """(n,) kg."""
-        return self.medium.density * self.mesh.areas + self.added_mass
+        return self.medium.density * self.thickness * self.mesh.areas + self.added_mass
 
     @cached_property
     def mass_for_limit(self) -> np.ndarray:
@@ -62,11 +64,11 @@ class GridBody:
 
     def bundle(self, absorber: Absorber) -> Grid:
         """The arrays of its law."""
-        shape, blocks = shape_of(self.blocks, self.medium), self.blocks.bundle
-        space = 6 * len(shape.weight) * LANES
+        elements, blocks = elements_of(self.blocks, self.medium, self.thickness), self.blocks.bundle
+        space = 6 * elements.weight.shape[1] * LANES
         return Grid(
             points=tuple(self.mesh.rule.points.tolist()),
-            shape=shape,
+            elements=elements,
             blocks=blocks,
             absorber=absorber,
             force=aligned_zeros(2 * len(blocks.rim_slot)),

@@ -1,57 +1,214 @@
-"""The size of elements that waves of a case need."""
+"""The settings of a continuum that the waves of a case need, for an error of their velocities that is asked for.
+
+Each function gives one setting. Their numbers are measured: bodies of 40 × 20 disks (D = 1 m, pattern A, c_s =
+707 m/s) with a force on the surface or inside, a cosine pulse of 0.1, 0.2 or 0.4 s or a Ricker wavelet of 5 or 10 Hz,
+beside bodies so large that nothing returns. Errors are the RMS of the velocities of all disks farther than 5 m from the
+force, over that of these velocities; on the surface beside the force, where Rayleigh waves have more of the high
+frequencies, they are two to three times as large.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from dembound.casefile import Case
-from dembound.errors import CaseError
 from dembound.outside.medium import Medium
 from dembound.waves.wave import Wave
 
-SHARE = 0.999
-"""Share of the energy of a wave's velocity below its cut-off frequency."""
+SHARE = 1e-3
+"""Share of the energy of a wave's velocity above its cut-off frequency."""
 
 LEAST_SPACING = 1.25
 """Smallest mean spacing of nodes in diameters: finer elements gain nothing, as the disks themselves disperse."""
 
-SAMPLES = 2**14
+LEAST_LATTICE, LEAST_RANDOM = 0.31, 0.7
+"""Smallest side of elements over their order squared, in diameters, of a lattice and of random packings.
 
-POINTS = {3: (0.17, 20.0), 4: (0.05, 24.0), 5: (0.05, 24.0), 6: (0.05, 24.0)}
-"""By order: error (%) of waves over some wavelengths with so many nodes per shortest S wavelength; it falls as the
-square of the spacing at least. Measured round a tunnel for orders 3 and 4; higher orders, which are
-more accurate, have the number of the latter."""
+The nodes next to the ends of an element are so much closer and lighter, and with random packings the ties also act on
+the gradients there: steps are 20 to 30 % shorter with such elements than with large ones, with sides half as long by a
+third, and in random packings to a fifth.
+"""
+
+NODES = {3: 7.0, 4: 6.0, 5: 6.0, 6: 6.0}
+"""By order: nodes in the length of an S wave that elements still pass on.
+
+They return waves shorter than that, so the error of a pulse is the root of their share of its energy. From errors of
+cosine pulses between 17 % and 0.02 % follow 3 to 5 nodes with any order. Ricker wavelets, which have hardly any shorter
+waves, need as many as are given here for an error of 0.1 %.
+"""
+
+NEAR = {3: 2.0, 4: 3.0, 5: 3.5, 6: 4.0}
+"""By order: side of elements over the distance of a force from them, with errors of displacements of 0.1 %.
+
+The static field of a force or hole varies within that distance, whatever the waves. Elements with sides of 2.35 times
+the distance have errors of 0.15, 0.04, 0.013 and 0.010 %, which rise with the third power of the side.
+"""
+
+WITHIN = 0.4
+"""Part of the depth of layers that counts as distance from what sends waves, where these run along the layers.
+
+Measured with a tunnel (radius 20 m, ν = 0) 75, 150 and 225 m below the surface, layers that begin 10 to 90 m beside a
+box of 60 m round it, and pulses of 0.1, 0.25 and 0.5 s, both P and S: errors of 13 to 0.1 % are 0.4 to 2.4 times those
+of `grazing_error`.
+"""
+
+FLATTEST = 0.9
+"""Largest cosine of the angle of incidence that is asked for: two depths to the side."""
+
+LAYER_ERRORS = {
+    3: {2: 4.3e-2, 3: 7e-3, 4: 1.4e-3, 5: 4e-4, 6: 2e-4},
+    4: {2: 7e-3, 3: 4e-4, 4: 9e-5, 6: 3e-5},
+    5: {2: 8e-4, 3: 6e-5, 4: 2e-5},
+    6: {2: 1e-4, 3: 5e-5},
+}
+"""By order and number of elements that absorb: error of displacements, which is larger there than that of velocities.
+
+It does not depend on the length of the waves: layers of 0.2 to 3 wavelengths of S waves at the cut-off frequency have
+the same errors. With R0 = 1e-4, or 1e-5 where that is less.
+"""
+
+LASTING = 2e-5
+"""Displacement that is missing at a time t under a force that stays, over (α0 t)².
+
+The shift α0 of the layers' poles makes them reflect frequencies below α0. Measured to 12 s with L_inner from 80 m to
+360 m and α0 of 0.1 and 0.3 times c_p/(2 L_inner), α0 t = 3 to 22, beside a margin of 480 m: 0.02 % to 1.0 %. Three
+elements of order 4 add up to 0.1 %, and more with a smaller α0; four add nothing to that.
+"""
+
+POINTS_IN_TIME = 64
+"""Samples of a wave in a period of its highest frequency."""
+
+LONGER = 8
+"""Length over which spectra are taken, over that of the wave."""
 
 
-def cutoff(wave: Wave) -> float:
-    """Frequency (Hz) below which `SHARE` of the energy of a wave's velocity lies; infinite for one without an end."""
-    end = wave.duration()
-    if not math.isfinite(end):
-        return wave.highest_frequency()
-    length = end - wave.start
-    times = wave.start + 4.0 * length * np.arange(SAMPLES) / SAMPLES
-    energy = np.cumsum(np.abs(np.fft.rfft(wave.velocity(times))) ** 2)
-    return float(np.searchsorted(energy, SHARE * energy[-1]) / (4.0 * length))
+class Signal(NamedTuple):
+    """What starts waves: the velocity of a side, or a force."""
+
+    wave: Wave
+    is_force: bool
 
 
-def shortest_wave(case: Case, medium: Medium) -> float:
-    """Length (m) of the slowest waves of the medium at the highest cut-off frequency of the waves of a case.
+def energies(signal: Signal) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies (m,) Hz and the energies (m,) of velocities there, of any unit.
 
-    Raises CaseError if the case has no wave, or one that jumps.
+    Of a force they are the body waves' of a plane medium, whose velocities are √ω times its spectrum. Of a wave that
+    stays constant in the end, only its rise counts.
     """
-    frequencies = [cutoff(wave) for wave in case.wave.values()]
-    if not frequencies:
-        raise CaseError(["outside.element: is 0, but the case has no wave that it could be chosen from; give it"])
-    if not math.isfinite(max(frequencies)):
-        raise CaseError(["outside.element: is 0, but a wave jumps, which no element resolves; give it"])
-    slowest = min(float(medium.plane_waves((math.cos(a), math.sin(a)))[0][0]) for a in np.linspace(0.0, math.pi, 37))
-    return slowest / max(frequencies)
+    wave = signal.wave
+    length = (wave.peak_time() if wave.stays else wave.duration()) - wave.start
+    samples = 2 ** math.ceil(math.log2(min(max(POINTS_IN_TIME * length * wave.highest_frequency(), 2**12), 2**18)))
+    step = length / samples
+    velocity = wave.velocity(wave.start + step * np.arange(-1, samples + 1))
+    spectrum = np.abs(np.fft.rfft(np.diff(velocity), LONGER * samples)) ** 2
+    frequency = np.fft.rfftfreq(LONGER * samples, step)
+    change = 2.0 * np.sin(math.pi * frequency[1:] * step)  # of a step from sample to sample
+    return frequency[1:], spectrum[1:] / change**2 * (frequency[1:] if signal.is_force else 1.0)
 
 
-def element_size(case: Case, medium: Medium, diameter: float, order: int = 4, accuracy: float = 1e-3) -> float:
-    """Largest side (m) of elements with which waves have this accuracy, in a medium of disks of this mean diameter."""
-    percent, points = POINTS[order]
-    needed = points * math.sqrt(percent / (100.0 * accuracy))
-    return max(order * shortest_wave(case, medium) / needed, order * LEAST_SPACING * diameter)
+def jumps(signal: Signal) -> bool:
+    """Whether its wave changes at once."""
+    return not math.isfinite(signal.wave.highest_frequency())
+
+
+def cutoff(signal: Signal, share: float = SHARE) -> float:
+    """Frequency (Hz) above which there is a share of the energy of velocities; infinite for a wave that jumps."""
+    if jumps(signal):
+        return math.inf
+    frequency, energy = energies(signal)
+    below = np.cumsum(energy)
+    return float(frequency[min(np.searchsorted(below, (1.0 - share) * below[-1]), len(frequency) - 1)])
+
+
+def slowest(medium: Medium) -> float:
+    """Speed (m/s) of the slowest plane waves of all directions."""
+    return min(float(medium.plane_waves((math.cos(a), math.sin(a)))[0][0]) for a in np.linspace(0.0, math.pi, 37))
+
+
+def shortest_wave(signals: Sequence[Signal], medium: Medium, share: float = SHARE) -> float:
+    """Length (m) of the slowest waves at the highest of the frequencies above which signals have a share of energy."""
+    return slowest(medium) / max(cutoff(signal, share) for signal in signals)
+
+
+def element_size(signals: Sequence[Signal], medium: Medium, order: int, accuracy: float) -> float:
+    """Largest side (m) of elements that pass on all but a share accuracy² of the energy of waves."""
+    return order * shortest_wave(signals, medium, accuracy**2) / NODES[order]
+
+
+def size_near(clearance: float, order: int, accuracy: float) -> float:
+    """Largest side (m) of elements beside which a force or hole is so near, m."""
+    return NEAR[order] * clearance * math.cbrt(1e3 * accuracy)
+
+
+def near_error(clearance: float, order: int, side: float) -> float:
+    """Error of displacements of elements with a side (m) so near to a force or hole, m: the reverse of `size_near`."""
+    return 1e-3 * (side / (NEAR[order] * clearance)) ** 3
+
+
+def least_size(order: int, diameter: float, *, is_random: bool) -> float:
+    """Smallest useful side (m) of elements beside disks of this mean diameter, m; is_random : not of a lattice."""
+    return max(order * LEAST_SPACING, order**2 * (LEAST_RANDOM if is_random else LEAST_LATTICE)) * diameter
+
+
+def layer_count(order: int, accuracy: float) -> int:
+    """Number of elements that absorb, one behind the other, with at most half of that error, or the most measured."""
+    errors = LAYER_ERRORS[order]
+    return min((count for count, error in errors.items() if error <= 0.5 * accuracy), default=max(errors))
+
+
+def inner_length(time: float, speed: float, shift: float, accuracy: float) -> float:
+    """Least larger side (m) within the layers, with which half of the accuracy is missing at a time (s) of a force.
+
+    speed : of P waves, m/s. shift : of the layers, see layer.py.
+    """
+    return 0.5 * shift * speed * time * math.sqrt(LASTING / (0.5 * accuracy))
+
+
+def missing(time: float, speed: float, shift: float, inner: float) -> float:
+    """Share of the displacement that is missing at a time (s) of a lasting force: the reverse of `inner_length`."""
+    return LASTING * (0.5 * shift * speed * time / inner) ** 2
+
+
+def offset(depth: float, ratio: float, reflection: float, accuracy: float) -> float:
+    """Least distance sideways (m) at which layers absorb what comes back from a free surface, see `grazing_error`.
+
+    It counts from a hole or force at this depth (m) under the surface.
+    """
+    share = min(math.log(accuracy) / math.log(reflection) * ratio, FLATTEST)
+    return depth * share / math.sqrt(1.0 - share**2)
+
+
+def grazing_error(depth: float, ratio: float, reflection: float, beside: float) -> float:
+    """Error of velocities beside layers that much to the side (m) of a hole or force at a depth (m): cf. `offset`.
+
+    Waves that the free surface sends back meet the layers at an angle θ with cos θ = beside/√(beside² + depth²), and S
+    waves keep R0^(cos θ/ratio). ratio : of the slowest speed to the fastest.
+    """
+    return float(reflection ** (beside / math.hypot(beside, depth) / ratio))
+
+
+def reflection(accuracy: float) -> float:
+    """R0: a tenth of the accuracy, as waves lose less of their amplitude at oblique incidence.
+
+    Displacements in the body then have an error of a twentieth of it.
+    """
+    return 0.1 * accuracy
+
+
+def element_error(signals: Sequence[Signal], medium: Medium, order: int, side: float) -> float:
+    """Error of velocities with elements of this side (m), of the worst signal: the reverse of `element_size`."""
+    passed = order * slowest(medium) / (NODES[order] * side)
+    errors = [1.0]
+    if not any(jumps(signal) for signal in signals):
+        spectra = [energies(signal) for signal in signals]
+        errors = [math.sqrt(float(energy[f > passed].sum() / energy.sum())) for f, energy in spectra]
+    return max(errors)
+
+
+def layer_error(order: int, layers: int) -> float:
+    """Error of displacements with this number of elements that absorb, at least: that of the next smaller one known."""
+    errors = LAYER_ERRORS[order]
+    return errors[max(count for count in errors if count <= layers)]

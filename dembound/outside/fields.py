@@ -13,11 +13,10 @@ def stress(body: GridBody, displacement: np.ndarray) -> np.ndarray:
     mesh = body.mesh
     derivative = mesh.rule.derivative
     u = displacement[:, mesh.nodes]  # (2, E, N, N) by row and column
-    along_x = 2.0 / mesh.element[0] * np.einsum("ik,cejk->ceji", derivative, u)
-    along_y = 2.0 / mesh.element[1] * np.einsum("jk,ceki->ceji", derivative, u)
+    steeper_x, steeper_y = 2.0 / mesh.element_sizes.T[:, :, None, None]
+    along_x = steeper_x * np.einsum("ik,cejk->ceji", derivative, u)
+    along_y = steeper_y * np.einsum("jk,ceki->ceji", derivative, u)
     strain = np.stack([along_x[0], along_y[1], along_y[0] + along_x[1]])
     each = np.einsum("ab,beji->aeji", body.medium.matrix, strain)
-    weights = np.broadcast_to(np.outer(mesh.rule.weights, mesh.rule.weights), mesh.nodes.shape).ravel()
-    node = mesh.nodes.ravel()
-    total = np.bincount(node, weights, mesh.count)
-    return np.stack([np.bincount(node, weights * row.ravel(), mesh.count) / total for row in each], axis=1)
+    node, weights = mesh.nodes.ravel(), mesh.quadrature.ravel()
+    return np.stack([np.bincount(node, weights * row.ravel(), mesh.count) / mesh.areas for row in each], axis=1)

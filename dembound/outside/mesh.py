@@ -1,15 +1,18 @@
-"""A mesh of equal rectangular spectral elements round a rectangular box, with absorbing elements at its sides."""
+"""A mesh of rectangular spectral elements round a rectangular box, with absorbing elements at its sides."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from dembound.boundaries.sides import SIDES
+from dembound.outside.axis import Axis
 from dembound.outside.gll import Rule
 
 WHOLE = 1e-9
-"""Part of an element by which a box may miss its sides."""
+"""Part of an element by which a length may exceed a whole number of them."""
 
 
 class Around(NamedTuple):
@@ -40,33 +43,45 @@ class Mesh:
     """Elements in columns and rows, without those inside a box.
 
     Nodes are the Gauss–Lobatto–Legendre points, N × N in an element, numbered row by row from the bottom, from left to
-    right. The outer edges of absorbing layers are held at rest; all other edges are free.
+    right. The outer edges of absorbing layers are held at rest; all other edges are free. Kernels are fast if columns
+    have few widths and rows few heights.
 
     Attributes
     ----------
     order : of the elements, N − 1.
-    element : width and height of an element, m.
-    cells : number of columns and of rows.
+    widths, heights : of the columns from left to right, and of the rows from the bottom, m.
     origin : lower left corner, m.
     box : first column, first row, and those after the last ones, of the elements left out; None: none.
     layer : how many of the columns and rows absorb at each side.
     periodic : whether the first column (row) follows the last one.
+    mirror : 1 for each side whose edge is a plane of symmetry.
     """
 
     order: int
-    element: tuple[float, float]
-    cells: tuple[int, int]
+    widths: tuple[float, ...]
+    heights: tuple[float, ...]
     origin: tuple[float, float] = (0.0, 0.0)
     box: tuple[int, int, int, int] | None = None
     layer: Around = NONE
     periodic: tuple[bool, bool] = (False, False)
+    mirror: Around = NONE
 
     def __post_init__(self) -> None:
-        for axis in (0, 1):
+        for axis, sizes in enumerate((self.widths, self.heights)):
             if self.periodic[axis] and any(self.layer.along(axis)):
                 raise ValueError(f"a mesh that is periodic along axis {axis} has no absorbing layers there")
-            if sum(self.layer.along(axis)) > self.cells[axis]:
-                raise ValueError(f"layers have more elements along axis {axis} than the mesh, {self.cells[axis]}")
+            if any(a and b for a, b in zip(self.mirror.along(axis), self.layer.along(axis), strict=True)):
+                raise ValueError(f"a plane of symmetry across axis {axis} has no absorbing layer")
+            if sum(self.layer.along(axis)) > len(sizes):
+                raise ValueError(f"layers have more elements along axis {axis} than the mesh, {len(sizes)}")
+
+    @classmethod
+    def uniform(cls, *, element: tuple[float, float], cells: tuple[int, int], **others: Any) -> "Mesh":
+        """A mesh of equal elements.
+
+        element : their width and height, m. cells : number of columns and of rows. others : attributes of a mesh.
+        """
+        return cls(widths=(element[0],) * cells[0], heights=(element[1],) * cells[1], **others)
 
     @classmethod
     def around(
@@ -77,29 +92,42 @@ class Mesh:
         *,
         margin: Around,
         layer: Around,
+        periodic: tuple[bool, bool] = (False, False),
+        surface: float | None = None,
+        mirror: Around = NONE,
     ) -> "Mesh":
         """The mesh round a box (left, bottom, right, top; m), which may reach the free surface: no margin, no layer.
 
+        element : largest width and height, m. Columns and rows beside the box divide its sides, and all others have the
+            same widths and heights but for the rows between the box and a free surface above it, which divide that
+            distance.
         margin, layer : elements at each side of the box without and with absorption.
+        periodic : along x and y, where the box then has neither.
+        mirror : 1 for sides at planes of symmetry, which have neither.
+        surface : height y of a free surface above the box, m; None: the box reaches it, or there is a margin or layer.
 
-        Raises ValueError unless the sides of the box are whole numbers of elements.
+        Raises ValueError if the box is empty, or the surface is below its top or has a margin or layer below it.
         """
-        inside = []
-        for axis, name in enumerate(("width", "height")):
-            count = (box[2 + axis] - box[axis]) / element[axis]
-            if abs(count - round(count)) > WHOLE or round(count) < 1:
-                raise ValueError(f"the {name} of the box is {count:g} elements, must be a whole number of them")
-            inside.append(round(count))
-        before = [margin.along(axis)[0] + layer.along(axis)[0] for axis in (0, 1)]
-        after = [margin.along(axis)[1] + layer.along(axis)[1] for axis in (0, 1)]
-        left, bottom = before
+        columns, rows = (_divided(box[2 + axis] - box[axis], element[axis]) for axis in (0, 1))
+        if not (columns and rows):
+            raise ValueError("the box is empty")
+        left, right = ((columns[0],) * (margin.along(0)[side] + layer.along(0)[side]) for side in (0, 1))
+        bottom, top = ((rows[0],) * (margin.along(1)[side] + layer.along(1)[side]) for side in (0, 1))
+        if surface is not None:
+            if top:
+                raise ValueError("a free surface above the box leaves no place for a margin or a layer at the top")
+            if surface < box[3]:
+                raise ValueError(f"the free surface, y = {surface:g} m, is below the top of the box, {box[3]:g} m")
+            top = _divided(surface - box[3], element[1])
         return cls(
             order=order,
-            element=element,
-            cells=(left + inside[0] + after[0], bottom + inside[1] + after[1]),
-            origin=(box[0] - left * element[0], box[1] - bottom * element[1]),
-            box=(left, bottom, left + inside[0], bottom + inside[1]),
+            widths=left + columns + right,
+            heights=bottom + rows + top,
+            origin=(box[0] - len(left) * columns[0], box[1] - len(bottom) * rows[0]),
+            box=(len(left), len(bottom), len(left) + len(columns), len(bottom) + len(rows)),
             layer=layer,
+            periodic=periodic,
+            mirror=mirror,
         )
 
     @cached_property
@@ -108,29 +136,67 @@ class Mesh:
         return Rule(self.order)
 
     @cached_property
-    def elements(self) -> np.ndarray:
-        """(E, 2) column and row of every element, row by row from the bottom."""
-        kept = np.ones(self.cells[::-1], dtype=np.bool_)
+    def axes(self) -> tuple[Axis, Axis]:
+        """Its columns and its rows."""
+        x, y = (
+            Axis(self.rule, np.array(sizes), self.layer.along(axis), self.periodic[axis])
+            for axis, sizes in enumerate((self.widths, self.heights))
+        )
+        return x, y
+
+    @property
+    def cells(self) -> tuple[int, int]:
+        """Number of columns and of rows."""
+        return len(self.widths), len(self.heights)
+
+    @cached_property
+    def _element_at(self) -> np.ndarray:
+        """Number of the element in every row and column, −1 in the box."""
+        numbers = np.zeros(self.cells[::-1], dtype=np.int64)
         if self.box is not None:
             left, bottom, right, top = self.box
-            kept[bottom:top, left:right] = False
-        return np.argwhere(kept)[:, ::-1]
+            numbers[bottom:top, left:right] = -1
+        there = numbers >= 0
+        numbers[there] = np.arange(there.sum())
+        return numbers
 
-    def _lines(self, axis: int) -> int:
-        """Number of lines of nodes across an axis."""
-        return self.order * self.cells[axis] + (not self.periodic[axis])
+    @cached_property
+    def elements(self) -> np.ndarray:
+        """(E, 2) column and row of every element, row by row from the bottom."""
+        return np.argwhere(self._element_at >= 0)[:, ::-1]
+
+    @cached_property
+    def element_sizes(self) -> np.ndarray:
+        """(E, 2) width and height of every element, m."""
+        return np.stack([self.axes[a].sizes[self.elements[:, a]] for a in (0, 1)], axis=1)
+
+    @cached_property
+    def _shapes(self) -> tuple[np.ndarray, np.ndarray]:
+        """The widths and heights that elements have, (S, 2) m ascending, and which of them each element has, (E,)."""
+        shapes, each = np.unique(self.element_sizes, axis=0, return_inverse=True)
+        return shapes, each.ravel()
+
+    @property
+    def shapes(self) -> np.ndarray:
+        """(S, 2) the different widths and heights that elements have, m."""
+        return self._shapes[0]
+
+    @property
+    def element_shape(self) -> np.ndarray:
+        """(E,) which of the shapes every element has."""
+        return self._shapes[1]
 
     @cached_property
     def _element_lines(self) -> tuple[np.ndarray, np.ndarray]:
         """The lines through the points of every element along x and along y, (E, N) each."""
         lines = [self.order * self.elements[:, axis, None] + np.arange(self.order + 1) for axis in (0, 1)]
-        return lines[0] % self._lines(0), lines[1] % self._lines(1)
+        return lines[0] % self.axes[0].lines, lines[1] % self.axes[1].lines
 
     @cached_property
     def _numbers(self) -> np.ndarray:
         """Number of the node at every crossing of lines, (rows, columns), −1 where there is none."""
         x, y = self._element_lines
-        numbers = np.full((self._lines(1), self._lines(0)), -1)
+        numbers = np.full((self.axes[1].lines, self.axes[0].lines), -1)
         numbers[y[:, :, None], x[:, None, :]] = 0
         there = numbers >= 0
         numbers[there] = np.arange(there.sum())
@@ -149,60 +215,75 @@ class Mesh:
 
     @property
     def node_cells(self) -> np.ndarray:
-        """(c, 4) nodes at the corners of the cells between neighbouring nodes, counterclockwise."""
+        """(c, 4) nodes at the corners of the cells between neighbouring nodes, counterclockwise.
+
+        Without cells across periodic sides, whose corners do not surround them.
+        """
         nodes = self.nodes
         corners = [nodes[:, :-1, :-1], nodes[:, :-1, 1:], nodes[:, 1:, 1:], nodes[:, 1:, :-1]]
-        return np.stack([corner.ravel() for corner in corners], axis=1)
+        cells = np.stack([corner.ravel() for corner in corners], axis=1)
+        lines = self.crossing[cells]
+        return cells[(lines[:, 2] > lines[:, 0]).all(axis=1)]
+
+    @property
+    def rectangles(self) -> np.ndarray:
+        """(E, 4) left, bottom, right and top of every element, m."""
+        low, high = (
+            np.stack([self.axes[a].edges[self.elements[:, a] + end] for a in (0, 1)], axis=1) for end in (0, 1)
+        )
+        return np.hstack([low + self.origin, high + self.origin])
+
+    @property
+    def free_sides(self) -> np.ndarray:
+        """(k, 4) m, the ends x, y, x, y of the element sides that are free and do not face the box."""
+        each, corners = [np.zeros((0, 4))], self.rectangles
+        for axis in (0, 1):
+            for end, layer in enumerate(self.layer.along(axis)):
+                if layer or self.periodic[axis] or self.mirror.along(axis)[end]:
+                    continue
+                last = self.elements[:, axis] == (self.cells[axis] - 1) * end
+                side = corners[last]
+                side[:, [axis, axis + 2]] = side[:, [axis + 2 * end]]
+                each.append(side)
+        return np.concatenate(each)
 
     @cached_property
     def crossing(self) -> np.ndarray:
         """(n, 2) the lines across x and across y that every node lies on."""
         return np.argwhere(self._numbers >= 0)[:, ::-1]
 
-    def _line_places(self, axis: int) -> np.ndarray:
-        """Distance (lines,) of the lines across an axis from the origin, in elements."""
-        cell, point = np.divmod(np.arange(self._lines(axis)), self.order)
-        return cell + 0.5 * (1.0 + self.rule.points[point])
-
     @cached_property
     def positions(self) -> np.ndarray:
         """(n, 2) m."""
-        return (
-            np.stack([self._line_places(a)[self.crossing[:, a]] for a in (0, 1)], axis=1) * self.element + self.origin
-        )
+        return np.stack([self.axes[a].places[self.crossing[:, a]] for a in (0, 1)], axis=1) + self.origin
 
     @property
     def size(self) -> np.ndarray:
         """(2,) width and height with box and layers, m."""
-        return np.array(self.cells) * self.element
+        return np.array([axis.length for axis in self.axes])
+
+    @property
+    def sides(self) -> tuple[float, float, float, float]:
+        """Left, right, lower and upper side of the box, m; of a mesh without one those of the mesh."""
+        left, bottom, right, top = self.box or (0, 0, *self.cells)
+        x, y = (self.origin[a] + axis.edges for a, axis in enumerate(self.axes))
+        return float(x[left]), float(x[right]), float(y[bottom]), float(y[top])
 
     @property
     def inner(self) -> float:
         """The larger side (m) of what lies within all layers."""
-        return float(max((self.cells[a] - sum(self.layer.along(a))) * self.element[a] for a in (0, 1)))
+        return max(axis.inner for axis in self.axes)
 
-    def thickness(self, axis: int) -> tuple[float, float]:
-        """Of the layers before and after along an axis, m."""
-        before, after = self.layer.along(axis)
-        return before * self.element[axis], after * self.element[axis]
-
-    def line_depth(self, axis: int) -> np.ndarray:
-        """Depth (lines,) of the lines across an axis in its layers, over their thickness: negative in the first one.
-
-        Between −1 and 1, and 0 between the layers.
-        """
-        before, after = self.layer.along(axis)
-        places, depth = self._line_places(axis), np.zeros(self._lines(axis))
-        if before:
-            depth -= np.clip(1.0 - places / before, 0.0, 1.0)
-        if after:
-            depth += np.clip(1.0 - (self.cells[axis] - places) / after, 0.0, 1.0)
-        return depth
+    @property
+    def between_layers(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower left and upper right corner (2,) m of what lies between the layers, with the box."""
+        before, after = np.transpose([axis.thickness for axis in self.axes])
+        return self.origin + before, self.origin + self.size - after
 
     @cached_property
     def depth(self) -> np.ndarray:
         """(n, 2) depth of every node in the layers along x and y, 0 … 1; 0 outside and where they begin."""
-        return np.abs(np.stack([self.line_depth(a)[self.crossing[:, a]] for a in (0, 1)], axis=1))
+        return np.abs(np.stack([self.axes[a].depth[self.crossing[:, a]] for a in (0, 1)], axis=1))
 
     @cached_property
     def absorbs(self) -> np.ndarray:
@@ -219,19 +300,57 @@ class Mesh:
         """(n,) bool, the nodes on the outer edges of layers."""
         return (self.depth == 1.0).any(axis=1)
 
+    def on_mirrors(self, axis: int) -> np.ndarray:
+        """Nodes (k,) on planes of symmetry across an axis, ascending, but for held ones."""
+        line, ends = self.crossing[:, axis], (0, self.axes[axis].lines - 1)
+        there = [line == end for end, plane in zip(ends, self.mirror.along(axis), strict=True) if plane]
+        return np.flatnonzero(np.any(there, axis=0) & ~self.held) if there else np.zeros(0, dtype=np.int64)
+
+    @property
+    def quadrature(self) -> np.ndarray:
+        """(E, N, N) m², weights of the points of every element; their sum is its area."""
+        weights = np.outer(self.rule.weights, self.rule.weights)
+        return 0.25 * np.prod(self.element_sizes, axis=1)[:, None, None] * weights
+
     @cached_property
     def areas(self) -> np.ndarray:
         """(n,) m², of the quadrature: mass over density and thickness."""
-        each = 0.25 * self.element[0] * self.element[1] * np.outer(self.rule.weights, self.rule.weights)
-        return np.bincount(self.nodes.ravel(), np.tile(each.ravel(), len(self.nodes)), self.count)
+        return np.bincount(self.nodes.ravel(), self.quadrature.ravel(), self.count)
+
+    def edge_lengths(self, side: str) -> np.ndarray:
+        """(n,) m, of the quadrature along the outermost edge at a side, for the nodes on it; 0 for others."""
+        axis, last = divmod(SIDES.index(side), 2)
+        at_side = self.elements[:, axis] == last * (self.cells[axis] - 1)
+        nodes = self.nodes if axis == 1 else self.nodes.swapaxes(1, 2)
+        edge = nodes[at_side, -last]
+        each = 0.5 * self.element_sizes[at_side, 1 - axis, None] * self.rule.weights
+        return np.bincount(edge.ravel(), each.ravel(), self.count)
 
     def located(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The element (k,) nearest to each of the points (k, 2) m, and their places (k, 2) in it, −1 … 1 inside."""
-        cell = (np.asarray(points) - self.origin) / self.element  # in columns and rows
-        away = np.abs(cell[:, None] - 0.5 - self.elements)
-        beyond = np.maximum(away - 0.5, 0.0) * self.element
-        chosen = np.argmin(np.sum(beyond**2, axis=2), axis=1)
-        return chosen, 2.0 * (cell - self.elements[chosen]) - 1.0
+        """The element (k,) nearest to each of the points (k, 2) m, and their places (k, 2) in it, −1 … 1 inside.
+
+        Of points beyond periodic sides it is that at their images.
+        """
+        places = np.asarray(points) - self.origin
+        places = np.where(self.periodic, places % self.size, places)
+        column, row = (self.axes[a].cell_at(places[:, a]) for a in (0, 1))
+        chosen = self._element_at[row, column]
+        in_box = chosen < 0
+        chosen[in_box] = self._nearest_to_box(places[in_box])
+        first = np.stack([self.axes[a].edges[self.elements[chosen, a]] for a in (0, 1)], axis=1)
+        return chosen, 2.0 * (places - first) / self.element_sizes[chosen] - 1.0
+
+    def _nearest_to_box(self, places: np.ndarray) -> np.ndarray:
+        """The element (k,) beside the box that is nearest to each of these places (k, 2) m from the origin."""
+        if self.box is None:
+            return np.zeros(0, dtype=np.int64)
+        near = (self.elements >= np.array(self.box[:2]) - 1) & (self.elements <= self.box[2:])
+        beside = np.flatnonzero(near.all(axis=1))
+        beyond = np.zeros((len(places), len(beside)))
+        for a, axis in enumerate(self.axes):
+            cell, place = self.elements[beside, a], places[:, a, None]
+            beyond += np.maximum(np.maximum(axis.edges[cell] - place, place - axis.edges[cell + 1]), 0.0) ** 2
+        return beside[np.argmin(beyond, axis=1)]
 
     def interpolation(self, points: np.ndarray) -> Interpolation:
         """How displacements at points (k, 2) m follow from those of nodes.
@@ -242,3 +361,22 @@ class Mesh:
         x, y = (self.rule.shape(local[:, a]) for a in (0, 1))
         count = len(local)
         return Interpolation(self.nodes[chosen].reshape(count, -1), (y[:, :, None] * x[:, None, :]).reshape(count, -1))
+
+    def slopes(self, points: np.ndarray) -> np.ndarray:
+        """Derivatives (2, k, N²) along x and along y, 1/m, of the weights of `interpolation`."""
+        chosen, local = self.located(points)
+        (x, x_slope), (y, y_slope) = (
+            (
+                self.rule.shape(local[:, a]),
+                self.rule.slope(local[:, a]) * (2.0 / self.element_sizes[chosen, a])[:, None],
+            )
+            for a in (0, 1)
+        )
+        each = y[:, :, None] * x_slope[:, None, :], y_slope[:, :, None] * x[:, None, :]
+        return np.stack(each).reshape(2, len(local), -1)
+
+
+def _divided(length: float, largest: float) -> tuple[float, ...]:
+    """The sizes of as few equal parts of a length as have at most the largest one, m."""
+    count = math.ceil(length / largest - WHOLE)
+    return (length / count,) * count if count else ()

@@ -16,7 +16,7 @@ class GridPart(Part):
 
     Parameters
     ----------
-    body : elements, medium and layers. time_step : Δt in s.
+    body : elements, medium and layers. time_step : Δt in s. name : its name in the state.
     first_node : number of its first node in the scene.
     supported : (k,) its nodes, numbered from 0, that the support table or ties move.
 
@@ -24,12 +24,18 @@ class GridPart(Part):
     or on an outer edge, which is at rest.
     """
 
-    name = "continuum"
     law_name = "continuum"
 
     def __init__(
-        self, body: GridBody, time_step: float, *, first_node: int = 0, supported: np.ndarray | None = None
+        self,
+        body: GridBody,
+        time_step: float,
+        *,
+        name: str = "continuum",
+        first_node: int = 0,
+        supported: np.ndarray | None = None,
     ) -> None:
+        self.name = name
         self.body = body
         self.nodes = slice(first_node, first_node + body.count)
         self._law = body.law(time_step)

@@ -50,6 +50,9 @@ class Packing(Table, ABC):
     pattern: str
     size: Extent | None = quantity(None, unit="m", help="width and height of the scene, whole bricks")
     bricks: Count | None = quantity(None, unit="1", help="number of bricks along x and y, instead of size")
+    origin: tuple[float, float] = quantity(
+        (0.0, 0.0), unit="m", help="lower left corner of the box of disks in [ground]"
+    )
     radius: float = quantity(unit="m", help="disk radius (mean radius of a random packing)", gt=0.0)
 
     @property
@@ -91,6 +94,17 @@ class Packing(Table, ABC):
             return self.size
         (across, up), (width, height) = self.copies, self.brick_size
         return across * width, up * height
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """Left, bottom, right and top of the disks' box in metres."""
+        (left, bottom), (width, height) = self.origin, self.extent
+        return left, bottom, left + width, bottom + height
+
+    @property
+    def first_row(self) -> int:
+        """Number of rows of bricks in the ground below the box."""
+        return round(self.origin[1] / self.brick_size[1])
 
     def about(self, extent: tuple[float, float]) -> float:
         """Number of disks in a rectangle of this width and height (m), within some per cent."""

@@ -71,6 +71,20 @@ class Brick:
             raise ValueError("pairs of a brick must be indices of its disks")
 
     @property
+    def mass_offset(self) -> np.ndarray:
+        """Centre of mass (2,) m less the centre of the box.
+
+        Bricks side by side act on long waves like a uniform body of their extent that is shifted by so much.
+        """
+        return np.average(self.positions, axis=0, weights=self.radii**2) - 0.5 * self.size
+
+    @property
+    def row_widths(self) -> np.ndarray:
+        """Widths (2,) m of uniform strips of the mass of the regular rows on x = 0 and on y = 0; 0 for none."""
+        area = self.radii**2
+        return self.size * (area @ self.edge_rows) / area.sum()
+
+    @property
     def vectors(self) -> np.ndarray:
         """Contact vectors (b, 2) m, from the centre of i to the centre of j."""
         return contact_vectors(self.positions, self.pairs, self.images, self.size)

@@ -12,7 +12,10 @@ import numpy as np
 from dembound.errors import PackingError
 from dembound.packings.brick import Brick
 from dembound.packings.cut import cut_contacts
-from dembound.packings.tiling import Assembly, tile
+from dembound.packings.tiling import Assembly, Column, tile
+
+TYPED = 1e-9
+"""Part of a height by which places at its ends may be beyond."""
 
 APART = 2.0
 """Gap between column and body in mean diameters; it is only used in pictures."""
@@ -58,32 +61,41 @@ class Seam:
         return owner, self.neighbour, vectors * np.where(self.twin_is_second, -1.0, 1.0)[:, None]
 
 
-def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[Assembly, Seam]:
+def with_column(
+    brick: Brick, body: Assembly, sides: tuple[str, ...], rows: tuple[int, int] | None = None, left: float = 0.0
+) -> tuple[Assembly, Seam]:
     """A body and its free-field column in one assembly, the column first and to the left, and the seam between them.
 
-    sides : left, right or both, the sides at which the column represents the ground.
+    sides : those at which the column represents the ground.
+    rows : first row of bricks of the body in the column, and the number of rows of the column; None: it is as high as
+    the body. left : x (m) of what it is beside.
 
     Raises PackingError when a disk of the body has no twin in the column.
     """
-    column = tile(brick, (1, body.copies[1]), (True, False))
+    first, height = (0, body.copies[1]) if rows is None else rows
+    column = tile(brick, (1, height), (True, False))
     place = column.tile.astype(np.int64)
     numbers = np.full((place[:, 1].max() + 1, len(brick.radii)), -1, dtype=np.int64)
     numbers[place[:, 1], column.brick_particle] = np.arange(len(place))
     where = body.tile.astype(np.int64)
-    twin = numbers[where[:, 1], body.brick_particle]
+    level = first + where[:, 1]
+    there = (level >= 0) & (level < len(numbers))
+    twin = np.where(there, numbers[np.where(there, level, 0), body.brick_particle], -1)
     if (twin < 0).any():
         raise PackingError(f"{np.count_nonzero(twin < 0)} disks of the body have no twin in the free-field column")
     count = len(column.radii)
     width = float(brick.size[0])
-    seam = _seam(brick, body, numbers, sides)
+    corner = np.array([left - width - APART * brick.mean_diameter, 0.0])
+    seam = _seam(brick, body, first, numbers, sides)
     joint = replace(
         body,
-        positions=np.vstack([column.positions - [width + APART * brick.mean_diameter, 0.0], body.positions]),
+        positions=np.vstack([column.positions + corner, body.positions]),
         radii=np.concatenate([column.radii, body.radii]),
         brick_particle=np.concatenate([column.brick_particle, body.brick_particle]),
         tile=np.vstack([column.tile, body.tile]),
         pairs=np.vstack([column.pairs, body.pairs + np.int32(count)]),
         contact_type=np.concatenate([column.contact_type, body.contact_type]),
+        column=Column(count, column.copies, column.size, column.extent, corner),
         loose=column.loose + body.loose,
     )
     node, start = np.unique(seam["node"], return_index=True)
@@ -100,13 +112,16 @@ def with_column(brick: Brick, body: Assembly, sides: tuple[str, ...]) -> tuple[A
     )
 
 
-def _seam(brick: Brick, body: Assembly, numbers: np.ndarray, sides: tuple[str, ...]) -> dict[str, np.ndarray]:
+def _seam(
+    brick: Brick, body: Assembly, first: int, numbers: np.ndarray, sides: tuple[str, ...]
+) -> dict[str, np.ndarray]:
     """Contacts of the body's disks with neighbours beyond its sides, sorted by disk, then contact, (e,) each.
 
-    numbers (tile y, disk) are the column's particles, −1 where there is none.
+    first : row of bricks of the column at the body's lowest one. numbers (tile y, disk) are the column's particles, −1
+    where there is none: contacts with the ground below the column are not among them.
     """
     cut = cut_contacts(brick, body, sides)
-    height = cut.tile[:, 1]
+    height = first + cut.tile[:, 1]
     standing = (height >= 0) & (height < len(numbers))
     near = np.where(standing, numbers[np.where(standing, height, 0), cut.other], -1)
     columns = {
@@ -117,3 +132,21 @@ def _seam(brick: Brick, body: Assembly, numbers: np.ndarray, sides: tuple[str, .
         "image": cut.image[:, 0],
     }
     return {name: values[near >= 0] for name, values in columns.items()}
+
+
+def nearest_in_column(joint: Assembly, places: np.ndarray) -> np.ndarray:
+    """The disk (k,) of a column nearest to places (k, 2) m of the ground, modulo the column's width.
+
+    joint : a body with its column. −1 for places below the column's bottom, or above its top.
+    """
+    from scipy.spatial import cKDTree
+
+    column = joint.column
+    assert column is not None
+    width, height = column.size
+    disks = joint.positions[: column.disks] - column.origin
+    images = np.concatenate([disks + np.array([shift, 0.0]) for shift in (-width, 0.0, width)])
+    local = places - [joint.origin[0], column.origin[1]]
+    _, found = cKDTree(images).query(np.column_stack([local[:, 0] % width, local[:, 1]]))
+    over = 0.5 * (column.extent[1] - height) + TYPED * height
+    return np.where((local[:, 1] >= -over) & (local[:, 1] <= height + over), found % column.disks, -1)

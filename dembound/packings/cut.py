@@ -46,8 +46,13 @@ class CutContacts:
         return brick.vectors[self.contact_type] * np.where(self.is_second, -1.0, 1.0)[:, None]
 
 
-def cut_contacts(brick: Brick, body: Assembly, sides: Collection[str]) -> CutContacts:
-    """The contacts of a body with disks beyond these sides; where a disk is beyond two sides, both must be of them."""
+def cut_contacts(
+    brick: Brick, body: Assembly, sides: Collection[str], periodic: tuple[bool, bool] = (False, False)
+) -> CutContacts:
+    """The contacts of a body with disks beyond these sides; where a disk is beyond two sides, both must be of them.
+
+    periodic : whether the body is periodic along x and along y, so that nothing is beyond its sides there.
+    """
     where = body.tile.astype(np.int64)
     contact, second, owner = _ends(brick)
     # images are ±1 at most where bricks are as wide as two disks, so only the outer tiles have contacts beyond
@@ -61,6 +66,7 @@ def cut_contacts(brick: Brick, body: Assembly, sides: Collection[str]) -> CutCon
     other = np.where(is_second, brick.pairs[contact_type, 0], brick.pairs[contact_type, 1])
     image = np.where(is_second[:, None], -brick.images[contact_type], brick.images[contact_type])
     place = where[node] + image
+    place = np.where(periodic, place % body.copies, place)
     out = _beyond(place, brick.edge_rows[other], body.copies)
     found = CutContacts(node, contact_type, is_second, other, place, image, np.argmax(out, axis=1))
     absent = ~np.isin(_key(place, other, brick), _key(where, body.brick_particle, brick))

@@ -1,11 +1,22 @@
 """Copies of a brick, side by side, as one body."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from dembound.errors import PackingError
 from dembound.packings.brick import Brick
+
+
+class Column(NamedTuple):
+    """A column of bricks beside a body: number of its disks, and its attributes of the same names as of an assembly."""
+
+    disks: int
+    copies: tuple[int, int]
+    size: np.ndarray
+    extent: np.ndarray
+    origin: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +33,9 @@ class Assembly:
     contact_type : (b,) int32, the contact of the brick that this one is a copy of: its vector points from i to j.
     copies : number of bricks along x and y.
     size : (2,) m, the scene: copies · brick size.
-    extent : (2,) m, the body: as `size`, plus the row that closes the frame if there is one. loose : number of disks
+    extent : (2,) m, the body: as `size`, plus the row that closes the frame if there is one. origin : (2,) m, the lower
+    left corner of its first brick. column : of an assembly whose first disks are those of a column of bricks beside the
+    body, see column.py; None: there is none. loose : number of disks
     left out because the cut at an open edge, or a hole, removed all their connections to the body.
     """
 
@@ -35,6 +48,8 @@ class Assembly:
     copies: tuple[int, int]
     size: np.ndarray
     extent: np.ndarray
+    origin: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    column: "Column | None" = None
     loose: int = 0
 
     def part(self, disks: slice) -> "Assembly":
@@ -42,8 +57,14 @@ class Assembly:
         if disks == slice(0, len(self.radii)):
             return self
         chosen = (self.pairs[:, 0] >= disks.start) & (self.pairs[:, 0] < disks.stop)
+        of = self if self.column is None or disks.stop > self.column.disks else self.column
         return replace(
             self,
+            copies=of.copies,
+            size=of.size,
+            extent=of.extent,
+            origin=of.origin,
+            column=None,
             positions=self.positions[disks],
             radii=self.radii[disks],
             brick_particle=self.brick_particle[disks],
@@ -81,8 +102,10 @@ class Assembly:
         )
 
 
-def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> Assembly:
-    """Put `copies` (along x, along y) of the brick side by side.
+def tile(
+    brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool], origin: tuple[float, float] = (0.0, 0.0)
+) -> Assembly:
+    """Put `copies` (along x, along y) of the brick side by side, the first one's lower left corner at origin (m).
 
     Along a periodic axis contacts wrap around: over one copy only, a disk may then touch its own image, and
     this self-contact (i, i) is listed too (displacement does not deform it, but rotation does). Along other axes
@@ -104,7 +127,7 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
     tiles = np.column_stack([slow, fast] if swap[0] == 0 else [fast, slow])
     pairs, contact_type = _contacts(brick, numbers, copies, periodic)
     whole = Assembly(
-        positions=brick.positions[twin] + tiles * brick.size,
+        positions=brick.positions[twin] + tiles * brick.size + origin,
         radii=brick.radii[twin],
         brick_particle=twin.astype(np.int32),
         tile=tiles.astype(np.int32),
@@ -113,6 +136,7 @@ def tile(brick: Brick, copies: tuple[int, int], periodic: tuple[bool, bool]) -> 
         copies=copies,
         size=size,
         extent=size + _closing_width(brick, periodic),
+        origin=np.array(origin),
     )
     return whole.without(np.zeros(len(twin), dtype=bool))[0]
 

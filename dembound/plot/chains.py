@@ -116,10 +116,10 @@ def read_chains(file: h5py.File, snapshot: int | None) -> Chains:
 
 
 def _window(disks: Disks, chains: Chains) -> Window:
-    """The whole scene, or of a long one the part around the largest forces."""
-    size = disks.window.size
+    """All disks, or of a long scene the part around the largest forces."""
+    size = disks.own_window.size
     if max(size) <= LONG * min(size):
-        return disks.window
+        return disks.own_window
     return part_around(disks, disks.positions[np.argmax(chains.largest)])
 
 

@@ -35,6 +35,11 @@ class Window:
         low = (positions - radii[:, None]).min(axis=0)
         return cls(low, (positions + radii[:, None]).max(axis=0) - low)
 
+    def with_other(self, other: "Window") -> "Window":
+        """The smallest one that holds this one and another."""
+        low = np.minimum(self.corner, other.corner)
+        return Window(low, np.maximum(self.corner + self.size, other.corner + other.size) - low)
+
     @property
     def extent(self) -> tuple[float, float, float, float]:
         """Left, right, bottom, top in metres."""
@@ -82,7 +87,7 @@ def draw_field(
     values
         (n,) the field.
     limits
-        the ends of the colour scale; one from a negative end is white at its middle.
+        the ends of the colour scale, see `colours_within`.
     scale
         pixels per metre. Disks below `SMALLEST_PIXELS` are replaced by the mean of the field on a grid.
     """
@@ -90,12 +95,17 @@ def draw_field(
     axes.grid(False)
     inside = window.touches(positions, radii)
     positions, radii, values = positions[inside], radii[inside], values[inside]
-    colours: dict[str, Any] = {"cmap": SIGNED_MAP if limits[0] < 0.0 else UNSIGNED_MAP, "clim": limits}
+    colours = colours_within(limits)
     diameter = 2.0 * float(radii.mean())
     if diameter * scale >= SMALLEST_PIXELS:
         return draw_disks(axes, positions, radii, array=values, linewidths=0.0, **colours)
     means = mean_on_grid(positions, values, window, max(1.0 / scale, CELL_DIAMETERS * diameter))
     return axes.imshow(means, origin="lower", extent=window.extent, interpolation="nearest", **colours)
+
+
+def colours_within(limits: tuple[float, float]) -> dict[str, Any]:
+    """Colour map and limits of a field, for matplotlib; a scale from a negative end is white at its middle."""
+    return {"cmap": SIGNED_MAP if limits[0] < 0.0 else UNSIGNED_MAP, "clim": limits}
 
 
 def mean_on_grid(positions: np.ndarray, values: np.ndarray, window: Window, cell: float) -> np.ndarray:

@@ -20,7 +20,7 @@ COLUMNS = {
     "kinetic": "kinetic",
     "contact": "stored in contacts",
     "bond": "stored in bonds",
-    "damping": "taken by local damping",
+    "damping": "taken by damping and layers that absorb",
     "friction": "taken by friction",
     "crack": "taken by cracks",
     "law_switch": "in: added by a change of law",

@@ -1,5 +1,6 @@
 """The data of a picture of a scene: one field of its disks, at some times or of the whole run."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, get_args
@@ -8,6 +9,7 @@ import h5py
 import numpy as np
 
 from dembound.errors import CaseError
+from dembound.plot.continuum import GROUP, Continuum, is_scattered, read_continuum
 from dembound.plot.disks import Window
 from dembound.results.histories import FREE_FIELD, UNITS
 from dembound.results.reader import COMPONENTS, cracks_until, laws_in_words, laws_of, snapshot_of, snapshots_of, text_of
@@ -33,7 +35,7 @@ class Disks:
 
     positions (n, 2) and radii (n,) in m; monitors: name -> place (2,) m; twins (k, 2) m, the places of theirs in the
     free-field column; case: its name; laws as text, empty if there was only one law; column, how many disks belong to
-    the free-field column, which come first.
+    the free-field column, which come first; continuum, the one round them, None for none.
     """
 
     positions: np.ndarray
@@ -43,19 +45,39 @@ class Disks:
     case: str
     laws: str
     column: int = 0
+    continuum: Continuum | None = None
 
     @cached_property
-    def window(self) -> Window:
-        """The whole scene."""
+    def own_window(self) -> Window:
+        """The disks."""
         return Window.around(self.positions, self.radii)
 
     @property
+    def part_windows(self) -> list[Window]:
+        """Of the disks of a free-field column, if there is one, and of the body."""
+        parts = [slice(0, self.column), slice(self.column, None)]
+        return [Window.around(self.positions[part], self.radii[part]) for part in parts if len(self.radii[part])]
+
+    @cached_property
+    def window(self) -> Window:
+        """The whole scene, with its continuum."""
+        return self.own_window if self.continuum is None else self.own_window.with_other(self.continuum.window)
+
+    @property
+    def in_words(self) -> str:
+        """For a title."""
+        return f"{len(self.radii)} disks{'' if self.continuum is None else ' and a continuum'}"
+
+    @property
     def seam(self) -> float | None:
-        """Where (m, along x) between the free-field column and the body; None without a column."""
+        """Where (m, along x) between the free-field column and the body or its continuum; None without a column."""
         if self.column == 0:
             return None
         right, left = (self.positions + sign * self.radii[:, None] for sign in (1.0, -1.0))
-        return 0.5 * float(right[: self.column, 0].max() + left[self.column :, 0].min())
+        begins = left[self.column :, 0].min()
+        if self.continuum is not None:
+            begins = min(begins, self.continuum.window.extent[0])
+        return 0.5 * float(right[: self.column, 0].max() + begins)
 
 
 @dataclass(frozen=True)
@@ -64,7 +86,7 @@ class Field:
 
     captions, k texts with the times; values (k, n) in the unit; cracks so far, each time, as by `cracks_until`; limits
     of the colour scale, equally far from zero for a field of either sign; the name and unit of the field; the meaning
-    of its sign, if the name does not give it.
+    of its sign, if the name does not give it; beyond (k, m), values of the nodes of a continuum, None if it has none.
     """
 
     captions: list[str]
@@ -74,6 +96,7 @@ class Field:
     name: str
     unit: str
     sense: str = ""
+    beyond: np.ndarray | None = None
 
     @property
     def label(self) -> str:
@@ -94,6 +117,7 @@ def read_disks(file: h5py.File) -> Disks:
         case=text_of(file.attrs["name"]),
         laws=laws_in_words(laws) if len(laws) > 1 else "",
         column=int(file.attrs.get("column", 0)),
+        continuum=read_continuum(file),
     )
 
 
@@ -116,7 +140,10 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
         raise CaseError(
             [f"{file.filename}: holds no {dataset.replace('unbalanced', 'unbalanced forces')}; {having} do"]
         )
-    largest = np.array([np.abs(group[dataset][:]).max(axis=0) for group in groups])
+    beyond = f"{GROUP}/{dataset}" if f"{GROUP}/{dataset}" in groups[0] else None
+    if dataset == "stress" and is_scattered(file):
+        beyond = None
+    largest = np.max([_largest(groups, name) for name in (dataset, beyond) if name], axis=0)
     scale = MEGA if name in STRESSES else 1.0
     column, words, unit = _column(name, component, largest.max(axis=0))
     if snapshot is not None:
@@ -131,12 +158,18 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
     return Field(
         captions=[f"t = {time:.3g} s" for time in times],
         values=np.array([group[dataset][:, column] for group in chosen]) / scale,
+        beyond=None if beyond is None else np.array([group[beyond][:, column] for group in chosen]) / scale,
         cracks=[cracks_until(file, time) for time in times],
         limits=(-limit, limit),
         name=words,
         unit=unit,
         sense=SENSES.get(name, ""),
     )
+
+
+def _largest(groups: Sequence[h5py.Group], dataset: str) -> np.ndarray:
+    """Largest size (g, columns) of a dataset in each of some snapshots."""
+    return np.array([np.abs(group[dataset][:]).max(axis=0) for group in groups])
 
 
 def _column(name: str, component: str | None, largest: np.ndarray) -> tuple[int, str, str]:
@@ -151,17 +184,19 @@ def _column(name: str, component: str | None, largest: np.ndarray) -> tuple[int,
 
 
 def _peak(file: h5py.File, snapshot: int | None) -> Field:
-    """The largest speed of every disk in the whole run."""
+    """The largest speed of every disk, and of the nodes of a continuum, in the whole run."""
     if snapshot is not None:
         raise CaseError(["peak: is of the whole run, not of a snapshot"])
     if "peak_velocity" not in file["particles"]:
         raise CaseError([f"{file.filename}: holds no peaks; complete runs with output.peaks = true do"])
     values = file["particles/peak_velocity"][:]
+    beyond = file[f"{GROUP}/peak_velocity"][:] if GROUP in file and not is_scattered(file) else np.zeros(0)
     return Field(
         captions=[f"t = 0 to {file.attrs['steps'] * file.attrs['time_step']:.3g} s"],
         values=values[None],
         cracks=[cracks_until(file, np.inf)],
-        limits=(0.0, float(values.max()) or 1.0),
+        beyond=beyond[None] if len(beyond) > 0 else None,
+        limits=(0.0, float(np.max([values.max(), beyond.max(initial=0.0)])) or 1.0),
         name="largest speed",
         unit="m/s",
     )

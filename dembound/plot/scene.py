@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, NullLocator
 
+from dembound.plot.continuum import draw_continuum
 from dembound.plot.disks import Window, draw_field
 from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
 from dembound.plot.style import Powers, measured_once, new_figure, outside_legend, styled
@@ -57,7 +58,8 @@ def plot_scene(
     """The scene at a snapshot, at its undeformed places, with the monitors; with one colour scale for the run.
 
     Bonds broken up to this time are marked at their positions, above the disks and with the same size in every scene;
-    the legend has their number. A very long scene has one more panel with an enlarged part of it.
+    the legend has their number. A very long scene has one more panel with an enlarged part of it. A continuum round the
+    disks has the same colours, its layers that absorb are hatched.
 
     Parameters
     ----------
@@ -83,7 +85,7 @@ def plot_scene(
     else:
         figure, panels, colours = _draw_whole(disks, shown)
     figure.colorbar(colours, ax=panels, label=shown.label, shrink=0.9, pad=0.02, format=Powers())
-    title = f"{disks.case}: {shown.name} of {len(disks.radii)} disks"
+    title = f"{disks.case}: {shown.name} of {disks.in_words}"
     figure.suptitle("\n".join(filter(None, [title, disks.laws])), fontsize=11)
     outside_legend(figure, panels, columns=3)
     return figure
@@ -101,7 +103,8 @@ def _draw_whole(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarM
     """One panel."""
     width, height = disks.window.size
     scale = min(DRAWING[0] / width, DRAWING[1] / height)
-    figure = new_figure(max(scale * width, 3.0) + 1.8, scale * height + 1.6)
+    rows = 1.6 if disks.continuum is None else 2.1  # of title, axis and legend
+    figure = new_figure(max(scale * width, 3.0) + 1.8, scale * height + rows)
     panel = figure.subplots()
     colours = _draw_panel(panel, disks, shown, 0, disks.window, scale * figure.dpi)
     panel.set_title(shown.captions[0], pad=18)  # above the names of monitors at the top
@@ -170,6 +173,9 @@ def part_around(disks: Disks, centre: np.ndarray) -> Window:
 def _draw_panel(panel: Axes, disks: Disks, shown: Field, index: int, window: Window, scale: float) -> ScalarMappable:
     """A window of the scene at one of its times, at `scale` pixels per metre."""
     colours = draw_field(panel, window, disks.positions, disks.radii, shown.values[index], shown.limits, scale)
+    if disks.continuum is not None:
+        beyond = None if shown.beyond is None else shown.beyond[index]
+        draw_continuum(panel, disks.continuum, disks.part_windows, beyond, shown.limits, scale)
     if disks.seam is not None and disks.seam > window.corner[0]:
         panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
     _mark_cracks(panel, shown, index)

@@ -11,9 +11,12 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             column (n,), whether it belongs to a free-field column, of a bar's nodes volume (n,); if the
                             case asks for it peak_velocity (n,), the largest speed of each in the whole run
     continuum/              of a continuum round the particles: position (m, 2), absorbs (m,), whether a node is in the
-                            layer that absorbs, cell (c, 4), nodes at the corners of the cells between them
-    histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle,
-                            position, wanted
+                            layer that absorbs, cell (c, 4), nodes at the corners of the cells between them; element
+                            (e, 4), left, bottom, right, top of each, node (e, N, N), its nodes by row and column;
+                            surface (s, 4), ends of the element sides at its free surface; tie (t, 2), where ties to
+                            disks act; if the case asks for it peak_velocity (m,)
+    histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle
+                            (−1 in a continuum), position, wanted
     boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2); of the
                             side as a whole, without a free-field column, time (k,), displacement (k, 3), force (k, 2)
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
@@ -21,7 +24,9 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             and local damage (n,); of a static stage that stalled unbalanced (n, 2), sum of the forces
                             on each particle; attribute time; of disks, if the case asks for them, contacts/ with the
                             columns of `disks.contact_forces.contact_columns`; with a continuum, continuum/ with
-                            displacement, velocity and stress (m, 3) of its nodes
+                            displacement, velocity and stress (m, 3) of its nodes; beside a free-field column the stress
+                            and scattered_displacement and scattered_velocity are those of the scattered motion, the
+                            others those of the total one
     energy/                 time and the columns of `motion.energy.Entry`, (k,) each
     energy/sides/<side>/    the columns of `motion.energy.SideEntry`, (k,) each
     cracks/                 time (k,), position (k, 2), particles (k, 2), shear (k,), in the order they happened; like
@@ -55,6 +60,9 @@ VELOCITY_UNIT = "m/s, m/s, rad/s"
 
 MOTION = ("displacement", "velocity")
 """Names of what every snapshot has."""
+
+NO_PARTICLE = -1
+"""Number in place of a particle's for a monitor in a continuum."""
 
 LONGEST_NAME = 64
 """Bytes of the name of a law."""
@@ -128,6 +136,14 @@ def header_of(run: Run) -> dict[str, Any]:
     }
 
 
+def header_of_monitor(scene: Scene, name: str) -> dict[str, Any]:
+    """The attributes of a monitor's history."""
+    place = scene.monitored[name]
+    wanted = scene.places.get(name, place)  # a twin has no given position
+    particle = NO_PARTICLE if name in scene.between else scene.monitors[name]
+    return {"particle": particle, "position": place, "wanted": wanted, "unit": "m"}
+
+
 def _make_energy(file: h5py.File, scene: Scene, ledger: Ledger) -> None:
     """Empty columns of the ledger, and of its sides."""
     unit = scene.energy_unit
@@ -149,10 +165,9 @@ def _make_histories(file: h5py.File, scene: Scene) -> None:
     """The groups of the monitors, with empty datasets."""
     histories = file.create_group("histories", track_order=True)  # in the order of the case, not alphabetical
     columns = HISTORY if scene.record_width <= 6 else (*HISTORY, ("stress", (), "f8", "Pa"))
-    for name, node in scene.monitors.items():
+    for name in scene.monitors:
         group = histories.create_group(name)
-        wanted = scene.places.get(name, scene.positions[node])  # a twin has no given position
-        describe(group, {"particle": node, "position": scene.positions[node], "wanted": wanted, "unit": "m"})
+        describe(group, header_of_monitor(scene, name))
         make(group, columns)
 
 

@@ -42,7 +42,7 @@ class Recorder:
     Parameters
     ----------
     path : file to create.
-    run : the run to record, of whose whole scene all nodes are written; its first probes are the monitors in order.
+    run : the run to record, of whose whole scene all nodes are written; its probes are those of the scene.
     step_limit : stability limit in s, written to the record.
     interval : time between two history samples in s; 0: every step is recorded. ledger : the run's energy ledger; None:
     without a ledger. stages : those before the run.
@@ -184,8 +184,8 @@ class Recorder:
         moved = widened("displacement", (state.displacement - state.datum).T), widened("velocity", state.velocity.T)
         for name, values, unit in zip(MOTION, moved, (DISPLACEMENT_UNIT, VELOCITY_UNIT), strict=True):
             write(group, name, values[:count], unit)
-            if count < len(values):
-                write(group.require_group("continuum"), name, values[count:], unit)
+            for kind, motion in self.scene.motion_beside(values).items():
+                write(group.require_group("continuum"), f"{kind}{name}", motion, unit)
         for name, (values, unit) in self.run.system.snapshot_beside(state.displacement).items():
             write(group["continuum"], name, values, unit)
         for name, (values, unit) in self.run.system.snapshot(state.displacement).items():
@@ -269,10 +269,13 @@ class Recorder:
         for side in self.scene.edges:
             self.file[f"boundaries/{side}/peak_velocity"][...] = self.run.edge_peaks(side)
         if self.scene.case.output.peaks:
-            speed = self.run.scene.widened("peak_velocity", self.run.state.top_speed)[: self.scene.recorded]
-            if "peak_velocity" not in self.file["particles"]:
-                write(self.file["particles"], "peak_velocity", speed, "m/s")
-            self.file["particles/peak_velocity"][...] = speed
+            speed, count = self.run.scene.widened("peak_velocity", self.run.state.top_speed), self.scene.recorded
+            for name, values in (("particles", speed[:count]), ("continuum", speed[self.scene.nodes_beside])):
+                if len(values) == 0:
+                    continue
+                if "peak_velocity" not in self.file[name]:
+                    write(self.file[name], "peak_velocity", values, "m/s")
+                self.file[name]["peak_velocity"][...] = values
 
 
 def _cut(group: Mapping[str, h5py.Dataset], count: int) -> None:

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dembound.casefile.disks.outside import CONTINUUM
 from dembound.motion.kind import Plan
 from dembound.motion.trackers import Run
+from dembound.results.new_record import NO_PARTICLE
 from dembound.results.reader import energy_of, open_record, side_energies_of
 from dembound.version import __version__
 
@@ -94,11 +96,13 @@ def _describe_energy(record: Path) -> dict[str, float]:
 def _describe_sides(record: Path) -> dict[str, Any]:
     """Energies of every side at the end of the run; `absorbed_share` is over all that came in through any side.
 
-    That is the sum of the largest energy that came in through each up to any time; null if nothing came in.
+    That is the sum of the largest energy that came in through each up to any time, but for what a continuum takes from
+    the body; null if nothing came in.
     """
     with open_record(record) as file:
         sides = side_energies_of(file)
-    came = sum(max(0.0, float(columns["came_in"].max(initial=0.0))) for columns in sides.values())
+    through = [columns["came_in"] for side, columns in sides.items() if not side.endswith(CONTINUUM)]
+    came = sum(max(0.0, float(came_in.max(initial=0.0))) for came_in in through)
     return {
         side: {name: float(column[-1]) for name, column in columns.items()}
         | {"absorbed_share": float(columns["absorbed"][-1]) / came if came > 0.0 else None}
@@ -112,13 +116,19 @@ def _describe_monitors(record: Path) -> dict[str, Any]:
         groups: Mapping[str, h5py.Group] = file.get("histories", {})
         return {
             name: {
-                "particle": int(group.attrs["particle"]),
+                "particle": _particle(group),
                 "position": group.attrs["position"].tolist(),
                 **arrival(group["time"][:], group["velocity"][:, :2]),
                 "peak_displacement": np.abs(group["displacement"][:, :2]).max(axis=0).tolist(),
             }
             for name, group in groups.items()
         }
+
+
+def _particle(group: h5py.Group) -> int | None:
+    """Number of the particle of a history; None in a continuum."""
+    number = int(group.attrs["particle"])
+    return None if number == NO_PARTICLE else number
 
 
 def arrival(time: np.ndarray, velocity: np.ndarray) -> dict[str, Any]:

@@ -34,6 +34,14 @@ CRACK_SIZE = 10.0  # pixels
 
 WINDOW = 1600, 900  # pixels
 
+CONTINUUM = "continuum"  # group of a record, and of its snapshots
+
+OUTLINE = "#8A8A8A"  # of the elements of a continuum
+
+PALE = 0.6  # opacity of the layers that absorb
+
+BELOW = 1e-3  # depth of a continuum below the disks over the size of the scene, so that they cover it
+
 ROUND = 300  # pixels above and below the disks together in a picture: title, axis, and room for the colour bar
 
 MARGIN = 0.7  # half the width of a view over that of the disks; 0.5 would leave none
@@ -68,13 +76,14 @@ def view(
     picture: Path | None = None,
     exaggerate: float = 0.0,
 ) -> None:
-    """Show a run's disks from above, coloured by the length of a field, and its cracks.
+    """Show a run's disks from above, coloured by the length of a field, its cracks, and the continuum around them.
 
     run is a ``run.h5``; snapshot the number to begin with, negative ones counting from the last, by default the one
     with the largest motion; field velocity in m/s or displacement in m; picture a PNG file to draw into instead of
-    opening a window; exaggerate how many times their displacement disks are moved, cracks with them: 0 shows them where
-    they began, 1 where they are. The axes are those of the scene at the start. The window has a slider over several
-    snapshots; dragging moves the scene, the wheel zooms. Returns once it is closed.
+    opening a window; exaggerate how many times their displacement disks and nodes are moved, cracks with them: 0 shows
+    them where they began, 1 where they are. Layers that absorb are pale. The axes, and the outlines of elements, are
+    those of the scene at the start. The window has a slider over several snapshots; dragging moves the scene, the wheel
+    zooms. Returns once it is closed.
 
     Raises CaseError when the file cannot be read, is that of a bar or has no such snapshot, DemboundError without
     OpenGL or a display.
@@ -113,6 +122,55 @@ def disk_mesh(positions: np.ndarray, radii: np.ndarray) -> "pyvista.PolyData":
     return places.glyph(geom=circle, scale="diameter", factor=1.0, orient=False)
 
 
+def continuum_mesh(positions: np.ndarray, cells: np.ndarray) -> "pyvista.PolyData":
+    """One polygon per cell between the nodes of a continuum, below the disks; positions (m, 2) m, cells (c, 4)."""
+    import pyvista
+
+    depth = np.full(len(positions), -BELOW * float(np.ptp(positions)))
+    faces = np.column_stack([np.full(len(cells), 4), cells])
+    return pyvista.PolyData(np.column_stack([positions, depth]), faces=faces.ravel())
+
+
+class Coloured:
+    """A mesh whose points move with disks or nodes, and whose colours are the length of a field.
+
+    Parameters
+    ----------
+    mesh : with so many `corners` in turn for each disk, which then is a cell, or 1 for nodes. group : of snapshots.
+    opacity : of all, or of each node, 0 … 1.
+    """
+
+    def __init__(self, mesh: "pyvista.PolyData", corners: int, group: str, opacity: float | np.ndarray = 1.0) -> None:
+        self.mesh, self.group, self.opacity = mesh, group, opacity
+        self._corners, self._still = corners, mesh.points.copy()
+
+    def show(self, snapshot: h5py.Group, field: Field, exaggerate: float) -> None:
+        """Take the places and the field of a snapshot."""
+        fields = snapshot[self.group]
+        data = self.mesh.point_data if self._corners == 1 else self.mesh.cell_data
+        data[LABELS[field]] = lengths(fields, field)
+        moved = exaggerate * fields["displacement"][:, :2]
+        self.mesh.points[:, :2] = self._still[:, :2] + np.repeat(moved, self._corners, axis=0)
+
+
+def meshes_of(file: h5py.File) -> "list[Coloured]":
+    """The disks of an open record, and the continuum around them if there is one."""
+    disks = disk_mesh(file["particles/position"][:], file["particles/radius"][:])
+    meshes = [Coloured(disks, CORNERS, ".")]
+    if CONTINUUM in file:
+        positions, cells, absorbs = (file[f"{CONTINUUM}/{name}"][:] for name in ("position", "cell", "absorbs"))
+        meshes.append(Coloured(continuum_mesh(positions, cells), 1, CONTINUUM, np.where(absorbs, PALE, 1.0)))
+    return meshes
+
+
+def extent_of(file: h5py.File) -> np.ndarray:
+    """Lowest and highest corner (2, 2) m of the scene of an open record, with its continuum."""
+    corners = [np.zeros(2), file.attrs["size"]]
+    if CONTINUUM in file:
+        corners += [*file[f"{CONTINUUM}/element"][:].reshape(-1, 2)]
+    return np.array([np.min(corners, axis=0), np.max(corners, axis=0)])
+
+
 def make_plotter(
     file: h5py.File, first: h5py.Group, field: Field, exaggerate: float, off_screen: bool
 ) -> "pyvista.Plotter":
@@ -121,25 +179,26 @@ def make_plotter(
     from vtkmodules.vtkCommonCore import vtkLogger
 
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)  # no warnings about drawing without a display
-    snapshots = snapshots_of(file)
-    label = LABELS[field]
-    disks = disk_mesh(file["particles/position"][:], file["particles/radius"][:])
-    still = disks.points.copy()
-    limit = max(lengths(each, field).max() for each in snapshots) or 1.0  # 1 for a run at rest
-    size = picture_size(file.attrs["size"]) if off_screen else WINDOW
+    snapshots, extent, meshes = snapshots_of(file), extent_of(file), meshes_of(file)
+    limit = max(lengths(snapshot[each.group], field).max() for snapshot in snapshots for each in meshes)
+    size = picture_size(np.diff(extent, axis=0)[0]) if off_screen else WINDOW
     plotter = pyvista.Plotter(off_screen=off_screen, window_size=size)
-    disks.cell_data[label] = lengths(first, field)
     bar = {"vertical": True, "position_x": 0.91, "position_y": 0.1, "height": 0.7}
-    plotter.add_mesh(disks, scalars=label, clim=(0.0, limit), lighting=False, scalar_bar_args=bar)
+    for each in reversed(meshes):
+        each.show(first, field, exaggerate)
+        looks = {"scalars": LABELS[field], "clim": (0.0, limit or 1.0), "lighting": False, "opacity": each.opacity}
+        plotter.add_mesh(each.mesh, show_scalar_bar=each is meshes[0], scalar_bar_args=bar, **looks)
     plotter.scalar_bar.SetVerticalTitleSeparation(20)  # pixels, for the uppermost number
+    if CONTINUUM in file:
+        show_elements(plotter, file[f"{CONTINUUM}/element"][:])
     plotter.enable_anti_aliasing("ssaa")
 
     def show(number: float) -> None:
         shown = snapshots[round(number)]
-        moved = exaggerate * shown["displacement"][:, :2]
-        disks.cell_data[label] = lengths(shown, field)
-        disks.points[:, :2] = still[:, :2] + np.repeat(moved, CORNERS, axis=0)
+        for each in meshes:
+            each.show(shown, field, exaggerate)
         cracks = cracks_until(file, shown.attrs["time"])
+        moved = exaggerate * shown["displacement"][:, :2]
         show_cracks(plotter, cracks["position"] + moved[cracks["particles"]].mean(axis=1))
         scale = f", displacements × {exaggerate:g}" if exaggerate else ""
         broken = len(cracks["position"])
@@ -152,8 +211,19 @@ def make_plotter(
         span, place = (0, len(snapshots) - 1), {"pointa": (0.03, 0.1), "pointb": (0.28, 0.1)}  # lower left
         slider = plotter.add_slider_widget(show, span, value=snapshots.index(first), title="snapshot", **place)
         slider.GetRepresentation().ShowSliderLabelOff()  # its label has decimals, and the time is shown instead
-    look_from_above(plotter, file.attrs["size"])
+    look_from_above(plotter, extent)
     return plotter
+
+
+def show_elements(plotter: "pyvista.Plotter", elements: np.ndarray) -> None:
+    """Outline the elements (e, 4) of a continuum, left, bottom, right and top in m."""
+    import pyvista
+
+    corners = elements[:, [0, 1, 2, 1, 2, 3, 0, 3]].reshape(-1, 2)
+    begin = 4 * np.arange(len(elements))[:, None]
+    lines = np.column_stack([np.full(len(elements), 5), begin + np.array([0, 1, 2, 3, 0])])
+    outlines = pyvista.PolyData(np.column_stack([corners, np.zeros(len(corners))]), lines=lines.ravel())
+    plotter.add_mesh(outlines, color=OUTLINE, line_width=1, reset_camera=False)
 
 
 def show_cracks(plotter: "pyvista.Plotter", positions: np.ndarray) -> None:
@@ -171,16 +241,19 @@ def picture_size(size: np.ndarray) -> tuple[int, int]:
     return across, min(up, round(across / (2.0 * MARGIN) * size[1] / size[0]) + ROUND)
 
 
-def look_from_above(plotter: "pyvista.Plotter", size: np.ndarray) -> None:
-    """Put labelled axes around a scene of this size, (2,) m, and a camera above all that only moves and zooms."""
-    width, height = size
+def look_from_above(plotter: "pyvista.Plotter", extent: np.ndarray) -> None:
+    """Put labelled axes around a scene, its lowest and highest corner (2, 2) m, and a camera above all.
+
+    The camera only moves and zooms.
+    """
+    size = extent[1] - extent[0]
     share = size / size.max()
     x_labels, y_labels = map(label_count, size, share)
     x_shown, y_shown = share > 0.03  # labels across a narrower scene collide
     x_axis = {"xtitle": "x (m)", "n_xlabels": x_labels, "show_xlabels": x_shown}
     y_axis = {"ytitle": "y (m)", "n_ylabels": y_labels, "show_ylabels": y_shown}
     plotter.show_bounds(
-        bounds=(0.0, width, 0.0, height, 0.0, 0.0), use_2d=True, show_zaxis=False, fmt="%.4g", **x_axis, **y_axis
+        bounds=(*extent.T.ravel(), 0.0, 0.0), use_2d=True, show_zaxis=False, fmt="%.4g", **x_axis, **y_axis
     )
     plotter.view_xy()
     plotter.enable_parallel_projection()

@@ -40,7 +40,7 @@ def still_moving(scene: Scene, duration: float, file: h5py.File, pieces: np.ndar
     histories = {
         name: _largest_component(group["velocity"][:, :2])
         for name, group in file["histories"].items()
-        if braked[scene.monitors[name]] and name in scene.places
+        if name in scene.places and (name in scene.between or braked[scene.monitors[name]])
     }
     peaks = {name: float(np.abs(velocity).max()) for name, velocity in histories.items()}
     period = max((scene.case.wave[name].dominant_period() for name in waves_used(scene.case)), default=0.0)

@@ -108,7 +108,7 @@ def _interval_warnings(planned: Plan) -> Iterator[str]:
 
 
 def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Simulation, Ledger]:
-    """The simulation of a planned run in its first state, with the monitors as probes, and its energy ledger.
+    """The simulation of a planned run in its first state, with the probes of its monitors, and its energy ledger.
 
     The ledger still has to be tracked.
     """
@@ -116,7 +116,7 @@ def simulation_of(planned: Plan, beginning: Beginning, clock: Clock) -> tuple[Si
     simulation = Simulation(
         scene,
         planned.time_step,
-        list(scene.monitors.values()),
+        scene.probes,
         system=beginning.system,
         datum=beginning.datum,
         clock=clock,

@@ -34,6 +34,7 @@ from dembound.disks.wave_front import front_of
 from dembound.errors import CaseError
 from dembound.motion.kind import Box
 from dembound.motion.paths import Front, Source, plane_needed
+from dembound.motion.silence import monitored
 from dembound.packings.tiling import count_disks
 from dembound.table import shifted_box, shifted_place
 
@@ -86,6 +87,9 @@ def extended(case: Case, most: int = MOST) -> Extended:
 
 def _extended_disks(case: DiskCase, most: int) -> Extended:
     """A scene of disks with more bricks."""
+    if case.ground.size is not None:
+        reason = "its disks fill a box of the ground only, and are not continued beyond"
+        raise CaseError([f"ground.size: the scene cannot be extended, as {reason}"], case.name)
     moving = _moving(case, set(case.driving))
     scene = build(case)
     front = front_of(scene.ground, case.run.safety)
@@ -131,21 +135,22 @@ def _moving(case: Case, staying: set[str]) -> list[str]:
 
 
 def _bricks_beyond(scene: DiskScene, side: str, sources: list[Source], front: Front) -> int:
-    """Number of bricks by which a side has to move outwards."""
-    case, axis = scene.case, normal_axis(side)
-    if case.side(side).needs_column:  # it moves like the ground under everything that is not local
+    """Number of bricks by which a side has to move outwards; monitors and loads in a continuum are then at disks."""
+    case, axis, places = scene.case, normal_axis(side), _targets(scene)
+    if side in case.column_sides:  # it moves like the ground under everything that is not local
         sources = [source for source in sources if source.is_local]
-    low, high = 0.0, float(scene.size[axis])
-    plane = high if side in ("right", "top") else low
-    needed = plane_needed(side, sources, _targets(scene), front, case.run.duration)
-    beyond = needed - plane if plane == high else plane - needed
-    return max(0, int(np.ceil(beyond / case.packing.brick_size[axis] - 1e-9))) if np.isfinite(beyond) else 0
+    outwards, plane = (1.0, float(scene.size[axis])) if side in ("right", "top") else (-1.0, 0.0)
+    needed = plane_needed(side, sources, places, front, case.run.duration)
+    ends = np.array([source.box[axis::2] for source in sources if source.is_local]).ravel()
+    outermost = float(np.max(outwards * np.concatenate([places[:, axis], ends[np.isfinite(ends)]])))
+    beyond = max(outwards * needed, outermost) - outwards * plane
+    return max(0, int(np.ceil(beyond / case.packing.brick_size[axis] - 1e-9)))
 
 
 def _targets(scene: DiskScene) -> np.ndarray:
-    """Places (k, 2) m to which nothing may return: monitors' particles, or without monitors all around the scene."""
+    """Places (k, 2) m to which nothing may return: those of monitors, or without monitors all around the scene."""
     if scene.case.monitor:
-        return scene.positions[[scene.monitors[monitor.name] for monitor in scene.case.monitor]]
+        return monitored(scene)
     wide, high = scene.size
     along, zero = np.linspace(0.0, 1.0, AROUND), np.zeros(AROUND)
     square = np.concatenate([np.column_stack([a, b]) for a, b in ((along, zero), (zero, along))])
@@ -156,7 +161,7 @@ def _particles(scene: DiskScene, copies: tuple[int, int]) -> int:
     """Number of particles with other numbers of bricks, with the same holes and a column of the new height."""
     case, brick = scene.case, scene.ground.brick
     periodic = (case.side("left").is_periodic, case.side("bottom").is_periodic)
-    count = scene.count + count_disks(brick, copies, periodic) - count_disks(brick, case.packing.copies, periodic)
+    count = scene.disk_count + count_disks(brick, copies, periodic) - count_disks(brick, case.packing.copies, periodic)
     if scene.seam is None:
         return count
     new, old = (count_disks(brick, (1, up), (True, False)) for up in (copies[1], case.packing.copies[1]))
@@ -185,10 +190,10 @@ def _sentence(case: Case, what: str, moving: list[str]) -> str:
     if not staying:
         return f"reference: {what}, from which {until}"
     stay, reflect = ("stay", "reflect") if len(staying) > 1 else ("stays", "reflects")
-    return (
-        f"reference: {what}, from whose {' and '.join(moving)} {until}; {' and '.join(staying)} {stay}, as waves enter "
-        f"there, and {reflect} as in the case"
-    )
+    stays = f"{what}, from whose {' and '.join(moving)} {until}; {' and '.join(staying)} {stay}, as waves enter there"
+    if all(case.side(side).is_outside for side in staying):
+        return f"reference: {stays}, before a continuum, which returns next to nothing"
+    return f"reference: {stays}, and {reflect} as in the case"
 
 
 def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
@@ -216,15 +221,16 @@ def _at_places(case: DiskCase, scene: DiskScene, by: tuple[float, float], size: 
 
     size : m, of the enlarged scene, beyond which rounding must not bring them.
     """
+    places = scene.monitored
 
-    def shifted(node: int) -> tuple[float, float]:
-        x, y = shifted_place((float(scene.positions[node, 0]), float(scene.positions[node, 1])), by)
+    def shifted(place: np.ndarray) -> tuple[float, float]:
+        x, y = shifted_place((float(place[0]), float(place[1])), by)
         return min(x, size[0]), min(y, size[1])
 
     def shifted_load(load: Load) -> Load:
         if load.position is not None:
             (node,), _ = forces_of(load, scene.assembly, scene.mass)
-            return load.model_copy(update={"position": shifted(node)})
+            return load.model_copy(update={"position": shifted(scene.positions[node])})
         if load.region is None:
             return load
         x0, y0, x1, y1 = shifted_box(load.region, by)
@@ -235,7 +241,7 @@ def _at_places(case: DiskCase, scene: DiskScene, by: tuple[float, float], size: 
         hole=tuple(hole.shifted(by) for hole in case.hole),
         load=tuple(shifted_load(load) for load in case.load),
         monitor=tuple(
-            monitor.model_copy(update={"position": shifted(scene.monitors[monitor.name])}) for monitor in case.monitor
+            monitor.model_copy(update={"position": shifted(places[monitor.name])}) for monitor in case.monitor
         ),
     )
 
@@ -253,7 +259,7 @@ def _extended_bar(case: BarCase, most: int) -> Extended:
     bar, step = case.bar, choose_bar_step(scene)[0]
     moving = _moving(case, {*case.driving, *(load.side for load in case.load)})
     front, spacing = front_of_bar(scene, step), bar.length / bar.cells
-    targets = scene.positions[list(scene.monitors.values())] if case.monitor else scene.positions[[0, -1]]
+    targets = monitored(scene) if case.monitor else scene.positions[[0, -1]]
     cells = {"left": 0, "right": 0}
     for side in moving:
         plane = bar.length if side == "right" else 0.0

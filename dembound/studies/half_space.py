@@ -17,8 +17,10 @@ from dembound.casefile.types import LAWS
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
+from dembound.motion.silence import monitored
 from dembound.results.committed import new_file
 from dembound.results.datasets import describe, write
+from dembound.results.new_record import header_of_monitor
 from dembound.version import __version__
 
 ISOTROPY = 1e-6
@@ -38,6 +40,8 @@ the end of a measured record, it converges.
 """
 
 CONTINUOUS = "the solution needs a continuous load"
+
+ON_TOP = "must be on the top of the scene, where the solution is computed"
 
 
 @dataclass(frozen=True)
@@ -68,10 +72,8 @@ def write_exact(case: DiskCase, path: Path) -> None:
         describe(file, facts)
         histories = file.create_group("histories", track_order=True)
         for monitor in case.monitor:
-            node, moved = scene.monitors[monitor.name], motions[monitor.name]
-            place = scene.assembly.positions[node]
-            group = histories.create_group(monitor.name)
-            describe(group, {"particle": node, "position": place, "wanted": monitor.position, "unit": "m"})
+            moved, group = motions[monitor.name], histories.create_group(monitor.name)
+            describe(group, header_of_monitor(scene, monitor.name))
             write(group, "time", times, "s")
             write(group, "displacement", moved, "m, m, rad")
             write(group, "velocity", np.gradient(moved, times, axis=0), "m/s, m/s, rad/s")
@@ -98,9 +100,12 @@ def _wave_speeds(scene: DiskScene) -> tuple[float, float]:
 
 def _motion(scene: DiskScene, load: LineLoad, speeds: tuple[float, float], name: str, times: np.ndarray) -> np.ndarray:
     """Displacements (k, 3) of a monitor's particle at times (k,) s."""
-    node = scene.monitors[name]
-    _must_be_on_top(scene, node, f"monitor.{name}.position")
-    away = float(scene.assembly.positions[node, 0]) - load.x
+    place = scene.monitored[name]
+    if name not in scene.between:
+        _must_be_on_top(scene, scene.monitors[name], f"monitor.{name}.position")
+    elif place[1] < scene.case.size[1] - scene.ground.brick.mean_diameter:
+        raise CaseError([f"monitor.{name}.position: {ON_TOP}"])
+    away = float(place[0]) - load.x
     if away == 0.0:
         raise CaseError([f"monitor.{name}.position: lies under the load, where the solution is infinite"])
     velocity = scene.case.wave[load.wave].velocity
@@ -165,11 +170,10 @@ def _yielding(case: DiskCase) -> Iterator[str]:
 
 def _ends_of_the_surface(scene: DiskScene, load: LineLoad) -> Iterator[str]:
     """Sides so near that the body is a quarter space with the load at its corner; a mirror side is at distance zero."""
-    monitors = scene.assembly.positions[[scene.monitors[monitor.name] for monitor in scene.case.monitor], 0]
-    reach = np.abs(monitors - load.x).max(initial=0.0)
+    reach = np.abs(monitored(scene)[:, 0] - load.x).max(initial=0.0)
     for side, plane in (("left", 0.0), ("right", float(scene.assembly.size[0]))):
         away = abs(plane - load.x)
-        if side in scene.edges and 0.0 < away < CORNER * reach:
+        if side in scene.edges and not scene.case.side(side).is_outside and 0.0 < away < CORNER * reach:
             yield (
                 f"load: is {away:.3g} m from the {side} side and {reach:.3g} m from a monitor, which makes a quarter "
                 f"space; the side must mirror the load (symmetry) or be at least {CORNER * reach:.3g} m away"
@@ -178,4 +182,4 @@ def _ends_of_the_surface(scene: DiskScene, load: LineLoad) -> Iterator[str]:
 
 def _must_be_on_top(scene: DiskScene, node: int, place: str) -> None:
     if "top" not in scene.edges or node not in scene.edges["top"].nodes:
-        raise CaseError([f"{place}: must be on the top of the scene, where the solution is computed"])
+        raise CaseError([f"{place}: {ON_TOP}"])

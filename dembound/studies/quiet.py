@@ -108,8 +108,8 @@ def of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
 def of_disk_case(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[str]]:
     """A body of disks under the linear law, and under the case's own if that has a history."""
     plain = replace(_at_rest(case), static=None, monitor=())
-    if (outside := build(case).outside) is not None:  # whose elements were chosen from the waves
-        plain = replace(plain, outside=case.outside.model_copy(update={"element": outside.element}))
+    if (outside := build(case).outside) is not None:  # whose settings were chosen from the waves
+        plain = replace(plain, outside=case.outside.model_copy(update=outside.settings.given))
     words = _left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
     if not full:
         plain, about = _reduced(plain)
@@ -117,7 +117,9 @@ def of_disk_case(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[str]]
     own = LAWS[case.material.law]
     linear = plain.material.model_copy(update={"law": own.linear})
     scene = build(replace(plain, material=linear))
-    size = f"{scene.size[0]:.4g} m × {scene.size[1]:.4g} m, {scene.count:,} disks"
+    size = f"{scene.size[0]:.4g} m × {scene.size[1]:.4g} m, {scene.disk_count:,} disks"
+    if scene.outside is not None:
+        size += f" and {scene.outside.count:,} nodes of a continuum"
     found = [_under(scene, own.linear)]
     if own.has_history:
         opens = scene.ground.moduli.emod > 0.0 and case.material.locked_in is None
@@ -175,7 +177,9 @@ def _reduced(case: DiskCase) -> tuple[DiskCase, list[str]]:
 def parts_of(trial: Trial) -> Iterator[str]:
     """Names of the parts to put noise in: all of them, each of which moves independently of those after it.
 
-    Under a law with a history only the last one, the body, as the energies of a ledger are those of all parts.
+    A body and its continuum are tied: the energy of each is at most that of the noise in it. Under a law with a history
+    only the last one of disks, the body, as the energies of a ledger are those of all parts.
     """
-    names = [part.name for part in trial.system(trial.step).parts]
-    yield from names if trial.is_linear else names[-1:]
+    system = trial.system(trial.step)
+    parts = system.parts if trial.is_linear else system.recorded_parts[-1:]
+    yield from (part.name for part in parts)

@@ -39,7 +39,7 @@ def record(request, tmp_path) -> Path:
     tables, changes = request.param
     planned = plan(small(tables, changes=changes))
     half = planned.steps // 2
-    simulation = Simulation(planned.scene, planned.time_step, list(planned.scene.monitors.values()))
+    simulation = Simulation(planned.scene, planned.time_step, planned.scene.probes)
     ledger = Ledger(simulation, half)
     path = tmp_path / "sound" / "run.h5"
     path.parent.mkdir()

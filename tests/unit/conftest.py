@@ -10,12 +10,13 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 import pytest
-from small_cases import PUSHED, SPALLING, small
+from small_cases import PUSHED, SPALLING, SURROUNDED, small
 from typer.main import get_command
 
 from dembound import cli
 from dembound.casefile import Case
 from dembound.cli import compiling
+from dembound.disks.kind import Disks
 from dembound.disks.rows import contact_rows
 from dembound.disks.scene import DiskScene
 from dembound.kinds import loads, with_changes
@@ -55,7 +56,7 @@ class At(Snapshots):
 
 def recorded(path: Path, planned: Plan, steps: int, shots: Sequence[int], entries: Sequence[int] = ()) -> Path:
     """Record so many steps of a plan, with snapshots at some steps and entries of the ledger, of which two or more."""
-    simulation = Simulation(planned.scene, planned.time_step, list(planned.scene.monitors.values()))
+    simulation = Simulation(planned.scene, planned.time_step, planned.scene.probes)
     ledger = Ledger(simulation, entries[1] - entries[0]) if len(entries) > 0 else None
     with Recorder(path, simulation, planned.step_limit, ledger=ledger) as recorder:
         simulation.track(Histories(recorder), At(recorder, shots), *([ledger] if ledger else []))
@@ -121,6 +122,22 @@ def cracked_run(tmp_path_factory) -> Path:
     half = 1 + planned.steps // 2
     path = tmp_path_factory.mktemp("cracked") / "run.h5"
     return recorded(path, planned, 2 * half, [half, 2 * half], range(0, 2 * half, half))
+
+
+@pytest.fixture(scope="session")
+def surrounded_run(tmp_path_factory) -> Path:
+    """The record of disks in a continuum, called ``surrounded``, in random motion in its two snapshots."""
+    scene = Disks().build(small(SURROUNDED, "surrounded", {"output.peaks": True, "output.stress": True}))
+    simulation, rng = Simulation(scene, 1e-4), np.random.default_rng(3)
+    path = tmp_path_factory.mktemp("surrounded") / "run.h5"
+    with Recorder(path, simulation, 2e-4) as recorder:
+        for step in (50, 100):
+            simulation.state.step = step
+            simulation.state.displacement = 1e-3 * rng.normal(size=(3, scene.count)) * scene.moves
+            simulation.state.velocity = rng.normal(size=(3, scene.count)) * scene.moves
+            simulation.state.top_speed = rng.uniform(1.0, 2.0, scene.count)
+            recorder.snapshot()
+    return path
 
 
 @pytest.fixture(scope="session")
@@ -215,13 +232,28 @@ ROCK = Medium(2500.0, c11=9e9, c22=7e9, c12=2e9, c66=3e9, c16=0.4e9, c26=-0.3e9)
 """Without any symmetry."""
 
 
+def uneven(order: int) -> Mesh:
+    """Elements of three widths and heights, also within layers, round a buried box of 5.5 m × 2 m."""
+    return Mesh(
+        order=order,
+        widths=(3.0, 2.5, 2.5, 3.0, 2.5, 2.5, 2.0, 2.0, 3.0),
+        heights=(2.5, 2.0, 1.5, 2.0, 1.5, 1.5),
+        origin=(-8.0, -6.0),
+        box=(3, 3, 5, 4),
+        layer=Around(2, 2, 2, 0),
+    )
+
+
 @pytest.fixture
 def grid() -> Callable[..., GridBody]:
-    """Makes continua: elements of 3 × 2 m round a box of 2 × 1 of them that reaches the top, with other keys."""
+    """Makes continua: elements of 3 × 2 m round a box of 2 × 1 of them that reaches the top, with other keys.
 
-    def make(order: int = 4, medium: Medium = ROCK, first_slot: int = 0, **more: Any) -> GridBody:
+    Or those of `uneven`.
+    """
+
+    def make(order: int = 4, medium: Medium = ROCK, first_slot: int = 0, even: bool = True, **more: Any) -> GridBody:
         mesh = Mesh.around((0.0, 0.0, 6.0, 2.0), (3.0, 2.0), order, margin=Around(1, 2, 1, 0), layer=Around(2, 2, 2, 0))
-        return GridBody(mesh=mesh, medium=medium, first_slot=first_slot, **more)
+        return GridBody(mesh=mesh if even else uneven(order), medium=medium, first_slot=first_slot, **more)
 
     return make
 

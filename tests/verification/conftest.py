@@ -31,6 +31,10 @@ DENSITY = 2500.0
 SPEED = 1000.0
 RADIUS = 0.25
 BRICK = (10.0, 10.0)
+GROUND = (60.0, 60.0)
+"""Width and height (m) of the ground round a box of disks."""
+PLACES = {"position", "region"}
+"""Keys with places in m."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +98,34 @@ class Lab:
         }
         return loads(tomli_w.dumps(tables))
 
+    def window(
+        self,
+        pattern: str,
+        box: tuple[float, float, float, float],
+        *,
+        wave: str = "wave_s",
+        changes: dict[str, Any] | None = None,
+        **words: Any,
+    ) -> Case:
+        """A case of disks of 1 m in a box (left, bottom, right, top, m) of the ground, `GROUND`, in elements of 10 m.
+
+        wave : key of the motion in which a pulse of 0.06 s, 35 m of S wave, comes from below; "": none comes.
+        """
+        left, bottom, right, top = box
+        sides: dict[str, Any] = {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")}
+        if top == GROUND[1]:
+            del sides["top"]
+        if wave:
+            sides["bottom"][wave] = "pulse"
+            words["wave"] = self.pulse(0.06)
+        material = {"fric": 0.5} | words.pop("material", {})
+        words = {"radius": 0.5, "held": (), "boundary": sides, "material": material} | words
+        if pattern == "C":
+            words |= {"edge_radius": 0.5}
+        case = self.case(pattern, (right - left, top - bottom), **words)
+        placed = {"ground.size": GROUND, "packing.origin": (left, bottom), "outside.element": 10.0}
+        return with_changes(case, placed | (changes or {}))
+
     def scene(self, pattern: str, size: tuple[float, float], **words: Any) -> DiskScene:
         """The scene of `case`."""
         return build(self.case(pattern, size, **words))
@@ -106,6 +138,28 @@ class Lab:
             "run": {"duration": 1.0},
         }
         return build_bar(loads(tomli_w.dumps(tables)))
+
+    def beside_a_large_body(
+        self, case: Case, load: dict[str, Any], places: Sequence[tuple[float, float]], duration: float = 0.2
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Motion (steps, p, 6) at places (m) of a case on 40 m × 20 m under a load, and of one on 320 m × 160 m.
+
+        In the latter all is 140 m farther from its free left side and bottom, and closer to the right side, so that
+        with waves of 1000 m/s nothing returns for some 0.2 s.
+        """
+        far = np.array([140.0, 140.0])
+        found, at, step = [], [], 0.0
+        for by, changes in ((0.0 * far, {}), (far, {"packing.size": [320.0, 160.0], "boundary": {}})):
+            monitor = [{"name": f"m{k}", "position": (by + place).tolist()} for k, place in enumerate(places)]
+            moved = load | {key: (np.reshape(load[key], (-1, 2)) + by).ravel().tolist() for key in PLACES & load.keys()}
+            more = {"monitor": monitor, "load": [moved], "outside.element": 8.0, "outside.margin": 4}
+            scene = build(with_changes(case, more | changes))
+            step = step or choose_step(scene)[0]
+            record = Simulation(scene, step, scene.probes).advance(int(duration / step))
+            found.append(scene.observed(record))
+            at.append(np.array(list(scene.monitored.values())) - by)
+        assert np.abs(at[0] - at[1]).max() < 1e-9  # the same disks, in the continuum or not
+        return found[0], found[1]
 
     def disks(
         self, positions: np.ndarray, radii: np.ndarray, pairs: Sequence[tuple[int, int]] = (), **words: Any

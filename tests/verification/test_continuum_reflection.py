@@ -34,7 +34,7 @@ def reflected(strength: float, speed: float, side: str) -> tuple[float, float, f
     inside, layers, width = 24, 3, 1.5 * SIZE
     cells, periodic = [1, 1], [True, True]
     cells[axis], periodic[axis] = inside + layers, False
-    mesh = Mesh(
+    mesh = Mesh.uniform(
         order=4,
         element=(SIZE, SIZE),
         cells=(cells[0], cells[1]),
@@ -84,7 +84,7 @@ def motion_inside(layers: Around, beyond: Around) -> np.ndarray:
     layers, beyond : elements at each side that absorb, and elastic ones before them.
     """
     added = np.array(layers) + beyond
-    mesh = Mesh(
+    mesh = Mesh.uniform(
         order=4,
         element=(SIZE, SIZE),
         cells=(10 + int(added[0] + added[1]), 10 + int(added[2])),

@@ -8,6 +8,8 @@ import numba
 import numpy as np
 import pytest
 
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
 from dembound.motion import threads
 from dembound.motion.energy import Ledger
 from dembound.motion.simulation import Simulation
@@ -35,12 +37,27 @@ def run_with(number: int) -> dict[str, np.ndarray]:
     return simulation.state.arrays() | {"energies": ledger.columns, "time_step": np.array(step)}
 
 
+def wave_with(number: int, lab) -> dict[str, np.ndarray]:
+    """The same of a periodic body that a wave enters from a continuum below."""
+    numba.set_num_threads(number)
+    sides = {"left": "periodic", "right": "periodic", "bottom": {"type": "outside", "wave_s": "pulse"}}
+    wave = {"type": "cosine", "amplitude": 1.0, "period": 0.05}
+    scene = build(lab.case("B", (5.0, 10.0), brick=(5.0, 5.0), held=(), boundary=sides, wave=wave))
+    simulation = Simulation(scene, choose_step(scene)[0], side_stride=1)
+    ledger = Ledger(simulation, 10)
+    simulation.track(ledger)
+    simulation.run(300)
+    return simulation.state.arrays() | {"energies": ledger.columns, "sides": ledger.side_columns}
+
+
 @pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="needs two threads")
-def test_same_bits(monkeypatch):
+@pytest.mark.parametrize("run", [run_with, wave_with])
+def test_same_bits(monkeypatch, lab, run):
     monkeypatch.setattr(threads, "PARTICLES_PER_THREAD", 1)  # else a scene as small as this has one thread
     before = numba.get_num_threads()
+    more = () if run is run_with else (lab,)
     try:
-        one, *others = [run_with(number) for number in sorted({1, 2, numba.config.NUMBA_NUM_THREADS})]
+        one, *others = [run(number, *more) for number in sorted({1, 2, numba.config.NUMBA_NUM_THREADS})]
     finally:
         numba.set_num_threads(before)
     assert np.abs(one["displacement"]).max() > 0.0

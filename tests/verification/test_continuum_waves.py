@@ -42,7 +42,7 @@ def measured_frequency(medium: Medium, waves: tuple[int, int], number: int) -> t
 
     waves : its wavelengths in the width and height of a periodic mesh; number : 0 for the slower wave.
     """
-    mesh = Mesh(order=4, element=(SIZE[0], SIZE[1]), cells=(CELLS, CELLS), periodic=(True, True))
+    mesh = Mesh.uniform(order=4, element=(SIZE[0], SIZE[1]), cells=(CELLS, CELLS), periodic=(True, True))
     body = GridBody(mesh=mesh, medium=medium)
     step = 0.9 * step_limit(body)
     k = 2.0 * np.pi * np.array(waves) / mesh.size

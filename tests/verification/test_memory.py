@@ -39,6 +39,14 @@ duration = 0.005
 [output]
 snapshots = 1
 """
+CONTINUUM = """
+[boundary.right]
+type = "outside"
+[outside]
+element = 1.0
+margin = 600
+layers = 100
+"""
 FULL = 'law = "linearpbond"\nfric = 0.5\nelastic_start = false\n'
 BAR = """
 [bar]
@@ -65,6 +73,7 @@ CASES = {
     "small": DISKS.format(size=[100.0, 100.0], law=""),
     "medium": DISKS.format(size=[500.0, 400.0], law=""),
     "medium, with pairs": DISKS.format(size=[400.0, 400.0], law=FULL),
+    "continuum": DISKS.format(size=[40.0, 20.0], law="fric = 0.5") + CONTINUUM,
     "bar": BAR,
 }
 

@@ -39,6 +39,27 @@ CASES = {
     "settled, updated": DISKS | {"material": BRITTLE, "static": {"stress": [-1e6, -1e6, 0.0], "ratio": 1e-3}},
     "free field that breaks": DISKS | {"material": BRITTLE, "boundary": FREE_FIELD | {"bottom": INPUT}},
     "ends in silence": DISKS | {"run": {"duration": 0.5, "until": "silent", "silent_level": 0.2}},
+    "monitors and loads in a continuum": DISKS
+    | {
+        "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+        "outside": {"element": 2.0, "margin": 2},
+        "load": [{"name": "blow", "force": [1e3, -2e4], "region": [8.0, 3.0, 10.0, 4.0], "wave": "pulse"}],
+        "monitor": [*GRAINS["monitor"], {"name": "beside", "position": [-1.0, 2.0]}],
+    },
+    "settled box in the ground": DISKS
+    | {
+        "ground": {"size": [20.0, 20.0]},
+        "packing": PACKING | {"origin": [6.0, 8.0]},
+        "material": BRITTLE,
+        "boundary": {
+            **{side: {"type": "outside"} for side in ("left", "right", "top")},
+            "bottom": {"type": "outside", "wave_s": "pulse"},
+        },
+        "outside": {"element": 4.0},
+        "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
+        "static": {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-2},
+        "monitor": [{"name": "middle", "position": [10.0, 10.0]}, {"name": "beside", "position": [4.0, 10.0]}],
+    },
     "peridynamics": BAR | {"method": {"type": "peridynamics", "horizon": 3}},
     "finite differences": BAR | {"method": {"type": "finite_difference"}},
     "switch": BAR | {"method": {"type": "switch", "horizon": 3}},
@@ -59,6 +80,10 @@ class Stop(Checkpoints):
             Stop.is_on = False
             self.write(run)
             raise Stopped(2)
+
+
+LATE = {"settled box in the ground"}
+"""Kinds whose loop takes minutes to compile."""
 
 
 @pytest.fixture(autouse=True)
@@ -110,7 +135,9 @@ def summary(folder) -> dict:
     }
 
 
-@pytest.fixture(scope="module", params=CASES)
+@pytest.fixture(
+    scope="module", params=[pytest.param(name, marks=pytest.mark.slow) if name in LATE else name for name in CASES]
+)
 def whole(request, tmp_path_factory):
     """A case, and the results of its run without a stop."""
     case = case_of(request.param)

@@ -45,6 +45,7 @@ SCENES = {
         "static": SETTLED,
         "load": WEIGHT,
     },
+    "settled, box in the ground": {"box": (20.0, 20.0, 40.0, 40.0), "static": SETTLED, "load": WEIGHT},
 }
 
 
@@ -52,6 +53,9 @@ SCENES = {
 def case(lab, request):
     """A case under strong pulses."""
     words = {"held": (), **SCENES[request.param]}
+    if "box" in words:
+        hole = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0}
+        return lab.window("B", words.pop("box"), changes={"hole": [hole]}, **words)
     return lab.case("B", words.pop("size"), wave={"type": "cosine", "amplitude": 1.0, "period": 0.02}, **words)
 
 

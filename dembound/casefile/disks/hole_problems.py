@@ -13,18 +13,19 @@ def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
     """Check the holes; a table or an entry that is invalid on its own is None. has_static: whether there is a stage."""
     for place, hole in numbered("hole", tables["hole"]):
         if tables["packing"]:
-            yield from _outside(place, hole, tables["packing"].extent)
+            yield from _outside(place, hole, tables["packing"].box)
         if hole.stage == "after" and not has_static:
             yield f'{place}.stage: is "after", but the case has no [static] stage to come after'
         for key in ("load", "monitor"):
             yield from _places_in_it(place, hole, key, tables[key])
 
 
-def _outside(place: str, hole: Hole, size: tuple[float, float]) -> Iterator[str]:
-    """A hole outside the scene."""
+def _outside(place: str, hole: Hole, box: tuple[float, float, float, float]) -> Iterator[str]:
+    """A hole outside the disks' box (left, bottom, right, top; m)."""
     x0, y0, x1, y1 = hole.box
-    if x1 <= 0.0 or y1 <= 0.0 or x0 >= size[0] or y0 >= size[1]:
-        yield f"{place}: lies outside the scene, {corners(*size)}"
+    left, bottom, right, top = box
+    if x1 <= left or y1 <= bottom or x0 >= right or y0 >= top:
+        yield f"{place}: lies outside the scene, {corners(*box)}"
 
 
 def _places_in_it(place: str, hole: Hole, key: str, tables: Any) -> Iterator[str]:

@@ -10,8 +10,9 @@ Vector = tuple[float, float]
 class Load(Table):
     """A force or an acceleration on one particle, on those of a rectangle, or on all.
 
-    A force is split among the particles of its region in proportion to their area. A wave's values, taken as pure
-    numbers, are the time factor; without one the load is steady and acts from the static stage on.
+    A force is split among the particles of its region in proportion to their area; on the free surface of a continuum
+    it is a uniform traction. A wave's values, taken as pure numbers, are the time factor; without one the load is
+    steady and acts from the static stage on.
     """
 
     name: FileName = quantity(..., unit="1", help="name of the load in messages and results")
@@ -19,7 +20,9 @@ class Load(Table):
     acceleration: Vector | None = quantity(None, unit="m/s²", help="body force per mass of each particle")
     position: Vector | None = quantity(None, unit="m", help="where; the nearest particle is loaded")
     region: tuple[float, float, float, float] | None = quantity(
-        None, unit="m", help="rectangle x0, y0, x1, y1; all particles centred in it are loaded"
+        None,
+        unit="m",
+        help="rectangle x0, y0, x1, y1; all particles centred in it are loaded, or the continuum's surface in it",
     )
     wave: str | None = quantity(None, unit="1", help="name of the wave that is the time factor; absent: steady")
 

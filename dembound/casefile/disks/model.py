@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
@@ -20,7 +21,7 @@ class DiskCase(Case):
 
     Attributes
     ----------
-    packing, material, motion, outside, reduce : the tables of these names.
+    ground, packing, material, motion, outside, reduce : the tables of these names.
     static : the table of this name; None: no static stage.
     hole : in the order of the file.
     """
@@ -28,9 +29,52 @@ class DiskCase(Case):
     packing: Packing
     material: Material
     motion: Motion = field(default_factory=Motion)
+    ground: Ground = field(default_factory=Ground)
     outside: OutsideTable = field(default_factory=OutsideTable)
     reduce: Reduce = field(default_factory=Reduce)
     static: Static | None = None
     hole: tuple[Hole, ...] = ()
     load: tuple[Load, ...] = ()
     monitor: tuple[Monitor, ...] = ()
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height (m) of the ground, or of the disks that fill all of it."""
+        return self.packing.extent if self.ground.size is None else self.ground.size
+
+    @property
+    def periodic(self) -> tuple[bool, bool]:
+        """Whether the scene is periodic along x and along y."""
+        return self.side("left").is_periodic, self.side("bottom").is_periodic
+
+    @property
+    def free_field_sides(self) -> tuple[str, ...]:
+        """The free-field sides."""
+        return tuple(side for side, table in self.boundary.items() if table.needs_column)
+
+    @property
+    def outside_sides(self) -> tuple[str, ...]:
+        """The sides beyond which the ground goes on as a continuum."""
+        return tuple(side for side, table in self.boundary.items() if table.is_outside)
+
+    @property
+    def column_sides(self) -> tuple[str, ...]:
+        """The sides at which a free-field column represents the ground beyond.
+
+        Beyond sides with a continuum there is one if the ground moves or rests under forces of its own there: under
+        waves from below, a static stage, or a load on all of it. The continuum then has the difference from it only.
+        """
+        if self.free_field_sides:
+            return self.free_field_sides
+        if any(self.periodic):
+            return ()
+        everywhere = any(load.position is None and load.region is None for load in self.load)
+        driven = any(self.boundary[side].waves for side in self.outside_sides)
+        return self.outside_sides if everywhere or driven or self.static is not None else ()
+
+    @property
+    def column_rows(self) -> tuple[int, int]:
+        """The first row of bricks of the disks in the ground, and the number of rows of the ground."""
+        if self.ground.size is None:
+            return 0, self.packing.copies[1]
+        return self.packing.first_row, round(self.ground.size[1] / self.packing.brick_size[1])

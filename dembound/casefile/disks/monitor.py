@@ -17,7 +17,7 @@ def _is_no_twin(name: str) -> str:
 
 
 class Monitor(Table):
-    """A place; the motion of the nearest particle is recorded at every history step."""
+    """A place; the motion of the nearest particle, or of a continuum there, is recorded at every history step."""
 
     name: Annotated[FileName, AfterValidator(_is_no_twin)] = quantity(
         ..., unit="1", help="name of the history in the results"

@@ -2,21 +2,36 @@
 
 from dembound.table import Table, quantity
 
+CONTINUUM = ".continuum"
+"""Ending of the names of sides of the continuum."""
+
 
 class OutsideTable(Table):
     """The continuum beyond sides of type "outside": spectral elements, the outer ones of which absorb.
 
-    An element size of zero is chosen from the waves of the case.
+    Settings that are absent are chosen from the waves and loads of the case and the accuracy.
     """
 
     order: int = quantity(4, unit="1", help="order of the elements, nodes along a side less one", ge=3, le=6)
     accuracy: float = quantity(
-        1e-3, unit="1", help="error of waves in the continuum that the automatic element size allows", gt=0.0, lt=1.0
+        1e-3, unit="1", help="error of velocities that the settings left out are chosen for", gt=0.0, lt=1.0
     )
-    element: float = quantity(0.0, unit="m", help="largest side of an element; 0: by the accuracy", ge=0.0)
-    margin: int = quantity(1, unit="1", help="elements between the particles and those that absorb", ge=1)
-    layers: int = quantity(3, unit="1", help="elements that absorb, one behind the other", ge=2)
-    reflection: float = quantity(
-        1e-4, unit="1", help="amplitude that a P wave keeps on its way through the layers and back", gt=0.0, lt=1.0
+    element: float | None = quantity(None, unit="m", help="largest side of an element; absent: by the accuracy", gt=0.0)
+    margin: int | None = quantity(
+        None, unit="1", help="elements between the particles and those that absorb; absent: by the loads", ge=1
     )
+    layers: int | None = quantity(
+        None, unit="1", help="elements that absorb, one behind the other; absent: by the accuracy", ge=2
+    )
+    reflection: float | None = quantity(
+        None,
+        unit="1",
+        help="amplitude that a P wave keeps on its way through the layers and back; absent: accuracy/10",
+        gt=0.0,
+        lt=1.0,
+    )
+    shift: float = quantity(
+        0.3, unit="1", help="α of the layers, over c_p/2L, with L the larger side within them", gt=0.0
+    )
+    delay: float = quantity(0.1, unit="1", help="τ of the layers, in time steps; 0 grows in long runs", ge=0.0)
     damping: float = quantity(0.3, unit="1", help="dashpots of the ties, over ρ c_p D", ge=0.0)

@@ -3,12 +3,16 @@
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
+from dembound.boundaries.boundary import Boundary
 from dembound.casefile.cross_checks import driving_waves, never_silent, repeated_names, steps_too_long, unknown_waves
+from dembound.casefile.disks.ground import Ground
+from dembound.casefile.disks.ground_problems import ground_problems
 from dembound.casefile.disks.hole_problems import hole_problems
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
+from dembound.casefile.disks.reach import is_in, reach
 from dembound.casefile.disks.static_problems import static_problems
 from dembound.casefile.messages import corners, numbered, show
 from dembound.packings import Packing
@@ -33,9 +37,11 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         yield from _nothing_to_pack_with(tables["material"], tables["packing"])
     for key in ("hole", "load", "monitor"):
         yield from repeated_names(key, tables[key])
-    for key in ("load", "monitor"):
-        if tables["packing"]:
-            yield from _places_outside(key, tables[key], tables["packing"].extent)
+    ground, packing = tables["ground"], tables["packing"]
+    if ground and packing:
+        yield from ground_problems(ground, packing, tables["boundary"])
+        for key in ("load", "monitor"):
+            yield from _places_outside(key, tables[key], ground, packing, tables["boundary"])
     yield from hole_problems(tables, "static" in given)
     if tables["material"] and tables["material"].locked_in and "static" not in given:
         yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
@@ -67,10 +73,20 @@ def _nothing_to_match(material: Material, motion: Motion) -> Iterator[str]:
         yield 'material.match: is "assembly", but motion.held holds x and y, so the packing has no P-wave speed'
 
 
-def _places_outside(key: str, tables: Sequence[Load | Monitor | None], size: tuple[float, float]) -> Iterator[str]:
-    """Loads or monitors outside the scene."""
+def _places_outside(
+    key: str,
+    tables: Sequence[Load | Monitor | None],
+    ground: Ground,
+    packing: Packing,
+    boundary: Mapping[str, Boundary | None],
+) -> Iterator[str]:
+    """Loads or monitors neither in the scene nor in a continuum round it; an invalid side is None."""
+    allowed = reach(ground, packing, boundary)
+    outside = " and ".join(side for side, table in boundary.items() if table and table.is_outside)
+    beyond = f" or in the continuum of {outside}" if outside else ""
     for place, table in numbered(key, tables):
         for where in ("position", "region"):
             values = getattr(table, where, None) or ()
-            if not all(0.0 <= value <= size[i % 2] for i, value in enumerate(values)):
-                yield f"{place}.{where}: is {show(values)}, must be in the scene, {corners(*size)}"
+            if not all(is_in(allowed, place) for place in zip(values[::2], values[1::2], strict=True)):
+                box = corners(0.0, 0.0, *(ground.size or packing.extent))
+                yield f"{place}.{where}: is {show(values)}, must be in the scene, {box}{beyond}"

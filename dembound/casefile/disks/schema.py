@@ -3,6 +3,7 @@
 from pydantic import TypeAdapter
 
 from dembound.casefile.chart import Chart
+from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.model import DiskCase
@@ -23,6 +24,7 @@ SCHEMA = Schema(
     new="dembound new",
     marks=("packing",),
     tables={
+        "ground": TypeAdapter(Ground),
         "packing": TypeAdapter(PackingTable),
         "material": TypeAdapter(Material),
         "motion": TypeAdapter(Motion),

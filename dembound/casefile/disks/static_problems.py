@@ -19,12 +19,14 @@ def static_problems(
     for side in static.boundary:
         if (table := boundaries.get(side)) and table.is_periodic:
             yield f"static.boundary.{side}: is not allowed, as boundary.{side} is periodic"
+        if table and table.is_outside and side != "bottom":
+            yield f"static.boundary.{side}: is not allowed, as the ground goes on beyond; its bottom may be held"
     for side, own in static.boundary.items():
         if own and "artificial" in own.model_fields_set:
             yield f"static.boundary.{side}.artificial: is of no use in the static stage; give it to boundary.{side}"
     if static.stress is not None:
         sides = [table for table in boundaries.values() if table]
-        for trait, name in (("is_periodic", "periodic"), ("needs_column", "free-field")):
+        for trait, name in (("is_periodic", "periodic"), ("needs_column", "free-field"), ("is_outside", "outside")):
             if any(getattr(table, trait) for table in sides):
                 yield f"static.stress: cannot be applied to {name} sides"
         yield from _unreachable_stress(static, static.stress)
@@ -51,7 +53,7 @@ def _nothing_to_settle(static: Static, loads: Sequence[Load | None], material: M
 
 def _unheld_loads(static: Static, boundaries: Sides, loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:
     """Steady loads against which the body, or the free-field column, is not held."""
-    beside = any(table.needs_column for table in boundaries.values() if table)
+    beside = any(table.needs_column or table.is_outside for table in boundaries.values() if table)
     for place, load in numbered("load", loads):
         if load.wave is not None:
             continue

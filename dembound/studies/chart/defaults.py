@@ -1,15 +1,18 @@
 """The choices of a chart where neither the command nor the case gives any."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import islice
 from typing import Any, get_args
 
+from dembound.boundaries import SIDES
+from dembound.boundaries.boundary import Boundary
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import homogenised_beta
 from dembound.disks.scene import build
+from dembound.disks.smallest_box import cheapest_box, may_be_boxed
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.methods import FiniteDifference, Method, Patch, Peridynamics, Switch
@@ -43,9 +46,9 @@ Named = Iterator[tuple[str, dict[str, Any]]]
 def defaults(case: Case) -> dict[str, dict[str, Any]]:
     """Changes of keys by the name of the choice.
 
-    The case itself. Of disks: coarser radii; half the step; homogenised factors β; and for its absorbing sides each
-    other type, one change at a time. Of a bar: every method with every spacing, each at its automatic step, and finite
-    differences at ν = 1.
+    The case itself. Of disks: coarser radii; half the step; homogenised factors β; for its absorbing sides each other
+    type; and the smallest box of disks in the ground, one change at a time. Of a bar: every method with every spacing,
+    each at its automatic step, and finite differences at ν = 1.
     """
     return dict(_of_bar(case) if isinstance(case, BarCase) else _of_disks(case))
 
@@ -81,22 +84,66 @@ def _homogenised_factors(case: DiskCase) -> Named:
 
 
 def _other_sides(case: DiskCase) -> Named:
-    """Other types for all sides that absorb without a wave; they keep their factors β."""
-    absorbing = {side: table for side, table in case.boundary.items() if table.factors and not table.waves}
+    """Other types for all sides that absorb without a wave, if they may have them; those with factors β keep them."""
+    absorbing = _absorbing(case)
+    silent = {side: table for side, table in absorbing.items() if not table.waves}
     tables: dict[str, dict[str, Any]] = {
         "viscous": {},
         "viscoelastic": {"distance": 0.5 * max(case.packing.extent)},
         "free": {},
     }
-    for name, extra in tables.items() if absorbing else ():
-        if {table.type for table in absorbing.values()} != {name}:
-            yield (
-                f"{' and '.join(absorbing)} {name}",
-                {
-                    f"boundary.{side}": {"type": name, **extra} | ({} if name == "free" else _factors(table.given()))
-                    for side, table in absorbing.items()
-                },
-            )
+    for name, extra in tables.items() if silent else ():
+        keeps = name in ("viscous", "viscoelastic")
+        changes: dict[str, Any] = {
+            f"boundary.{side}": {"type": name, **extra} | (_factors(table.given()) if keeps else {})
+            for side, table in silent.items()
+        }
+        if {table.type for table in silent.values()} != {name} and _is_valid(case, changes):
+            yield f"{_listed(silent)} {name}", changes
+    yield from _continuum(case, silent, absorbing)
+    yield from _box(case)
+
+
+def _absorbing(case: DiskCase) -> dict[str, Boundary]:
+    """The sides that absorb, with waves or without."""
+    return {side: table for side, table in case.boundary.items() if table.factors or table.is_outside}
+
+
+def _continuum(case: DiskCase, *choices: Mapping[str, Boundary]) -> Named:
+    """A continuum beyond the first of these sides beyond which the case may have one; waves enter as in the case."""
+    for sides in choices:
+        changes = {f"boundary.{side}": _beyond(table) for side, table in sides.items()}
+        if not all(table.is_outside for table in sides.values()) and _is_valid(case, changes):
+            yield f"{_listed(sides)} outside", changes
+            return
+
+
+def _box(case: DiskCase) -> Named:
+    """The smallest box of disks round holes and loads, if that saves much and all monitors may be around it."""
+    if not may_be_boxed(case) or (trial := cheapest_box(build(case))) is None:
+        return
+    left, bottom, right, top = trial.box
+    size = [right - left, top - bottom]
+    packing = {key: value for key, value in case.packing.given().items() if key != "bricks"}
+    sides = SIDES if top < case.size[1] else SIDES[:3]
+    changes = {
+        "ground.size": list(case.size),
+        "packing": packing | {"size": size, "origin": [left, bottom]},
+        **{f"boundary.{side}": _beyond(case.side(side)) for side in sides},
+    }
+    if _is_valid(case, changes, build):
+        yield "box of {:g} m × {:g} m, outside".format(*size), changes
+
+
+def _beyond(table: Boundary) -> dict[str, Any]:
+    """The table of a side with a continuum, through which the waves of this one enter."""
+    return {"type": "outside"} | {f"wave_{motion}": name for motion, name in table.waves.items()}
+
+
+def _listed(names: Iterable[str]) -> str:
+    """Names as in "left, right and bottom"."""
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def _factors(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -143,10 +190,10 @@ def _valid(case: Case, changes: Iterator[dict[str, Any]]) -> Iterator[dict[str, 
     return islice((change for change in changes if _is_valid(case, change)), FEW)
 
 
-def _is_valid(case: Case, changes: Mapping[str, Any]) -> bool:
-    """Whether the changed case has no mistake."""
+def _is_valid(case: Case, changes: Mapping[str, Any], use: Callable[[Any], object] = bool) -> bool:
+    """Whether the changed case has no mistake; nor has it one that only its use, such as `build`, finds."""
     try:
-        with_changes(case, changes)
+        use(with_changes(case, changes))
     except CaseError:
         return False
     return True

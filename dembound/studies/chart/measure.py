@@ -111,12 +111,12 @@ def _gauges(planned: Plan, records: Records) -> dict[str, Gauge]:
     times = stride * step * np.arange(len(motion))
     return {
         name: Gauge(
-            position=scene.positions[node],
+            position=place,
             time=times,
             displacement=motion[:, index, :3],
             velocity=motion[:, index, 3:6],
             stress=motion[:, index, 6] if motion.shape[2] > 6 else None,
         )
-        for index, (name, node) in enumerate(scene.monitors.items())
+        for index, (name, place) in enumerate(scene.monitored.items())
         if name in scene.places  # without the twins in a free-field column
     }

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -114,7 +115,8 @@ class _References:
         Bars are those of the finer run.
         """
         changes = self._choices[self._own].changes
-        plain = with_changes(self._case, {key: each for key, each in changes.items() if not key.startswith(SIDES)})
+        others = {key: each for key, each in changes.items() if not key.startswith(SIDES)}
+        plain = with_changes(self._case, others | self._sides())
         fine = finer(plain, self._choices, self._outcomes) if isinstance(plain, BarCase) else None
         plain = fine.case if fine else plain
         larger = extended(plain, most)
@@ -126,6 +128,21 @@ class _References:
         sentence = larger.sentence.removeprefix("reference: ")
         sentence += f", by finite differences at Courant number 1, spacing {fine.spacing:.4g} m" if fine else ""
         return self._of_run("extended", sentence, outcome, self._places(fine))
+
+    def _sides(self) -> dict[str, Any]:
+        """Changes of sides for the extended scene: those of a choice with waves through a continuum; by default none.
+
+        A side that waves enter through cannot move away. A continuum is the one that returns next to nothing.
+        """
+        for choice in self._choices:
+            case = choice.case
+            if (
+                isinstance(case, DiskCase)
+                and case.ground.size is None
+                and any(case.side(s).waves for s in case.outside_sides)
+            ):
+                return {key: each for key, each in choice.changes.items() if key.startswith(SIDES)}
+        return {}
 
     def _finer(self) -> Reference:
         """Finite differences at Courant number 1 with a finer spacing than all choices."""
@@ -193,7 +210,7 @@ def _finest(outcomes: Sequence[Outcome]) -> int:
 def _of_random_packings(choices: Sequence[Choice]) -> tuple[str, ...]:
     """A caution if choices have different bricks, and random ones among them."""
     packings = [choice.case.packing for choice in choices if isinstance(choice.case, DiskCase)]
-    bricks = {repr(packing.with_copies(1, 1)) for packing in packings}
+    bricks = {repr(packing.with_copies(1, 1).model_copy(update={"origin": (0.0, 0.0)})) for packing in packings}
     if len(bricks) < 2 or not any(packing.packed_under_stress for packing in packings):
         return ()
     return (REALISATIONS,)

@@ -29,7 +29,7 @@ def run(spalling, tmp_path):
 
     def make(**changes: object):
         planned = plan(spalling(changes))
-        simulation = Simulation(planned.scene, planned.time_step, list(planned.scene.monitors.values()))
+        simulation = Simulation(planned.scene, planned.time_step, planned.scene.probes)
         path: Path = tmp_path / "run.h5"
         ledger = Ledger(simulation, planned.steps - 1)
         with Recorder(path, simulation, planned.step_limit, ledger=ledger) as recorder:

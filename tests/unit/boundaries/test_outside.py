@@ -49,11 +49,23 @@ def test_it_is_artificial_and_has_no_keys() -> None:
             'boundary.bottom.type: is "viscous_input"; beside',
         ),
         ('[boundary.top]\ntype = "fixed"\n', 'boundary.top.type: is "fixed"; beside boundary.left it must be "free"'),
-        ('[boundary.bottom]\ntype = "symmetry"\n', 'boundary.bottom.type: is "symmetry"; beside'),
+        ('[boundary.bottom]\ntype = "roller"\n', 'boundary.bottom.type: is "roller"; beside'),
+        (
+            '[boundary.bottom]\ntype = "symmetry"\n[static]\n',
+            'boundary.bottom.type: is "symmetry", which takes [static] and loads on all disks out',
+        ),
         ('[boundary.right]\ntype = "free_field"\n', 'boundary.right.type: is "free_field"; beside'),
         ('[motion]\nheld = ["y"]\n', 'boundary.left.type: "outside" moves freely, but motion.held holds y'),
-        ("[static]\nstress = [-1e6, -1e6, 0.0]\n", 'boundary.left.type: "outside" does not carry a settled stress'),
-        ('[[load]]\nname = "g"\nacceleration = [0.0, -9.81]\n', "load[1].acceleration: acts on the particles alone"),
+        (
+            '[boundary.bottom]\ntype = "outside"\n[static]\n',
+            'boundary.right.type: is "free", but [static] and loads on all disks also act on the ground beyond '
+            "boundary.bottom, which has no end there",
+        ),
+        ("[static]\nstress = [-1e6, -1e6, 0.0]\n", "static.stress: cannot be applied to outside sides"),
+        (
+            '[[load]]\nname = "g"\nacceleration = [0.0, -9.81]\n[static.boundary.left]\ntype = "fixed"\n',
+            "static.boundary.left: is not allowed, as the ground goes on beyond; its bottom may be held",
+        ),
     ],
 )
 def test_what_it_cannot_be_beside_gets_one_line(more: str, line: str) -> None:
@@ -63,6 +75,54 @@ def test_what_it_cannot_be_beside_gets_one_line(more: str, line: str) -> None:
 @pytest.mark.parametrize("kind", ['"fixed"', '"symmetry"', '"viscous"', '"velocity"\nwave_p = "w"', '"outside"'])
 def test_the_opposite_side_may_be_anything_but_a_free_field(kind: str) -> None:
     assert loads(f"{CASE}[boundary.right]\ntype = {kind}\n").side("left").is_outside
+
+
+BELOW = """
+[packing]
+pattern = "A"
+size = [10.0, 5.0]
+radius = 0.5
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+[wave.w]
+type = "cosine"
+amplitude = 1.0
+period = 0.1
+[run]
+duration = 0.1
+[boundary.bottom]
+type = "outside"
+wave_s = "w"
+"""
+PERIODIC = '[boundary.left]\ntype = "periodic"\n[boundary.right]\ntype = "periodic"\n'
+
+
+def test_waves_enter_through_the_bottom_of_a_periodic_body() -> None:
+    case = loads(BELOW + PERIODIC)
+    assert case.driving == {"bottom": {"s": "w"}}
+    assert not case.side("bottom").at_rest().waves
+    assert build(case).outside is not None
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (
+            BELOW,
+            'boundary.bottom.type: waves enter through it only where boundary.left and right are both "outside" or',
+        ),
+        (
+            BELOW.replace("bottom", "top") + PERIODIC,
+            'boundary.top.type: is "outside", through which waves enter at the bottom only',
+        ),
+        (BELOW.replace('"w"\n', '"v"\n') + PERIODIC, "boundary.bottom.wave_s"),
+    ],
+)
+def test_other_waves_get_one_line(text: str, line: str) -> None:
+    with pytest.raises(CaseError) as error:
+        loads(text)
+    assert line in str(error.value)
 
 
 def test_a_hole_that_reaches_it_is_refused() -> None:

@@ -158,3 +158,39 @@ def test_of_two_moving_prescribed_rows_the_first_wins() -> None:
     builder.add(np.array([7]), 0, prescribed=True, drive=1.0, signal=ramp)
 
     assert builder.table().sample(np.array([2.0]), half_step=0.0).tolist() == [[4.0]]
+
+
+class Powers:
+    """Three signals t, t² and t³."""
+
+    count = 3
+
+    def __call__(self, times: np.ndarray) -> np.ndarray:
+        return times[:, None] ** [1.0, 2.0, 3.0]
+
+
+def test_forces_that_are_computed_together_act_on_their_own_rows() -> None:
+    builder = SupportBuilder(held=(2,))
+    builder.side = "bottom"
+    builder.add_forces(np.array([4, 2, 7]), np.array([1, 0, 2]), Powers())
+    builder.add(np.array([2]), 0, drive=10.0, signal=ramp)
+    builder.add_power("bottom", ramp)
+    table = builder.table()
+    times = np.array([2.0, 3.0])
+    values = table.sample(times, 0.5)
+
+    assert len(table) == 2
+    assert values[:, row(table, 4, 1)].tolist() == [2.0, 3.0]
+    np.testing.assert_allclose(values[:, row(table, 2, 0)], times**2 + 10.0 * ramp(times))
+    assert table.shares.power == {"bottom": 4}
+
+
+def test_velocities_that_ties_see_are_half_a_step_behind() -> None:
+    builder = SupportBuilder()
+    builder.add_forces(np.array([1, 2, 3]), np.zeros(3, dtype=np.int64), Powers(), behind=True)
+    builder.add(np.array([9]), 0, prescribed=True, drive=1.0, signal=lambda t: t)
+    table = builder.table()
+    values = table.sample(np.array([2.0]), 0.5)[0]
+
+    np.testing.assert_allclose(values[:3], [1.5, 1.5**2, 1.5**3])
+    assert values[row(table, 9, 0)] == 2.5

@@ -133,8 +133,8 @@ def test_unknown_offers_the_nearest_name_only_if_there_is_one() -> None:
     assert unknown("key", "zzz", ["fric", "kratio"]) == "unknown key; allowed: fric, kratio"
 
 
-def test_a_scene_is_told_without_the_rounding_of_its_bricks() -> None:
-    assert corners(3 * 0.1, 6.0 * 0.8660254037844386) == "[0, 0] to [0.3, 5.196152423] (m)"
+def test_corners_are_printed_without_the_rounding_of_bricks() -> None:
+    assert corners(0.0, 0.0, 3 * 0.1, 6.0 * 0.8660254037844386) == "[0, 0] to [0.3, 5.196152423] (m)"
 
 
 @pytest.mark.parametrize(("count", "words"), [(0, "0 disks"), (1, "1 disk"), (2, "2 disks"), (1200, "1,200 disks")])

@@ -6,15 +6,18 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.material import Material
-from dembound.disks.free_surface import _curved, skin_of
+from dembound.disks import free_surface
+from dembound.disks.free_surface import LEAST_MASS, _curved, _turned, inset, mass_of, skin_depths
 from dembound.disks.homogenise import Network, homogenise
 from dembound.disks.packed_material import PackedMaterial, make_packed_material
 from dembound.laws import Stiffness
+from dembound.outside.mesh import Around, Mesh
 from dembound.packings.brick import Brick
 from dembound.packings.dense import Recipe, pack_dense
 from dembound.packings.square import Square
 from dembound.packings.tiling import tile
 
+SIDES = ("left", "right", "bottom", "top")
 MATERIAL = Material(density=2500.0, p_wave_speed=1000.0)
 
 
@@ -32,7 +35,7 @@ def square(fric: float = 0.0) -> PackedMaterial:
 @pytest.mark.parametrize("fric", [0.0, 0.5])
 def test_rows_of_a_square_lattice_have_no_skin(fric: float) -> None:
     # every row carries K D whatever is above it
-    assert square(fric).skin == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert [square(fric).skin(side) for side in SIDES] == pytest.approx([0.0] * 4, abs=1e-9)
 
 
 def test_a_layer_of_unequal_rows_lies_where_its_stiff_rows_are() -> None:
@@ -50,23 +53,48 @@ def test_a_layer_of_unequal_rows_lies_where_its_stiff_rows_are() -> None:
     made = make_packed_material(brick, MATERIAL, ())
     times = np.concatenate([1.0 + row, np.ones(4)])  # rows of 1, 2, 3 and 4 times the stiffness, upwards
     stiffness = replace(made.stiffness, normal=made.stiffness.normal * times)
-    skin = skin_of(brick, stiffness, homogenise(brick, stiffness, ()).tensor, bricks=1)
+    tensor = homogenise(brick, stiffness, ()).tensor
 
     # ν = 0, so rows share no load: N = E'H, and M/N = Σ k y/Σ k − H/2
     higher = float(np.dot(1.0 + row, brick.positions[:, 1]) / 10.0 - 1.0)
     assert higher == pytest.approx(0.25)
-    assert skin == pytest.approx((higher, -higher), abs=1e-9)
+    assert skin_depths(brick, stiffness, tensor) == pytest.approx((higher, -higher), abs=1e-9)
+    # rows end at the left and right: all columns have the same stiffness
+    assert skin_depths(brick, stiffness, tensor, axis=0) == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
-def test_a_random_packing_is_softer_near_its_surface(dense: PackedMaterial) -> None:
+def test_a_random_packing_is_softer_near_its_surface(dense: PackedMaterial, monkeypatch) -> None:
     diameter = dense.brick.mean_diameter
-    assert all(0.0 < depth < diameter for depth in dense.skin)
-    assert sum(dense.skin) > 0.5 * diameter
+    depths = [dense.skin(side) for side in SIDES]
+    assert all(0.0 < depth < diameter for depth in depths)
+    assert sum(depths) > diameter
     # the skins of both surfaces are apart: what is left at their distance has decayed by e^(−2π H/L) with the brick's
-    # width L = 6 m and H = 10 m, to 3e-5; of the moment only as (δ/H)², to 1e-3
-    higher = skin_of(dense.brick, dense.stiffness, dense.material_tensor, bricks=4)
-    assert sum(higher) == pytest.approx(sum(dense.skin), abs=1e-4 * diameter)
-    assert higher.top == pytest.approx(dense.skin.top, abs=5e-3 * diameter)
+    # width L = 6 m and H = 15 m, to 1e-7; of the moment only as (δ/H)², to 1e-3
+    monkeypatch.setattr(free_surface, "SLENDER", 4.0)
+    higher = skin_depths(dense.brick, dense.stiffness, dense.material_tensor)
+    assert sum(higher) == pytest.approx(sum(depths[2:]), abs=1e-4 * diameter)
+    assert higher[1] == pytest.approx(depths[3], abs=5e-3 * diameter)
+
+
+def test_a_turned_packing_has_its_skins_at_other_sides(dense: PackedMaterial) -> None:
+    """Contacts have the same constants in the mirror image, as shear and rotation change their signs together."""
+    turned = make_packed_material(_turned(dense.brick), MATERIAL, ())
+    of = dict(zip(("bottom", "top", "left", "right"), SIDES, strict=True))
+    assert turned.material_tensor[0] == pytest.approx(dense.material_tensor[1, [1, 0, 3, 2]], rel=1e-9)
+    for side, before in of.items():
+        assert turned.skin(side) == pytest.approx(dense.skin(before), rel=1e-6)
+
+
+def test_disks_that_hang_by_one_contact_carry_nothing(dense: PackedMaterial, monkeypatch) -> None:
+    """Without bonds they roll. The springs that hold them are too weak to matter: ten times weaker ones do the same."""
+    loose = replace(dense, moduli=replace(dense.moduli, pb_emod=0.0, fric=0.5))
+    strip = tile(loose.brick, (1, 3), (True, False))
+    assert (np.bincount(strip.pairs.ravel()) == 1).any()
+    depths = [loose.skin(side) for side in SIDES]
+    monkeypatch.setattr(free_surface, "FAINT", 0.1 * free_surface.FAINT)
+    fainter = replace(loose, held=())
+    assert [fainter.skin(side) for side in SIDES] == pytest.approx(depths, rel=1e-6)
+    assert all(0.0 < depth < loose.brick.mean_diameter for depth in depths)
 
 
 def test_curvature_strains_contacts_as_a_beam_that_is_bent(dense: PackedMaterial) -> None:
@@ -82,5 +110,26 @@ def test_curvature_strains_contacts_as_a_beam_that_is_bent(dense: PackedMaterial
 
 def test_a_softer_contact_of_the_surface_makes_it_deeper(dense: PackedMaterial) -> None:
     half = replace(dense.stiffness, shear=0.5 * dense.stiffness.shear, bending=0.5 * dense.stiffness.bending)
-    softer = skin_of(dense.brick, half, homogenise(dense.brick, half, ()).tensor)
-    assert sum(softer) > sum(dense.skin)
+    softer = skin_depths(dense.brick, half, homogenise(dense.brick, half, ()).tensor)
+    assert sum(softer) > dense.skin("bottom") + dense.skin("top")
+
+
+def test_the_mass_up_to_the_edge_of_the_body_is_kept() -> None:
+    skins = {"top": 0.3, "left": 0.2}
+    box = inset((0.0, 0.0, 6.0, 4.0), skins)
+    assert box == (0.2, 0.0, 6.0, 3.7)
+    mesh = Mesh.around(box, (2.9, 3.7), 4, margin=Around(right=2, bottom=1), layer=Around(right=1, bottom=2))
+    total = 1000.0 * mesh.areas + mass_of(skins, mesh, 1000.0)
+
+    # 5 × 4 elements less the box's two; three of them end at the top, and three on the left
+    assert total.sum() == pytest.approx(1000.0 * (18 * 2.9 * 3.7 + 0.3 * 8.7 + 0.2 * 11.1), rel=1e-12)
+    x, y = mesh.positions.T
+    assert set(np.flatnonzero(mass_of(skins, mesh, 1000.0))) == set(np.flatnonzero((y == y.max()) | (x == x.min())))
+
+
+def test_a_stiff_skin_leaves_nodes_half_their_mass() -> None:
+    mesh = Mesh.uniform(order=4, element=(1.0, 1.0), cells=(2, 2))
+    added = mass_of({"top": -1.0}, mesh, 1000.0)
+    top = mesh.positions[:, 1] == 2.0
+    assert added[~top] == pytest.approx(0.0)
+    assert added[top] == pytest.approx(-(1.0 - LEAST_MASS) * 1000.0 * mesh.areas[top])

@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.load import Load
+from dembound.disks.facts import disk_facts
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import build
+from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError
+from dembound.motion.simulation import Simulation
 from dembound.packings.tiling import Assembly
 
 MASS = np.array([1.0, 2.0, 3.0, 4.0])
@@ -104,3 +107,96 @@ def test_half_masses_take_half_the_body_force(bar, wave: dict) -> None:
     # 625 kg, and half of it at the right end
     assert set(np.round(scene.mass, 9)) == {625.0, 312.5}
     np.testing.assert_allclose(force, -9.81 * scene.mass, rtol=1e-15)
+
+
+SURROUNDED = {
+    "packing": {"pattern": "A", "size": [8.0, 4.0], "radius": 0.25},
+    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+    "outside": {"element": 2.0, "margin": 2},
+}
+"""Elements of 2 m; absorbing ones begin at x = −4 m, 12 m and y = −4 m."""
+
+
+def on_the_ground(region: list[float], **more: object) -> dict:
+    return {"name": "house", "force": [2e3, -5e3], "region": region, **more}
+
+
+@pytest.mark.parametrize(("first", "last"), [(8.0, 12.0), (9.1, 11.3), (-4.0, 0.0)])
+def test_a_steady_force_on_the_continuum_is_a_traction_on_its_surface(bar, first: float, last: float) -> None:
+    scene = loaded(bar, on_the_ground([first, 3.0, last, 4.0]), **SURROUNDED)
+    force, (x, y) = scene.steady_load, scene.positions.T
+    pushed = np.flatnonzero(force.any(axis=0))
+
+    assert pushed.min() >= scene.disk_count
+    assert (y[pushed] == 4.0).all()
+    np.testing.assert_allclose(force.sum(axis=1), [2e3, -5e3, 0.0], rtol=1e-12)
+    # no moment about the middle of the region
+    np.testing.assert_allclose(force[:2] @ (x - 0.5 * (first + last)), 0.0, atol=1e-9 * 5e3)
+    assert "nodes of the continuum, steady" in disk_facts(scene)["load house"]
+    system = DiskSystem(scene, 1e-5)
+    simulation = Simulation(scene, 1e-5, pushed, system=system)
+    record = simulation.advance(2)  # velocities are means of the half steps before and after
+    kick = force[:2, pushed] / scene.mass[pushed] * 1e-5
+    np.testing.assert_allclose(record[0, :, 3:5], 0.5 * kick.T, rtol=1e-9, atol=1e-12)
+
+
+def test_a_force_on_the_continuum_follows_its_wave(bar) -> None:
+    scene = loaded(bar, on_the_ground([8.5, 3.0, 11.5, 4.0], wave="pulse"), **SURROUNDED)
+    table = scene.supports
+    rows = table.drive_row[table.drive != 0.0]
+    nodes, times = table.node[rows], np.array([0.0, 0.0025, 0.005])
+
+    assert not scene.steady_load.any()
+    assert nodes.min() >= scene.disk_count
+    assert set(nodes) <= set(table.node[(table.component == 2) & table.prescribed])  # nodes do not rotate
+    for axis, force in ((0, 2e3), (1, -5e3)):
+        driven = table.sample(times, 1e-4)[:, table.component == axis].sum(axis=1)
+        np.testing.assert_allclose(driven, force * np.array([0.0, 0.25, 0.5]), atol=1e-9)
+    # the same motion as by the steady part, as a step without a force before it
+    flat = {"type": "constant", "amplitude": 1.0}
+    driven, steady = (
+        loaded(bar, on_the_ground([8.5, 3.0, 11.5, 4.0], **wave), **SURROUNDED, **{"wave.flat": flat})
+        for wave in ({"wave": "flat"}, {})
+    )
+    moved = [Simulation(each, 1e-4, np.arange(each.count)).advance(20) for each in (driven, steady)]
+    assert np.abs(moved[1]).max() > 0.0
+    np.testing.assert_allclose(moved[0], moved[1], rtol=0.0, atol=1e-12 * np.abs(moved[1]).max())
+
+
+@pytest.mark.parametrize(
+    ("load", "line"),
+    [
+        (
+            {"name": "house", "force": [0.0, -1.0], "position": [9.0, 4.0]},
+            "load.house.position: lies in the continuum, where a force needs a region at least 2 m wide",
+        ),
+        (
+            on_the_ground([9.0, 3.0, 10.5, 4.0]),
+            "load.house.region: has 1.5 m of the continuum's free surface, must have at least 2 m, an element",
+        ),
+        (
+            on_the_ground([9.0, 3.0, 13.0, 4.0]),
+            "load.house.region: reaches the layer that absorbs; must lie within (-4, -4) to (12, 4) m",
+        ),
+        (
+            on_the_ground([5.0, 3.0, 11.0, 4.0]),
+            "load.house.region: has particles and free surface of the continuum; give each its own load",
+        ),
+        (
+            on_the_ground([9.0, 1.0, 11.0, 3.0]),
+            "load.house: no particle is centred in its region [9.0, 1.0, 11.0, 3.0] (m), nor does it have free surface "
+            "of the continuum",
+        ),
+    ],
+)
+def test_a_force_on_the_continuum_that_cannot_be_is_refused(bar, load: dict, line: str) -> None:
+    for wave in ({}, {"wave": "pulse"}):
+        with pytest.raises(CaseError) as error:
+            _ = loaded(bar, {**load, **wave}, **SURROUNDED).steady_load
+        assert error.value.problems == [line]
+
+
+def test_a_region_of_the_body_that_ends_at_the_continuum_is_on_particles(bar) -> None:
+    scene = loaded(bar, on_the_ground([6.0, 3.5, 8.0, 4.0]), **SURROUNDED)
+
+    assert np.flatnonzero(scene.steady_load[1]).max() < scene.disk_count

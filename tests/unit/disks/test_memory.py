@@ -95,6 +95,42 @@ def test_a_scene_too_large_is_refused_before_its_brick_is_packed(bar, monkeypatc
         build(case)
 
 
+OUTSIDE = {
+    "packing": {"pattern": "A", "size": [40.0, 20.0], "radius": 0.5},
+    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+    "load": [{"name": "f", "position": [20.5, 19.5], "force": [0.0, -1e6], "wave": "pulse"}],
+    "wave": {"pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.2}},
+    "monitor": [],
+    "motion.held": [],
+}
+
+
+def test_the_continuum_is_known_before_the_scene_is_built(bar) -> None:
+    case = bar(OUTSIDE | {"outside": {"element": 5.0, "margin": 20}})
+    scene = build(case)
+    expected, sizes = Sizes.expected(case), Sizes.of(scene)
+
+    assert expected.grid == sizes.grid
+    assert sizes.grid.nodes == scene.outside.count == scene.count - sizes.disks
+    assert sizes.moving == pytest.approx(scene.layout.count, rel=0.01)
+    assert sizes.ties == 80
+    assert expected_bytes(case) == pytest.approx(scene.largest_memory, rel=0.02)
+
+
+def test_an_automatic_size_is_that_of_a_medium_of_the_nominal_speed(bar) -> None:
+    """S waves have half of the speed of P waves here, or more: the elements are no fewer."""
+    case = bar(OUTSIDE | {"outside.accuracy": 1e-2, "material.contact_share": 0.0})
+    expected, sizes = Sizes.expected(case), Sizes.of(build(case))
+
+    assert sizes.grid.nodes <= expected.grid.nodes < 3.0 * sizes.grid.nodes
+
+
+def test_a_continuum_too_large_is_refused_before_it_is_built(bar, monkeypatch) -> None:
+    monkeypatch.setattr(memory, "memory_here", lambda: Memory(8e9, 6e9))
+    with pytest.raises(CaseError, match=r"^outside: 800 disks and 4.48e\+11 nodes of the continuum beyond them need "):
+        build(bar(OUTSIDE | {"outside": {"element": 1e-3, "margin": 100000}}))
+
+
 def test_both_scenes_of_an_excavation_count(bar) -> None:
     case = bar({**FREE, "packing": RANDOM})
     one = Sizes(1e7, 1e7, 2.2e7, 0.0, in_rows=True)

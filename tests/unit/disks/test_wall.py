@@ -9,7 +9,7 @@ from dembound.disks.packed_material import PackedMaterial, make_packed_material
 from dembound.disks.wall import CutBonds, Wall, lag_of
 from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import tie_forces
-from dembound.outside.mesh import Around, Mesh
+from dembound.outside.mesh import Mesh
 from dembound.packings.cut import cut_contacts
 from dembound.packings.dense import Recipe, pack_dense
 from dembound.packings.square import Square
@@ -34,12 +34,14 @@ def ground(request) -> PackedMaterial:
 
 
 class Tied:
-    """A body of 12 m × 12 m in a mesh of elements of 6 m, its particles first."""
+    """A body of 12 m × 12 m in a mesh of elements of several widths and heights, its particles first."""
 
     def __init__(self, ground: PackedMaterial) -> None:
         self.ground = ground
         self.body: Assembly = tile(ground.brick, tuple(np.rint(12.0 / ground.brick.size).astype(int)), (False, False))
-        self.mesh = Mesh.around((0.0, 0.0, 12.0, 12.0), (6.0, 6.0), 4, margin=Around(1, 1, 1, 1), layer=Around())
+        self.mesh = Mesh(
+            order=4, widths=(4.0, 5.0, 7.0, 6.0), heights=(5.0, 6.5, 5.5, 3.0), origin=(-4.0, -5.0), box=(1, 1, 3, 3)
+        )
         self.cut = cut_contacts(ground.brick, self.body, SIDES)
         self.wall = Wall.of(self.mesh, CutBonds.of(ground, self.cut, self.body.positions), 0.0)
         self.particles, self.count = len(self.body.radii), len(self.body.radii) + self.mesh.count
@@ -106,6 +108,35 @@ def test_ties_neither_push_nor_turn_the_whole(ground) -> None:
     turned = np.stack([-y, x, np.ones_like(x)])
     assert abs(np.sum(turned * force.T)) <= 1e-9 * 12.0 * size
     assert np.abs(tied.forces(turned)).max() <= 1e-9 * np.abs(force).max()
+
+
+def test_ties_half_way_to_other_sides_turn_nothing_and_move_by_half_of_it(ground) -> None:
+    """Sides moved by 2 m move the motion of ties by 1 m along the gradients of each component."""
+    tied = Tied(ground)
+    bonds = CutBonds.of(ground, tied.cut, tied.body.positions)
+    near, far = (bonds.between(np.add(tied.mesh.sides, [-offset, offset, -offset, offset])) for offset in (0.0, 2.0))
+    moved = far.corrector - near.corrector
+    for number, (axis, sign) in enumerate(((0, -1.0), (0, 1.0), (1, -1.0), (1, 1.0))):
+        of_side = moved[..., bonds.side == number]
+        expected = np.zeros((3, 4))
+        expected[axis, axis] = sign  # xx or yy
+        expected[1 - axis, 2:] = sign  # xy and yx
+        np.testing.assert_allclose(of_side, np.broadcast_to(expected[..., None], of_side.shape), atol=1e-12)
+    tied.wall = Wall.of(tied.mesh, far, 0.0)
+    x, y = np.vstack([tied.body.positions, tied.mesh.positions]).T
+    u = np.random.default_rng(4).normal(size=(3, tied.count))
+    turned = np.stack([-y, x, np.ones_like(x)])
+    assert np.abs(tied.forces(turned)).max() <= 1e-9 * np.abs(tied.forces(12.0 * u)).max()
+
+
+def test_the_force_of_a_bond_is_that_of_its_tie_under_a_gradient(ground) -> None:
+    tied = Tied(ground)
+    bonds = CutBonds.of(ground, tied.cut, tied.body.positions)
+    for number in range(4):
+        force = np.zeros((tied.particles, 3))
+        np.add.at(force, bonds.particle, bonds.on_disks[:, number].T)
+        expected = tied.forces(tied.strained(np.eye(4)[number]))[: tied.particles]
+        np.testing.assert_allclose(force, expected, atol=1e-9 * np.abs(expected).max())
 
 
 def test_a_twin_leaves_what_the_particle_has_beyond_it(ground) -> None:

@@ -159,7 +159,7 @@ def loaded(spalling, tmp_path):
         load = {"name": "hit", "pressure": 12e6, "nodes": 3, "wave": "hit", "side": side}
         monitors = [{"name": name, "position": place} for name, place in places.items()]
         planned = plan(spalling({"load": [load], "monitor": monitors, "run.duration": 5e-3}))
-        simulation = Simulation(planned.scene, planned.time_step, np.array(list(planned.scene.monitors.values())))
+        simulation = Simulation(planned.scene, planned.time_step, planned.scene.probes)
         path = tmp_path / f"{side}.h5"
         with Recorder(path, simulation, planned.step_limit, 0.0) as recorder:
             recorder.append(simulation.advance(planned.steps))

@@ -1,5 +1,7 @@
 """Kernels of spectral elements against their equations, written down element by element with NumPy."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from dembound.outside.alone import GridScene
 from dembound.outside.body import GridBody
 from dembound.outside.gll import ORDERS
 from dembound.outside.layer import Profile
+from dembound.outside.mesh import Around, Mesh
 from dembound.outside.part import GridPart
 
 STEP = 1e-4
@@ -28,9 +31,10 @@ class Plain:
         self.decay, self.gain, self.delay = np.ones((2, mesh.count)), np.zeros((2, mesh.count)), np.zeros(mesh.count)
         for axis in (0, 1):
             place = mesh.positions[:, axis]
-            inner = [mesh.origin[axis] + mesh.thickness(axis)[0]]
-            inner.append(mesh.origin[axis] + mesh.size[axis] - mesh.thickness(axis)[1])
-            for sign, edge, thickness in zip((-1.0, 1.0), inner, mesh.thickness(axis), strict=True):
+            thicknesses = mesh.axes[axis].thickness
+            inner = [mesh.origin[axis] + thicknesses[0]]
+            inner.append(mesh.origin[axis] + mesh.size[axis] - thicknesses[1])
+            for sign, edge, thickness in zip((-1.0, 1.0), inner, thicknesses, strict=True):
                 if thickness == 0.0:
                     continue
                 q = np.maximum(sign * (place - edge), 0.0) / thickness
@@ -40,6 +44,10 @@ class Plain:
                 there = q > 0.0
                 self.decay[axis, there] = profile.decay(q[there], step)
                 self.gain[axis, there] = profile.gain(q[there], step)
+                if mesh.periodic[1 - axis]:
+                    part = body.absorption.along
+                    self.decay[1 - axis, there] = profile.decay(q[there], step, part)
+                    self.gain[1 - axis, there] = profile.gain(q[there], step, part)
                 self.delay = np.maximum(self.delay, profile.delay(q, step))
 
     def forces(self, u: np.ndarray, v: np.ndarray | None = None) -> np.ndarray:
@@ -49,10 +57,11 @@ class Plain:
         w = u + self.delay * v if v is not None else u
         derivative = mesh.rule.derivative
         of_elements = w[:, mesh.nodes]
+        steeper = 2.0 / mesh.element_sizes.T[:, :, None, None]
         gradient = np.stack(
             [
-                2.0 / mesh.element[0] * np.einsum("ik,cejk->ceji", derivative, of_elements),
-                2.0 / mesh.element[1] * np.einsum("jk,ceki->ceji", derivative, of_elements),
+                steeper[0] * np.einsum("ik,cejk->ceji", derivative, of_elements),
+                steeper[1] * np.einsum("jk,ceki->ceji", derivative, of_elements),
             ]
         )
         if absorbs:
@@ -61,11 +70,11 @@ class Plain:
             gradient = gradient + self.strain_memory
         strain = np.stack([gradient[0, 0], gradient[1, 1], gradient[1, 0] + gradient[0, 1]])
         xx, yy, xy = np.einsum("ab,beji->aeji", self.body.medium.matrix, strain)
-        weight = 0.25 * mesh.element[0] * mesh.element[1] * np.outer(mesh.rule.weights, mesh.rule.weights)
+        weight = np.outer(mesh.rule.weights, mesh.rule.weights) / np.prod(steeper, axis=0)
         total = np.zeros((2, 2, mesh.count))
         for component, (along_x, along_y) in enumerate(((xx, xy), (xy, yy))):
-            fx = -2.0 / mesh.element[0] * np.einsum("ki,ejk->eji", derivative, weight * along_x)
-            fy = -2.0 / mesh.element[1] * np.einsum("kj,eki->eji", derivative, weight * along_y)
+            fx = -steeper[0] * np.einsum("ki,ejk->eji", derivative, weight * along_x)
+            fy = -steeper[1] * np.einsum("kj,eki->eji", derivative, weight * along_y)
             for axis, force in enumerate((fx, fy)):
                 total[axis, component] = np.bincount(mesh.nodes.ravel(), force.ravel(), mesh.count)
         if absorbs:
@@ -76,10 +85,11 @@ class Plain:
     def energy(self, u: np.ndarray, elements: np.ndarray) -> float:
         """½Σ σ:ε over some elements, (E,) bool."""
         mesh, values = self.body.mesh, 0.0
-        weight = 0.25 * mesh.element[0] * mesh.element[1] * np.outer(mesh.rule.weights, mesh.rule.weights)
-        for nodes in mesh.nodes[elements]:
-            along_x = 2.0 / mesh.element[0] * np.einsum("ik,cjk->cji", mesh.rule.derivative, u[:, nodes])
-            along_y = 2.0 / mesh.element[1] * np.einsum("jk,cki->cji", mesh.rule.derivative, u[:, nodes])
+        weights = np.outer(mesh.rule.weights, mesh.rule.weights)
+        for nodes, (width, height) in zip(mesh.nodes[elements], mesh.element_sizes[elements], strict=True):
+            weight = 0.25 * width * height * weights
+            along_x = 2.0 / width * np.einsum("ik,cjk->cji", mesh.rule.derivative, u[:, nodes])
+            along_y = 2.0 / height * np.einsum("jk,cki->cji", mesh.rule.derivative, u[:, nodes])
             strain = np.stack([along_x[0], along_y[1], along_y[0] + along_x[1]])
             values += 0.5 * float(np.einsum("ji,aji,ab,bji->", weight, strain, self.body.medium.matrix, strain))
         return values
@@ -90,10 +100,14 @@ def close(found: np.ndarray, expected: np.ndarray, sums: int = 1) -> None:
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=sums * 1e-14 * np.abs(expected).max())
 
 
+sizes = pytest.mark.parametrize("even", [True, False], ids=["equal elements", "several shapes"])
+
+
+@sizes
 @pytest.mark.parametrize("first_slot", [0, 24])
 @pytest.mark.parametrize("order", ORDERS)
-def test_elastic_forces(grid, noise, order: int, first_slot: int) -> None:
-    body = grid(order, first_slot=first_slot)
+def test_elastic_forces(grid, noise, order: int, first_slot: int, even: bool) -> None:
+    body = grid(order, first_slot=first_slot, even=even)
     u = noise(body)
     slots = np.zeros((3, body.blocks.end))
     slots[:, body.blocks.slot] = u
@@ -106,8 +120,37 @@ def test_elastic_forces(grid, noise, order: int, first_slot: int) -> None:
     assert not force[:, unused].any()
 
 
-def test_strain_energies(grid, noise) -> None:
-    body = grid()
+def test_a_uniform_strain_needs_no_forces_but_those_on_edges(grid) -> None:
+    """Patch test: on the outer edges and those of a hole σ·n times the quadrature's share of the edge, else none."""
+    body = grid(even=False)
+    mesh = body.mesh
+    gradient = np.array([[2e-4, 5e-4], [-1e-4, 3e-4]])  # ∂u_a/∂b
+    strain = [gradient[0, 0], gradient[1, 1], gradient[0, 1] + gradient[1, 0]]
+    xx, yy, xy = body.medium.matrix @ strain
+    expected = np.zeros((2, mesh.count))
+    neighbours = {tuple(place) for place in mesh.elements.tolist()}
+    for (column, row), nodes, size in zip(mesh.elements.tolist(), mesh.nodes, mesh.element_sizes, strict=True):
+        for side, traction, edge, length in (
+            ((-1, 0), (-xx, -xy), nodes[:, 0], size[1]),
+            ((1, 0), (xx, xy), nodes[:, -1], size[1]),
+            ((0, -1), (-xy, -yy), nodes[0], size[0]),
+            ((0, 1), (xy, yy), nodes[-1], size[0]),
+        ):
+            if (column + side[0], row + side[1]) not in neighbours:
+                expected[:, edge] -= 0.5 * length * np.outer(traction, mesh.rule.weights)
+    slots, force = np.zeros((2, 3, body.blocks.end))
+    slots[:2, body.blocks.slot] = gradient @ mesh.positions.T
+    body.fill_forces(slots, force)
+
+    # rounding of forces of elements that cancel, of moduli times displacements
+    rounding = 1e-14 * body.medium.c11 * np.abs(slots).max()
+    np.testing.assert_allclose(force[:2, body.blocks.slot], expected * ~mesh.held, rtol=0.0, atol=rounding)
+    assert np.abs(expected).max() > 1e6 * rounding
+
+
+@sizes
+def test_strain_energies(grid, noise, even: bool) -> None:
+    body = grid(even=even)
     plain, u = Plain(body, STEP), noise(body)
     part, slots = GridPart(body, STEP), GridScene(body).layout.spread(u)
 
@@ -115,10 +158,25 @@ def test_strain_energies(grid, noise) -> None:
     assert part.stored(slots)[0] == pytest.approx(plain.energy(u[:2], elastic), rel=1e-12)
 
 
+@sizes
 @pytest.mark.parametrize("order", [3, 4, 5])
-def test_steps_with_layers(grid, noise, order: int) -> None:
+def test_steps_with_layers(grid, noise, order: int, even: bool) -> None:
     """Memories, delay, both axes and corners; each φ is that of the node, whose elements have its parts."""
-    body = grid(order)
+    takes_the_same_steps(grid(order, even=even), noise)
+
+
+@pytest.mark.parametrize(
+    ("periodic", "layer"), [((True, False), Around(bottom=2)), ((False, True), Around(left=1, right=2))]
+)
+def test_steps_with_layers_of_periodic_meshes(grid, noise, periodic, layer: Around) -> None:
+    """Which have memories of derivatives along them, too."""
+    margin = Around(*(min(count, 1) for count in layer))
+    mesh = Mesh.around((0.0, 0.0, 6.0, 4.0), (3.0, 2.0), 4, margin=margin, layer=layer, periodic=periodic)
+    takes_the_same_steps(replace(grid(), mesh=mesh), noise)
+
+
+def takes_the_same_steps(body: GridBody, noise) -> None:
+    """A continuum in five steps, by the kernels and plainly."""
     plain, u, v = Plain(body, STEP), noise(body, 1)[:2] * 1e-3, noise(body, 2)[:2]
     load = np.zeros((3, body.count))
     load[:2] = 1e4 * noise(body, 3)[:2]

@@ -133,7 +133,7 @@ from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
 
-mesh = Mesh(order=4, element=(3.0, 2.0), cells=(3, 3), layer=Around(1, 1, 1, 0))
+mesh = Mesh.uniform(order=4, element=(3.0, 2.0), cells=(3, 3), layer=Around(1, 1, 1, 0))
 body = GridBody(mesh=mesh, medium=Medium.isotropic(2500.0, 1000.0, 600.0))
 simulation = Simulation(GridScene(body), 1e-4)
 noise = np.random.default_rng(0).standard_normal((3, body.count)) * ~mesh.held

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from dembound.kernels.tables import WallTies
-from dembound.kernels.wall import tie_forces, wall_forces
+from dembound.kernels.tables import Repeats, WallTies
+from dembound.kernels.wall import repeated_forces, tie_forces, wall_forces
 
 PARTICLES, NODES, ELEMENTS, POINTS = 9, 30, 2, 3
 TIES = 5
@@ -163,3 +163,14 @@ def test_forces_add_to_what_is_there() -> None:
     alone = np.zeros((SUPPORTED, 3))
     wall_forces(bundle, u, u, alone)
     np.testing.assert_allclose(both, already + alone, rtol=0.0, atol=1e-13)
+
+
+def test_repeated_forces_are_added_at_other_lines() -> None:
+    force = np.arange(15.0).reshape(5, 3)
+    repeats = Repeats(np.array([0, 4, 4]), np.array([1, 2, 3]))
+    repeated_forces(repeats, motion(), motion(), force)
+
+    before = np.arange(15.0).reshape(5, 3)
+    expected = before.copy()
+    expected[1:4] += before[[0, 4, 4]]
+    assert np.array_equal(force, expected)

@@ -12,9 +12,10 @@ STEP = 0.5
 """Time step (s) of synthetic runs; exact in binary."""
 
 
-def ended_at(speeds: np.ndarray, rule: Silent, block: int) -> int | None:
+def ended_at(speeds: np.ndarray, rule: Silent, block: int, observed=lambda record: record) -> int | None:
     """Step after which a run with these speeds (k, p) of its probes ends, looked at after blocks of steps."""
-    tracker, run = Silence(rule, STEP), SimpleNamespace(state=SimpleNamespace(step=0), stopped=False)
+    tracker, scene = Silence(rule, STEP), SimpleNamespace(observed=observed)
+    run = SimpleNamespace(state=SimpleNamespace(step=0), stopped=False, scene=scene)
     record = np.zeros((*speeds.shape, 6))
     record[:, :, 4] = -speeds  # of either sign and component
     for first in range(0, len(speeds), block):
@@ -67,6 +68,14 @@ def test_a_monitor_that_has_not_moved_waits_for_its_waves() -> None:
     assert ended_at(speeds, Silent(1e-3, 4.0, 0.0), 1) == 10 + 9  # without waiting the second is missed
     assert ended_at(speeds, Silent(1e-3, 4.0, 18.0), 1) == 45 + 9  # 36 steps, eight before it would end
     assert ended_at(np.zeros((100, 2)), Silent(1e-3, 4.0, 18.0), 1) == 36 + 9
+
+
+def test_monitors_have_to_be_silent_not_their_nodes() -> None:
+    """Of two nodes that move against each other the place between them rests."""
+    speeds = np.column_stack([np.full(100, 1.0) + pulse(100, 5, 10), np.full(100, -1.0)])
+
+    assert ended_at(speeds, Silent(1e-3, 4.0, 0.0), 1) is None
+    assert ended_at(speeds, Silent(1e-3, 4.0, 0.0), 1, lambda record: record.sum(axis=1, keepdims=True)) == 10 + 9
 
 
 def test_what_never_rests_never_ends() -> None:

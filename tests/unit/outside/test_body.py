@@ -37,11 +37,13 @@ def test_every_node_has_a_slot(grid, order: int, first_slot: int) -> None:
     assert slot[mesh.held].min() == body.blocks.end - mesh.held.sum()
 
 
-def test_blocks_hold_elements_of_one_kind(grid) -> None:
-    body = grid()
-    kinds = body.mesh.absorbs @ [1, 2]
-    for elements, kind in zip(body.blocks.elements, body.blocks.kinds, strict=True):
+@pytest.mark.parametrize("even", [True, False])
+def test_blocks_hold_elements_of_one_kind_and_shape(grid, even: bool) -> None:
+    body = grid(even=even)
+    kinds, shapes = body.mesh.absorbs @ [1, 2], body.mesh.shapes[body.blocks.bundle.shapes]
+    for elements, kind, shape in zip(body.blocks.elements, body.blocks.kinds, shapes, strict=True):
         assert (kinds[elements[elements >= 0]] == kind).all()
+        assert (body.mesh.element_sizes[elements[elements >= 0]] == shape).all()
     assert set(body.blocks.kinds) == {0, 1, 2, 3}
     assert (np.diff(body.blocks.kinds) >= 0).all()
     assert sorted(body.blocks.elements[body.blocks.elements >= 0]) == list(range(len(kinds)))
@@ -66,16 +68,22 @@ def dense_limit(body: GridBody, delay: float) -> float:
 
 @pytest.mark.parametrize("delay", [0.0, 0.5])
 def test_the_step_limit_counts_the_delay(delay: float) -> None:
-    mesh = Mesh(order=3, element=(3.0, 2.0), cells=(3, 3), layer=Around(1, 1, 1, 0))
+    mesh = Mesh.uniform(order=3, element=(3.0, 2.0), cells=(3, 3), layer=Around(1, 1, 1, 0))
     body = GridBody(mesh=mesh, medium=ROCK, absorption=Absorption(delay=delay))
 
     # the iteration ends within 1e-3 of ω², on the safe side
     assert 0.0 <= 1.0 - step_limit(body) / dense_limit(body, delay) < 5e-4
 
 
+def test_the_step_limit_of_elements_of_several_shapes(grid) -> None:
+    body = grid(order=3, even=False)
+
+    assert 0.0 <= 1.0 - step_limit(body) / dense_limit(body, body.absorption.delay) < 5e-4
+
+
 def test_the_step_limit_of_large_square_elements() -> None:
     """dt·c_p/h of p4 for ν = 0 is 0.110 (0.113 of a mesh of few elements with free edges)."""
     medium = Medium.isotropic(2500.0, 1000.0, 1000.0 * np.sqrt(0.5))
-    mesh = Mesh(order=4, element=(10.0, 10.0), cells=(6, 6))
+    mesh = Mesh.uniform(order=4, element=(10.0, 10.0), cells=(6, 6))
 
     assert step_limit(GridBody(mesh=mesh, medium=medium)) * 100.0 == pytest.approx(0.112, abs=0.003)

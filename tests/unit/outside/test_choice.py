@@ -1,16 +1,14 @@
-"""The elements that waves need."""
+"""The settings that waves need."""
 
 import math
 
 import numpy as np
 import pytest
 
-from dembound.casefile import Case
-from dembound.casefile.run import Run
-from dembound.errors import CaseError
-from dembound.outside.choice import cutoff, element_size, shortest_wave
+from dembound.outside import choice
+from dembound.outside.choice import Signal
 from dembound.outside.medium import Medium
-from dembound.waves import Cosine
+from dembound.waves import Constant, Cosine, Ricker, Wave
 
 ROCK = Medium.isotropic(2500.0, 1000.0, 500.0)
 
@@ -19,42 +17,121 @@ def pulse(period: float = 0.5, amplitude: float = 1.0) -> Cosine:
     return Cosine(type="cosine", period=period, amplitude=amplitude)
 
 
-def case(**waves: Cosine) -> Case:
-    return Case(run=Run(duration=1.0), name="waves", wave=waves)
+def moved(wave: Wave) -> Signal:
+    return Signal(wave, is_force=False)
 
 
-def test_the_cut_off_of_the_cosine_pulse_is_nearly_twice_its_frequency() -> None:
-    # 99.9 % of the energy of (1 − cos 2πt/T)/2 lies below 1.734/T (64 times finer); here in multiples of 1/(4T)
-    whole = cutoff(pulse())
-    assert whole == pytest.approx(1.75 / 0.5)
-    assert cutoff(pulse(amplitude=-7.0)) == whole
-    assert cutoff(pulse(period=0.05)) == pytest.approx(10.0 * whole)
+def pushed(wave: Wave) -> Signal:
+    return Signal(wave, is_force=True)
+
+
+def exact_share(x: float, power: int) -> float:
+    """Share of the energy of ½(1 − cos 2πt/T) times ω^power above x/T; the spectrum is sin(πy)/(πy(1 − y²)), y = fT."""
+    y = np.linspace(1e-6, 400.0, 4_000_001)
+    energy = y**power * (np.sinc(y) / (1.0 - y**2)) ** 2
+    energy[np.abs(y - 1.0) < 1e-9] = 0.25
+    return float(energy[y > x].sum() / energy.sum())
+
+
+@pytest.mark.parametrize(("signal", "power"), [(moved, 0), (pushed, 1)])
+@pytest.mark.parametrize("share", [1e-2, 1e-3, 1e-6])
+def test_the_cut_off_of_the_cosine_pulse_is_that_of_its_spectrum(signal, power: int, share: float) -> None:
+    found = choice.cutoff(signal(pulse(0.5)), share)
+
+    # in multiples of 1/8T, of which one more or less is passed; 99.9 % of a velocity's energy lie below 1.734/T
+    assert exact_share(0.5 * found + 0.125, power) < share < exact_share(0.5 * found - 0.25, power)
+    assert choice.cutoff(signal(pulse(0.5, amplitude=-7.0)), share) == found
+    assert choice.cutoff(signal(pulse(0.05)), share) == pytest.approx(10.0 * found)
+
+
+def test_later_waves_have_the_same_cut_off() -> None:
+    late = Cosine(type="cosine", period=0.5, amplitude=1.0, start=3.0)
+    assert choice.cutoff(moved(late)) == pytest.approx(choice.cutoff(moved(pulse())))
+
+
+def test_of_a_force_that_stays_the_rise_counts() -> None:
+    """Its rate is a Hann lobe, so body waves have a thousandth of their energy above 1.5/rise; a step has no limit."""
+    y = np.linspace(0.125, 100.0, 800_000)
+    energy = (np.sinc(y) / (1.0 - y**2)) ** 2 / y
+    rise = Constant(type="constant", amplitude=2.0, rise=0.2)
+    found = 0.2 * choice.cutoff(pushed(rise))
+
+    assert energy[y > found + 0.125].sum() / energy.sum() < 1e-3 < energy[y > found - 0.25].sum() / energy.sum()
+    assert choice.cutoff(pushed(Constant(type="constant", amplitude=2.0))) == math.inf
 
 
 def test_the_slowest_wave_at_the_highest_cut_off_counts() -> None:
-    both = case(slow=pulse(1.0), fast=pulse(0.1))
-    assert shortest_wave(both, ROCK) == pytest.approx(500.0 / cutoff(pulse(0.1)), rel=1e-9)
-
-
-def test_elements_are_smaller_for_shorter_waves_and_smaller_errors() -> None:
-    size = element_size(case(w=pulse(0.5)), ROCK, 0.01)
-    assert element_size(case(w=pulse(0.25)), ROCK, 0.01) == pytest.approx(0.5 * size)
-    assert element_size(case(w=pulse(0.5)), ROCK, 0.01, accuracy=2.5e-4) == pytest.approx(0.5 * size)
-    # 24 nodes a wavelength for 0.05 %, so 24/√2 for 0.1 %
-    nodes = 4.0 * shortest_wave(case(w=pulse(0.5)), ROCK) / size
-    assert nodes == pytest.approx(24.0 / math.sqrt(2.0))
-
-
-def test_nodes_are_never_closer_than_disks() -> None:
-    assert element_size(case(w=pulse(1e-4)), ROCK, 0.5, order=6) == pytest.approx(6 * 1.25 * 0.5)
-
-
-def test_without_a_wave_the_size_has_to_be_given() -> None:
-    with pytest.raises(CaseError, match=r"outside\.element: is 0"):
-        element_size(case(), ROCK, 0.5)
+    both = [moved(pulse(1.0)), moved(pulse(0.1))]
+    assert choice.shortest_wave(both, ROCK) == pytest.approx(500.0 / choice.cutoff(both[1]), rel=1e-9)
 
 
 def test_the_slowest_direction_of_a_medium_without_symmetry_is_found() -> None:
     medium = Medium(2500.0, 9e9, 7e9, 2e9, 3e9, 0.4e9, -0.3e9)
     slowest = min(medium.plane_waves((math.cos(a), math.sin(a)))[0][0] for a in np.linspace(0.0, math.pi, 721))
-    assert shortest_wave(case(w=pulse(0.5)), medium) * cutoff(pulse(0.5)) == pytest.approx(slowest, rel=2e-3)
+    assert choice.slowest(medium) == pytest.approx(slowest, rel=2e-3)
+
+
+@pytest.mark.parametrize("order", [3, 4, 5, 6])
+def test_elements_return_a_share_of_the_energy_that_is_the_accuracys_square(order: int) -> None:
+    signals = [pushed(pulse(0.2))]
+    size = choice.element_size(signals, ROCK, order, 1e-3)
+
+    assert choice.element_size([pushed(pulse(0.1))], ROCK, order, 1e-3) == pytest.approx(0.5 * size)
+    assert choice.element_error(signals, ROCK, order, size) == pytest.approx(1e-3, rel=0.05)  # of steps of 1/8T
+    # the spectrum of velocities falls with the fifth power, energies beyond a frequency with the fourth
+    assert choice.element_error(signals, ROCK, order, 2.0 * size) == pytest.approx(4e-3, rel=0.1)
+    assert choice.element_size(signals, ROCK, order, 1e-2) == pytest.approx(3.1 * size, rel=0.1)
+    assert choice.element_error([pushed(Constant(type="constant", amplitude=1.0))], ROCK, order, size) == 1.0
+
+
+def test_smooth_waves_need_larger_elements() -> None:
+    """Ricker wavelets with the cut-off of a cosine pulse have hardly any shorter waves."""
+    ricker = pushed(Ricker(type="ricker", amplitude=1.0, frequency=5.0))
+    cosine = pushed(pulse(2.6 / choice.cutoff(ricker)))
+
+    assert choice.cutoff(cosine) == pytest.approx(choice.cutoff(ricker), rel=0.05)
+    sizes = [choice.element_size([each], ROCK, 4, 1e-3) for each in (ricker, cosine)]
+    assert sizes[0] > 3.0 * sizes[1]
+
+
+@pytest.mark.parametrize("order", [3, 4, 5, 6])
+def test_elements_beside_a_force_are_in_proportion_to_its_distance(order: int) -> None:
+    size = choice.size_near(8.0, order, 1e-3)
+
+    assert choice.size_near(16.0, order, 1e-3) == pytest.approx(2.0 * size)
+    assert choice.size_near(8.0, order, 8e-3) == pytest.approx(2.0 * size)
+    assert choice.near_error(8.0, order, size) == pytest.approx(1e-3)
+    assert choice.near_error(8.0, order, 2.0 * size) == pytest.approx(8e-3)
+    assert choice.size_near(math.inf, order, 1e-3) == math.inf
+
+
+def test_as_many_elements_absorb_as_the_accuracy_needs() -> None:
+    assert [choice.layer_count(order, 1e-3) for order in (3, 4, 5, 6)] == [5, 3, 3, 2]
+    assert [choice.layer_count(4, accuracy) for accuracy in (0.5, 2e-2, 1e-2, 2e-4, 1e-6)] == [2, 2, 3, 4, 6]
+    for order in (3, 4, 5, 6):
+        for accuracy in (0.1, 1e-2, 1e-3):
+            assert choice.layer_error(order, choice.layer_count(order, accuracy)) <= 0.5 * accuracy
+    assert choice.layer_error(4, 5) == choice.layer_error(4, 4)
+    assert choice.layer_error(4, 100) == choice.layer_error(4, 6)
+
+
+def test_a_lasting_force_needs_room_in_proportion_to_its_time() -> None:
+    inner = choice.inner_length(10.0, 1000.0, 0.3, 1e-3)
+
+    # α0 t = 5, at which half of a thousandth is missing: 0.3·1000·10/2L
+    assert inner == pytest.approx(300.0)
+    assert choice.inner_length(20.0, 2000.0, 0.3, 1e-3) == pytest.approx(4.0 * inner)
+    assert choice.inner_length(10.0, 1000.0, 0.1, 1e-3) == pytest.approx(inner / 3.0)
+    assert choice.missing(10.0, 1000.0, 0.3, inner) == pytest.approx(5e-4)
+    assert choice.missing(10.0, 1000.0, 0.3, 0.5 * inner) == pytest.approx(2e-3)
+
+
+def test_what_the_surface_sends_back_along_layers() -> None:
+    """S waves keep R0^(cos θ c_p/c_s): with a depth of 3 and an offset of 4, cos θ = 0.8."""
+    assert choice.grazing_error(3.0, 0.5, 1e-4, 4.0) == pytest.approx(1e-4**1.6)
+    assert choice.grazing_error(3.0, 1.0, 1e-4, 0.0) == 1.0
+    for depth, ratio, accuracy in ((100.0, 0.7, 1e-3), (20.0, 0.5, 1e-2)):
+        offset = choice.offset(depth, ratio, 1e-4, accuracy)
+        assert choice.grazing_error(depth, ratio, 1e-4, offset) == pytest.approx(accuracy)
+    assert choice.offset(10.0, 1.0, 1e-3, 1e-3) == pytest.approx(10.0 * 0.9 / 0.19**0.5)  # not infinite
+    assert choice.offset(0.0, 0.7, 1e-4, 1e-3) == 0.0

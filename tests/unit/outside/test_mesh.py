@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.outside.mesh import Around, Mesh
+from dembound.outside.mesh import NONE, Around, Mesh
 
 ORDER = 4
 
@@ -36,7 +36,7 @@ def test_the_box_is_left_out() -> None:
 
 def test_nodes_are_shared_by_neighbours_and_lie_at_their_points() -> None:
     mesh = buried()
-    corner = np.array(mesh.origin) + mesh.elements * mesh.element
+    corner = np.array(mesh.origin) + mesh.elements * [3.0, 2.0]
     local = 0.5 * (1.0 + mesh.rule.points)
     x = corner[:, 0, None, None] + 3.0 * local + 0.0 * local[:, None]
     y = corner[:, 1, None, None] + 2.0 * local[:, None] + 0.0 * local
@@ -54,6 +54,18 @@ def test_areas_add_up() -> None:
     assert mesh.areas.min() == pytest.approx(1.5 * 1.0 * 0.1**2, rel=1e-13)
 
 
+@pytest.mark.parametrize(("side", "length"), [("left", 6.0), ("right", 6.0), ("bottom", 18.0), ("top", 12.0)])
+def test_lengths_along_the_edges(side: str, length: float) -> None:
+    """Round a box that takes up a part of the top edge."""
+    mesh = below()
+    place = mesh.positions[:, 0 if side in ("left", "right") else 1]
+    at_end = place == (place.min() if side in ("left", "bottom") else place.max())
+    lengths = mesh.edge_lengths(side)
+
+    assert lengths.sum() == pytest.approx(length)
+    assert set(np.flatnonzero(lengths)) == set(np.flatnonzero(at_end))
+
+
 def test_layers_lie_at_the_sides() -> None:
     mesh = below()
     x, y = mesh.positions.T
@@ -65,24 +77,48 @@ def test_layers_lie_at_the_sides() -> None:
     assert (mesh.absorbs[:, 0] == ((mesh.elements[:, 0] == 0) | (mesh.elements[:, 0] == 5))).all()
     assert (mesh.absorbs[:, 1] == (mesh.elements[:, 1] == 0)).all()
     assert mesh.inner == 12.0
-    assert mesh.thickness(0) == (3.0, 3.0)
-    assert mesh.thickness(1) == (2.0, 0.0)
+    assert mesh.axes[0].thickness == (3.0, 3.0)
+    assert mesh.axes[1].thickness == (2.0, 0.0)
 
 
 @pytest.mark.parametrize("right", [1, 3])
 def test_the_outer_edge_is_held_for_any_size_of_element(right: int) -> None:
     """Sizes that binary numbers do not have."""
-    mesh = Mesh(order=5, element=(0.1, 0.7), cells=(7, 3), layer=Around(0, right, 0, 0), origin=(0.3, 0.0))
+    mesh = Mesh.uniform(order=5, element=(0.1, 0.7), cells=(7, 3), layer=Around(0, right, 0, 0), origin=(0.3, 0.0))
 
     assert mesh.held.sum() == 3 * 5 + 1
 
 
 def test_a_periodic_mesh_has_no_last_line() -> None:
-    mesh = Mesh(order=3, element=(1.0, 1.0), cells=(4, 2), periodic=(True, False))
+    mesh = Mesh.uniform(order=3, element=(1.0, 1.0), cells=(4, 2), periodic=(True, False))
 
     assert mesh.count == 4 * 3 * (2 * 3 + 1)
     assert mesh.nodes[3, 0, -1] == mesh.nodes[0, 0, 0]
     assert mesh.areas.sum() == pytest.approx(8.0)
+
+
+def test_elements_are_rectangles_between_their_nodes() -> None:
+    mesh = below()
+    places = mesh.positions[mesh.nodes].reshape(len(mesh.elements), -1, 2)
+
+    np.testing.assert_allclose(mesh.rectangles, np.hstack([places.min(axis=1), places.max(axis=1)]), atol=1e-13)
+
+
+def test_the_surface_is_what_is_free_beyond_the_box() -> None:
+    """Sides without a layer, but not those that face the box: of a mesh on the left alone bottom and top."""
+    left = Mesh.around((0.0, 0.0, 6.0, 4.0), (3.0, 2.0), ORDER, margin=Around(left=1), layer=Around(left=1))
+    ends = {tuple(line) for line in left.free_sides.tolist()}
+    assert ends == {(x, y, x + 3.0, y) for x in (-6.0, -3.0) for y in (0.0, 4.0)}
+    ends = {tuple(line) for line in below().free_sides.tolist()}
+    assert ends == {(x, 2.0, x + 3.0, 2.0) for x in (-6.0, -3.0, 6.0, 9.0)}
+    above = Mesh.around((0.0, 0.0, 6.0, 4.0), (3.0, 2.0), ORDER, margin=Around(top=1), layer=Around(top=1))
+    ends = {tuple(line) for line in above.free_sides.tolist()}
+    assert ends == {(x, y, x, y + 2.0) for x in (0.0, 6.0) for y in (4.0, 6.0)}
+    assert len(buried().free_sides) == 0
+    round_a_pipe = Mesh.uniform(
+        order=3, element=(1.0, 1.0), cells=(4, 2), periodic=(True, False), layer=Around(bottom=1)
+    )
+    assert (round_a_pipe.free_sides[:, [1, 3]] == 2.0).all()
 
 
 def test_a_polynomial_is_interpolated_and_extrapolated() -> None:
@@ -99,13 +135,188 @@ def test_a_polynomial_is_interpolated_and_extrapolated() -> None:
     assert (np.abs(nearest) <= np.array([3.0, 2.0])).all()
 
 
-def test_boxes_that_do_not_fit_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"the height of the box is 1.25 elements, must be a whole number"):
-        Mesh.around((0.0, 0.0, 6.0, 2.5), (3.0, 2.0), margin=Around(1, 1, 1, 0), layer=Around())
+def uneven() -> Mesh:
+    """Columns of three widths and rows of three heights, round a box of 3 × 2 m whose corner is at (4, 5) m."""
+    return Mesh(
+        order=ORDER,
+        widths=(1.5, 2.5, 2.0, 1.0, 2.0),
+        heights=(3.0, 2.0, 2.0, 3.0, 1.0),
+        origin=(0.0, 0.0),
+        box=(2, 2, 4, 3),
+        layer=Around(2, 1, 1, 2),
+    )
+
+
+def test_columns_and_rows_have_their_sizes() -> None:
+    mesh = uneven()
+    columns, rows = np.array([0.0, 1.5, 4.0, 6.0, 7.0, 9.0]), np.array([0.0, 3.0, 5.0, 7.0, 10.0, 11.0])
+    for (column, row), nodes in zip(mesh.elements, mesh.nodes, strict=True):
+        x = np.interp(mesh.rule.points, [-1.0, 1.0], columns[column : column + 2])
+        y = np.interp(mesh.rule.points, [-1.0, 1.0], rows[row : row + 2])
+        expected = np.stack(np.meshgrid(x, y), axis=-1)
+        np.testing.assert_allclose(mesh.positions[nodes], expected, rtol=0.0, atol=1e-14)
+        assert mesh.areas[nodes[1:-1, 1:-1]].sum() == pytest.approx(
+            np.sum(mesh.rule.weights[1:-1]) ** 2 * 0.25 * np.diff(columns)[column] * np.diff(rows)[row], rel=1e-13
+        )
+
+    assert mesh.areas.sum() == pytest.approx(9.0 * 11.0 - 3.0 * 2.0, rel=1e-13)
+    np.testing.assert_allclose(mesh.size, [9.0, 11.0])
+    # of the elements that are there
+    assert set(map(tuple, mesh.shapes.tolist())) == {(w, h) for w in mesh.widths for h in mesh.heights}
+
+
+def test_depth_is_a_share_of_the_thickness_of_unequal_elements() -> None:
+    mesh = uneven()
+    x, y = mesh.positions.T
+    qx = np.maximum((4.0 - x) / 4.0, 0.0) + np.maximum((x - 7.0) / 2.0, 0.0)
+    qy = np.maximum((3.0 - y) / 3.0, 0.0) + np.maximum((y - 7.0) / 4.0, 0.0)
+
+    np.testing.assert_allclose(mesh.depth, np.stack([qx, qy], axis=1), rtol=0.0, atol=1e-14)
+    assert (mesh.held == ((x == 0.0) | (x == 9.0) | (y == 0.0) | (y == 11.0))).all()
+    assert mesh.axes[0].thickness == (4.0, 2.0)
+    assert mesh.axes[1].thickness == (3.0, 4.0)
+    assert mesh.inner == 4.0
+
+
+def test_points_are_located_in_unequal_elements() -> None:
+    mesh = uneven()
+    rng = np.random.default_rng(0)
+    for number, nodes in enumerate(mesh.nodes):
+        local = rng.uniform(-1.0, 1.0, (5, 2))
+        low, high = mesh.positions[nodes[0, 0]], mesh.positions[nodes[-1, -1]]
+        element, found = mesh.located(low + 0.5 * (1.0 + local) * (high - low))
+        assert (element == number).all()
+        np.testing.assert_allclose(found, local, rtol=0.0, atol=1e-13)
+
+
+def test_points_in_the_box_and_beyond_the_mesh_belong_to_the_nearest_element() -> None:
+    """As found by comparing all of them; those on an edge to the first of both elements."""
+    mesh = uneven()
+    points = np.random.default_rng(1).uniform((-3.0, -3.0), (12.0, 14.0), (400, 2))
+    points[:200] = np.random.default_rng(2).uniform((4.0, 5.0), (7.0, 7.0), (200, 2))
+    low, high = (mesh.positions[mesh.nodes[:, i, i]] for i in (0, -1))
+    beyond = np.maximum(np.maximum(low - points[:, None], points[:, None] - high), 0.0)
+    nearest = np.argmin(np.sum(beyond**2, axis=2), axis=1)
+
+    np.testing.assert_array_equal(mesh.located(points)[0], nearest)
+    on_edges = mesh.located(np.array([[1.5, 1.0], [3.0, 5.0], [7.0, 6.0], [5.0, 7.0]]))[0]
+    np.testing.assert_array_equal(mesh.elements[on_edges], [[0, 0], [1, 1], [4, 2], [2, 3]])
+
+
+def test_a_polynomial_is_interpolated_in_unequal_elements() -> None:
+    mesh = uneven()
+    points = np.random.default_rng(3).uniform((0.0, 0.0), (9.0, 11.0), (50, 2))
+    x, y = mesh.positions.T
+    node, weight = mesh.interpolation(points)
+
+    found = (weight * (x**4 - 2.0 * x * y**3)[node]).sum(axis=1)
+    expected = points[:, 0] ** 4 - 2.0 * points[:, 0] * points[:, 1] ** 3
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13 * np.abs(expected).max())
+
+
+def test_elements_round_a_box_divide_its_sides() -> None:
+    """At most the largest size is exceeded by rounding: (0.1 + 0.2)/0.1 is above 3."""
+    mesh = Mesh.around((0.0, 0.0, 6.0, 2.5), (2.5, 2.0), margin=Around(1, 2, 1, 0), layer=Around())
+    assert mesh.widths == (2.0,) * 6
+    assert mesh.heights == (1.25,) * 3
+    assert mesh.box == (1, 1, 4, 3)
+    assert mesh.origin == (-2.0, -1.25)
+
+    mesh = Mesh.around((0.0, 0.0, 0.3, 0.1 + 0.2), (0.1, 0.1), margin=Around(), layer=Around())
+    assert mesh.cells == (3, 3)
+
+
+def test_rows_above_a_box_reach_the_free_surface() -> None:
+    """2.3 m above it: two rows of 1.15 m, as those of the box are 2 m high; layers only at the other sides."""
+    arguments = dict(margin=Around(1, 1, 2, 0), layer=Around(1, 1, 1, 0))
+    mesh = Mesh.around((0.0, -7.0, 6.0, -3.0), (3.0, 2.0), surface=-0.7, **arguments)
+
+    assert mesh.heights[:5] == (2.0,) * 5
+    np.testing.assert_allclose(mesh.heights[5:], [1.15, 1.15], rtol=1e-15)
+    assert mesh.box == (2, 3, 4, 5)
+    assert mesh.positions[:, 1].max() == pytest.approx(-0.7, abs=1e-14)
+    assert not mesh.held[mesh.positions[:, 1] > -0.8].all()
+    # at the surface the box is as without one
+    at_top = Mesh.around((0.0, -7.0, 6.0, -3.0), (3.0, 2.0), surface=-3.0, **arguments)
+    assert at_top.heights == Mesh.around((0.0, -7.0, 6.0, -3.0), (3.0, 2.0), **arguments).heights
+
+
+def test_boxes_and_surfaces_that_cannot_be_are_refused() -> None:
+    with pytest.raises(ValueError, match="the box is empty"):
+        Mesh.around((0.0, 0.0, 6.0, 0.0), (3.0, 2.0), margin=Around(), layer=Around())
+    with pytest.raises(ValueError, match=r"the free surface, y = 1 m, is below the top of the box, 2 m"):
+        Mesh.around((0.0, 0.0, 6.0, 2.0), (3.0, 2.0), margin=Around(), layer=Around(), surface=1.0)
+    for there in ({"margin": Around(top=1), "layer": Around()}, {"margin": Around(), "layer": Around(top=1)}):
+        with pytest.raises(ValueError, match="leaves no place for a margin or a layer at the top"):
+            Mesh.around((0.0, 0.0, 6.0, 2.0), (3.0, 2.0), surface=3.0, **there)
+
+
+def test_slopes_are_those_of_the_field() -> None:
+    points = np.array([[2.2, 17.3], [23.9, 25.9], [10.1, 20.05], [13.0, 20.4], [0.9, 16.0]])
+    mesh = buried()
+    x, y = mesh.positions.T
+    field = (x**2 - 3.0 * y * x + y**4)[mesh.interpolation(points).node]
+    x, y = points.T
+
+    along, up = (mesh.slopes(points) * field).sum(axis=2)
+    np.testing.assert_allclose(along, 2.0 * x - 3.0 * y, rtol=1e-9)
+    np.testing.assert_allclose(up, 4.0 * y**3 - 3.0 * x, rtol=1e-9)
+
+
+def test_slopes_in_the_element_that_closes_a_period() -> None:
+    mesh = Mesh.uniform(order=3, element=(1.5, 1.0), cells=(4, 2), periodic=(True, False))
+    point = np.array([[5.7, 0.3]])  # of the last column, whose right nodes are those of the first one
+    local = mesh.rule.slope(np.array([0.6]))[0] / 0.75
+
+    np.testing.assert_allclose(mesh.slopes(point)[0].reshape(4, 4).sum(axis=0), local, rtol=1e-12)
+
+
+def test_what_lies_between_the_layers() -> None:
+    low, high = buried().between_layers
+
+    np.testing.assert_allclose([*low, *high], [7.0, 18.0, 22.0, 24.0], rtol=1e-14)
+    low, high = below().between_layers
+    np.testing.assert_allclose([*low, *high], [-3.0, -2.0, 9.0, 2.0], rtol=1e-14)
 
 
 def test_layers_that_do_not_fit_are_refused() -> None:
     with pytest.raises(ValueError, match="periodic along axis 0 has no absorbing layers"):
-        Mesh(order=3, element=(1.0, 1.0), cells=(4, 2), periodic=(True, False), layer=Around(left=1))
+        Mesh.uniform(order=3, element=(1.0, 1.0), cells=(4, 2), periodic=(True, False), layer=Around(left=1))
     with pytest.raises(ValueError, match=r"more elements along axis 1 than the mesh, 2"):
-        Mesh(order=3, element=(1.0, 1.0), cells=(4, 2), layer=Around(bottom=2, top=1))
+        Mesh.uniform(order=3, element=(1.0, 1.0), cells=(4, 2), layer=Around(bottom=2, top=1))
+
+
+def test_planes_of_symmetry_are_neither_free_nor_absorb() -> None:
+    """Their nodes but for those on held edges are known."""
+    margin, layer = Around(right=1, bottom=1), Around(right=1, bottom=1)
+    mesh = Mesh.around((0.0, 0.0, 6.0, 2.0), (3.0, 2.0), ORDER, margin=margin, layer=layer, mirror=Around(left=1))
+    x, y = mesh.positions.T
+
+    np.testing.assert_array_equal(mesh.on_mirrors(0), np.flatnonzero((x == 0.0) & (y > -4.0)))
+    assert len(mesh.on_mirrors(1)) == 0
+    assert {tuple(line) for line in mesh.free_sides.tolist()} == {(6.0, 2.0, 9.0, 2.0), (9.0, 2.0, 12.0, 2.0)}
+    with pytest.raises(ValueError, match="plane of symmetry across axis 0 has no absorbing layer"):
+        Mesh.around((0.0, 0.0, 6.0, 2.0), (3.0, 2.0), margin=NONE, layer=Around(left=1), mirror=Around(left=1))
+
+
+def test_one_element_across_has_itself_as_its_neighbour() -> None:
+    mesh = Mesh.around(
+        (0.0, 0.0, 6.0, 4.0), (6.0, 2.0), ORDER, margin=Around(bottom=1), layer=Around(bottom=2), periodic=(True, False)
+    )
+    assert mesh.count == ORDER * (3 * ORDER + 1)
+    assert (mesh.nodes[:, :, 0] == mesh.nodes[:, :, -1]).all()
+    assert mesh.areas.sum() == pytest.approx(6.0 * 6.0)
+    assert mesh.sides == (0.0, 6.0, 0.0, 4.0)
+    # points beyond a periodic side have places within it
+    element, place = mesh.located(np.array([[-1.0, -1.0], [7.0, 0.5]]))
+    assert mesh.elements[element].tolist() == [[0, 2], [0, 2]]
+    np.testing.assert_allclose(place, [[2.0 * 5.0 / 6.0 - 1.0, 0.0], [2.0 / 6.0 - 1.0, 1.5]])
+    # cells across the side are left out
+    corners = mesh.positions[mesh.node_cells]
+    assert len(corners) == 3 * ORDER * (ORDER - 1)
+    assert (corners[:, 2] > corners[:, 0]).all()
+
+
+def test_a_periodic_box_has_no_sides_beyond_it() -> None:
+    with pytest.raises(ValueError, match="periodic along axis 0"):
+        Mesh.around((0.0, 0.0, 6.0, 4.0), (6.0, 2.0), margin=Around(), layer=Around(left=1), periodic=(True, False))

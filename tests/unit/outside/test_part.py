@@ -13,6 +13,7 @@ from dembound.motion.part import System
 from dembound.motion.simulation import Simulation
 from dembound.outside.alone import GridScene
 from dembound.outside.body import GridBody
+from dembound.outside.fields import stress
 from dembound.outside.part import GridPart
 from dembound.outside.stability import step_limit
 
@@ -109,17 +110,31 @@ def test_parts_in_one_scene_move_as_alone(grid, noise) -> None:
         np.testing.assert_array_equal(here.memory()[name], values)
 
 
-def test_stress_of_a_uniform_strain(grid) -> None:
-    body = grid()
+@pytest.mark.parametrize("even", [True, False])
+def test_stress_of_a_uniform_strain(grid, even: bool) -> None:
+    body = grid(even=even)
     gradient = np.array([[1e-4, 3e-4], [-1e-4, -2e-4]])  # ∂u_a/∂b
     displacement = np.zeros((3, 5 + body.count))
     displacement[:2, 5:] = gradient @ body.mesh.positions.T
     fields = GridPart(body, 1e-4, first_node=5).snapshot(displacement)
 
-    stress, unit = fields["stress"]
+    values, unit = fields["stress"]
     expected = body.medium.matrix @ [1e-4, -2e-4, 2e-4]
-    np.testing.assert_allclose(stress, np.tile(expected, (body.count, 1)), rtol=1e-9)
+    np.testing.assert_allclose(values, np.tile(expected, (body.count, 1)), rtol=1e-9)
     assert unit == "Pa"
+
+
+def test_stress_at_a_kink_is_the_mean_by_area(grid) -> None:
+    """Strain a in the element on the left of an edge, 3 m wide, and b on its right, 2.5 m wide."""
+    body = grid(even=False)
+    x = body.mesh.positions[:, 0]
+    edge = 3.0
+    displacement = np.zeros((2, body.count))
+    displacement[0] = np.where(x < edge, 1e-4, 5e-4) * (x - edge)
+    found = stress(body, displacement)[np.abs(x - edge) < 1e-9]
+
+    expected = body.medium.matrix[:, 0] * (3.0 * 1e-4 + 2.5 * 5e-4) / 5.5
+    np.testing.assert_allclose(found, np.tile(expected, (len(found), 1)), rtol=1e-11)
 
 
 def test_supports_that_cannot_be_accounted_for_are_refused(grid) -> None:

@@ -150,3 +150,45 @@ def test_a_body_of_other_disks_than_the_column_is_refused():
     brick = made_by_hand((1.0, 1.0), [0.3, 0.2], [(0, 0, 1, 0), (1, 1, 0, 1)])
     with pytest.raises(PackingError, match="4 disks of the body have no twin in the free-field column"):
         with_column(brick, tile(brick, (4, 2), OPEN), BOTH)
+
+
+def test_a_column_of_more_rows_than_the_body_has_its_twins_at_the_same_height(dense_brick):
+    body = tile(dense_brick, (2, 3), OPEN, (30.0, 2 * dense_brick.size[1]))
+    joint, seam = with_column(dense_brick, body, BOTH, rows=(2, 7), left=-5.0)
+    count = seam.count
+    assert count == joint.column.disks == len(tile(dense_brick, (1, 7), (True, False)).radii)
+    assert joint.column.copies == (1, 7)
+    body_y, twin_y = joint.positions[count:, 1], joint.positions[seam.twin[count:], 1]
+    np.testing.assert_allclose(twin_y, body_y, rtol=0.0, atol=1e-12)
+    assert np.array_equal(joint.brick_particle[seam.twin], joint.brick_particle)
+    assert joint.positions[:count, 0].max() < -5.0  # to the left of all that is there
+    part = joint.part(slice(0, count))
+    assert part.size.tolist() == (dense_brick.size * (1, 7)).tolist()
+    assert part.origin[1] == 0.0
+    assert np.array_equal(joint.part(slice(count, len(joint.radii))).origin, body.origin)
+
+
+@pytest.mark.parametrize("rows", [(2, 7), (0, 5), (2, 5)], ids=["in the middle", "at the foot", "at the top"])
+def test_beyond_all_four_sides_are_the_column_s_own_disks(brick, rows):
+    """Every cut contact is one of the column; where the column ends there is none beyond."""
+    body = tile(brick, (3, 3), OPEN, (0.0, rows[0] * float(brick.size[1])))
+    joint, seam = with_column(brick, body, ("left", "right", "bottom", "top"), rows)
+    owner, other, vectors = seam.pairs(brick)
+    column = tile(brick, (1, rows[1]), (True, False))
+    up = column.tile[other, 1] - column.tile[owner, 1]
+    node = np.repeat(seam.node, seam.contact_counts)
+    place = joint.tile[node] + np.stack([seam.image, up], axis=1)
+    beyond = (place < 0) | (place > 2 + brick.edge_rows[joint.brick_particle[other]])  # those close the frame
+    assert beyond.any(axis=1).all()
+    assert (place[:, 1] < 0).any() == (rows[0] > 0)
+    assert (beyond[:, 1] & (place[:, 1] > 0)).any() == (rows[0] + 3 < rows[1])
+    assert np.array_equal(joint.brick_particle[owner], joint.brick_particle[node])
+    if brick.positions.any():  # not of those made by hand
+        ways = column.positions[other] - column.positions[owner] + seam.image[:, None] * [seam.width, 0.0]
+        np.testing.assert_allclose(ways, vectors, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("rows", [(-1, 7), (5, 7)])
+def test_a_body_that_is_not_within_the_column_is_refused(dense_brick, rows):
+    with pytest.raises(PackingError, match="have no twin in the free-field column"):
+        with_column(dense_brick, tile(dense_brick, (2, 3), OPEN), BOTH, rows)

@@ -99,3 +99,29 @@ def test_vectors_point_outwards(random_brick) -> None:
     np.testing.assert_allclose(ends, there, rtol=0.0, atol=1e-12 * body.size.max())
     assert ((there < 0.0).any(axis=1)).all()
     assert np.array_equal(cut.tile - cut.image, body.tile[cut.node])
+
+
+@pytest.mark.parametrize("across", [1, 2])
+def test_periodic_sides_cut_nothing(brick, across) -> None:
+    """A body that goes on sideways has the contacts of the middle bricks of a wider one."""
+    periodic = tile(brick, (across, 2), (True, False))
+    wide = tile(brick, (across + 4, 2), OPEN)
+    found = cut_contacts(brick, periodic, ("bottom",), (True, False))
+    cut = cut_contacts(brick, wide, ("bottom",))
+    middle = cut.only((wide.tile[cut.node, 0] >= 2) & (wide.tile[cut.node, 0] < 2 + across))
+
+    assert len(found.node) == len(middle.node) > 0
+    for name in ("contact_type", "is_second", "other", "image", "side"):
+        assert np.array_equal(np.sort(getattr(found, name), axis=0), np.sort(getattr(middle, name), axis=0)), name
+    assert (found.tile[:, 0] >= 0).all()
+    assert (found.tile[:, 0] < across).all()
+
+
+def test_the_mass_of_a_brick_has_a_centre() -> None:
+    positions = np.array([[0.25, 0.5], [1.0, 0.25]])
+    nothing = np.zeros((0, 2), dtype=np.int64), np.zeros((0, 2), dtype=np.int64), np.zeros((2, 2), bool), np.zeros(3)
+    brick = Brick(np.array([2.0, 1.0]), positions, np.array([0.1, 0.2]), *nothing, residual_ratio=0.0)
+    np.testing.assert_allclose(brick.mass_offset, [0.85 - 1.0, 0.3 - 0.5])
+    assert brick.row_widths.tolist() == [0.0, 0.0]
+    nothing[2][0, 1] = True  # a fifth of the mass is in the row on y = 0
+    np.testing.assert_allclose(brick.row_widths, [0.0, 0.2])

@@ -142,3 +142,12 @@ def test_of_a_body_cut_in_two_the_larger_part_is_left(square):
 def test_an_empty_body_is_refused(square):
     with pytest.raises(PackingError, match="no disk is left"):
         tile(square, (3, 2), (False, False)).without(np.ones(6, dtype=bool))
+
+
+def test_a_body_stands_where_its_origin_is(edged_brick):
+    there, here = (tile(edged_brick, (3, 2), (False, False), origin) for origin in ((7.0, -2.5), (0.0, 0.0)))
+    np.testing.assert_allclose(there.positions, here.positions + np.array([7.0, -2.5]), rtol=0.0, atol=1e-12)
+    assert there.origin.tolist() == [7.0, -2.5]
+    assert np.array_equal(there.tile, here.tile)
+    assert np.array_equal(there.pairs, here.pairs)
+    assert there.part(slice(0, 5)).origin.tolist() == [7.0, -2.5]

@@ -83,6 +83,30 @@ def test_histories_come_back_as_they_were(tmp_path, simulation) -> None:
         assert file["histories/back"].attrs["wanted"].tolist() == [9.9, 0.9]
 
 
+def test_a_history_in_a_continuum_has_no_particle(tmp_path, bar) -> None:
+    sides = {side: {"type": "outside"} for side in ("left", "right")}
+    places = {"monitor": [{"name": "in", "position": [0.0, 0.0]}, {"name": "beside", "position": [-0.6, 0.3]}]}
+    blow = [{"name": "blow", "force": [1.0, 0.0], "position": [0.0, 0.0], "wave": "pulse"}]
+    changes = places | {"boundary": sides, "load": blow, "outside.element": 1.0, "motion.held": []}
+    scene = build(bar(changes))
+    simulation = Simulation(scene, 1e-4, scene.probes)
+    with recorder(tmp_path / "run.h5", simulation) as kept:
+        record = simulation.advance(40)
+        kept.append(record)
+    expected = scene.between["beside"].motion(record[:, 1:])
+
+    with h5py.File(tmp_path / "run.h5") as file:
+        group = file["histories/beside"]
+        assert group.attrs["particle"] == -1
+        np.testing.assert_allclose(group.attrs["position"], [-0.75, 0.25], atol=1e-12)
+        assert group.attrs["wanted"].tolist() == [-0.6, 0.3]
+        assert np.array_equal(group["velocity"], expected[:, 3:])
+        assert np.array_equal(group["displacement"], expected[:, :3])
+        assert np.abs(expected[-1, 3]) > 0.0
+        assert file["histories/in"].attrs["particle"] == scene.monitors["in"]
+        assert np.array_equal(file["histories/in/velocity"], record[:, 0, 3:])
+
+
 @pytest.mark.parametrize("blocks", [(19,), (7, 12), (1, 1, 5, 3, 9)])
 def test_an_interval_keeps_every_nth_step_however_the_run_is_cut(tmp_path, simulation, blocks) -> None:
     with recorder(tmp_path / "run.h5", simulation, interval=4.2 * STEP) as kept:

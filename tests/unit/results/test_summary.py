@@ -21,7 +21,7 @@ SECONDS = {"build": 0.25, "step": 2.0, "record": 0.5}
 def summary_of(case: Case, path: Path, steps: int, entries: int) -> dict:
     """The summary of a run of some steps, energies entered now and then."""
     planned = plan(case)
-    simulation = Simulation(planned.scene, planned.time_step, list(planned.scene.monitors.values()))
+    simulation = Simulation(planned.scene, planned.time_step, planned.scene.probes)
     ledger = Ledger(simulation, steps // entries)
     with Recorder(path, simulation, planned.step_limit, ledger=ledger) as recorder:
         simulation.track(Histories(recorder), ledger)

@@ -12,7 +12,16 @@ from matplotlib import image
 
 from dembound.errors import CaseError, DemboundError
 from dembound.results import view as module
-from dembound.results.view import disk_mesh, label_count, lengths, picture_size, require_rendering, view
+from dembound.results.view import (
+    disk_mesh,
+    extent_of,
+    label_count,
+    lengths,
+    meshes_of,
+    picture_size,
+    require_rendering,
+    view,
+)
 
 
 def test_every_disk_is_a_polygon_as_wide_and_high_as_itself():
@@ -47,6 +56,29 @@ def test_axes_have_round_numbers_where_they_can(length, share, count):
 def test_pictures_of_long_scenes_are_low():
     assert picture_size(np.array([100.0, 5.0])) == (1600, 357)
     assert picture_size(np.array([50.0, 50.0])) == (1600, 900)
+
+
+def test_a_continuum_moves_and_is_coloured_as_disks_are(surrounded_run):
+    with h5py.File(surrounded_run) as file:
+        _, around = meshes_of(file)
+        group = file["snapshots/0001"]
+        around.show(group, "velocity", 7.0)
+        nodes, moved = file["continuum/position"][:], group["continuum/displacement"][:]
+        speed = np.hypot(*group["continuum/velocity"][:, :2].T)
+        absorbs, cells = file["continuum/absorbs"][:], file["continuum/cell"][:]
+        np.testing.assert_array_equal(extent_of(file), [[-9.0, -9.0], [21.0, 6.0]])
+    # VTK keeps points in single precision: 6e-8 of 21 m
+    np.testing.assert_allclose(around.mesh.points[:, :2], nodes + 7.0 * moved[:, :2], atol=2e-6)
+    assert (around.mesh.points[:, 2] < 0.0).all()
+    np.testing.assert_array_equal(around.mesh.point_data["speed (m/s)"], speed)
+    np.testing.assert_array_equal(around.opacity < 1.0, absorbs)
+    np.testing.assert_array_equal(around.mesh.faces.reshape(-1, 5)[:, 1:], cells)
+
+
+def test_without_a_continuum_the_extent_is_that_of_the_disks(small_run):
+    with h5py.File(small_run) as file:
+        assert len(meshes_of(file)) == 1
+        np.testing.assert_array_equal(extent_of(file), [[0.0, 0.0], [10.0, 2.5]])
 
 
 def test_without_opengl_there_is_one_line_instead_of_a_crash(small_run, tmp_path, monkeypatch):
@@ -115,7 +147,7 @@ class Drawn:
 
 
 @pytest.fixture(scope="module")
-def drawn(cracked_run, tmp_path_factory) -> Drawn:
+def drawn(cracked_run, surrounded_run, tmp_path_factory) -> Drawn:
     """Drawn by the commands in one process, for most of their time goes into imports; skips where VTK cannot draw."""
     folder = tmp_path_factory.mktemp("drawn")
     run = folder / "run.h5"
@@ -131,12 +163,18 @@ def drawn(cracked_run, tmp_path_factory) -> Drawn:
         file["cracks/position"][0] = CRACK
     options = {"first": ["--snapshot", "0"], "last": [], "moved": ["--snapshot", "-1", "--exaggerate", "50"]}
     commands = [[str(run), "--picture", str(folder / f"{name}.png"), *more] for name, more in options.items()]
+    around = folder / "around.h5"
+    around.write_bytes(surrounded_run.read_bytes())
+    with h5py.File(around, "r+") as file:
+        for group in (file["snapshots/0000"], file["snapshots/0000/continuum"]):
+            group["velocity"][:] = 1.0, 0.0, 0.0
+    commands.append([str(around), "--picture", str(folder / "around.png"), "--snapshot", "0"])
     command = [sys.executable, "-c", DRAW, json.dumps(commands)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     if "no working OpenGL" in done.stderr:
         pytest.skip(done.stderr)
     assert (done.returncode, done.stderr) == (0, "")
-    pictures = {name: image.imread(folder / f"{name}.png")[..., :3] for name in options}
+    pictures = {name: image.imread(folder / f"{name}.png")[..., :3] for name in (*options, "around")}
     return Drawn(pictures, {path.name for path in folder.iterdir()})
 
 
@@ -164,7 +202,7 @@ def test_exaggerated_displacements_move_disks_and_cracks_with_them(drawn):
 def test_a_picture_shows_the_snapshot_asked_for(drawn):
     first, last = (drawn.pictures[name] for name in ("first", "last"))
     assert first.shape == last.shape == (HEIGHT, 1600, 3)
-    assert drawn.files == {"first.png", "last.png", "moved.png", "run.h5"}
+    assert drawn.files == {"around.h5", "around.png", "first.png", "last.png", "moved.png", "run.h5"}
     changed = np.abs(first - last).max(axis=2) > 0.5  # from the dark to the bright end of the scale
     row, column = drawn.cracks("last").mean(axis=0).round().astype(int)
     changed[row - 7 : row + 8, column - 7 : column + 8] = False  # the crack itself, 10 pixels wide
@@ -175,3 +213,17 @@ def test_a_picture_shows_the_snapshot_asked_for(drawn):
     # is 28.6 of them, move it by half a pixel at most, 3.5 % of the area
     assert left == pytest.approx(np.pi / 4, rel=0.046)
     assert right == 0.0
+
+
+def test_disks_and_continuum_of_one_speed_have_one_colour(drawn):
+    """The scene of 30 m × 15 m is 1600 / 1.4 pixels wide, with its middle, (6, −1.5) m, in the middle."""
+    picture = drawn.pictures["around"]
+    rows, columns = picture.shape[:2]
+    scale = columns / 1.4 / 30.0
+
+    def colour(x: float, y: float) -> np.ndarray:
+        return picture[round(0.5 * rows - scale * (y + 1.5)), round(0.5 * columns + scale * (x - 6.0))]
+
+    for x, y in [(-1.2, 2.2), (13.3, 1.7), (4.3, -1.4), (-1.6, -1.2)]:  # the margin, away from outlines
+        np.testing.assert_array_equal(colour(x, y), colour(6.5, 3.5))
+    assert (colour(-4.4, 2.2) > colour(6.5, 3.5)).any()  # pale where it absorbs

@@ -22,6 +22,7 @@ def moved(small_run, tmp_path):
         with h5py.File(path, "r+") as file:
             del file["histories"], file["cracks"]
             file["cracks/particles"] = np.array(broken, dtype=np.int64).reshape(-1, 2)
+            file["cracks/time"] = np.zeros(len(broken))
             file.create_group("histories", track_order=True)
             for name, velocity in velocities.items():
                 three = np.zeros((len(velocity), 3))
@@ -111,6 +112,14 @@ def test_twins_in_the_column_are_no_monitors(bar, moved) -> None:
     case = two(bar, {"boundary": sides, "motion.held": [], "packing.size": [10.0, 5.0]})
     quiet = {"near": PULSE, "far": PULSE, "near__free_field": TIME**4, "far__free_field": TIME**4}
     assert moved(case, **quiet) == []
+
+
+def test_monitors_in_a_continuum_come_to_rest(bar, moved) -> None:
+    sides = {side: {"type": "outside"} for side in ("left", "right")}
+    places = [{"name": name, "position": [x, 0.5]} for name, x in (("near", 2.0), ("far", -0.9))]
+    case = bar({"boundary": sides, "outside.element": 1.0, "motion.held": [], "monitor": places})
+
+    assert [warning.split(":")[0] for warning in moved(case, near=PULSE, far=TIME**4)] == ["monitor.far"]
 
 
 def test_one_monitor_or_none(bar, moved) -> None:

@@ -11,7 +11,8 @@ from dembound.running import plan
 from dembound.studies.extended import extended
 
 GRIP = {"type": "velocity", "wave_p": "pulse"}
-BASE = {"type": "viscous_input", "wave_p": "pulse"}
+WAVE = {"wave_p": "pulse"}
+BASE = {"type": "viscous_input", **WAVE}
 FIELD = {"motion.held": [], "run.duration": 0.02, "packing.size": [10.0, 5.0]}
 HOLE = {"name": "tunnel", "type": "circle", "centre": [6.0, 3.0], "radius": 0.8}
 BLOW = {"name": "blow", "force": [1e5, 0.0], "position": [3.1, 2.2], "wave": "pulse"}
@@ -120,6 +121,28 @@ def test_a_free_field_is_widened_only_for_what_is_local(bar) -> None:
     assert f"{scene.count:,} particles" in extended(hollow).sentence
 
 
+def test_sides_of_a_continuum_under_waves_from_below_move_as_free_fields_do(bar) -> None:
+    """Their column has the waves of the ground, so only what holes scatter has to stay away."""
+    outside = {"left": {"type": "outside"}, "right": {"type": "outside"}, "bottom": {"type": "outside", **WAVE}}
+    free_field = {"left": {"type": "free_field"}, "right": {"type": "free_field"}, "bottom": BASE}
+    around, beside = (
+        extended(bar({**FIELD, "hole": [HOLE], "boundary": sides, "run.duration": 0.03}))
+        for sides in (outside, free_field)
+    )
+    assert around.inside == beside.inside
+    assert around.inside[0] > 0.0
+    assert around.case.packing == beside.case.packing
+    assert around.sentence.endswith(
+        "bottom stays, as waves enter there, before a continuum, which returns next to nothing"
+    )
+
+
+def test_a_box_in_the_ground_is_not_extended(bar) -> None:
+    sides = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
+    with pytest.raises(CaseError, match=r"^ground\.size: the scene cannot be extended"):
+        extended(bar({**FIELD, "boundary": sides, "ground.size": [30.0, 5.0], "packing.origin": [10.0, 0.0]}))
+
+
 def test_a_scene_large_enough_is_left_alone(bar) -> None:
     short, free = bar({"run.duration": 1e-3}), bar({"boundary": {"left": GRIP}})
 
@@ -204,3 +227,29 @@ def test_a_rock_bar_grows_beyond_its_absorbing_end(spalling) -> None:
 def test_a_loaded_end_stays(spalling) -> None:
     with pytest.raises(CaseError, match=r"^boundary\.left: lets motion in"):
         extended(spalling({"boundary.left": {"type": "viscous"}}))
+
+
+@pytest.mark.parametrize("duration", [0.002, 0.05])
+def test_monitors_and_loads_in_a_continuum_are_at_disks_of_the_larger_scene(bar, duration) -> None:
+    places = {"in": (4.1, 3.9), "beside": (-1.4, 2.2), "low": (4.2, -1.7)}
+    case = bar(
+        {
+            "packing": {"pattern": "A", "size": [8.0, 4.0], "radius": 0.25},
+            "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+            "outside": {"element": 2.0, "margin": 2},
+            "motion.held": [],
+            "load": [{"name": "f", "force": [0.0, -1.0], "region": [9.0, 3.5, 11.5, 4.0], "wave": "pulse"}],
+            "monitor": [{"name": name, "position": list(place)} for name, place in places.items()],
+            "run.duration": duration,
+        }
+    )
+    found = extended(case)
+    small, large = build(case), build(checked(found.case))
+
+    assert len(small.between) == 2
+    assert not large.between
+    for name, place in large.monitored.items():
+        np.testing.assert_allclose(place - found.inside[:2], small.monitored[name], atol=1e-9)
+    (load,) = found.case.load
+    np.testing.assert_allclose(np.reshape(load.region, (2, 2)) - found.inside[:2], [[9.0, 3.5], [11.5, 4.0]], atol=1e-9)
+    assert f"{large.disk_count:,} particles" in found.sentence

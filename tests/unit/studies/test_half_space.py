@@ -141,3 +141,26 @@ def test_a_load_whose_quadrature_does_not_settle_is_refused(tmp_path, monkeypatc
     with pytest.raises(CaseError, match=r"wave\.pulse: is so rough .* continuous load$"):
         write_exact(loads(CASE), tmp_path / "run.h5")
     assert not list(tmp_path.iterdir())
+
+
+def test_monitors_in_the_continuum_are_on_the_same_surface(tmp_path):
+    """The load is nearer to the sides of a small body than to the monitors, which does not matter as it goes on."""
+    changes = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right", "bottom")}
+    changes |= {
+        "outside.element": 5.0,
+        "outside.margin": 2,
+        "packing.size": [5.0, 5.0],
+        "load.hammer.position": [0.75, 4.75],
+    }
+    places = {"before": [-5.25, 4.75], "behind": [6.75, 4.9]}
+    monitor = [{"name": name, "position": place} for name, place in places.items()]
+    case = with_changes(loads(CASE), changes | {"monitor": monitor})
+    _, before, behind = histories(tmp_path / "run.h5", case)
+
+    np.testing.assert_allclose(before, behind * [-1.0, 1.0, 1.0], atol=1e-9 * np.abs(behind).max())
+    with h5py.File(tmp_path / "run.h5") as file:
+        attributes = file["histories/behind"].attrs
+        assert attributes["particle"] == -1
+        np.testing.assert_allclose(attributes["position"], [6.75, 4.75], atol=1e-12)
+    with pytest.raises(CaseError, match=r"monitor\.behind\.position: must be on the top of the scene"):
+        write_exact(with_changes(case, {"monitor.behind.position": [6.75, 2.0]}), tmp_path / "run.h5")

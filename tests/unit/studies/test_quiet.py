@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from small_cases import SURROUNDED, small
 
 from dembound.bar.scene import build_bar
-from dembound.kinds import loads
-from dembound.studies.quiet import PARTICLES, UNLOADED, trials
+from dembound.kinds import loads, with_changes
+from dembound.studies.quiet import PARTICLES, UNLOADED, parts_of, trials
 
 ROCK = """
 [bar]
@@ -111,3 +112,13 @@ def test_springs_of_a_copy_are_the_stiffest_of_the_whole_side(bar, source: list[
     # disks of the side are within its width of half a diameter of it, 0.25 m of 50 m
     assert stiffness[0].max() == pytest.approx(stiffness[1].max(), rel=0.01)
     assert len(np.unique(np.round(stiffness[0] / stiffness[0].max(), 9))) < len(np.unique(stiffness[1]))
+
+
+def test_a_continuum_has_noise_of_its_own_but_under_a_law_with_a_history() -> None:
+    """Whose ledger has the energies of all parts: there it is in the body."""
+    linear = small(SURROUNDED, "surrounded")
+    (trial,), words = trials(linear)
+    assert words[0] == "12 m × 6 m, 72 disks and 430 nodes of a continuum"
+    assert list(parts_of(trial)) == ["body", "continuum"]
+    full = with_changes(linear, {"material.law": "linearpbond"})
+    assert [list(parts_of(each)) for each in trials(full)[0]] == [["body", "continuum"], ["body"]]

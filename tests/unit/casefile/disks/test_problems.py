@@ -163,6 +163,21 @@ def test_monitors_lie_in_the_scene() -> None:
     ]
 
 
+def test_monitors_may_lie_in_a_continuum() -> None:
+    left, base = '[boundary.left]\ntype = "outside"\n', '[boundary.bottom]\ntype = "outside"\n'
+
+    assert problems(left + monitor("a", "[-99.5, 5]")) == []
+    assert problems(left + base + monitor("a", "[-99.5, -7]")) == []
+    # neither above the free surface nor beyond other sides
+    allowed = "[0, 0] to [10, 5] (m) or in the continuum of left"
+    assert problems(left + monitor("a", "[-2, 5.5]") + monitor("b", "[11, 1]") + monitor("c", "[-2, -1]")) == [
+        f"monitor[{place}].position: is {where}, must be in the scene, {allowed}"
+        for place, where in (("1, a", "[-2.0, 5.5]"), ("2, b", "[11.0, 1.0]"), ("3, c", "[-2.0, -1.0]"))
+    ]
+    # a side with a mistake of its own has one line
+    assert len(problems('[boundary.left]\ntype = "outsid"\n' + monitor("a", "[-2, 1]"))) == 1
+
+
 def test_monitor_names_are_unique() -> None:
     assert problems(monitor("a", "[0, 0]") + monitor("b", "[1, 1]") + monitor("a", "[2, 2]")) == [
         'monitor[3].name: "a" is taken by monitor[1]'

@@ -48,6 +48,48 @@ def test_rows_of_frames_are_coarsened_with_the_disks(monkeypatch) -> None:
     assert changes["packing.edge_radius"] == 1.25 * case.packing.edge_radius
 
 
+TUNNEL = {
+    "packing": {"pattern": "A", "size": [120.0, 100.0], "radius": 0.5},
+    "motion.held": [],
+    "boundary": {
+        "left": {"type": "free_field"},
+        "right": {"type": "free_field"},
+        "bottom": {"type": "viscous_input", "wave_s": "pulse", "half_mass": True},
+    },
+    "hole": [{"name": "tunnel", "type": "circle", "centre": [60.0, 50.0], "radius": 8.0}],
+    "monitor": [{"name": "crown", "position": [60.0, 58.5]}],
+}
+OUTSIDE = {"type": "outside"}
+
+
+def test_waves_from_below_enter_through_the_continuum_where_the_sides_have_one(bar) -> None:
+    case = bar(TUNNEL)
+    through = {"boundary.bottom": {"type": "outside", "wave_s": "pulse"}}
+    around = {"boundary.left": OUTSIDE, "boundary.right": OUTSIDE, **through}
+    assert defaults(case)["left, right and bottom outside"] == around
+    periodic = {f"boundary.{side}": {"type": "periodic"} for side in ("left", "right")}
+    assert defaults(bar(TUNNEL | periodic))["bottom outside"] == through
+    found = list(defaults(with_changes(case, around)))  # other sides would need another base
+    assert not any("viscous" in name or "free" in name or name.endswith("bottom outside") for name in found)
+
+
+def test_a_box_round_holes_is_a_choice_where_it_saves_much(bar) -> None:
+    case = bar(TUNNEL)
+    (changes,) = (changes for name, changes in defaults(case).items() if name.startswith("box"))
+    (left, bottom), (wide, high) = changes["packing"]["origin"], changes["packing"]["size"]
+    assert changes["ground.size"] == [120.0, 100.0]
+    assert (left + 0.5 * wide, bottom + 0.5 * high) == (60.0, 50.0)
+    assert 16.0 < wide < 60.0
+    sides = {side: changes[f"boundary.{side}"] for side in ("left", "right", "top")}
+    assert sides == dict.fromkeys(sides, OUTSIDE)
+    assert changes["boundary.bottom"] == {"type": "outside", "wave_s": "pulse"}
+    bricks = bar({**TUNNEL, "packing": {"pattern": "A", "bricks": [120, 100], "radius": 0.5}})
+    assert defaults(bricks)[f"box of {wide:g} m × {high:g} m, outside"]["packing"] == changes["packing"]
+    assert not any(name.startswith("box") for name in defaults(with_changes(case, changes)))  # it is one
+    far = {"name": "far", "position": [0.5, 99.5]}  # in the layer that absorbs
+    assert not any(name.startswith("box") for name in defaults(with_changes(case, {"monitor": [far]})))
+
+
 def test_of_bars_all_methods_with_all_spacings(spalling) -> None:
     case = spalling({"run": {"duration": 1.5e-3, "time_step": 1e-6}})
     found = defaults(case)

@@ -12,7 +12,7 @@ from dembound.errors import CaseError, RunError
 from dembound.motion.kind import Finding
 from dembound.running import Progress
 from dembound.studies.chart import reference, study
-from dembound.studies.chart.choices import combinations
+from dembound.studies.chart.choices import choices_of, combinations
 from dembound.studies.chart.errors import Wanted
 from dembound.studies.chart.study import Options, chart
 from dembound.studies.chart.tables import COLUMNS, write_results, write_table
@@ -210,6 +210,31 @@ def test_breaks_beyond_the_scene_of_the_case_are_no_end_of_the_comparison(bar, m
     found = chart(case, Options(combinations(case, sides), 1, "extended"), tmp_path / "chart", False, Log())
     assert boxes.count((0.0, 0.0, 10.0, 1.0)) == 1  # the extended scene grows to the right
     assert found.reference.name == "extended"
+
+
+def test_an_extended_scene_lets_waves_in_through_the_continuum_of_a_choice(bar, tmp_path) -> None:
+    """Dashpots that waves enter through stay in it: what they return would count against the continuum."""
+    base = {"type": "viscous_input", "wave_s": "pulse", "half_mass": True}
+    field = {"left": {"type": "free_field"}, "right": {"type": "free_field"}, "bottom": base}
+    hole = {"name": "tunnel", "type": "circle", "centre": [10.0, 5.0], "radius": 2.0}
+    changes = {"packing.size": [20.0, 10.0], "motion.held": [], "hole": [hole], "boundary": field, "run.duration": 0.04}
+    case = bar({**changes, "monitor": [{"name": "crown", "position": [10.0, 7.5]}]})
+    beyond = {"boundary.left": {"type": "outside"}, "boundary.right": {"type": "outside"}}
+    named = {"field": {}, "beyond": {**beyond, "boundary.bottom": {"type": "outside", "wave_s": "pulse"}}}
+    found = chart(case, Options(named, 1), tmp_path / "chart", False, Log())
+    assert "before a continuum" in found.reference.sentence
+    by_field, by_continuum = (line.errors[0].rms for line in found.lines)
+    assert by_continuum < 0.2 * by_field
+
+
+def test_boxes_elsewhere_have_the_same_bricks(bar) -> None:
+    packing = {"pattern": "B", "radius": 0.25, "radius_ratio": 1.5, "brick": [5.0, 5.0]}
+    case = bar({"packing": packing | {"size": [10.0, 10.0]}, "motion.held": []})
+    box = {"ground.size": [10.0, 10.0], "packing": packing | {"size": [5.0, 5.0], "origin": [0.0, 5.0]}}
+    sides = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right", "bottom")}
+    choices, _ = choices_of(case, {"all": {}, "box": box | sides, "other": {"packing.seed": 7}})
+    assert reference._of_random_packings(choices[:2]) == ()
+    assert len(reference._of_random_packings(choices)) == 1
 
 
 def test_places_in_an_extended_scene_are_those_in_the_case() -> None:

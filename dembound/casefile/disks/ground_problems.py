@@ -1,0 +1,40 @@
+"""Mistakes of a box of disks in the ground."""
+
+from collections.abc import Iterator, Mapping
+
+from dembound.boundaries.boundary import Boundary
+from dembound.casefile.disks.ground import Ground
+from dembound.casefile.messages import corners
+from dembound.packings import Packing
+from dembound.packings.base import TYPED
+
+
+def ground_problems(ground: Ground, packing: Packing, boundaries: Mapping[str, Boundary | None]) -> Iterator[str]:
+    """Check a box of disks against the ground that it is a part of; an invalid side is None."""
+    if ground.size is None:
+        if packing.origin != (0.0, 0.0):
+            yield "packing.origin: places the disks in the ground, but [ground] has no size; give it"
+        return
+    width, height = ground.size
+    left, bottom, right, top = packing.box
+    near = TYPED * max(width, height)
+    if left < -near or bottom < -near or right > width + near or top > height + near:
+        ground_is = corners(0.0, 0.0, width, height)
+        yield f"packing.origin: the box of disks is {corners(*packing.box)}, must lie in the ground, {ground_is}"
+        return
+    brick = packing.brick_size[1]
+    for key, value in (("packing.origin", bottom), ("ground.size", height)):
+        rows = value / brick
+        if abs(rows - round(rows)) > TYPED * max(1.0, rows):
+            yield (
+                f"{key}: its height, {value:.10g} m, is not a whole number of bricks of {brick:.10g} m; "
+                f"{int(rows) * brick:.10g} or {(int(rows) + 1) * brick:.10g} would be"
+            )
+    highest = boundaries.get("top")
+    if highest is not None and highest.is_outside and abs(height - top) <= near:
+        yield 'boundary.top.type: is "outside", but the disks reach the surface of the ground; it must be "free"'
+    gaps = {"left": left, "bottom": bottom, "right": width - right, "top": height - top}
+    for side, gap in gaps.items():
+        table = boundaries.get(side)
+        if gap > near and not (side in boundaries and (table is None or table.is_outside)):
+            yield f'boundary.{side}.type: the ground goes on {gap:g} m beyond this side, so it must be "outside"'

@@ -1,0 +1,129 @@
+"""Monitors: the disks whose motion they record, and in a continuum the disks that it stands for there.
+
+The packing goes on in the continuum beyond a body. The disk i that would be nearest to a monitor's place has the motion
+
+    u_i = U(x_i) + χ_i : ∇U(x_i),    θ_i = χ^θ_i : ∇U(x_i)
+
+with U the continuum's displacement and χ the correctors of the brick (disks/homogenise.py); those of a lattice are
+χ = 0 and θ = ½(∂U_y/∂x − ∂U_x/∂y). Beside a free-field column U is the scattered motion only, to which that of the
+column's disk at the same place of the brick is added.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.monitor import FREE_FIELD, Monitor
+from dembound.casefile.disks.reach import reach
+from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.surroundings import Surroundings
+from dembound.disks.wave_front import INDEX
+from dembound.errors import CaseError
+from dembound.motion.between import Between
+from dembound.packings.brick import Brick
+from dembound.packings.column import Seam, nearest_in_column
+from dembound.packings.tiling import Assembly
+
+Monitors = tuple[dict[str, int], dict[str, Between]]
+"""Name -> node, and name -> place of those in a continuum."""
+
+
+def monitors_of(
+    case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam | None, outside: Surroundings | None
+) -> Monitors:
+    """The particle of the body nearest to each monitor's position, or the continuum there, and their twins.
+
+    Raises CaseError for positions in the layer that absorbs, and for those below the ground if waves come from there.
+    """
+    if not case.monitor:
+        return {}, {}
+    from scipy.spatial import cKDTree
+
+    first = 0 if seam is None else seam.count
+    _, nearest = cKDTree(assembly.positions[first:]).query([m.position for m in case.monitor])
+    nodes = {m.name: first + int(node) for m, node in zip(case.monitor, nearest, strict=True)}
+    twins = {} if seam is None else {name: int(seam.twin[node]) for name, node in nodes.items()}
+    between: dict[str, Between] = {}
+    if outside is not None:
+        around = _Around(case, ground.brick, assembly, first, outside)
+        for monitor in around.monitors():
+            name, (place, kind) = monitor.name, around.disk_at(monitor.position)
+            if seam is not None:
+                twins[name] = int(nearest_in_column(assembly, place[None])[0])
+            between[name] = _in_continuum(outside, ground, place, kind, twins.get(name))
+            nodes[name] = outside.first + int(np.argmin(np.hypot(*(outside.body.mesh.positions - place).T)))
+    return nodes | {f"{name}{FREE_FIELD}": node for name, node in twins.items()}, between
+
+
+@dataclass(frozen=True)
+class _Around:
+    """The packing that goes on in the continuum round a body, whose first disk has the number `first`."""
+
+    case: DiskCase
+    brick: Brick
+    assembly: Assembly
+    first: int
+    outside: Surroundings
+
+    @property
+    def _lowest(self) -> float:
+        """Height (m) above which the continuum's motion is the total one, or there is a column to make it so."""
+        is_total = self.first == 0 and not self.case.side("bottom").waves
+        return -np.inf if is_total else 0.0
+
+    def _allowed(self, places: np.ndarray) -> np.ndarray:
+        """The places (k, 2) m, or the nearest ones where motion is recorded."""
+        allowed = self.outside.allowed(places)
+        allowed[:, 1] = np.maximum(allowed[:, 1], self._lowest)
+        return allowed
+
+    def monitors(self) -> list[Monitor]:
+        """Those in the continuum. Raises CaseError for places where no motion is recorded."""
+        monitors = self.case.monitor
+        places = np.array([monitor.position for monitor in monitors])
+        problems = []
+        for number, (monitor, (x, y)) in enumerate(zip(monitors, self._allowed(places), strict=True), start=1):
+            if (x, y) != monitor.position:
+                below = monitor.position[1] < self._lowest
+                where = "below the ground, where incident motion is not known" if below else "in the layer that absorbs"
+                nearest = f"the nearest place allowed is ({x:.10g}, {y:.10g}) m"
+                problems.append(f"monitor[{number}, {monitor.name}].position: lies {where}; {nearest}")
+        if problems:
+            raise CaseError(problems)
+        return [each for each, beyond in zip(monitors, self.outside.is_beyond(places), strict=True) if beyond]
+
+    def disk_at(self, position: tuple[float, float]) -> tuple[np.ndarray, int]:
+        """Place (2,) m, and number in the brick, of the disk nearest to a position (m).
+
+        Disks of the body itself, those in layers, and those beyond free sides are left out, as far as others remain.
+        """
+        case, brick, of = self.case, self.brick, self.assembly
+        begin = of.positions[self.first] - brick.positions[of.brick_particle[self.first]]
+        begin = begin - of.tile[self.first] * brick.size
+        tile = np.floor((np.array(position) - begin) / brick.size)
+        tiles = tile + np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)])
+        places = (begin + brick.size * tiles[:, None] + brick.positions).reshape(-1, 2)
+        left, bottom, right, top = reach(case.ground, case.packing, case.boundary)
+        refused = (places < (left, bottom)).any(axis=1) | (places > (right, top)).any(axis=1)
+        refused |= ~self.outside.is_beyond(places) | (self._allowed(places) != places).any(axis=1)
+        best = int(np.lexsort((np.hypot(*(places - position).T), refused))[0])
+        return places[best], best % len(brick.radii)
+
+
+def _in_continuum(
+    outside: Surroundings, ground: PackedMaterial, place: np.ndarray, kind: int, twin: int | None
+) -> Between:
+    """The motion of a disk of the brick, `kind`, at a place (2,) m of a continuum; twin : its twin's number."""
+    mesh = outside.body.mesh
+    interpolation, slopes = mesh.interpolation(place[None]), mesh.slopes(place[None])[:, 0]
+    share = np.zeros((slopes.shape[1], 3, 3))
+    share[:, [0, 1], [0, 1]] = interpolation.weight[0, :, None]
+    for component in (0, 1):
+        share[:, :, component] += (ground.continuum.corrector[:, kind, INDEX[component]] @ slopes).T
+    node = outside.first + interpolation.node[0]
+    if twin is not None:
+        node, share = np.append(node, twin), np.concatenate([share, np.eye(3)[None]])
+    return Between(place, node, share)

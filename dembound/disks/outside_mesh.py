@@ -1,0 +1,165 @@
+"""The mesh of the continuum round a body: sizes of elements, where it begins, and where it ends at free surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.boundaries.sides import SIDES, normal_axis
+from dembound.casefile.disks import DiskCase
+from dembound.disks.free_surface import inset
+from dembound.disks.outside_settings import Box, Settings, least_element, mesh_of, settings_of
+from dembound.disks.packed_material import PackedMaterial
+from dembound.errors import CaseError
+from dembound.outside.layer import LONG_WAVES
+from dembound.outside.medium import Medium
+from dembound.outside.mesh import WHOLE, Mesh
+from dembound.packings.tiling import Assembly
+
+NARROW = 2.0
+"""Width, in elements, up to which waves only run straight away from a periodic body."""
+
+AT = (0, 2, 1, 3)
+"""Where the edges of the sides are in a box, in the order of `SIDES`."""
+
+
+class Sizes(NamedTuple):
+    """Sizes of the elements round a body.
+
+    From a body that is periodic and narrow, no wider than `NARROW` elements or half of the shortest wave, waves run
+    straight away only: one element is as wide as it, and ties have its mean motion. If the body is narrower than the
+    smallest useful element, the continuum is as wide as this, and less thick by as much. Such a continuum is small, so
+    that its elements may be up to half as high.
+
+    settings : of the continuum. box : (2,) m, the body as the continuum has it. element : largest width and height, m.
+    narrow : along x and y.
+    """
+
+    settings: Settings
+    box: np.ndarray
+    element: tuple[float, float]
+    narrow: tuple[bool, bool]
+
+    @classmethod
+    def of(
+        cls,
+        case: DiskCase,
+        ground: PackedMaterial,
+        body: Assembly,
+        sides: Sequence[str],
+        periodic: tuple[bool, bool],
+    ) -> Sizes:
+        """Those of a body with a continuum beyond some sides.
+
+        Raises CaseError if no size is given and nothing in the case makes waves.
+        """
+        diameter, extent = ground.brick.mean_diameter, mass_extent(ground, body)
+        settings = settings_of(case, medium_of(ground), diameter, box_of(body), sides)
+        largest, least = settings.element, least_element(case, diameter)
+        narrow = np.array(periodic) & (extent <= max(NARROW * largest, least) * (1.0 + WHOLE))
+        if narrow.any():
+            settings = settings._replace(absorption=replace(settings.absorption, shift=LONG_WAVES))
+            if not case.outside.element:  # lower ones would only shorten the step
+                settings = settings._replace(element=max(0.5 * largest, min(largest, 2.0 * least)))
+        box = np.where(narrow, np.maximum(extent, least), extent)
+        width, height = (side if one else settings.side(side) for side, one in zip(box.tolist(), narrow, strict=True))
+        across, up = narrow.tolist()
+        return cls(settings, box, (width, height), (across, up))
+
+
+class Rim(NamedTuple):
+    """Where the continuum round a body begins, and where it ends at free surfaces.
+
+    Beyond tied sides it begins where the mass of the packing ends (`Brick.mass_offset`). Free edges lie deeper than
+    those of the body by the depth of the packing's skin there, and bear the mass beyond them.
+
+    box : left, bottom, right and top of what is left out for the body, m. surface : height of the free surface above a
+    body in the ground, m; None: it reaches up to the ground's end. skins : depth (m) of free edges below those of the
+    packing, by side. massless : the same below where the mass ends.
+    """
+
+    box: Box
+    surface: float | None
+    skins: dict[str, float]
+    massless: dict[str, float]
+
+    @classmethod
+    def of(cls, case: DiskCase, ground: PackedMaterial, body: Assembly, sides: Sequence[str], size: Sizes) -> Rim:
+        """That of a body with a continuum beyond some sides.
+
+        Raises CaseError if no element of the least useful height fits between a body and the surface above it.
+        """
+        low = body.origin + ground.brick.mass_offset
+        mass = [*low.tolist(), *(low + size.box).tolist()]
+        rim, box, skins, massless = box_of(body), [*mass], {}, {}
+        for number, side in zip(AT, SIDES, strict=True):
+            if case.side(side).is_free and _is_beside(side, sides):
+                outwards = 1.0 if number > 1 else -1.0
+                skins[side] = ground.skin(side)
+                box[number] = inset(rim, skins)[number]
+                massless[side] = outwards * (mass[number] - box[number])
+        surface = None
+        if (gap := _gap_above(case, body)) > WHOLE * case.size[1] and "top" in sides:
+            _refuse_thin(gap, least_element(case, ground.brick.mean_diameter))
+            skins["top"] = ground.skin("top")
+            surface = rim[3] + gap - skins["top"]
+            massless["top"] = mass[3] + gap - surface
+        left, bottom, right, top = box
+        return cls((left, bottom, right, top), surface, skins, massless)
+
+
+def _gap_above(case: DiskCase, body: Assembly) -> float:
+    """Height (m) of the ground above a body, 0 if the ground is the body."""
+    if case.ground.size is None:
+        return 0.0
+    return case.ground.size[1] + 0.5 * float((body.extent - body.size)[1]) - box_of(body)[3]  # with rows that close it
+
+
+def _refuse_thin(gap: float, least: float) -> None:
+    """Raise CaseError for a gap (m) below the free surface in which no useful element fits."""
+    if gap < least:
+        raise CaseError(
+            [
+                f"packing.origin: the disks end {gap:.4g} m below the surface of the ground; they must reach it, or "
+                f"end at least {least:.4g} m below, the smallest useful element"
+            ]
+        )
+
+
+def medium_of(ground: PackedMaterial) -> Medium:
+    """The continuum that a packing is equivalent to, with all six constants."""
+    c = ground.material_tensor
+    return Medium(ground.density, c[0, 0], c[1, 1], c[0, 1], c[2, 2], c[0, 2], c[1, 2])
+
+
+def mesh_beyond(
+    case: DiskCase, ground: PackedMaterial, body: Assembly, sides: Sequence[str], periodic: tuple[bool, bool]
+) -> Mesh:
+    """The elements beyond some sides of a body, up to the free surface of the ground.
+
+    Raises CaseError for settings with which there is no mesh.
+    """
+    size = Sizes.of(case, ground, body, sides, periodic)
+    rim = Rim.of(case, ground, body, sides, size)
+    mirrors = [side for side in SIDES if case.side(side).is_mirror and not periodic[normal_axis(side)]]
+    return mesh_of(size.settings, rim.box, sides, size.element, surface=rim.surface, periodic=periodic, mirrors=mirrors)
+
+
+def mass_extent(ground: PackedMaterial, body: Assembly) -> np.ndarray:
+    """Width and height (2,) m of a continuum with the mass of a body."""
+    return body.size + np.where(body.extent > body.size, ground.brick.row_widths, 0.0)
+
+
+def box_of(body: Assembly) -> Box:
+    """Left, bottom, right and top (m) of a body, with rows that close its frame."""
+    low = body.origin + 0.5 * (body.size - body.extent)
+    left, bottom, right, top = np.concatenate([low, low + body.extent]).tolist()
+    return left, bottom, right, top
+
+
+def _is_beside(side: str, sides: Sequence[str]) -> bool:
+    """Whether a side of a body meets one of some others, so that it goes on along the continuum beyond that."""
+    return any(normal_axis(each) != normal_axis(side) for each in sides)

@@ -1,0 +1,232 @@
+"""The settings of the continuum round a body: as given in the case, the others chosen from its waves and loads."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.boundaries.sides import SIDES, normal_axis
+from dembound.casefile.disks import DiskCase
+from dembound.errors import CaseError
+from dembound.outside import choice
+from dembound.outside.choice import Signal
+from dembound.outside.layer import Absorption
+from dembound.outside.medium import Medium
+from dembound.outside.mesh import Around, Mesh
+from dembound.waves import Constant
+
+Box = tuple[float, float, float, float]
+
+MOST_ALONG = 100_000
+"""Largest number of elements along a side."""
+
+ROUNDING = 1e-9
+"""Part of an element by which a number of elements may differ from a whole one."""
+
+
+class Settings(NamedTuple):
+    """All settings.
+
+    order : of the elements. element : largest side, m; least : smallest one that is useful, m, 0 if the largest is
+    given. margin, layers : numbers of elements. absorption : R0, α and τ. damping : of the ties.
+    """
+
+    order: int
+    element: float
+    least: float
+    margin: int
+    layers: int
+    absorption: Absorption
+    damping: float
+
+    @property
+    def given(self) -> dict[str, float]:
+        """As keys of the table, for a case with these settings, whatever its waves."""
+        own = {"element": self.element, "margin": self.margin, "layers": self.layers}
+        return own | {"reflection": self.absorption.reflection}
+
+    def side(self, length: float) -> float:
+        """Side (m) of elements, a whole number of which is a length (m)."""
+        count = max(math.ceil(length / self.element - ROUNDING), 1)
+        if self.least > 0.0:
+            count = min(count, max(math.floor(length / self.least + ROUNDING), 1))
+        return length / count
+
+
+def settings_of(case: DiskCase, medium: Medium, diameter: float, box: Box, sides: Sequence[str]) -> Settings:
+    """Those of a case for the continuum on some sides of a box (left, bottom, right, top; m).
+
+    diameter : mean one of the disks, m.
+
+    Raises CaseError if no size is given and nothing in the case makes waves.
+    """
+    keys, lasting = case.outside, lasting_time(case)
+    least = 0.0 if keys.element else least_element(case, diameter)
+    chosen = Settings(
+        order=keys.order,
+        element=keys.element or max(_element(case, medium, box, sides), least),
+        least=least,
+        margin=keys.margin or 1,
+        layers=keys.layers or choice.layer_count(keys.order, keys.accuracy * (0.5 if lasting else 1.0)),
+        absorption=Absorption(keys.reflection or choice.reflection(keys.accuracy), keys.shift, keys.delay),
+        damping=keys.damping,
+    )
+    if keys.margin is None:
+        inner = choice.inner_length(lasting, fastest(medium), keys.shift, keys.accuracy)
+        wanted = [1, _margin(chosen, box, sides, inner) if lasting > 0.0 else 1]
+        wanted += [margin_below_surface(chosen, each, medium, keys.accuracy) for each in buried(case, box, sides)]
+        chosen = chosen._replace(margin=max(wanted))
+    return chosen
+
+
+class Buried(NamedTuple):
+    """A hole or force beside a side: its depth below the free surface and distance from the side, m.
+
+    width : of the body, m.
+    """
+
+    depth: float
+    beside: float
+    width: float
+
+    def error(self, settings: Settings, medium: Medium, margin: int) -> float:
+        """Error of velocities of what the surface sends back along layers beyond so many elements."""
+        beyond = (margin + choice.WITHIN * settings.layers) * settings.side(self.width)
+        speeds = choice.slowest(medium) / fastest(medium)
+        return choice.grazing_error(self.depth, speeds, settings.absorption.reflection, self.beside + beyond)
+
+
+def buried(case: DiskCase, box: Box, sides: Sequence[str]) -> list[Buried]:
+    """The holes and forces of a case below its free surface, beside each of the sides left and right of a box, m."""
+    surface = case.size[1]
+    if "top" in sides and case.packing.box[3] > (1.0 - ROUNDING) * surface:
+        return []
+    places = [0.5 * (low + high) for low, high in extents(case)]
+    edges = [box[2 * (side == "right")] for side in sides if normal_axis(side) == 0]
+    return [Buried(surface - y, abs(x - edge), box[2] - box[0]) for x, y in places for edge in edges if y < surface]
+
+
+def margin_below_surface(settings: Settings, source: Buried, medium: Medium, accuracy: float) -> int:
+    """Number of elements beside a box with which layers absorb what comes back from the free surface; at least 1."""
+    speeds = choice.slowest(medium) / fastest(medium)
+    offset = choice.offset(source.depth, speeds, settings.absorption.reflection, accuracy)
+    elements = (offset - source.beside) / settings.side(source.width) - choice.WITHIN * settings.layers
+    return max(math.ceil(elements - ROUNDING), 1)
+
+
+def _margin(settings: Settings, box: Box, sides: Sequence[str], inner: float) -> int:
+    """Number of elements beside a box, with which a length (m) lies within the layers along one axis; at least 1."""
+    wanted = []
+    for axis in (0, 1):
+        length, beyond = box[2 + axis] - box[axis], sum(normal_axis(side) == axis for side in sides)
+        if beyond:
+            wanted.append(math.ceil((inner - length) / (beyond * settings.side(length)) - ROUNDING))
+    return max(min(wanted), 1)
+
+
+def mesh_of(
+    settings: Settings,
+    box: Box,
+    sides: Sequence[str],
+    element: tuple[float, float] | None = None,
+    *,
+    surface: float | None = None,
+    periodic: tuple[bool, bool] = (False, False),
+    mirrors: Sequence[str] = (),
+) -> Mesh:
+    """The elements with these settings on some sides of a box (left, bottom, right, top; m).
+
+    element : largest width and height, m; None: by the settings. surface : height of a free surface above the box, m.
+    periodic : along x and y. mirrors : sides that are planes of symmetry.
+
+    Raises CaseError for more elements along a side than anything needs.
+    """
+    width, height = box[2] - box[0], box[3] - box[1]
+    element = element or (settings.side(width), settings.side(height))
+    most = max(width / element[0], height / element[1], ((surface or box[3]) - box[3]) / element[1])
+    if most > MOST_ALONG:
+        raise CaseError([f"outside.element: makes {most:.3g} elements along a side, must make at most {MOST_ALONG:,}"])
+    there = [side in sides and not (side == "top" and surface is not None) for side in SIDES]
+    return Mesh.around(
+        box,
+        element,
+        settings.order,
+        margin=Around(*(settings.margin * each for each in there)),
+        layer=Around(*(settings.layers * each for each in there)),
+        periodic=periodic,
+        surface=surface,
+        mirror=Around(*(int(side in mirrors) for side in SIDES)),
+    )
+
+
+def least_element(case: DiskCase, diameter: float) -> float:
+    """Smallest useful side (m) of elements beside disks of this mean diameter, m."""
+    return choice.least_size(case.outside.order, diameter, is_random=case.packing.packed_under_stress)
+
+
+def fastest(medium: Medium) -> float:
+    """Speed (m/s) of P waves along the axis along which they are faster."""
+    return max(medium.normal_speed(axis) for axis in (0, 1))
+
+
+def signals_of(case: DiskCase) -> list[Signal]:
+    """The forces of a case, and its other waves as velocities; steady forces jump, unless there is a static stage."""
+    driven = {name for waves in case.driving.values() for name in waves.values()}
+    factors = {load.wave for load in case.load}
+    velocities = [name for name in case.wave if name in driven or name not in factors]
+    signals = [Signal(case.wave[name], is_force=False) for name in velocities]
+    for load in case.load:
+        if load.wave is not None:
+            signals.append(Signal(case.wave[load.wave], is_force=True))
+        elif case.static is None:
+            signals.append(Signal(Constant(type="constant", amplitude=1.0), is_force=True))
+    return signals
+
+
+def lasting_time(case: DiskCase) -> float:
+    """Longest time (s) for which a force that begins to act in the run and stays does so; 0 for none."""
+    starts = [case.run.duration]
+    for load in case.load:
+        if load.wave is None and case.static is None:
+            starts.append(0.0)
+        elif load.wave is not None and case.wave[load.wave].stays:
+            starts.append(case.wave[load.wave].start)
+    return max(case.run.duration - min(starts), 0.0)
+
+
+def clearance(case: DiskCase, box: Box, sides: Sequence[str]) -> float:
+    """Smallest distance (m) of a force's middle or a hole from sides of a box; infinite without any."""
+    place = dict(zip(("left", "bottom", "right", "top"), box, strict=True))
+    distances = [
+        abs(place[side] - edge)
+        for side in sides
+        for low, high in extents(case)
+        for edge in (low[normal_axis(side)], high[normal_axis(side)])
+    ]
+    return min(distances, default=float("inf"))
+
+
+def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Lower left and upper right corners of holes, and twice the middle of each force on a place, m."""
+    for hole in case.hole:
+        yield np.array(hole.box[:2]), np.array(hole.box[2:])
+    for load in case.load:
+        if load.position is not None:
+            yield np.array(load.position), np.array(load.position)
+        elif load.region is not None:
+            middle = 0.5 * (np.array(load.region[:2]) + load.region[2:])
+            yield middle, middle
+
+
+def _element(case: DiskCase, medium: Medium, box: Box, sides: Sequence[str]) -> float:
+    """Largest side (m) of elements that suits the waves, and the fields beside forces and holes."""
+    keys, signals = case.outside, signals_of(case)
+    if not signals:
+        raise CaseError(["outside.element: is absent, but the case has no wave or load to choose it from; give it"])
+    return min(
+        choice.element_size(signals, medium, keys.order, keys.accuracy),
+        choice.size_near(clearance(case, box, sides), keys.order, keys.accuracy),
+    )

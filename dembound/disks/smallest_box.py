@@ -1,0 +1,127 @@
+"""The smallest box of disks round the holes and loads of a scene, with a continuum round it, for `dembound check`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.boundaries.sides import SIDES
+from dembound.casefile.disks import DiskCase
+from dembound.disks import step_cost
+from dembound.disks.continuum_facts import in_percent
+from dembound.disks.outside_mesh import medium_of
+from dembound.disks.outside_settings import Box, extents, least_element, mesh_of, settings_of, signals_of
+from dembound.disks.scene import DiskScene
+from dembound.errors import CaseError
+from dembound.outside import choice
+from dembound.outside.memory import GridSizes
+
+WORTH = 0.8
+"""Part of a scene's cost above which a box is no gain."""
+
+NEARER = (1.0, 0.7, 0.5, 0.35, 0.25)
+"""Parts of the distance that elements as large as waves allow need from holes and loads; nearer ones are smaller."""
+
+BAND = 4.0
+"""Least distance of holes and loads from the sides of a box, in diameters: cracks near ties are not followed."""
+
+
+class Trial(NamedTuple):
+    """A box: its rectangle (m), its disks and those of its free-field column, nodes, and nanoseconds of a step.
+
+    error : of velocities, expected of its elements.
+    """
+
+    box: Box
+    disks: int
+    nodes: int
+    cost: float
+    error: float
+
+
+def smallest_box(scene: DiskScene) -> str:
+    """The cheapest box of disks in place of a scene, in words; empty if there is none, or it would gain little."""
+    best = cheapest_box(scene) if may_be_boxed(scene.case) else None
+    if best is None:
+        return ""
+    left, bottom, right, top = best.box
+    share, error = best.cost / _cost(scene), in_percent(best.error)
+    return (
+        f"{right - left:.10g} m × {top - bottom:.10g} m of disks at ({left:.10g}, {bottom:.10g}) m in [ground], a "
+        f"continuum round them: {best.disks:,} disks and {best.nodes:,} nodes instead of {scene.count:,}, about "
+        f"{100.0 * share:.0f} % of the time of a step; expected error of velocities {error}"
+    )
+
+
+def cheapest_box(scene: DiskScene) -> Trial | None:
+    """The cheapest box of disks in place of a scene that `may_be_boxed`; None if it would gain little."""
+    best = min(_trials(scene), key=lambda trial: trial.cost, default=None)
+    return None if best is None or best.cost > WORTH * _cost(scene) else best
+
+
+def _cost(scene: DiskScene) -> float:
+    """Nanoseconds of a step of a scene."""
+    return sum(step_cost.of_scene(scene).values())
+
+
+def may_be_boxed(case: DiskCase) -> bool:
+    """Whether all that makes waves, but for those from below, is in one place, and the ground could go on beyond."""
+    plain = not any(case.periodic) and not case.motion.held and (case.static is None or case.static.stress is None)
+    beyond = all(
+        case.side(side).is_artificial and not case.side(side).is_mirror for side in ("left", "right", "bottom")
+    )
+    at_top = case.side("top").is_free or case.side("top").is_outside
+    from_below = not any(case.side(side).waves for side in ("left", "right", "top"))
+    return plain and beyond and at_top and from_below and bool(signals_of(case)) and any(True for _ in extents(case))
+
+
+def _trials(scene: DiskScene) -> Iterator[Trial]:
+    """Boxes with elements of different sizes round them."""
+    case, medium, diameter = scene.case, medium_of(scene.ground), scene.ground.brick.mean_diameter
+    order, accuracy = case.outside.order, case.outside.accuracy
+    side = choice.element_size(signals_of(case), medium, order, accuracy)
+    widest = max(side, least_element(case, diameter)) / choice.size_near(1.0, order, accuracy)
+    for part in NEARER:
+        box = _round(scene, max(part * widest, BAND * diameter))
+        if box[0] >= box[2] or box[1] >= box[3]:  # all that makes waves is on the continuum
+            continue
+        try:
+            yield _trial(scene, box)
+        except CaseError:  # no mesh
+            continue
+
+
+def _round(scene: DiskScene, clearance: float) -> Box:
+    """The box of whole bricks (m) with a clearance (m) from holes and loads, up to the surface if it is near."""
+    case, brick = scene.case, np.array(scene.case.packing.brick_size)
+    lows, highs = (np.array(corners) for corners in zip(*extents(case), strict=True))
+    size, origin = np.array(case.size), np.array(case.packing.origin)
+    origin[1] = 0.0
+    low = origin + brick * np.floor((lows.min(axis=0) - clearance - origin) / brick)
+    high = origin + brick * np.ceil((highs.max(axis=0) + clearance - origin) / brick)
+    low, high = np.maximum(low, 0.0), np.minimum(high, size)
+    if size[1] - high[1] < max(least_element(case, scene.ground.brick.mean_diameter), clearance):
+        high[1] = size[1]
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _trial(scene: DiskScene, box: Box) -> Trial:
+    """A box with its continuum and column."""
+    case, ground = scene.case, scene.ground
+    below = box[3] < case.size[1]
+    sides = SIDES if below else SIDES[:3]
+    settings = settings_of(case, medium_of(ground), ground.brick.mean_diameter, box, sides)
+    grid = GridSizes.of(mesh_of(settings, box, sides, surface=case.size[1] if below else None))
+    first = 0 if scene.seam is None else scene.seam.count
+    places = scene.assembly.positions[first:]
+    inside = int(np.count_nonzero(((places >= box[:2]) & (places <= box[2:])).all(axis=1)))
+    moved = any(table.waves for table in case.boundary.values()) or case.static is not None
+    column = moved * len(ground.brick.radii) * math.ceil(case.size[1] / case.packing.brick_size[1])
+    ties = int(2.0 * (box[2] - box[0] + box[3] - box[1]) / ground.brick.mean_diameter)
+    beyond = step_cost.of_continuum(grid.nodes, grid.nodes * grid.absorbing / grid.elements, ties)
+    cost = step_cost.of_disk(scene) * (inside + column) + sum(beyond.values())
+    error = choice.element_error(signals_of(case), medium_of(ground), settings.order, settings.element)
+    return Trial(box, inside + column, grid.nodes, cost, error)

@@ -1,0 +1,34 @@
+"""The time of a step on one core, by what is stepped."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dembound.disks.scene import DiskScene
+
+ELASTIC_NODE, ABSORBING_NODE, TIE = 8.1, 15.0, 30.0
+"""Nanoseconds of a step on one core (benchmarks/continuum_rate.py): nodes of order 4, with and without memories."""
+
+DISK = {(True, False): 7.0, (False, False): 27.0, (True, True): 20.0, (False, True): 55.0}
+"""Nanoseconds of a step of a disk (benchmarks/rates.py), in rows of copies or one by one, with a history or without."""
+
+
+def of_disk(scene: DiskScene) -> float:
+    """Nanoseconds of a disk of a scene."""
+    return DISK[scene.slots is not None and not scene.slots.is_plain, scene.has_history]
+
+
+def of_continuum(nodes: float, absorbing: float, ties: float) -> dict[str, float]:
+    """Nanoseconds of nodes, so many of which absorb, and of ties."""
+    return {"elements": ELASTIC_NODE * (nodes - absorbing) + ABSORBING_NODE * absorbing, "ties": TIE * ties}
+
+
+def of_scene(scene: DiskScene) -> dict[str, float]:
+    """Nanoseconds of a scene, by its parts."""
+    absorbing = sum(int(np.count_nonzero(beyond.body.mesh.depth.any(axis=1))) for beyond in scene.continua)
+    nodes = sum(beyond.count for beyond in scene.continua)
+    ties = sum(len(beyond.wall.element) for beyond in scene.continua)
+    column = 0 if scene.seam is None else scene.seam.count
+    each = of_disk(scene)
+    disks = {"free-field column": each * column, "disks": each * (scene.disk_count - column)}
+    return of_continuum(nodes, absorbing, ties) | disks

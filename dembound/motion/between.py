@@ -1,0 +1,32 @@
+"""The motion of a place that is no node, from that of several nodes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Between:
+    """A place whose motion is a sum over nodes.
+
+    Attributes
+    ----------
+    place : (2,) m.
+    node : (k,) int64. share : (k, 3, 3); displacement and velocity of the place are Σ share @ those of the nodes, by
+    components x, y, rotation.
+    """
+
+    place: np.ndarray
+    node: np.ndarray
+    share: np.ndarray
+
+    def motion(self, record: np.ndarray) -> np.ndarray:
+        """Displacement and velocity (s, 6) in s steps, from those of its nodes (s, k, 6).
+
+        Sums are in the order of the nodes, so that they have the same bits for any number of steps.
+        """
+        each = record.reshape(len(record), len(self.node), 2, 3)
+        moved = np.zeros((len(record), 2, 3))
+        for k, component in np.argwhere(self.share.any(axis=1)):
+            moved += each[:, k, :, component, None] * self.share[k, :, component]
+        return moved.reshape(-1, 6)

@@ -1,0 +1,84 @@
+"""The cells of a mesh along one axis, and the lines of nodes across it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dembound.outside.gll import Rule
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """Cells side by side, the columns or the rows of a mesh; places are those from where the first one begins.
+
+    Attributes
+    ----------
+    rule : the points of a cell.
+    sizes : (c,) of the cells along the axis, m.
+    layer : how many of the first and of the last cells absorb.
+    periodic : whether the first cell follows the last one.
+    """
+
+    rule: Rule
+    sizes: np.ndarray
+    layer: tuple[int, int] = (0, 0)
+    periodic: bool = False
+
+    @property
+    def lines(self) -> int:
+        """Number of lines of nodes."""
+        return self.rule.order * len(self.sizes) + (not self.periodic)
+
+    @cached_property
+    def edges(self) -> np.ndarray:
+        """(c + 1,) places of the edges of cells, m."""
+        return np.append(0.0, np.cumsum(self.sizes))
+
+    @property
+    def length(self) -> float:
+        """Of all cells, m."""
+        return float(self.edges[-1])
+
+    @cached_property
+    def places(self) -> np.ndarray:
+        """(lines,) of the lines of nodes, m."""
+        return self._places(self.sizes)[: self.lines]
+
+    def _places(self, sizes: np.ndarray) -> np.ndarray:
+        """Places of the lines in cells of these sizes, the last edge included."""
+        edges = np.append(0.0, np.cumsum(sizes))
+        inside = edges[:-1, None] + sizes[:, None] * 0.5 * (1.0 + self.rule.points[:-1])
+        return np.append(inside.ravel(), edges[-1])
+
+    @property
+    def thickness(self) -> tuple[float, float]:
+        """Of the layers before and after, m."""
+        before, after = self.layer
+        return float(np.sum(self.sizes[:before])), float(np.sum(self.sizes[len(self.sizes) - after :]))
+
+    @property
+    def inner(self) -> float:
+        """Length between the layers, m."""
+        before, after = self.layer
+        return float(np.sum(self.sizes[before : len(self.sizes) - after]))
+
+    @cached_property
+    def depth(self) -> np.ndarray:
+        """Depth (lines,) of the lines in the layers, over their thickness: negative in the first one.
+
+        −1 and 1 to the last bit at the outer edges, and 0 between the layers.
+        """
+        depth, order = np.zeros(self.lines), self.rule.order
+        before, after = self.layer
+        if before:
+            places = self._places(self.sizes[before - 1 :: -1])  # from the inner edge outwards
+            depth[: order * before + 1] -= (places / places[-1])[::-1]
+        if after:
+            places = self._places(self.sizes[-after:])
+            depth[-order * after - 1 :] += places / places[-1]
+        return depth
+
+    def cell_at(self, places: np.ndarray) -> np.ndarray:
+        """The cell (k,) at each of these places (k,) m, on an edge that before it; beyond the ends that at the end."""
+        return np.searchsorted(self.edges[1:-1], places)

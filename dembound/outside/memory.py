@@ -1,0 +1,84 @@
+"""The memory that a continuum needs, from the numbers of its nodes and elements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from dembound.outside.mesh import Mesh
+
+
+@dataclass(frozen=True)
+class GridSizes:
+    """Numbers of nodes and elements, of these how many absorb, and their order."""
+
+    nodes: int
+    elements: int
+    absorbing: int
+    order: int
+
+    @classmethod
+    def of(cls, mesh: Mesh) -> GridSizes:
+        """Those of a mesh, computed without its arrays: of elements that are far too small, too."""
+        nodes = elements = elastic = 1
+        left_out_nodes = left_out = 0 if mesh.box is None else 1
+        for axis, cells in enumerate(mesh.cells):
+            nodes *= mesh.order * cells + (not mesh.periodic[axis])
+            elements *= cells
+            elastic *= cells - sum(mesh.layer.along(axis))
+            if mesh.box is not None:
+                first, last = mesh.box[axis], mesh.box[2 + axis]
+                left_out *= last - first
+                left_out_nodes *= mesh.order * (last - first) - 1 + (first == 0) + (last == cells)
+        return cls(nodes - left_out_nodes, elements - left_out, elements - elastic, mesh.order)
+
+    @classmethod
+    def all_of(cls, meshes: Sequence[Mesh]) -> GridSizes:
+        """Those of several meshes of one order."""
+        each = [cls.of(mesh) for mesh in meshes]
+        nodes, elements, absorbing = (
+            sum(getattr(sizes, name) for sizes in each) for name in ("nodes", "elements", "absorbing")
+        )
+        return cls(nodes, elements, absorbing, each[0].order)
+
+    @property
+    def points(self) -> int:
+        """Number of points of an element."""
+        return (self.order + 1) ** 2
+
+    @property
+    def rim(self) -> int:
+        """Number of those on its edges."""
+        return 4 * self.order
+
+
+def body_bytes(z: GridSizes) -> float:
+    """Of a continuum as part of a scene, with its law and the same without layers.
+
+    By node: positions twice, crossing lines, depths (64), number, area, slots and their nodes, two masses, mass and
+    inertia in the scene (72), where its entries begin (3). By element: its place (16), lines (16 a row of points),
+    nodes twice (16 a point); those of its rim, and their entries (8), and the forces on them under both laws (32). Of
+    layers: memories, and coefficients (48 a row).
+    """
+    row = z.order + 1
+    element = 16 + 16 * row + 16 * z.points + 40 * z.rim
+    return 139.0 * z.nodes + element * z.elements + memories_bytes(z) + 48 * row * z.absorbing
+
+
+def memories_bytes(z: GridSizes) -> float:
+    """Of the memories of layers, eight numbers a point."""
+    return 64.0 * z.points * z.absorbing
+
+
+def header_bytes(z: GridSizes) -> float:
+    """As its mesh is written to a record: positions and flags (17), cells three times (96)."""
+    return 113.0 * z.nodes
+
+
+def snapshot_bytes(z: GridSizes) -> float:
+    """Of a snapshot: motion, its difference from the start (72), what is not yet in the file (72), and the stress.
+
+    For the stress displacements, derivatives, strains and stresses at the points of all elements (13 numbers), with
+    weights and their product.
+    """
+    return 144.0 * z.nodes + 8 * 15 * z.points * z.elements

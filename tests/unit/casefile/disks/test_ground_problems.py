@@ -1,0 +1,95 @@
+"""Mistakes of a box of disks in the ground, and where monitors and loads may be."""
+
+import pytest
+
+from dembound.casefile.disks.reach import is_in, reach
+from dembound.errors import CaseError
+from dembound.kinds import loads
+
+FAR = float("inf")
+PACKING = """\
+[packing]
+pattern = "B"
+brick = [5.0, 10.0]
+radius_ratio = 1.5
+radius = 0.5
+"""
+REST = """\
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+[run]
+duration = 0.1
+"""
+BOX = "size = [20.0, 20.0]\norigin = [20.0, 10.0]\n"
+GROUND = "[ground]\nsize = [60.0, 40.0]\n"
+ALL = ("left", "right", "bottom", "top")
+
+
+def case(box: str = BOX, ground: str = GROUND, sides: tuple[str, ...] = ALL, more: str = ""):
+    boundary = "".join(f'[boundary.{side}]\ntype = "outside"\n' for side in sides)
+    return loads(ground + PACKING + box + REST + boundary + more)
+
+
+def problems(**words) -> list[str]:
+    with pytest.raises(CaseError) as caught:
+        case(**words)
+    return caught.value.problems
+
+
+def test_a_box_in_the_ground() -> None:
+    packing = case().packing
+    assert packing.box == (20.0, 10.0, 40.0, 30.0)
+    assert packing.first_row == 1
+    assert case().size == (60.0, 40.0)
+    assert case(box="size = [20.0, 20.0]\n", ground="", sides=()).size == (20.0, 20.0)
+
+
+def test_an_origin_needs_ground() -> None:
+    assert problems(ground="") == ["packing.origin: places the disks in the ground, but [ground] has no size; give it"]
+
+
+@pytest.mark.parametrize("origin", ["[-1.0, 10.0]", "[20.0, -10.0]", "[41.0, 10.0]", "[20.0, 30.0]"])
+def test_the_box_lies_in_the_ground(origin: str) -> None:
+    (line,) = problems(box=f"size = [20.0, 20.0]\norigin = {origin}\n")
+    assert line.startswith("packing.origin: the box of disks is ")
+    assert line.endswith(", must lie in the ground, [0, 0] to [60, 40] (m)")
+
+
+def test_heights_are_whole_bricks() -> None:
+    said = "m, is not a whole number of bricks of 10 m"
+    assert problems(box="size = [20.0, 20.0]\norigin = [20.0, 12.0]\n") == [
+        f"packing.origin: its height, 12 {said}; 10 or 20 would be"
+    ]
+    assert problems(ground="[ground]\nsize = [60.0, 45.0]\n") == [
+        f"ground.size: its height, 45 {said}; 40 or 50 would be"
+    ]
+    assert case(box="size = [20.0, 20.0]\norigin = [17.3, 10.0]\n").packing.origin[0] == 17.3  # sideways it may be any
+
+
+@pytest.mark.parametrize(
+    ("missing", "gap"), [("left", "20"), ("bottom", "10"), ("right", "20"), ("top", "10")], ids=lambda side: side
+)
+def test_where_the_ground_goes_on_a_side_is_outside(missing: str, gap: str) -> None:
+    others = tuple(side for side in ALL if side != missing)
+    said = f'boundary.{missing}.type: the ground goes on {gap} m beyond this side, so it must be "outside"'
+    assert problems(sides=others) == [said]
+
+
+def test_at_the_edge_of_the_ground_a_side_may_be_any() -> None:
+    box = "size = [20.0, 20.0]\norigin = [0.0, 20.0]\n"
+    mirror = '[boundary.left]\ntype = "symmetry"\n'
+    assert case(box=box, sides=("right", "bottom"), more=mirror).side("left").is_mirror
+
+
+def test_the_reach_of_monitors_and_loads() -> None:
+    def found(**words) -> tuple[float, ...]:
+        made = case(**words)
+        return reach(made.ground, made.packing, made.boundary)
+
+    assert found() == (-FAR, -FAR, FAR, 40.0)  # beside the ground too, above it nowhere
+    assert found(box="size = [20.0, 20.0]\norigin = [0.0, 20.0]\n", sides=("right", "bottom")) == (0.0, -FAR, FAR, 40.0)
+    assert found(box="size = [20.0, 20.0]\n", ground="", sides=("top",)) == (0.0, 0.0, 20.0, FAR)
+    assert is_in((0.0, 0.0, 1.0, 2.0), (1.0, 2.0))
+    assert not is_in((0.0, 0.0, 1.0, 2.0), (1.1, 2.0))
+    assert not is_in((0.0, 0.0, 1.0, 2.0), (0.5, -0.1))

@@ -1,0 +1,219 @@
+"""A scene of a box of disks in the ground: its column, its continua, and what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dembound.casefile import Case
+from dembound.disks.facts import disk_facts
+from dembound.disks.outside_mesh import Sizes, box_of
+from dembound.disks.outside_settings import least_element
+from dembound.disks.scene import DiskScene, build, column_alone, ground_of
+from dembound.disks.settled import among, settling_keys
+from dembound.disks.static import _without_own_continua
+from dembound.disks.surroundings import TwinTie
+from dembound.disks.system import DiskSystem
+from dembound.errors import CaseError
+from dembound.kinds import loads, with_changes
+
+CASE = """
+[ground]
+size = [40.0, 30.0]
+[packing]
+pattern = "B"
+size = [12.0, 12.0]
+origin = [14.0, 6.0]
+brick = [6.0, 6.0]
+radius = 0.5
+radius_ratio = 1.5
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+[boundary.left]
+type = "outside"
+[boundary.right]
+type = "outside"
+[boundary.bottom]
+type = "outside"
+[boundary.top]
+type = "outside"
+[outside]
+element = 6.0
+[wave.pulse]
+type = "cosine"
+amplitude = 1.0
+period = 0.1
+[run]
+duration = 0.1
+"""
+WAVE = {"boundary.bottom.wave_s": "pulse"}
+AT_THE_FOOT = {"packing.origin": [14.0, 0.0]}
+WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -10.0]}], "static.boundary.bottom": {"type": "fixed"}}
+
+
+def case(**changes) -> Case:
+    return with_changes(loads(CASE), changes) if changes else loads(CASE)
+
+
+def scene(*changes: dict) -> DiskScene:
+    return build(case(**{key: value for each in changes for key, value in each.items()}))
+
+
+@pytest.fixture(scope="module")
+def shaken() -> DiskScene:
+    return scene(WAVE)
+
+
+def test_there_is_a_column_if_the_ground_moves_by_itself() -> None:
+    sides = ("left", "right", "bottom", "top")
+    assert case().column_sides == ()
+    assert case(**WAVE).column_sides == sides
+    assert case(**WEIGHT).column_sides == sides
+    blow = {"name": "blow", "force": [1e3, 0.0], "position": [20.0, 12.0], "wave": "pulse"}
+    assert case(load=[blow]).column_sides == ()
+    assert case(load=[{"name": "all", "acceleration": [1.0, 0.0], "wave": "pulse"}]).column_sides == sides
+
+
+def test_the_column_is_as_high_as_the_ground(shaken: DiskScene) -> None:
+    assert shaken.case.column_rows == (1, 5)
+    assert shaken.assembly.column.copies == (1, 5)
+    first = shaken.seam.count
+    below, above = shaken.assembly.positions[first:, 1], shaken.assembly.positions[shaken.seam.twin[first:], 1]
+    np.testing.assert_allclose(below, above, rtol=0.0, atol=1e-12)
+    assert with_changes(shaken.case, {"packing.origin": [14.0, 12.0]}).column_rows[0] == 2
+
+
+def test_the_continuum_reaches_from_the_box_to_the_surface(shaken: DiskScene) -> None:
+    mesh = shaken.outside.body.mesh
+    offset = shaken.ground.brick.mass_offset
+    assert box_of(shaken.assembly.part(slice(shaken.seam.count, shaken.disk_count))) == (14.0, 6.0, 26.0, 18.0)
+    assert shaken.outside.box == (14.0, 6.0, 26.0, 18.0)
+    surface = 30.0 + offset[1]
+    assert mesh.positions[:, 1].max() == pytest.approx(surface, abs=0.5)  # less the packing's skin
+    assert mesh.positions[:, 1].min() == pytest.approx(6.0 + offset[1] - 4 * 6.0, abs=1e-9)
+    assert (shaken.foot.box[1], shaken.foot.sides) == (0.0, ("bottom",))
+
+
+def test_forces_of_the_foot_are_repeated_where_the_box_stands_on_it(shaken: DiskScene) -> None:
+    assert len(shaken.on_foot) == 0
+    low = scene(WAVE, AT_THE_FOOT)
+    assert len(low.on_foot) > 5
+    twins = low.seam.twin[low.on_foot]
+    assert np.isin(twins, low.foot.wall.bonds.particle).all()
+    tie = TwinTie(low.on_foot, low.twin)
+    assert tie.nodes is low.on_foot
+    supported = np.union1d(low.on_foot, low.foot.tied)
+    bundle = tie.bundle(supported)
+    assert np.array_equal(supported[bundle.target], low.on_foot)
+    assert np.array_equal(supported[bundle.source], twins)
+
+
+def test_at_rest_its_ties_have_no_forces_where_all_moves_as_the_column(shaken: DiskScene) -> None:
+    """Of the disks; the column moves relative to its foot."""
+    rng = np.random.default_rng(0)
+    moved = np.zeros((3, shaken.count))
+    moved[:, : shaken.seam.count] = rng.normal(size=(3, shaken.seam.count))
+    moved[:, : shaken.disk_count] = moved[:, shaken.seam.twin]
+    force = DiskSystem(shaken, 1e-5).tie_forces(moved)
+    assert np.abs(force[:, : shaken.seam.count]).max() > 0.0
+    assert not force[:, shaken.seam.count : shaken.disk_count].any()
+    assert not force[:, shaken.outside.nodes].any()
+
+
+@pytest.mark.parametrize("stage", ["before", "after"])
+def test_a_hole_that_reaches_a_side_is_refused(stage: str) -> None:
+    hole = {"name": "shaft", "type": "circle", "centre": [20.0, 17.0], "radius": 2.0, "stage": stage}
+    more = WEIGHT if stage == "after" else {}
+    with pytest.raises(CaseError, match=r"^hole: reaches the continuum of left or right or bottom or top, which has"):
+        scene({"hole": [hole]}, more)
+
+
+def test_between_box_and_surface_there_is_room_for_an_element() -> None:
+    lattice = {"packing": {"pattern": "A", "radius": 0.5, "size": [12.0, 12.0], "origin": [14.0, 14.0]}}
+    with pytest.raises(CaseError) as caught:
+        scene(lattice)
+    (line,) = caught.value.problems
+    assert line == (
+        "packing.origin: the disks end 4 m below the surface of the ground; they must reach it, or end at least 5 m "
+        "below, the smallest useful element"
+    )
+    up_to_it = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
+    lattice["packing"]["origin"] = [14.0, 18.0]
+    assert scene(lattice, {"boundary": up_to_it}).outside.count > 0
+
+
+def test_sizes_of_elements_round_a_narrow_column() -> None:
+    made = case(**{"packing.radius": 0.5})
+    ground = ground_of(made)
+    body = build(made).assembly
+
+    def sizes(width: float, periodic: bool) -> Sizes:
+        strip = replace(body, size=np.array([width, 30.0]), extent=np.array([width, 30.0]))
+        return Sizes.of(made, ground, strip, ("bottom",), (periodic, False))
+
+    assert (sizes(36.0, True).narrow, sizes(36.0, True).element) == ((False, False), (6.0, 6.0))
+    assert (sizes(12.0, True).narrow, sizes(12.0, True).element) == ((True, False), (12.0, 6.0))
+    least = least_element(made, ground.brick.mean_diameter)
+    assert sizes(1.0, True).box.tolist() == [least, 30.0]
+    assert sizes(1.0, True).element == (least, 6.0)
+    assert not any(sizes(1.0, False).narrow)
+
+
+def test_a_column_alone_has_free_ends_and_no_column_of_its_own() -> None:
+    for changes in (WEIGHT, WEIGHT | WAVE, WEIGHT | WAVE | AT_THE_FOOT):
+        beside = scene(changes)
+        alone = column_alone(beside)
+        assert (alone.seam, alone.continua) == (None, ())
+        count = beside.seam.count
+        assert alone.count == count
+        np.testing.assert_array_equal(alone.assembly.brick_particle, beside.assembly.brick_particle[:count])
+
+
+def test_in_a_static_stage_supports_hold_what_the_foot_does() -> None:
+    whole = scene(WEIGHT)
+    settling = _without_own_continua(whole)
+    assert settling.continua == (whole.outside,)
+    moved = np.arange(3.0 * settling.count).reshape(3, -1)
+    of_all = among(moved, whole)
+    assert of_all.shape == (3, whole.count)
+    assert np.array_equal(of_all[:, : whole.disk_count], moved[:, : whole.disk_count])
+    assert not of_all[:, whole.disk_count :].any()
+    tied_by_itself = scene({})
+    assert _without_own_continua(tied_by_itself).continua == ()
+
+
+def test_a_static_stage_depends_on_the_continuum_that_settles() -> None:
+    """That beside a column does; that beside a periodic body is left out of the stage."""
+
+    def keys(*changes: dict) -> dict:
+        return settling_keys(scene(WEIGHT, *changes))
+
+    assert keys({"outside.damping": 0.2}) != keys() != keys({"outside.layers": 5})
+    assert keys(WAVE) == keys()  # elements of a given size
+    endless = {"ground": {}, "packing": {"pattern": "A", "radius": 0.5, "size": [12.0, 12.0]}}
+    endless["boundary"] = {side: {"type": "periodic"} for side in ("left", "right")} | {"bottom": {"type": "outside"}}
+    assert keys(endless) == keys(endless, {"outside.layers": 5})
+
+
+def test_contacts_of_a_static_stage_are_those_of_the_run() -> None:
+    """The run has nodes of the foot, which the static stage has not."""
+    whole = scene(WEIGHT, {"material.law": "linearpbond", "material.pb_ten": 1e9, "material.pb_coh": 1e9})
+    contacts = _without_own_continua(whole).contact_lists()
+    displacement = np.zeros((3, whole.count))
+    displacement[0, whole.seam.count] = 1e-4
+    force = np.zeros((3, whole.count))
+    contacts["body"].start_from_displacements(displacement)
+    contacts["body"].push(displacement)
+    contacts["body"].add_forces(force)
+    assert np.abs(force[:, whole.seam.count]).max() > 0.0
+    assert not force[:, whole.disk_count :].any()
+
+
+def test_facts_are_of_the_box_s_own_sides(shaken: DiskScene) -> None:
+    facts = disk_facts(shaken)
+    for side in ("bottom", "top"):
+        words = facts[f"{side} side"].split()
+        assert words[0] == "outside;"
+        assert int(words[1]) == len(shaken.outside.tied_by_side[side])
+        assert int(words[1]) > 8

@@ -1,0 +1,143 @@
+"""A continuum is drawn where it is, in the colours of the disks."""
+
+import h5py
+import numpy as np
+import pytest
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection, TriMesh
+from matplotlib.patches import PathPatch
+
+from dembound.plot import continuum as module
+from dembound.plot.continuum import read_continuum
+from dembound.plot.scene import plot_scene
+
+LEFT, RIGHT, BOTTOM, TOP = -9.0, 21.0, -9.0, 6.0
+"""Of the scene, with a margin of one and layers of two elements of 3 m beyond 12 m × 6 m."""
+
+
+def only(kind: type, panel):
+    """The collection of this kind in a panel."""
+    (found,) = [each for each in panel.collections if type(each) is kind]
+    return found
+
+
+def labelled(panel) -> dict:
+    return {each.get_label(): each for each in [*panel.collections, *panel.patches]}
+
+
+def test_axes_cover_the_grid_with_equal_scales(surrounded_run) -> None:
+    panel = plot_scene(surrounded_run).axes[0]
+    np.testing.assert_allclose([*panel.get_xlim(), *panel.get_ylim()], [LEFT, RIGHT, BOTTOM, TOP])
+    assert (panel.get_xlabel(), panel.get_ylabel(), panel.get_aspect()) == ("x (m)", "y (m)", 1.0)
+
+
+@pytest.mark.parametrize(
+    ("field", "name", "column"),
+    [
+        ("velocity", "velocity", 0),
+        ("displacement", "displacement", 0),
+        ("stress_yy", "stress", 1),
+        ("peak", "peak_velocity", None),
+    ],
+)
+def test_nodes_have_the_colours_of_disks_with_the_same_value(surrounded_run, field, name, column) -> None:
+    """In one scale up to the largest of both."""
+    more = {} if field in ("peak", "stress_yy") else {"component": "x"}
+    figure = plot_scene(surrounded_run, field=field, snapshot=None if field == "peak" else 1, **more)
+    panel, bar = figure.axes
+    disks, nodes = only(EllipseCollection, panel), only(TriMesh, panel)
+    with h5py.File(surrounded_run) as file:
+        cell, position = file["continuum/cell"][:], file["continuum/position"][:]
+        group = file if field == "peak" else file["snapshots/0001"]
+        own = group["particles" if field == "peak" else "."][name][:]
+        values = group[f"continuum/{name}"][:]
+        if column is not None:
+            own, values = own[:, column], values[:, column]
+            everywhere = [
+                each[path][:, column] for each in file["snapshots"].values() for path in (name, f"continuum/{name}")
+            ]
+        else:
+            everywhere = [own, values]
+    unit = 1e6 if field == "stress_yy" else 1.0
+    np.testing.assert_array_equal(disks.get_array(), own / unit)
+    np.testing.assert_array_equal(nodes.get_array(), (values / unit)[cell.ravel()])
+    triangles = nodes._triangulation
+    np.testing.assert_array_equal(np.column_stack([triangles.x, triangles.y]), position[cell.ravel()])
+    limit = max(np.abs(each).max() for each in everywhere) / unit
+    assert disks.get_clim() == nodes.get_clim() == (0.0 if field == "peak" else -limit, limit)
+    assert disks.get_cmap() == nodes.get_cmap()
+    assert nodes.get_zorder() < 0.0 < disks.get_zorder()
+    assert len(bar.get_ylabel()) > 0
+
+
+def test_triangles_cover_the_cells_once(surrounded_run) -> None:
+    triangles = only(TriMesh, plot_scene(surrounded_run).axes[0])._triangulation
+    x, y = (of[triangles.triangles] for of in (triangles.x, triangles.y))
+    twice = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
+    assert twice.min() > 0.0
+    assert 0.5 * twice.sum() == pytest.approx(30.0 * 15.0 - 12.0 * 6.0)
+
+
+def test_elements_layers_surface_and_ties_are_in_the_legend(surrounded_run) -> None:
+    figure = plot_scene(surrounded_run)
+    shown = labelled(figure.axes[0])
+    layers, surface = shown["layers that absorb"], shown["free surface of the continuum"]
+    ties = shown["ties of cut bonds (24)"]
+    in_legend = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert in_legend == {
+        "elements of the continuum",
+        "layers that absorb",
+        "free surface of the continuum",
+        "ties of cut bonds (24)",
+        "monitor",
+    }
+    assert isinstance(layers, PathPatch)
+    assert layers.get_hatch()
+    inside = layers.get_path().contains_points
+    assert inside([[-4.0, 4.0], [-8.0, -8.0], [16.0, 4.0], [6.0, -4.0]]).all()
+    assert not inside([[-2.0, 4.0], [6.0, 3.0], [6.0, -2.0], [14.0, 4.0]]).any()
+    assert isinstance(surface, LineCollection)
+    assert sorted(line[0, 0] for line in surface.get_segments()) == [-9.0, -6.0, -3.0, 12.0, 15.0, 18.0]
+    assert {y for line in surface.get_segments() for y in line[:, 1]} == {TOP}
+    x, y = np.array(ties.get_offsets()).T
+    assert ((x == 0.0) | (x == 12.0) | (y == 0.0)).all()
+    assert "and a continuum" in figure.get_suptitle()
+
+
+def test_small_cells_have_the_mean_of_their_element_and_small_elements_no_outline(surrounded_run, monkeypatch) -> None:
+    monkeypatch.setattr(module, "FINEST_CELL", 1e4)
+    monkeypatch.setattr(module, "FINEST_ELEMENT", 1e4)
+    panel = plot_scene(surrounded_run, 1, component="y").axes[0]
+    assert "elements of the continuum" not in labelled(panel)
+    means = only(PolyCollection, panel)
+    with h5py.File(surrounded_run) as file:
+        cell, values = file["continuum/cell"][:], file["snapshots/0001/continuum/velocity"][:, 1]
+        elements = file["continuum/element"][:]
+    np.testing.assert_allclose(means.get_array(), values[cell].reshape(len(elements), -1).mean(axis=1), rtol=1e-12)
+    corners = [path.get_extents().extents for path in means.get_paths()]
+    np.testing.assert_array_equal(corners, elements)
+
+
+def test_cells_of_a_periodic_continuum_end_beside_its_last_column(surrounded_run, tmp_path) -> None:
+    """There the last nodes are those of the first column."""
+    path = tmp_path / "run.h5"
+    path.write_bytes(surrounded_run.read_bytes())
+    with h5py.File(path, "r+") as file:
+        group = file["continuum"]
+        position, node = group["position"][:], group["node"][:]
+        last = {tuple(place): node for node, place in enumerate(position.tolist()) if place[0] == LEFT}
+        moved = np.array([last.get((LEFT, y), n) if x == RIGHT else n for n, (x, y) in enumerate(position)])
+        before = read_continuum(file).corners
+        group["node"][:] = moved[node]
+        assert (moved[node] != node).any()
+        np.testing.assert_allclose(read_continuum(file).corners, before, atol=1e-12)
+
+
+def test_without_a_field_in_the_continuum_it_is_drawn_without_colours(surrounded_run, tmp_path) -> None:
+    path = tmp_path / "run.h5"
+    path.write_bytes(surrounded_run.read_bytes())
+    with h5py.File(path, "r+") as file:
+        for snapshot in file["snapshots"].values():
+            snapshot["unbalanced"] = np.ones((len(file["particles/radius"]), 2))
+    panel = plot_scene(path, field="unbalanced").axes[0]
+    assert not any(isinstance(each, TriMesh) for each in panel.collections)
+    assert "layers that absorb" in labelled(panel)

@@ -1,0 +1,106 @@
+"""Settings of a continuum that are chosen from an accuracy have it.
+
+Beside bodies and grids so large that nothing returns.
+
+RMS of the velocities of all disks farther than five diameters from the force, over that of these velocities.
+"""
+
+import numpy as np
+import pytest
+
+from dembound.casefile import Case
+from dembound.disks.continuum_facts import lattice_errors
+from dembound.disks.outside_settings import signals_of
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import choose_step
+from dembound.kinds import with_changes
+from dembound.motion.simulation import Simulation
+from dembound.outside import choice
+
+SIDES = ("left", "right", "bottom")
+SIZE = (40.0, 20.0)
+WIDE = 130.0
+"""What the large body has beyond that at each side, m: a P wave needs 0.26 s to its sides and back."""
+
+WAVES = {
+    "cosine": {"type": "cosine", "amplitude": 1.0, "period": 0.1},
+    "ricker": {"type": "ricker", "amplitude": 1.0, "frequency": 20.0},
+}
+PLACES = {"surface": (20.5, 19.5), "inside": (12.5, 8.5)}
+
+
+def pushed(lab, wave: dict, place: tuple[float, float], size: tuple[float, float] = SIZE, sides=SIDES) -> Case:
+    """A force on isotropic disks of 1 m with c_p = 1000 m/s, c_s = 707 m/s."""
+    return lab.case(
+        "A",
+        size,
+        radius=0.5,
+        held=(),
+        material={"fric": 0.5, "p_wave_speed": 1000.0},
+        boundary=dict.fromkeys(sides, "outside"),
+        wave=wave,
+        load=[{"position": place, "force": [3e5, -1e6], "wave": "pulse"}],
+        duration=0.25,
+    )
+
+
+def velocities(scene: DiskScene, corner: float, step: float, steps: int) -> np.ndarray:
+    """Velocities (samples, disks, 2) of the disks right of and above a corner (m), row by row, every third step."""
+    place = scene.positions[: scene.recorded] - corner
+    inside = np.flatnonzero(((place > 0.0) & (place < SIZE)).all(axis=1))
+    inside = inside[np.lexsort(place[inside].round(3).T)]
+    return Simulation(scene, step, inside).advance(steps)[::3, :, 3:5]
+
+
+@pytest.mark.parametrize("where", PLACES)
+@pytest.mark.parametrize("wave", WAVES)
+def test_velocities_have_the_accuracy_asked_for(lab, wave: str, where: str) -> None:
+    """Or that which the ties leave, if that is more: 0.09 % is expected of the pulse, 0.55 % of the wavelet.
+
+    Measured with 1 % and 0.2 %: 0.24 and 0.40 %, then 0.08 and 0.10 % of the pulse, 0.29 and 0.28 % of the wavelet.
+    """
+    x, y = PLACES[where]
+    scenes = [
+        build(with_changes(pushed(lab, WAVES[wave], (x, y)), {"outside.accuracy": accuracy}))
+        for accuracy in (1e-2, 2e-3)
+    ]
+    step = 0.95 * min(choose_step(scene)[0] for scene in scenes)
+    steps = int(0.25 / step)
+    size = SIZE[0] + 2.0 * WIDE, SIZE[1] + WIDE
+    large = velocities(build(pushed(lab, WAVES[wave], (x + WIDE, y + WIDE), size, ())), WIDE, step, steps)
+    column, row = np.meshgrid(np.arange(40) + 0.5, np.arange(20) + 0.5)
+    away = np.hypot(column - x, row - y).ravel() > 5.0
+    for scene in scenes:
+        error = velocities(scene, 0.0, step, steps) - large
+        relative = np.sqrt(np.sum(error[:, away] ** 2) / np.sum(large[:, away] ** 2))
+        ties, _ = lattice_errors(scene, scene.outside, signals_of(scene.case))
+        assert relative < max(scene.case.outside.accuracy, ties)
+    if wave == "ricker":
+        assert relative > 0.25 * ties
+
+
+def test_the_displacement_under_a_force_that_stays(lab) -> None:
+    """What the shift α0 of the layers takes is at most that expected, and not a quarter of it; α0 is large here.
+
+    After 1.2 s and α0 = c_p/(2·80 m), α0 t = 7.5: 0.11 % is expected. With four elements that absorb: see choice.py.
+    """
+    wave = {"type": "constant", "amplitude": 1.0, "rise": 0.2}
+    case = with_changes(
+        pushed(lab, wave, PLACES["surface"]),
+        {"run.duration": 1.2, "outside": {"element": 20.0, "layers": 4, "shift": 1.0, "margin": 1}},
+    )
+    chosen = with_changes(case, {"outside": {"element": 20.0, "layers": 4, "shift": 1.0, "accuracy": 5e-4}})
+    scenes = [build(each) for each in (case, chosen, with_changes(case, {"outside.margin": 31}))]
+    step = choose_step(scenes[0])[0]
+    settled = []
+    for scene in scenes:
+        place = scene.positions[: scene.recorded]
+        nodes = [int(np.argmin(np.hypot(*(place - at).T))) for at in ((30.5, 19.5), (20.5, 9.5), (38.5, 0.5))]
+        settled.append(Simulation(scene, step, nodes).advance(int(1.2 / step))[-1, :, 1])
+    small, wider, wide = settled
+    expected = choice.missing(1.2, 1000.0, 1.0, scenes[0].outside.body.mesh.inner)
+    assert expected == pytest.approx(2e-5 * 7.5**2)
+    assert np.all(1.0 - small / wide > 0.25 * expected)
+    assert np.all(1.0 - small / wide < expected)
+    assert scenes[1].outside.settings.margin > 1
+    assert np.all(np.abs(1.0 - wider / wide) < 2.5e-4)

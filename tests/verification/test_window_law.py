@@ -1,0 +1,27 @@
+"""In a box of disks in the ground that neither open nor break, the history-dependent law does as the elastic one."""
+
+import numpy as np
+import pytest
+
+from dembound.disks.scene import build
+from dembound.motion.simulation import Simulation
+
+HOLE = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0}
+STEP, STEPS = 1.5e-4, 1200
+LASTING = {"law": "linearpbond", "elastic_start": False, "geometry": "reference", "pb_ten": 1e12, "pb_coh": 1e12}
+BONDS = {"emod": 0.0, "pb_emod": 2.5e9}
+"""Bonds alone, as contacts would open."""
+
+
+@pytest.mark.parametrize("box", [(20.0, 20.0, 40.0, 40.0), (0.0, 0.0, 60.0, 60.0)])
+def test_it_does(lab, box) -> None:
+    """Forces are summed from increments, so that each of the 1,200 steps rounds by ε of the largest force."""
+    found = []
+    for law in ({}, LASTING):
+        scene = build(lab.window("A", box, material=BONDS | law, changes={"hole": [HOLE]}))
+        simulation = Simulation(scene, STEP)
+        simulation.run(STEPS)
+        found.append(simulation.state.velocity)
+    assert simulation.system.uses_history
+    assert np.abs(found[0]).max() > 0.1
+    assert np.abs(found[1] - found[0]).max() < 1e-10 * np.abs(found[0]).max()

@@ -1,0 +1,40 @@
+"""The energy ledger of a box of disks in the ground closes under a wave, and after a static stage."""
+
+import numpy as np
+import pytest
+
+from dembound.disks.scene import build
+from dembound.disks.stability import choose_step
+from dembound.disks.static import settle
+from dembound.motion.energy import Ledger
+from dembound.motion.simulation import Simulation
+
+HOLE = {"name": "hole", "type": "circle", "centre": [30.0, 30.0], "radius": 4.0}
+SMALL, WHOLE = (20.0, 20.0, 40.0, 40.0), (0.0, 0.0, 60.0, 60.0)
+WEIGHT = [{"acceleration": (0.0, -9.81)}]
+STATIC = {"boundary": {"bottom": {"type": "fixed"}}, "ratio": 1e-3}
+CASES = {
+    "wave": ("A", SMALL, {}),
+    "random, wave": ("B", SMALL, {}),
+    "all disks, wave": ("B", WHOLE, {}),
+    "settled, wave": ("B", SMALL, {"load": WEIGHT, "static": STATIC}),
+}
+STEPS = 1500
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_it_closes(lab, name: str) -> None:
+    """Each step rounds by ε of the energies, or of what the balancing forces have stored."""
+    pattern, box, words = CASES[name]
+    scene = build(lab.window(pattern, box, changes={"hole": [HOLE]}, **words))
+    step = choose_step(scene)[0]
+    simulation = Simulation(scene, step) if not words else lab.settled(scene, settle(scene).start, step)
+    ledger = Ledger(simulation, 50)
+    simulation.track(ledger)
+    simulation.run(STEPS)
+    error = np.array([entry.error for entry in ledger.entries])
+    most = max(entry.kinetic for entry in ledger.entries)
+    largest = max(max(abs(entry.contact), abs(entry.load), entry.kinetic) for entry in ledger.entries)
+
+    assert np.abs(error - error[0]).max() < 10.0 * STEPS * np.finfo(float).eps * largest
+    assert ledger.entries[-1].damping > 0.1 * most  # waves have left
