@@ -1,5 +1,6 @@
 """The motion of a place that is no node, from that of several nodes."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,21 +8,22 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class Between:
-    """A place whose motion is a sum over nodes.
+    """A place whose motion is a sum over nodes, and maybe that of something that no node moves with.
 
     Attributes
     ----------
     place : (2,) m.
     node : (k,) int64. share : (k, 3, 3); displacement and velocity of the place are Σ share @ those of the nodes, by
-    components x, y, rotation.
+    components x, y, rotation. more : times (s,) s -> displacement and velocity (s, 6) to be added; None: none.
     """
 
     place: np.ndarray
     node: np.ndarray
     share: np.ndarray
+    more: Callable[[np.ndarray], np.ndarray] | None = None
 
-    def motion(self, record: np.ndarray) -> np.ndarray:
-        """Displacement and velocity (s, 6) in s steps, from those of its nodes (s, k, 6).
+    def motion(self, record: np.ndarray, times: np.ndarray) -> np.ndarray:
+        """Displacement and velocity (s, 6) in s steps at times (s,) s, from those of its nodes (s, k, 6).
 
         Sums are in the order of the nodes, so that they have the same bits for any number of steps.
         """
@@ -29,4 +31,5 @@ class Between:
         moved = np.zeros((len(record), 2, 3))
         for k, component in np.argwhere(self.share.any(axis=1)):
             moved += each[:, k, :, component, None] * self.share[k, :, component]
-        return moved.reshape(-1, 6)
+        total = moved.reshape(-1, 6)
+        return total if self.more is None else total + self.more(times)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from dembound.casefile.disks.ground import Ground
+from dembound.casefile.disks.incident import IncidentWave
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
@@ -22,7 +23,7 @@ class DiskCase(Case):
     Attributes
     ----------
     ground, packing, material, motion, outside, reduce : the tables of these names.
-    static : the table of this name; None: no static stage.
+    static, incident : the tables of these names; None: no static stage, no wave at an angle.
     hole : in the order of the file.
     """
 
@@ -32,6 +33,7 @@ class DiskCase(Case):
     ground: Ground = field(default_factory=Ground)
     outside: OutsideTable = field(default_factory=OutsideTable)
     reduce: Reduce = field(default_factory=Reduce)
+    incident: IncidentWave | None = None
     static: Static | None = None
     hole: tuple[Hole, ...] = ()
     load: tuple[Load, ...] = ()
