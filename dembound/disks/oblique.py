@@ -16,17 +16,18 @@ polynomials of their delays through a few points (`NearPlaces`), and all forces 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.boundaries.support import SupportBuilder
 from dembound.disks.ground_waves import GroundWaves, NearPlaces
-from dembound.disks.incident import Drives, IncidentForces, forces_at_rest
+from dembound.disks.incident import IncidentForces, forces_at_rest
 from dembound.disks.surroundings import Surroundings
 from dembound.disks.wall import CutBonds, Wall
+from dembound.kernels.sums import add_weighted_sums, weighted_sums
 from dembound.outside.gll import Rule
 
 PLACES = 8
@@ -61,53 +62,80 @@ def _at_edges(bonds: CutBonds, positions: np.ndarray, sides: Sequence[float]) ->
     return places
 
 
-@dataclass(frozen=True, eq=False)
+class Part(NamedTuple):
+    """Forces through the ties of one element.
+
+    ground : the motion near them. node, component : (r,) the degrees of freedom. moved, moving : (count, r) N or N·m per
+    unit of the displacements, and of the velocities that ties see, of all amplitudes.
+    """
+
+    ground: NearPlaces
+    node: np.ndarray
+    component: np.ndarray
+    moved: np.ndarray
+    moving: np.ndarray
+
+    @classmethod
+    def of(cls, forces: IncidentForces[NearPlaces], first: int) -> Part:
+        """Those on disks and nodes; first : number of the first node of the grid."""
+        each = (forces.disk, *forces.on_disks), (first + forces.node, *forces.on_nodes)
+        factors = np.hstack([drives.factors for *_, drives in each])
+        node = np.concatenate([nodes[number] for nodes, (_, number), _ in each])
+        component = np.concatenate([component for _, (component, _), _ in each])
+        return cls(forces.waves, node, component, *np.split(factors, 2))
+
+    def per_displacement(self, half_step: float) -> np.ndarray:
+        """All forces (count, r) per unit of displacements; velocities follow from these, half a step (s) behind."""
+        factors = np.empty_like(self.moving)
+        weighted_sums(np.ascontiguousarray(self.ground.velocities(half_step).T), self.moving, factors)
+        return factors + self.moved
+
+
 class SummedDrives:
-    """Forces on some degrees of freedom, sums of those of several elements.
+    """Forces on some degrees of freedom, sums of those through the ties of several elements.
+
+    Parameters
+    ----------
+    parts : of each element.
 
     Attributes
     ----------
-    count : number of the degrees of freedom. parts : the forces of each element, and the degrees of freedom (r,) that
-    they act on.
+    node, component : (count,) the degrees of freedom, each once.
     """
 
-    count: int
-    parts: tuple[tuple[Drives, np.ndarray], ...]
+    def __init__(self, parts: Sequence[Part]) -> None:
+        numbers = [3 * part.node + part.component for part in parts]
+        unique, column = np.unique(np.concatenate(numbers), return_inverse=True)
+        self.node, self.component = unique // 3, unique % 3
+        self._parts = parts
+        self._columns = np.split(column, np.cumsum([len(each) for each in numbers])[:-1])
+        self._factors: tuple[float, list[np.ndarray]] | None = None
+
+    @property
+    def count(self) -> int:
+        """Number of the degrees of freedom."""
+        return len(self.node)
 
     def __call__(self, times: np.ndarray, half_step: float) -> np.ndarray:
         """Forces (k, count) at times (k,) s; velocities are half a step (s) behind."""
+        if self._factors is None or self._factors[0] != half_step:  # all steps of a run have one length
+            self._factors = half_step, [part.per_displacement(half_step) for part in self._parts]
         forces = np.zeros((len(times), self.count))
-        for drives, where in self.parts:
-            forces[:, where] += drives(times, half_step)
+        for part, column, factors in zip(self._parts, self._columns, self._factors[1], strict=True):
+            add_weighted_sums(part.ground.amplitudes(times), factors, column, forces, np.empty(len(column)))
         return forces
-
-
-def _summed(forces: Iterable[tuple[np.ndarray, np.ndarray, Drives]]) -> tuple[np.ndarray, np.ndarray, SummedDrives]:
-    """Nodes (r,) and components (r,), each degree of freedom once, and the forces on them, of elements: the same."""
-    each = list(forces)
-    number = [3 * node + component for node, component, _ in each]
-    unique, place = np.unique(np.concatenate(number), return_inverse=True)
-    ends = np.cumsum([len(numbers) for numbers in number])[:-1]
-    parts = zip((drives for *_, drives in each), np.split(place, ends), strict=True)
-    return unique // 3, unique % 3, SummedDrives(len(unique), tuple(parts))
 
 
 def let_in(outside: Surroundings, ground: GroundWaves, positions: np.ndarray, builder: SupportBuilder) -> None:
     """Add the forces by which the ground's motion enters a body to the support table; positions (n, 2) m of all."""
-
-    def forces() -> Iterator[tuple[np.ndarray, np.ndarray, Drives]]:
-        for each in forces_of_elements(outside.wall, ground, positions):
-            for nodes, ((component, number), drives) in (
-                (each.disk, each.on_disks),
-                (outside.first + each.node, each.on_nodes),
-            ):
-                yield nodes[number], component, drives
-
+    drives = SummedDrives(
+        [Part.of(each, outside.first) for each in forces_of_elements(outside.wall, ground, positions)]
+    )
     by_side = {side: np.zeros(0, dtype=np.int64) for side in outside.sides}
     for name, nodes in outside.tied_by_side.items():
         side = name.partition(".")[0]
         by_side[side] = np.concatenate([by_side[side], nodes])
-    builder.add_forces(*_summed(forces()), by_side)
+    builder.add_forces(drives.node, drives.component, drives, by_side)
     for side in outside.sides:
         builder.add_power(side, power_through(side, outside.wall.mesh.sides, ground))
 

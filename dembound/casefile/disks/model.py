@@ -50,6 +50,11 @@ class DiskCase(Case):
         return self.side("left").is_periodic, self.side("bottom").is_periodic
 
     @property
+    def entering(self) -> set[str]:
+        """Names of the waves that enter through driven sides, or at an angle."""
+        return super().entering | (set() if self.incident is None else {self.incident.wave})
+
+    @property
     def free_field_sides(self) -> tuple[str, ...]:
         """The free-field sides."""
         return tuple(side for side, table in self.boundary.items() if table.needs_column)
