@@ -2,10 +2,10 @@
 
     python measure.py [exact] [tunnel] [corners]
 
-"exact": the largest deviation of any disk and of the continuum's nodes, in per cent of the largest velocity of the disks.
+"exact": the largest deviation of any disk and of the continuum's nodes, in per cent of the disks' largest velocity.
 "tunnel": RMS of (v_x, v_y) at the tunnel and on the surface in the box of ``oblique.toml``, beside a box of twice the
-size in elements of half the size, in per cent of the RMS of the total motion. "corners": the same in the continuum, from
-the box to where its layers begin. All take some three minutes.
+size in elements of half the size, in per cent of the RMS of the total motion. "corners": the same in the continuum,
+from the box to where its layers begin. All take some five minutes.
 """
 
 import sys
@@ -95,8 +95,10 @@ def histories(case: DiskCase, step: float) -> tuple[dict[str, np.ndarray], DiskS
 
 def compare(changes: Changes, larger: Changes, places: dict[str, tuple[float, float]]) -> tuple[str, dict[str, float]]:
     """Size of a case, and its RMS deviation from a larger one at places (m), in per cent of the RMS of the motion."""
-    monitors = {"monitor": [{"name": name, "position": list(place)} for name, place in places.items()]} if places else {}
-    cases = [case_of(CASE_WITHOUT_KEYS | each | monitors) for each in (changes, changes | larger)]
+    monitors = (
+        {"monitor": [{"name": name, "position": list(place)} for name, place in places.items()]} if places else {}
+    )
+    cases = [case_of(each | monitors) for each in (changes, changes | larger)]
     step = min(choose_step(build(case))[0] for case in cases)
     (own, scene), (reference, _) = (histories(case, step) for case in cases)
     assert scene.outside is not None
@@ -108,10 +110,6 @@ def compare(changes: Changes, larger: Changes, places: dict[str, tuple[float, fl
     }
 
 
-CASE_WITHOUT_KEYS: Changes = {}
-"""Changes of all cases that are compared."""
-
-
 def main() -> None:
     """Print what is asked for."""
     asked = sys.argv[1:] or ["exact", "tunnel", "corners"]
@@ -120,10 +118,13 @@ def main() -> None:
         print(f"{name}: disks {{:.3f}}, continuum {{:.3f}} %".format(*deviation(scene)), flush=True)
     for name, (changes, larger) in TUNNELS.items() if "tunnel" in asked else ():
         size, errors = compare(changes, larger, {})
-        print(f"{name} ({size}):", ", ".join(f"{where} {error:.3f}" for where, error in errors.items()), "%", flush=True)
+        print(
+            f"{name} ({size}):", ", ".join(f"{where} {error:.3f}" for where, error in errors.items()), "%", flush=True
+        )
     if "corners" in asked:
-        places = {f"{way:g} m": (119.5 - way, 119.5 - way) for way in (5.0, 10.0, 15.0, 20.0, 25.0, 29.0)}
-        places |= {f"{way:g} m left of the middle": (119.5 - way, 149.5) for way in (10.0, 20.0, 29.0)}
+        places = {f"corner_{way:g}": (119.5 - way, 119.5 - way) for way in (5.0, 10.0, 15.0, 20.0, 25.0, 29.0)}
+        places |= {f"side_{way:g}": (119.5 - way, 149.5) for way in (10.0, 20.0, 29.0)}
+        places |= {f"surface_{way:g}": (119.5 - way, 299.5) for way in (0.0, 10.0, 20.0, 29.0)}
         size, errors = compare({}, WIDE | {"outside.margin": 2}, places)
         print(f"towards the lower left corner ({size}):", {k: round(v, 3) for k, v in errors.items()})
 

@@ -56,7 +56,7 @@ def _kinds(schema: Schema) -> list[TypeAdapter[Any]]:
 
 def _case(schema: Schema, tables: Mapping[int, Json], definitions: Json) -> Json:
     """A whole file of one kind; tables : by the identity of their validators. Adds the definitions it refers to."""
-    of = {key: tables[id(kind)] for key, kind in (schema.tables | schema.optional).items()}
+    of = {key: tables[id(kind)] for key, kind in (*schema.tables.items(), *schema.optional.items())}
     of["boundary"] = _sides(schema, "side", tables[id(schema.side)], definitions)
     definitions["wave"] = tables[id(WAVE)]
     of["wave"] = {"type": "object", "description": "the waves, by name", "additionalProperties": _place("wave")}

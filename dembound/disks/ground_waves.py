@@ -26,8 +26,9 @@ from dembound.outside.plane_waves import PlaneWave, critical_angle, incident_wav
 DELAYS = 8
 """Delays at which a wave is computed for the ties of an element.
 
-Elements are at most two thirds as long as the shortest wave that counts, the share of which in velocities is `accuracy`.
-At grazing incidence it differs from the polynomial by (2π/3)⁶/(2⁵·6!) = 0.4 %, its gradient by six times as much.
+Elements are at most two thirds as long as the shortest wave that counts: along a side it differs by (2π/3)⁸/(2⁷·8!) =
+7e-5 from the polynomial at most, its gradient by some ten times as much. With six, disks of an undisturbed lattice in
+elements of 30 m deviate by 0.020 %, with eight by 0.009 %, as far as the lattice disperses (cosine pulse of 0.5 s).
 """
 
 
@@ -106,7 +107,7 @@ class NearPlaces:
         return DELAYS * len(self.spans)
 
     def amplitudes(self, times: np.ndarray) -> np.ndarray:
-        """g (k, count) m at times (k,) s and the delays."""
+        """Displacements g (k, count) m at times (k,) s and the delays."""
         return self.ground.signal.displacement(times[:, None] - self._delays)
 
     def velocities(self, behind: float) -> np.ndarray:
@@ -178,10 +179,11 @@ def reference_point(case: DiskCase) -> tuple[float, float]:
 
 def _beyond(medium: Medium, table: IncidentWave) -> str:
     """That an angle is not below the critical one."""
-    critical = critical_angle(medium, table.type, np.copysign(1.0, table.angle))
+    sign = float(np.copysign(1.0, table.angle))
+    critical = sign * critical_angle(medium, table.type, sign)
     return (
-        f"incident.angle: is {table.angle:g} degrees; from {np.copysign(critical, table.angle):.5g} degrees on, the critical "
-        "angle of this packing, the free surface sends back a wave of another form; give less"
+        f"incident.angle: is {table.angle:g}; from the critical angle of this packing on, {critical:.5g} degrees, the "
+        f"free surface changes the form of the wave; must be {'below' if sign > 0.0 else 'above'} that"
     )
 
 

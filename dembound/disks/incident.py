@@ -28,7 +28,6 @@ Gauss–Lobatto points, so that all drives follow from g at so many delays.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -42,23 +41,10 @@ from dembound.outside.medium import Medium
 HEIGHTS = 5
 """Delays at which waves are computed. Over four diameters and 20 diameters to a wavelength the error is 1e-5."""
 
-W = TypeVar("W", bound="Amplitudes")
-
 NO_PART = 1e-12
 """Part of a wave below which it is rounding: S waves have none of P waves in an isotropic medium."""
 
 UPWARDS = (0.0, 1.0)
-
-
-class Amplitudes(Protocol):
-    """Waves whose motion in some places is a sum of amplitudes."""
-
-    @property
-    def count(self) -> int:
-        """Number of amplitudes."""
-
-    def amplitudes(self, times: np.ndarray, of: str) -> np.ndarray:
-        """Amplitudes (k, count) at times (k,) s; of : "displacement" (m) or "velocity" (m/s)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,15 +119,15 @@ class PlaneWaves:
 
 @dataclass(frozen=True, eq=False)
 class Drives:
-    """Forces on some degrees of freedom, each a sum of amplitudes of waves.
+    """Forces on some degrees of freedom, each a sum of amplitudes of plane waves.
 
     Attributes
     ----------
-    waves : the waves. factors : (2·count, r) N or N·m per unit of the displacements, and of the velocities that ties
-    see, of all their amplitudes.
+    waves : the plane waves. factors : (2·count, r) N or N·m per unit of the displacements, and of the velocities that
+    ties see, of all their amplitudes.
     """
 
-    waves: Amplitudes
+    waves: PlaneWaves
     factors: np.ndarray
 
     @property
@@ -157,20 +143,18 @@ class Drives:
         return forces
 
 
-@dataclass(frozen=True, eq=False)
-class IncidentForces(Generic[W]):
-    """Forces by which plane waves enter, on tied disks and on nodes of the grid, per unit of amplitudes.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TieForces:
+    """Forces by which waves enter, on tied disks and on nodes of the grid, per unit of amplitudes.
 
     Attributes
     ----------
-    waves : the waves.
     disk : (d,) the tied disks, as numbered in the ties. bonds, ties : (3, d, count) N and N·m on them, of the bonds
     of the undisturbed packing, and of the ties.
     node : (m,) the nodes of the mesh that have ties. reactions : (2, m, count) N on them, of the ties.
     lag : η of the ties, s.
     """
 
-    waves: W
     disk: np.ndarray
     bonds: np.ndarray
     ties: np.ndarray
@@ -178,10 +162,38 @@ class IncidentForces(Generic[W]):
     reactions: np.ndarray
     lag: float
 
-    @staticmethod
+    @property
+    def on_disks(self) -> tuple[np.ndarray, np.ndarray]:
+        """Degrees of freedom (2, r), component and number in `disk`, and factors (2·count, r), see `Drives`."""
+        return self._factors(self.bonds + self.ties, self.ties)
+
+    @property
+    def on_nodes(self) -> tuple[np.ndarray, np.ndarray]:
+        """The same of nodes: component and number in `node`."""
+        return self._factors(self.reactions, self.reactions)
+
+    def _factors(self, at_once: np.ndarray, lagged: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Those of forces (c, k, count) per unit of displacements, and with the lag of velocities."""
+        where = np.indices(at_once.shape[:2]).reshape(2, -1)
+        factors = np.concatenate([at_once, self.lag * lagged], axis=2).reshape(where.shape[1], -1).T
+        return where, np.ascontiguousarray(factors)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class IncidentForces(TieForces):
+    """Forces by which plane waves enter from below.
+
+    Attributes
+    ----------
+    waves : the plane waves.
+    """
+
+    waves: PlaneWaves
+
+    @classmethod
     def of(
-        wall: Wall, medium: Medium, datum: float, waves: tuple[Incident | None, Incident | None]
-    ) -> "IncidentForces[PlaneWaves]":
+        cls, wall: Wall, medium: Medium, datum: float, waves: tuple[Incident | None, Incident | None]
+    ) -> "IncidentForces":
         """Those of waves along x and y (None for none) that pass the line y = datum (m) at their own time."""
         bonds, edge = wall.bonds, wall.mesh.sides[2]
         disk, first, place = np.unique(bonds.particle, return_index=True, return_inverse=True)
@@ -191,13 +203,21 @@ class IncidentForces(Generic[W]):
         for sums, forces in zip(summed.reshape(12, -1), bonds.on_disks.reshape(12, -1), strict=True):
             np.add.at(sums, place, forces)
         of_ties, reactions = forces_at_rest(wall, disk, -plane.motion(heights, bonds.own[:, :, first]))
-        return IncidentForces(plane, disk, plane.strained(edge, summed), of_ties, wall.nodes, reactions, wall.lag)
+        return cls(
+            waves=plane,
+            disk=disk,
+            bonds=plane.strained(edge, summed),
+            ties=of_ties,
+            node=wall.nodes,
+            reactions=reactions,
+            lag=wall.lag,
+        )
 
     def add_to_disks(self, builder: SupportBuilder, disks: np.ndarray) -> None:
         """Add rows to the disks (d,) of a scene that are, or have the place of, those that are tied."""
-        self._add(builder, disks, self.on_disks)
+        self._add(builder, disks, *self.on_disks)
 
-    def at(self, place: np.ndarray) -> "IncidentForces[W]":
+    def at(self, place: np.ndarray) -> "IncidentForces":
         """The same with some of the disks, by their places (k,) among them, maybe more than once; without nodes."""
         nothing = self.reactions[:, :0]
         return replace(
@@ -211,29 +231,12 @@ class IncidentForces(Generic[W]):
 
     def add_to_nodes(self, builder: SupportBuilder, nodes: np.ndarray) -> None:
         """Add rows to the nodes (m,) of a scene."""
-        self._add(builder, nodes, self.on_nodes)
+        self._add(builder, nodes, *self.on_nodes)
 
-    def _add(self, builder: SupportBuilder, nodes: np.ndarray, forces: tuple[np.ndarray, Drives]) -> None:
+    def _add(self, builder: SupportBuilder, nodes: np.ndarray, where: np.ndarray, factors: np.ndarray) -> None:
         """Add forces on nodes (k,), see `on_disks`."""
-        (component, node), drives = forces
-        if drives.factors.any():
-            builder.add_forces(nodes[node], component, drives)
-
-    @property
-    def on_disks(self) -> tuple[np.ndarray, Drives]:
-        """Component and number in `disk` (2, r) of degrees of freedom, and the forces on them."""
-        return self._drives(self.bonds + self.ties, self.ties)
-
-    @property
-    def on_nodes(self) -> tuple[np.ndarray, Drives]:
-        """Component and number in `node` (2, r) of degrees of freedom, and the forces on them."""
-        return self._drives(self.reactions, self.reactions)
-
-    def _drives(self, at_once: np.ndarray, lagged: np.ndarray) -> tuple[np.ndarray, Drives]:
-        """Those of forces (c, k, count) per unit of displacements, and with the lag of velocities."""
-        where = np.indices(at_once.shape[:2]).reshape(2, -1)
-        factors = np.concatenate([at_once, self.lag * lagged], axis=2).reshape(where.shape[1], -1).T
-        return where, Drives(self.waves, np.ascontiguousarray(factors))
+        if factors.any():
+            builder.add_forces(nodes[where[1]], where[0], Drives(self.waves, factors))
 
 
 def forces_at_rest(wall: Wall, disk: np.ndarray, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

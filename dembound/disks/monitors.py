@@ -70,7 +70,7 @@ def monitors_of(
         for name, disk in disks.items():
             moving = _moving(waves, ground, *disk)
             if name in between:
-                between[name] = replace(between[name], more=moving)
+                between[name] = replace(between[name], known=moving)
             between[f"{name}{FREE_FIELD}"] = _in_column(disk[0], twins.get(name), moving)
         twins = nodes | twins
     return nodes | {f"{name}{FREE_FIELD}": node for name, node in twins.items()}, between

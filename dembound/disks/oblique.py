@@ -1,8 +1,8 @@
 """The forces by which a plane wave that comes at an angle enters a body on all its sides.
 
 Disks have the total motion, the grid only what differs from that of the undisturbed ground. So a tied disk has the
-bond's force in the undisturbed packing, and ties are strained by what differs from there, as in disks/incident.py, whose
-formulas hold with all four gradients in place of ∂_y u:
+bond's force in the undisturbed packing, and ties are strained by what differs from there, as in disks/incident.py,
+whose formulas hold with all four gradients in place of ∂_y u:
 
     on the disk  f_i : ∇u(x_e) + A_iᵀK(1 + η d/dt)(B w − A_i(ξ_i − x_i)),
     on the grid  −BᵀK(1 + η d/dt)(B w − A_i(ξ_i − x_i)).
@@ -10,8 +10,8 @@ formulas hold with all four gradients in place of ∂_y u:
 The place x_e of the gradient is the contact's, moved along the normal of the side to where the grid begins: the forces
 of the bonds of a side accelerate the mass behind, which is that of a uniform body behind the grid's edge.
 
-All ties are somewhere else along the wave. Those of one element of the grid are near each other: there the waves are the
-polynomials of their delays through a few points (`NearPlaces`), and all forces follow from g at so many delays.
+All ties are somewhere else along the wave. Those of one element of the grid are near each other: there the waves are
+the polynomials of their delays through a few points (`NearPlaces`), and all forces follow from g at so many delays.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.boundaries.support import SupportBuilder
 from dembound.disks.ground_waves import GroundWaves, NearPlaces
-from dembound.disks.incident import IncidentForces, forces_at_rest
+from dembound.disks.incident import TieForces, forces_at_rest
 from dembound.disks.surroundings import Surroundings
 from dembound.disks.wall import CutBonds, Wall
 from dembound.kernels.sums import add_weighted_sums, weighted_sums
@@ -34,39 +34,11 @@ PLACES = 8
 """Places along a side at which the power of waves is summed."""
 
 
-def forces_of_elements(wall: Wall, ground: GroundWaves, positions: np.ndarray) -> Iterator[IncidentForces]:
-    """The forces by which the ground's motion enters through the ties of each element; positions (n, 2) m of disks."""
-    for element in wall.elements:
-        yield _forces_of(wall.only(np.flatnonzero(wall.element == element)), ground, positions)
-
-
-def _forces_of(wall: Wall, ground: GroundWaves, positions: np.ndarray) -> IncidentForces:
-    """Those of a few ties."""
-    bonds = wall.bonds
-    disk, first, place = np.unique(bonds.particle, return_index=True, return_inverse=True)
-    edges = _at_edges(bonds, positions, wall.mesh.sides)
-    near = ground.near(np.concatenate([positions[disk], edges]))
-    of_bonds = np.zeros((3, len(disk), near.count))
-    strained = near.strained(edges, bonds.on_disks)
-    for sums, forces in zip(of_bonds, strained, strict=True):
-        np.add.at(sums, place, forces)
-    of_ties, reactions = forces_at_rest(wall, disk, -near.motion(positions[disk], bonds.own[:, :, first]))
-    return IncidentForces(near, disk, of_bonds, of_ties, wall.nodes, reactions, wall.lag)
-
-
-def _at_edges(bonds: CutBonds, positions: np.ndarray, sides: Sequence[float]) -> np.ndarray:
-    """The contacts (t, 2) m of bonds, moved along the normals of their sides to the edges of the grid, m."""
-    places = positions[bonds.particle] + (bonds.arm * bonds.normal).T
-    for number, edge in enumerate(sides):
-        places[bonds.side == number, number // 2] = edge
-    return places
-
-
 class Part(NamedTuple):
     """Forces through the ties of one element.
 
-    ground : the motion near them. node, component : (r,) the degrees of freedom. moved, moving : (count, r) N or N·m per
-    unit of the displacements, and of the velocities that ties see, of all amplitudes.
+    ground : the motion near them. node, component : (r,) the degrees of freedom. moved, moving : (count, r) N or N·m
+    per unit of the displacements, and of the velocities that ties see, of all amplitudes.
     """
 
     ground: NearPlaces
@@ -76,19 +48,49 @@ class Part(NamedTuple):
     moving: np.ndarray
 
     @classmethod
-    def of(cls, forces: IncidentForces[NearPlaces], first: int) -> Part:
+    def of(cls, near: NearPlaces, forces: TieForces, first: int) -> Part:
         """Those on disks and nodes; first : number of the first node of the grid."""
-        each = (forces.disk, *forces.on_disks), (first + forces.node, *forces.on_nodes)
-        factors = np.hstack([drives.factors for *_, drives in each])
-        node = np.concatenate([nodes[number] for nodes, (_, number), _ in each])
-        component = np.concatenate([component for _, (component, _), _ in each])
-        return cls(forces.waves, node, component, *np.split(factors, 2))
+        (disks, on_disks), (nodes, on_nodes) = forces.on_disks, forces.on_nodes
+        node = np.concatenate([forces.disk[disks[1]], first + forces.node[nodes[1]]])
+        moved, moving = np.split(np.hstack([on_disks, on_nodes]), 2)
+        return cls(near, node, np.concatenate([disks[0], nodes[0]]), moved, moving)
 
     def per_displacement(self, half_step: float) -> np.ndarray:
         """All forces (count, r) per unit of displacements; velocities follow from these, half a step (s) behind."""
         factors = np.empty_like(self.moving)
         weighted_sums(np.ascontiguousarray(self.ground.velocities(half_step).T), self.moving, factors)
         return factors + self.moved
+
+
+def parts_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int) -> Iterator[Part]:
+    """The forces by which the ground's motion enters through the ties of each element.
+
+    positions : (n, 2) m of disks. first : number of the first node of the grid.
+    """
+    for element in wall.elements:
+        yield _part_of(wall.only(np.flatnonzero(wall.element == element)), ground, positions, first)
+
+
+def _part_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int) -> Part:
+    """Those of a few ties."""
+    bonds = wall.bonds
+    disk, own, place = np.unique(bonds.particle, return_index=True, return_inverse=True)
+    edges = _at_edges(bonds, positions, wall.mesh.sides)
+    near = ground.near(np.concatenate([positions[disk], edges]))
+    of_bonds = np.zeros((3, len(disk), near.count))
+    for sums, forces in zip(of_bonds, near.strained(edges, bonds.on_disks), strict=True):
+        np.add.at(sums, place, forces)
+    of_ties, reactions = forces_at_rest(wall, disk, -near.motion(positions[disk], bonds.own[:, :, own]))
+    each = TieForces(disk=disk, bonds=of_bonds, ties=of_ties, node=wall.nodes, reactions=reactions, lag=wall.lag)
+    return Part.of(near, each, first)
+
+
+def _at_edges(bonds: CutBonds, positions: np.ndarray, sides: Sequence[float]) -> np.ndarray:
+    """The contacts (t, 2) m of bonds, moved along the normals of their sides to the edges of the grid, m."""
+    places = positions[bonds.particle] + (bonds.arm * bonds.normal).T
+    for number, edge in enumerate(sides):
+        places[bonds.side == number, number // 2] = edge
+    return places
 
 
 class SummedDrives:
@@ -128,9 +130,7 @@ class SummedDrives:
 
 def let_in(outside: Surroundings, ground: GroundWaves, positions: np.ndarray, builder: SupportBuilder) -> None:
     """Add the forces by which the ground's motion enters a body to the support table; positions (n, 2) m of all."""
-    drives = SummedDrives(
-        [Part.of(each, outside.first) for each in forces_of_elements(outside.wall, ground, positions)]
-    )
+    drives = SummedDrives(list(parts_of(outside.wall, ground, positions, outside.first)))
     by_side = {side: np.zeros(0, dtype=np.int64) for side in outside.sides}
     for name, nodes in outside.tied_by_side.items():
         side = name.partition(".")[0]

@@ -44,7 +44,7 @@ class Surroundings:
     bonds to it, by the numbers of disks in the scene. first : number of its first node in the scene. box : left,
     bottom, right and top of the body, m; waves from below pass its lower side at their own time. skins : how deep free
     edges lie below those of the packing, m, by side. twin : (m,) of each disk the twin in the free-field column,
-    relative to which it is tied; None: tied by its own motion. surface_mass : kg/m², of the skin on its upper free edge.
+    relative to which it is tied; None: tied by its own motion. surface_mass : kg/m², of the skin on its upper edge.
     """
 
     sides: tuple[str, ...]

@@ -19,7 +19,7 @@ def weighted_sums(values, factors, sums):
 
 @njit(**FAST)
 def add_weighted_sums(values, factors, column, sums, row):
-    """Add Σ_q values (k, q)·factors (q, r) to columns (r,) of sums (k, n), each column once; row (r,) is overwritten."""
+    """Add Σ_q values (k, q)·factors (q, r) to columns (r,) of sums (k, n), each once; row (r,) is overwritten."""
     for t in range(values.shape[0]):
         for r in range(factors.shape[1]):
             row[U(r)] = 0.0

@@ -199,7 +199,7 @@ class Scene(ABC):
         for name in self.monitors:
             place = self.between.get(name)
             last = first + (1 if place is None else len(place.node))
-            columns.append(record[:, first] if place is None else place.motion(record[:, first:last], times))
+            columns.append(record[:, first] if place is None else place.at(times, record[:, first:last]))
             first = last
         return np.stack(columns, axis=1)
 

@@ -6,10 +6,9 @@ per unit of −ġ. All waves that the surface y = H links have the same s_x. The
     det(e(s)ᵀ C e(s) − ρ) = 0,  a polynomial of the fourth degree in s_y (Christoffel's equation),
 
 two of them with energy that runs up, two with energy that runs down, or evanescent waves in place of two of them: then
-the incident wave is beyond the critical angle, and the reflected motion has not the wave's form. Otherwise the two waves
-that run down are those with which the traction C e(s) p·(0, 1), summed over all three, is −m ü on the surface, where m
-is the mass of the surface (kg/m²), 0 for a homogeneous medium. The wave is as exact as the equations of the medium: no
-step, no grid.
+the incident wave is beyond the critical angle, and the reflected motion has not the wave's form. Otherwise the surface
+sends back the two that run down, with the amplitudes with which the tractions σ·(0, 1) of all three together are −m ü
+on it, where m is the mass on the surface (kg/m²), 0 for a homogeneous medium.
 """
 
 from __future__ import annotations
@@ -24,8 +23,8 @@ from dembound.outside.medium import Medium
 WaveKind = Literal["p", "sv"]
 
 EVANESCENT = 1e-7
-"""Imaginary part of s_y over the largest size of the four from which on a wave decays along y: rounding makes roots of
-a polynomial of the fourth degree that coincide differ by the root of 1e-16."""
+"""Imaginary part of s_y over the largest size of the four, from which on a wave decays along y; and difference of two,
+below which they coincide, as they do at the critical angle. Rounding makes such roots differ by the root of 1e-16."""
 
 NO_WAVE = 1e-10
 """Amplitude over that of the incident wave below which a reflected wave is rounding."""
@@ -65,7 +64,7 @@ class PlaneWave:
 
 
 def strain_of(sx: complex, sy: complex) -> np.ndarray:
-    """e (3, 2): strains (xx, yy, γ) of displacements along x and y, per unit of −ġ, of waves with this slowness."""
+    """Strains (xx, yy, γ) of displacements along x and y of waves with this slowness, e (3, 2) per unit of −ġ."""
     return np.array([[sx, 0.0], [0.0, sy], [sy, sx]])
 
 
@@ -106,7 +105,9 @@ def downgoing(medium: Medium, sx: float) -> list[PlaneWave] | None:
     None if one of them is evanescent.
     """
     roots = vertical_slownesses(medium, sx)
-    if np.abs(roots.imag).max() > EVANESCENT * np.abs(roots).max():
+    apart = np.abs(roots[:, None] - roots)[np.triu_indices(4, 1)]
+    least = EVANESCENT * np.abs(roots).max()
+    if np.abs(roots.imag).max() > least or apart.min() < least:
         return None
     waves = []
     for sy in roots.real:
@@ -121,8 +122,8 @@ def downgoing(medium: Medium, sx: float) -> list[PlaneWave] | None:
 def reflected_waves(medium: Medium, incident: PlaneWave, surface: float, mass: float = 0.0) -> list[PlaneWave] | None:
     """The waves that a free surface y = `surface` (m) sends back; None beyond the critical angle.
 
-    mass : of the surface, kg/m². In the first order in ω·mass/(ρc) each amplitude is A + iωA′, which is that of two
-    waves A/2 ± A′/ε whose delays differ by ε, the time that waves take through as much of the medium as has that mass.
+    mass : on the surface, kg/m². In the first order in ω·mass/(ρc) a wave is then A g + A′ ġ, which is the sum of two
+    with A/2 ± A′/ε whose delays differ by ε, the time that waves take through as much of the medium as has that mass.
     """
     sx, sy = incident.slowness
     waves = downgoing(medium, sx)
@@ -132,9 +133,9 @@ def reflected_waves(medium: Medium, incident: PlaneWave, surface: float, mass: f
     tractions = np.column_stack([traction_of(medium, *wave.slowness) @ wave.motion for wave in waves])
     amplitudes = np.linalg.solve(tractions, -traction_of(medium, sx, sy) @ incident.motion)
     found = []
-    # −σ = m ü on the surface: Σ tractions·ġ = m Σ motions·g̈, so that A′ is from the motion of the massless one
+    # Σ tractions·ġ = m Σ motions·g̈ on the surface, so that A′ follows from the motion of that without a mass
     later = np.linalg.solve(tractions, mass * (np.array(incident.motion) + motions @ amplitudes))
-    apart = mass / medium.density * sy
+    apart = mass / medium.density * float(np.hypot(sx, sy))
     for wave, amplitude, change in zip(waves, amplitudes, later, strict=True):
         at_once = incident.delay + (sy - wave.slowness[1]) * surface  # the same at the surface as the incident one
         moved = np.array(wave.motion)

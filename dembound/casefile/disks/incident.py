@@ -14,9 +14,15 @@ class IncidentWave(Table):
 
     type: Literal["sv", "p"] = quantity(..., unit="1", help="kind of wave")
     angle: float = quantity(
-        ..., unit="degrees", help="from the vertical, of the direction in which it runs; positive to the right", gt=-90.0, lt=90.0
+        ...,
+        unit="degrees",
+        help="from the vertical, of the direction in which it runs; positive to the right",
+        gt=-90.0,
+        lt=90.0,
     )
     wave: str = quantity(..., unit="1", help="name of the wave whose velocity it has")
     point: tuple[float, float] | None = quantity(
-        None, unit="m", help="where it has this velocity; absent: the lower corner of the ground on the side it comes from"
+        None,
+        unit="m",
+        help="where it has this velocity; absent: the lower corner of the ground on the side it comes from",
     )
