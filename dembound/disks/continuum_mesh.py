@@ -7,13 +7,13 @@
 | ``displacement`` | m | (m, 3) | since the start of the run, z = 0 |
 | ``stress`` | Pa | (m, 6) | XX, YY, ZZ, XY, YZ, XZ, tension positive, with Z 0 |
 | ``absorbs`` | 1 | (m,) | 1 in the layer that absorbs, where motion is no longer that of the ground |
-| ``scattered`` | m | (m, 3) | beside a free-field column: displacement without that of the column |
+| ``scattered`` | m | (m, 3) | beside a free-field column or under a wave at an angle: displacement without theirs |
 | ``scatteredVelocity`` | m/s | (m, 3) | the same of velocity |
-| ``total`` | 1 | (m,) | 1 where the other fields contain the column's motion, 0 below the ground it stands for |
+| ``total`` | 1 | (m,) | 1 where the other fields contain the motion of the ground, 0 below that of a column |
 | ``peakVelocity`` | m/s | (m,) | largest speed in the whole run, in every file; if the case asks for it |
 
-``linVelVec``, ``speed``, ``displacement``, ``stress`` and ``peakVelocity`` have the names of those of disks. Beside a
-free-field column ``stress`` and ``peakVelocity`` are those of the scattered motion.
+``linVelVec``, ``speed``, ``displacement``, ``stress`` and ``peakVelocity`` have the names of those of disks. Where there
+is ``scattered``, ``stress`` and ``peakVelocity`` are those of the scattered motion.
 """
 
 from __future__ import annotations

@@ -108,7 +108,11 @@ def read_disks(file: h5py.File) -> Disks:
     """The disks of an open record."""
     laws = laws_of(file)
     places = {name: group.attrs["position"] for name, group in file.get("histories", {}).items()}
-    twins = [place for name, place in places.items() if name.endswith(FREE_FIELD)]
+    twins = [
+        place
+        for name, place in places.items()  # without a column they are where their monitors are
+        if name.endswith(FREE_FIELD) and not np.array_equal(place, places[name.removesuffix(FREE_FIELD)])
+    ]
     return Disks(
         positions=file["particles/position"][:],
         radii=file["particles/radius"][:],

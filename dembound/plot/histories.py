@@ -91,7 +91,7 @@ def _draw(
 ) -> None:
     """A monitor's history in one run, if it has it, and that of its twin, dashed; times in units of `seconds`."""
     twin: dict[str, Any] = {"color": style["color"], **BEHIND}
-    for name, words, looks in ((monitor, label, style), (_twin(monitor), f"{label}, free-field column", twin)):
+    for name, words, looks in ((monitor, label, style), (_twin(monitor), f"{label}, free field", twin)):
         if name in run:
             history = run[name]
             panel.plot(history.time / seconds, history.values[:, column], label=words, gid=name, **looks)

@@ -13,6 +13,7 @@ from dembound.casefile.bar.load import BarLoad
 from dembound.casefile.bar.monitor import BarMonitor
 from dembound.casefile.bar.run import BarRun
 from dembound.casefile.chart import Chart, ChartChoice
+from dembound.casefile.disks.incident import IncidentWave
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
@@ -48,7 +49,10 @@ DISK_UNIONS = [PackingTable, BoundaryTable, StaticSide, WaveTable, HoleTable]
 BAR_UNIONS = [MethodTable, BarEndTable]
 UNIONS = [(union, False) for union in DISK_UNIONS] + [(union, True) for union in BAR_UNIONS]
 TABLES = [
-    *((table, False) for table in (Material, Motion, Static, Load, Monitor, Run, Output, Chart, ChartChoice)),
+    *(
+        (table, False)
+        for table in (Material, Motion, Static, IncidentWave, Load, Monitor, Run, Output, Chart, ChartChoice)
+    ),
     *((table, True) for table in (Bar, BarLoad, BarMonitor, BarRun)),
     *((table, of_bar) for union, of_bar in UNIONS for table in members(union)),
 ]

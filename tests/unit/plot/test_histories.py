@@ -105,7 +105,7 @@ def test_twins_are_dashed_in_the_panel_of_their_monitor(twin_run):
     assert twin.get_zorder() < own.get_zorder()
     np.testing.assert_array_equal(twin.get_ydata(), 0.5 * own.get_ydata())
     assert len(back.lines) == 1
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["small", "small, free-field column"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["small", "small, free field"]
 
 
 def test_no_run_is_dashed_beside_twins(twin_run, other_run):
