@@ -11,7 +11,6 @@ up, and a prescribed row replaces all others.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -202,23 +201,10 @@ class Supports:
 
     def sample(self, times: np.ndarray, half_step: float) -> np.ndarray:
         """Sum of the drives of every row at each time, (steps, r), see `sampled`."""
-        return self.driven(self.sampled(times, half_step))
-
-    def driven(self, signals: np.ndarray) -> np.ndarray:
-        """Sum of the drives of every row, (steps, r), from the values (steps, q) of all signals."""
-        values = np.zeros((len(signals), len(self)))
-        for chosen in self._rounds:
-            values[:, self.drive_row[chosen]] += signals[:, self.drive_signal[chosen]] * self.drive[chosen]
+        values = np.zeros((len(times), len(self)))
+        driven = self.sampled(times, half_step)[:, self.drive_signal] * self.drive
+        np.add.at(values, (slice(None), self.drive_row), driven)
         return values
-
-    @cached_property
-    def _rounds(self) -> list[np.ndarray]:
-        """All drives, first those that are the first of their row, then the second ones, and so on."""
-        order = np.argsort(self.drive_row, kind="stable")
-        begin = np.searchsorted(self.drive_row[order], self.drive_row[order])
-        place = np.empty(len(order), dtype=np.int64)
-        place[order] = np.arange(len(order)) - begin
-        return [np.flatnonzero(place == number) for number in range(place.max(initial=-1) + 1)]
 
 
 @dataclass

@@ -12,8 +12,8 @@
 | ``total`` | 1 | (m,) | 1 where the other fields contain the motion of the ground, 0 below that of a column |
 | ``peakVelocity`` | m/s | (m,) | largest speed in the whole run, in every file; if the case asks for it |
 
-``linVelVec``, ``speed``, ``displacement``, ``stress`` and ``peakVelocity`` have the names of those of disks. Where there
-is ``scattered``, ``stress`` and ``peakVelocity`` are those of the scattered motion.
+``linVelVec``, ``speed``, ``displacement``, ``stress`` and ``peakVelocity`` have the names of those of disks. Where
+there is ``scattered``, ``stress`` and ``peakVelocity`` are those of the scattered motion.
 """
 
 from __future__ import annotations

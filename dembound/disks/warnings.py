@@ -162,6 +162,10 @@ def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str
                 )
             else:
                 yield f"wave.{name}", "its stress ρcv", medium.density * speed * wave.peak()
+    if (incident := scene.case.incident) is not None:
+        speed = scene.ground.wave_speeds(1)[0 if incident.type == "p" else 1]
+        peak = scene.case.wave[incident.wave].peak()
+        yield f"wave.{incident.wave}", "its stress ρcv", scene.ground.density * speed * peak
 
 
 def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
@@ -230,7 +234,7 @@ def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
 def _axes_in_use(scene: DiskScene) -> list[int]:
     """Axes along which waves run: x, and y if waves enter through bottom or top, or come from loads."""
     vertical = any(scene.case.side(edge.side).waves for edge in scene.edges.values() if edge.axis == 1)
-    return [0, 1] if vertical or scene.case.load else [0]
+    return [0, 1] if vertical or scene.case.load or scene.case.incident else [0]
 
 
 def _travel_time(scene: DiskScene) -> float:
