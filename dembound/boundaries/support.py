@@ -186,7 +186,7 @@ class Supports:
         step later.
         """
         ahead = set(self.drive_signal[self.prescribed[self.drive_row]].tolist())
-        values = np.zeros((len(times), len(self.signals)))
+        values = np.empty((len(times), len(self.signals)))
         first = 0
         while first < len(self.signals):
             signal = self.signals[first]
