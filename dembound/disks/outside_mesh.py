@@ -111,6 +111,40 @@ class Rim(NamedTuple):
         return cls((left, bottom, right, top), surface, skins, massless)
 
 
+class Outline(NamedTuple):
+    """The continuum beyond some sides of a body, before anything is tied to it.
+
+    sides : of the body, with a continuum beyond. size : of its elements. rim : where it begins and ends. mesh : its
+    elements, up to the free surface of the ground.
+    """
+
+    sides: tuple[str, ...]
+    size: Sizes
+    rim: Rim
+    mesh: Mesh
+
+    @classmethod
+    def of(
+        cls,
+        case: DiskCase,
+        ground: PackedMaterial,
+        body: Assembly,
+        sides: Sequence[str],
+        periodic: tuple[bool, bool],
+    ) -> Outline:
+        """That of a body which is periodic along some axes.
+
+        Raises CaseError for settings with which there is no mesh.
+        """
+        size = Sizes.of(case, ground, body, sides, periodic)
+        rim = Rim.of(case, ground, body, sides, size)
+        mirrors = [side for side in SIDES if case.side(side).is_mirror and not periodic[normal_axis(side)]]
+        mesh = mesh_of(
+            size.settings, rim.box, sides, size.element, surface=rim.surface, periodic=periodic, mirrors=mirrors
+        )
+        return cls(tuple(sides), size, rim, mesh)
+
+
 def _gap_above(case: DiskCase, body: Assembly) -> float:
     """Height (m) of the ground above a body, 0 if the ground is the body."""
     if case.ground.size is None:
@@ -133,19 +167,6 @@ def medium_of(ground: PackedMaterial) -> Medium:
     """The continuum that a packing is equivalent to, with all six constants."""
     c = ground.material_tensor
     return Medium(ground.density, c[0, 0], c[1, 1], c[0, 1], c[2, 2], c[0, 2], c[1, 2])
-
-
-def mesh_beyond(
-    case: DiskCase, ground: PackedMaterial, body: Assembly, sides: Sequence[str], periodic: tuple[bool, bool]
-) -> Mesh:
-    """The elements beyond some sides of a body, up to the free surface of the ground.
-
-    Raises CaseError for settings with which there is no mesh.
-    """
-    size = Sizes.of(case, ground, body, sides, periodic)
-    rim = Rim.of(case, ground, body, sides, size)
-    mirrors = [side for side in SIDES if case.side(side).is_mirror and not periodic[normal_axis(side)]]
-    return mesh_of(size.settings, rim.box, sides, size.element, surface=rim.surface, periodic=periodic, mirrors=mirrors)
 
 
 def mass_extent(ground: PackedMaterial, body: Assembly) -> np.ndarray:

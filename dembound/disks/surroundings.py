@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -11,11 +11,10 @@ import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.boundaries.support import Edge, Incident, SupportBuilder
-from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.outside import CONTINUUM
 from dembound.disks.free_surface import mass_of
 from dembound.disks.incident import IncidentForces
-from dembound.disks.outside_mesh import Rim, Sizes, box_of, mass_extent, medium_of
+from dembound.disks.outside_mesh import Outline, box_of, mass_extent, medium_of
 from dembound.disks.outside_settings import Settings
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.wall import CutBonds, Wall, lag_of
@@ -26,7 +25,6 @@ from dembound.kernels.wall import tie_forces
 from dembound.motion.layout import Layout
 from dembound.motion.part import Tie
 from dembound.outside.body import GridBody
-from dembound.outside.mesh import Mesh
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly
 
@@ -237,24 +235,21 @@ class TwinTie(Tie):
 
 
 def surroundings_of(
-    case: DiskCase,
     ground: PackedMaterial,
     body: Assembly,
-    mesh: Mesh,
+    outline: Outline,
     layout: Layout,
-    sides: Sequence[str],
     first: int = 0,
     twin: np.ndarray | None = None,
 ) -> Surroundings:
-    """The continuum on a mesh beyond some sides of a body.
+    """The continuum with an outline round a body.
 
     layout : of the nodes before its own, of which the body's disks are those from number `first` on. twin : (m,) of
     each disk that in the free-field column; None without a column.
 
     Raises CaseError if the packing's sides cut no bonds.
     """
-    size = Sizes.of(case, ground, body, sides, mesh.periodic)
-    rim = Rim.of(case, ground, body, sides, size)
+    sides, size, rim, mesh = outline
     cut = cut_contacts(ground.brick, body, sides, mesh.periodic)
     if len(cut.node) == 0:
         raise CaseError([f"boundary.{sides[0]}: cuts no bonds, so nothing can be tied to the continuum"])
@@ -268,4 +263,4 @@ def surroundings_of(
     )
     bonds = CutBonds.of(ground, cut, body.positions).between(mesh.sides).numbered_from(first)
     wall = Wall.of(mesh, bonds, lag_of(ground, size.settings.damping), size.narrow)
-    return Surroundings(tuple(sides), size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, twin)
+    return Surroundings(sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, twin)
