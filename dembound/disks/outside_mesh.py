@@ -11,13 +11,14 @@ import numpy as np
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.free_surface import inset
-from dembound.disks.outside_settings import Box, Settings, least_element, mesh_of, settings_of
+from dembound.disks.outside_settings import Settings, least_element, mesh_of, settings_of
 from dembound.disks.packed_material import PackedMaterial
 from dembound.errors import CaseError
 from dembound.outside.layer import LONG_WAVES
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import WHOLE, Mesh
 from dembound.packings.tiling import Assembly
+from dembound.table import Box
 
 NARROW = 2.0
 """Width, in elements, up to which waves only run straight away from a periodic body."""

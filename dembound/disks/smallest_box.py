@@ -13,11 +13,12 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks import step_cost
 from dembound.disks.continuum_facts import in_percent
 from dembound.disks.outside_mesh import medium_of
-from dembound.disks.outside_settings import Box, extents, least_element, mesh_of, settings_of, signals_of
+from dembound.disks.outside_settings import extents, least_element, mesh_of, settings_of, signals_of
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.outside import choice
 from dembound.outside.memory import GridSizes
+from dembound.table import Box
 
 WORTH = 0.8
 """Part of a scene's cost above which a box is no gain."""

@@ -27,6 +27,7 @@ from dembound.motion.part import Tie
 from dembound.outside.body import GridBody
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly
+from dembound.table import Box
 
 ROUNDING = 1e-9
 """Distance over the size of the mesh up to which places are the same."""
@@ -50,7 +51,7 @@ class Surroundings:
     body: GridBody
     wall: Wall
     first: int
-    box: tuple[float, float, float, float]
+    box: Box
     skins: Mapping[str, float]
     twin: np.ndarray | None = None
 

@@ -10,6 +10,7 @@ import numpy as np
 from dembound.boundaries.sides import SIDES
 from dembound.outside.axis import Axis
 from dembound.outside.gll import Rule
+from dembound.table import Box
 
 WHOLE = 1e-9
 """Part of an element by which a length may exceed a whole number of them."""
@@ -86,7 +87,7 @@ class Mesh:
     @classmethod
     def around(
         cls,
-        box: tuple[float, float, float, float],
+        box: Box,
         element: tuple[float, float],
         order: int = 4,
         *,
