@@ -27,7 +27,7 @@ AT = (0, 2, 1, 3)
 """Where the edges of the sides are in a box, in the order of `SIDES`."""
 
 
-class Sizes(NamedTuple):
+class ElementSizes(NamedTuple):
     """Sizes of the elements round a body.
 
     From a body that is periodic and narrow, no wider than `NARROW` elements or half of the shortest wave, waves run
@@ -52,7 +52,7 @@ class Sizes(NamedTuple):
         body: Assembly,
         sides: Sequence[str],
         periodic: tuple[bool, bool],
-    ) -> Sizes:
+    ) -> ElementSizes:
         """Those of a body with a continuum beyond some sides.
 
         Raises CaseError if no size is given and nothing in the case makes waves.
@@ -88,7 +88,9 @@ class Rim(NamedTuple):
     massless: dict[str, float]
 
     @classmethod
-    def of(cls, case: DiskCase, ground: PackedMaterial, body: Assembly, sides: Sequence[str], size: Sizes) -> Rim:
+    def of(
+        cls, case: DiskCase, ground: PackedMaterial, body: Assembly, sides: Sequence[str], size: ElementSizes
+    ) -> Rim:
         """That of a body with a continuum beyond some sides.
 
         Raises CaseError if no element of the least useful height fits between a body and the surface above it.
@@ -120,7 +122,7 @@ class Outline(NamedTuple):
     """
 
     sides: tuple[str, ...]
-    size: Sizes
+    size: ElementSizes
     rim: Rim
     mesh: Mesh
 
@@ -137,7 +139,7 @@ class Outline(NamedTuple):
 
         Raises CaseError for settings with which there is no mesh.
         """
-        size = Sizes.of(case, ground, body, sides, periodic)
+        size = ElementSizes.of(case, ground, body, sides, periodic)
         rim = Rim.of(case, ground, body, sides, size)
         mirrors = [side for side in SIDES if case.side(side).is_mirror and not periodic[normal_axis(side)]]
         mesh = mesh_of(

@@ -15,7 +15,7 @@ from dembound.disks.contacts import plain_contacts
 from dembound.disks.edges import edge_without, edges_beside_column, find_edges
 from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive
-from dembound.disks.memory import Sizes, must_fit_here, run_bytes
+from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
 from dembound.disks.outside_mesh import Outline
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
@@ -65,8 +65,8 @@ class DiskScene(DiskBody):
     @property
     def largest_memory(self) -> float:
         """Largest memory (bytes) of a run of it, or of the scene it is stepped in place of."""
-        before = None if self.before is None else Sizes.of(self.before)
-        return run_bytes(self.case, [Sizes.of(scene) for scene in self.chain], before)
+        before = None if self.before is None else SceneSizes.of(self.before)
+        return run_bytes(self.case, [SceneSizes.of(scene) for scene in self.chain], before)
 
     @property
     def chain(self) -> "tuple[DiskScene, ...]":

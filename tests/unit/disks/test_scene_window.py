@@ -7,7 +7,7 @@ import pytest
 
 from dembound.casefile import Case
 from dembound.disks.facts import disk_facts
-from dembound.disks.outside_mesh import Sizes, box_of
+from dembound.disks.outside_mesh import ElementSizes, box_of
 from dembound.disks.outside_settings import least_element
 from dembound.disks.scene import DiskScene, build, column_alone, ground_of
 from dembound.disks.settled import among, settling_keys
@@ -148,9 +148,9 @@ def test_sizes_of_elements_round_a_narrow_column() -> None:
     ground = ground_of(made)
     body = build(made).assembly
 
-    def sizes(width: float, periodic: bool) -> Sizes:
+    def sizes(width: float, periodic: bool) -> ElementSizes:
         strip = replace(body, size=np.array([width, 30.0]), extent=np.array([width, 30.0]))
-        return Sizes.of(made, ground, strip, ("bottom",), (periodic, False))
+        return ElementSizes.of(made, ground, strip, ("bottom",), (periodic, False))
 
     assert (sizes(36.0, True).narrow, sizes(36.0, True).element) == ((False, False), (6.0, 6.0))
     assert (sizes(12.0, True).narrow, sizes(12.0, True).element) == ((True, False), (12.0, 6.0))
