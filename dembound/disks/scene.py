@@ -11,7 +11,7 @@ from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Su
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.body import DiskBody, parts_of
-from dembound.disks.contacts import plain_contacts
+from dembound.disks.contact_arrays import plain_contacts
 from dembound.disks.edges import edge_without, edges_beside_column, find_edges
 from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive

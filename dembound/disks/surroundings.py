@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -20,10 +19,9 @@ from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.wall import CutBonds, Wall, lag_of
 from dembound.errors import CaseError
 from dembound.kernels.lanes import LANES
-from dembound.kernels.tables import Repeats, WallTies
+from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import tie_forces
 from dembound.motion.layout import Layout
-from dembound.motion.part import Tie
 from dembound.outside.body import GridBody
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly
@@ -188,51 +186,6 @@ class Surroundings:
             force[:, tied] += times * of_ties.T
 
         return add
-
-
-class WallTie(Tie):
-    """The half bonds between the disks and the continuum.
-
-    Parameters
-    ----------
-    surroundings : of the body. layout : the slots of all nodes of the scene.
-    """
-
-    def __init__(self, surroundings: Surroundings, layout: Layout) -> None:
-        self._surroundings, self._layout = surroundings, layout
-        self._last: tuple[np.ndarray, WallTies] | None = None
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """Disks and nodes of the continuum (k,) that it acts on, ascending."""
-        return self._surroundings.tied
-
-    def bundle(self, supported: np.ndarray) -> NamedTuple:
-        """Its arrays for the kernels."""
-        if self._last is None or self._last[0] is not supported:  # it is asked for at every return of the loop
-            self._last = supported, self._surroundings.ties(self._layout, supported)
-        return self._last[1]
-
-
-class TwinTie(Tie):
-    """Repeats the forces that earlier ties exert on the twins of some disks on these disks.
-
-    Parameters
-    ----------
-    disks : (k,) ascending. twin : (n,) twin of each of the scene's nodes.
-    """
-
-    def __init__(self, disks: np.ndarray, twin: np.ndarray) -> None:
-        self._disks, self._twin = disks, twin
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """The disks (k,)."""
-        return self._disks
-
-    def bundle(self, supported: np.ndarray) -> NamedTuple:
-        """Its arrays for the kernels."""
-        return Repeats(*(np.searchsorted(supported, nodes) for nodes in (self._twin[self._disks], self._disks)))
 
 
 def surroundings_of(
