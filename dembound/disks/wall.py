@@ -30,6 +30,7 @@ from dembound.disks.packed_material import PackedMaterial
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import WallTies
 from dembound.motion.layout import aligned_zeros
+from dembound.outside.interpolation import located
 from dembound.outside.mesh import Mesh
 from dembound.packings.cut import CutContacts
 
@@ -179,7 +180,7 @@ class Wall:
 
         The mean is for elements with less than a disk to each node, which single bonds would indent.
         """
-        element, local = mesh.located(bonds.point)
+        element, local = located(mesh, bonds.point)
         inside = np.clip(local, -1.0, 1.0)
         bonds = bonds.read_at(bonds.point + 0.5 * (inside - local) * mesh.element_sizes[element])
         order = np.argsort(element, kind="stable")
