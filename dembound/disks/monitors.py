@@ -23,6 +23,7 @@ from dembound.disks.surroundings import Surroundings
 from dembound.disks.wave_front import INDEX
 from dembound.errors import CaseError
 from dembound.motion.between import Between
+from dembound.outside.interpolation import interpolation, slopes
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, nearest_in_column
 from dembound.packings.tiling import Assembly
@@ -118,12 +119,12 @@ def _in_continuum(
 ) -> Between:
     """The motion of a disk of the brick, `kind`, at a place (2,) m of a continuum; twin : its twin's number."""
     mesh = outside.body.mesh
-    interpolation, slopes = mesh.interpolation(place[None]), mesh.slopes(place[None])[:, 0]
-    share = np.zeros((slopes.shape[1], 3, 3))
-    share[:, [0, 1], [0, 1]] = interpolation.weight[0, :, None]
+    at, slope = interpolation(mesh, place[None]), slopes(mesh, place[None])[:, 0]
+    share = np.zeros((slope.shape[1], 3, 3))
+    share[:, [0, 1], [0, 1]] = at.weight[0, :, None]
     for component in (0, 1):
-        share[:, :, component] += (ground.continuum.corrector[:, kind, INDEX[component]] @ slopes).T
-    node = outside.first + interpolation.node[0]
+        share[:, :, component] += (ground.continuum.corrector[:, kind, INDEX[component]] @ slope).T
+    node = outside.first + at.node[0]
     if twin is not None:
         node, share = np.append(node, twin), np.concatenate([share, np.eye(3)[None]])
     return Between(place, node, share)

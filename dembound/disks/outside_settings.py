@@ -16,9 +16,8 @@ from dembound.outside.choice import Signal
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
+from dembound.table import Box
 from dembound.waves import Constant
-
-Box = tuple[float, float, float, float]
 
 MOST_ALONG = 100_000
 """Largest number of elements along a side."""

@@ -11,13 +11,13 @@ from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Su
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.body import DiskBody, parts_of
-from dembound.disks.contacts import plain_contacts
+from dembound.disks.contact_arrays import plain_contacts
 from dembound.disks.edges import edge_without, edges_beside_column, find_edges
 from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive
-from dembound.disks.memory import Sizes, must_fit_here, run_bytes
+from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
-from dembound.disks.outside_mesh import mesh_beyond
+from dembound.disks.outside_mesh import Outline
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.stress import particle_stress
 from dembound.disks.surroundings import Surroundings, surroundings_of
@@ -65,8 +65,8 @@ class DiskScene(DiskBody):
     @property
     def largest_memory(self) -> float:
         """Largest memory (bytes) of a run of it, or of the scene it is stepped in place of."""
-        before = None if self.before is None else Sizes.of(self.before)
-        return run_bytes(self.case, [Sizes.of(scene) for scene in self.chain], before)
+        before = None if self.before is None else SceneSizes.of(self.before)
+        return run_bytes(self.case, [SceneSizes.of(scene) for scene in self.chain], before)
 
     @property
     def chain(self) -> "tuple[DiskScene, ...]":
@@ -99,9 +99,9 @@ def build(case: DiskCase) -> DiskScene:
 def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Mapping[str, Edge]) -> DiskScene:
     """The scene of a body and its sides, with a free-field column and a continuum if the case has such sides."""
     body, seam, beyond = assembly, None, case.outside_sides
-    mesh = mesh_beyond(case, ground, body, beyond, case.periodic) if beyond else None
+    outline = Outline.of(case, ground, body, beyond, case.periodic) if beyond else None
     if sides := case.column_sides:
-        left = 0.0 if mesh is None else mesh.origin[0]
+        left = 0.0 if outline is None else outline.mesh.origin[0]
         assembly, seam = with_column(ground.brick, body, sides, case.column_rows, left)
         edges = edges_beside_column(assembly, seam, edges)
     assembly, seam = with_half_contacts(case, ground.brick, assembly, seam, edges)
@@ -109,9 +109,9 @@ def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Ma
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(assembly, ground, parts_of(count, seam), mass_factor(count, edges, case.boundary))
     outside = None
-    if mesh is not None:
+    if outline is not None:
         first, twin = (0, None) if seam is None else (seam.count, seam.twin)
-        outside = surroundings_of(case, ground, body, mesh, slots, beyond, first, twin)
+        outside = surroundings_of(ground, body, outline, slots, first, twin)
     foot = None
     if seam is not None and "bottom" in beyond:
         foot = _foot(case, ground, assembly, seam, slots if outside is None else outside.laid_out(slots))
@@ -135,9 +135,8 @@ def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Ma
 
 def _foot(case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam, layout: Layout) -> Surroundings:
     """The continuum below the free-field column, which is as wide; layout : of all nodes before its own."""
-    column, sides = assembly.part(slice(0, seam.count)), ("bottom",)
-    mesh = mesh_beyond(case, ground, column, sides, UPRIGHT)
-    return surroundings_of(case, ground, column, mesh, layout, sides)
+    column = assembly.part(slice(0, seam.count))
+    return surroundings_of(ground, column, Outline.of(case, ground, column, ("bottom",), UPRIGHT), layout)
 
 
 def column_alone(scene: DiskScene) -> DiskScene:

@@ -30,6 +30,7 @@ from dembound.disks.packed_material import PackedMaterial
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import WallTies
 from dembound.motion.layout import aligned_zeros
+from dembound.outside.interpolation import located
 from dembound.outside.mesh import Mesh
 from dembound.packings.cut import CutContacts
 
@@ -185,7 +186,7 @@ class Wall:
 
         The mean is for elements with less than a disk to each node, which single bonds would indent.
         """
-        element, local = mesh.located(bonds.point)
+        element, local = located(mesh, bonds.point)
         inside = np.clip(local, -1.0, 1.0)
         bonds = bonds.read_at(bonds.point + 0.5 * (inside - local) * mesh.element_sizes[element])
         inside = np.where(1.0 - np.abs(inside) < ROUNDING, np.sign(inside), inside)
@@ -211,7 +212,7 @@ class Wall:
         of_tie = up[:, :, None] & along[:, None, :]
         of_tie |= (xx | yx)[:, None, None] & up[:, :, None] & along_slope[:, None, :]
         of_tie |= (yy | xy)[:, None, None] & up_slope[:, :, None] & along[:, None, :]
-        acts = np.zeros((len(self.elements), *of_tie.shape[1:]), dtype=bool)
+        acts: np.ndarray = np.zeros((len(self.elements), *of_tie.shape[1:]), dtype=bool)
         np.logical_or.at(acts, np.searchsorted(self.elements, self.element), of_tie)
         return acts
 
@@ -250,9 +251,7 @@ class Wall:
             wide = laid(values)
             return np.ascontiguousarray(wide.reshape(len(wide), -1, LANES).swapaxes(0, 1)).ravel()
 
-        (along, along_slope), (up, up_slope) = (
-            [in_blocks(values.T) for values in pair] for pair in self._shapes
-        )
+        (along, along_slope), (up, up_slope) = ([in_blocks(values.T) for values in pair] for pair in self._shapes)
         own = np.full(lanes, particle[bonds.particle[0]])
         own[place] = particle[bonds.particle]
         twins = np.full(lanes, -1)
@@ -264,7 +263,7 @@ class Wall:
             start=start,
             node=nodes,
             line=line[nodes],
-            reach=np.stack([*_range(self._acts_on.any(axis=1)), *_range(self._acts_on.any(axis=2))], axis=1),
+            reach=np.concatenate([_range(self._acts_on, axis) for axis in (1, 2)], axis=1),
             particle=own,
             particle_line=line[own],
             twin=twins,
@@ -303,9 +302,10 @@ class Wall:
         return start, np.repeat(LANES * start[:-1] - first[:-1], many) + np.arange(len(self.element))
 
 
-def _range(chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """First number and the end (e,) of what is chosen of each row, (e, N)."""
-    return np.argmax(chosen, axis=1), chosen.shape[1] - np.argmax(chosen[:, ::-1], axis=1)
+def _range(acts: np.ndarray, across: int) -> np.ndarray:
+    """First number and the end (e, 2) of the columns (across = 1) or rows (2) of acts (e, N, N) in which it is true."""
+    any_of = np.any(acts, axis=across)
+    return np.stack([np.argmax(any_of, axis=1), acts.shape[1] - np.argmax(any_of[:, ::-1], axis=1)], axis=1)
 
 
 def lag_of(ground: PackedMaterial, damping: float) -> float:

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from dembound.errors import CaseError
 from dembound.packings.brick import Brick
 from dembound.packings.dense import Recipe, radius_range
-from dembound.table import Table, quantity
+from dembound.table import Box, Table, quantity
 
 Extent = tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]]
 Count = tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
@@ -96,7 +96,7 @@ class Packing(Table, ABC):
         return across * width, up * height
 
     @property
-    def box(self) -> tuple[float, float, float, float]:
+    def box(self) -> Box:
         """Left, bottom, right and top of the disks' box in metres."""
         (left, bottom), (width, height) = self.origin, self.extent
         return left, bottom, left + width, bottom + height

@@ -120,9 +120,9 @@ def _continuum(case: DiskCase, *choices: Mapping[str, Boundary]) -> Named:
 
 def _box(case: DiskCase) -> Named:
     """The smallest box of disks round holes and loads, if that saves much and all monitors may be around it."""
-    if not may_be_boxed(case) or (trial := cheapest_box(build(case))) is None:
+    if not may_be_boxed(case) or (best := cheapest_box(build(case))) is None:
         return
-    left, bottom, right, top = trial.box
+    left, bottom, right, top = best.box
     size = [right - left, top - bottom]
     packing = {key: value for key, value in case.packing.given().items() if key != "bricks"}
     sides = SIDES if top < case.size[1] else SIDES[:3]
