@@ -82,7 +82,9 @@ def _not_beside(side: str, table: Boundary, outside: str, other: str) -> str:
 def _goes_on(side: str, tables: Mapping[str, Any]) -> bool:
     """Whether the ground goes on beyond a side of its box of disks, for which the box has a mistake of its own."""
     ground, packing = tables.get("ground"), tables.get("packing")
-    return bool(ground and ground.size and packing) and side in packing.gaps(ground.size)
+    if not (ground and ground.size and packing):
+        return False
+    return side in packing.gaps(ground.size)
 
 
 def _has_column(tables: Mapping[str, Any]) -> bool:

@@ -102,7 +102,7 @@ class Packing(Table, ABC):
         return left, bottom, left + width, bottom + height
 
     def gaps(self, ground: Extent) -> dict[str, float]:
-        """How far (m) a ground of this width and height goes on beyond each side of the disks' box that does not end it."""
+        """How far (m) a ground of this width and height goes on beyond the box's sides, but for those at its end."""
         left, bottom, right, top = self.box
         gaps = {"left": left, "right": ground[0] - right, "bottom": bottom, "top": ground[1] - top}
         return {side: gap for side, gap in gaps.items() if gap > TYPED * max(ground)}
