@@ -122,8 +122,8 @@ def _box(case: DiskCase) -> Named:
     if not may_be_boxed(case) or (trial := cheapest_box(build(case))) is None:
         return
     tables = box_tables(case, trial.box)
-    packing = {key: value for key, value in case.packing.given().items() if key != "bricks"} | tables["packing"]
-    changes = {**tables, "packing": packing}
+    packing = {key: value for key, value in case.packing.given().items() if key != "bricks"} | tables.pop("packing")
+    changes = {"ground.size": tables.pop("ground")["size"], "packing": packing, **tables}
     if _is_valid(case, changes, build):
         yield "box of {:g} m × {:g} m, outside".format(*packing["size"]), changes
 
