@@ -29,9 +29,9 @@ from dembound.outside.layer import Profile
 SHOWN = 5e-4
 """Depth (m) of a skin below which it is printed as zero."""
 
-QUIET_STEPS, FLAT = 10_000, 12.0
-"""Steps up to which noise has not been seen to grow, and width over height from which on it is warned of: with ν = 0.25
-it grew in ground 30 times as wide as high, and decayed in ground 7.5 times as wide."""
+QUIET_STEPS, FLAT = 10_000, 31.0
+"""Steps up to which noise has not been seen to grow, and width over height up to which it was seen to decay, with ν =
+0.25 and 0.4 and elements as wide as high, see `Settings.sides`."""
 
 LARGE = 0.01
 """Error of elements as small as is useful, above which there is a warning."""

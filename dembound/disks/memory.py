@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.reach import is_in
 from dembound.casefile.types import LAWS
 from dembound.disks.outside_settings import mesh_of, settings_of, signals_of
 from dembound.disks.packed_material import nominal_moduli
@@ -37,7 +38,7 @@ class SceneSizes:
     """Numbers of disks, of the slots that hold them, of contacts, and of lines of the support table.
 
     in_rows : whether copies of a disk stand side by side, see layout.py. grid : those of a continuum beyond the sides,
-    None without it. ties : number of half bonds to it.
+    None without it. ties : number of half bonds to it. probes : nodes whose motion is recorded at every step.
     """
 
     disks: float
@@ -47,6 +48,7 @@ class SceneSizes:
     in_rows: bool
     grid: GridSizes | None = None
     ties: int = 0
+    probes: int = 0
 
     @property
     def moving(self) -> float:
@@ -77,6 +79,7 @@ class SceneSizes:
             supported=min(3.0 * disks if everywhere else sides, 3.0 * disks),
             in_rows=in_rows,
             grid=_expected_grid(case),
+            probes=_expected_probes(case),
         )
 
     @classmethod
@@ -91,6 +94,7 @@ class SceneSizes:
             in_rows=not (scene.slots is None or scene.slots.is_plain),
             grid=GridSizes.all_of([each.body.mesh for each in continua]) if continua else None,
             ties=sum(len(each.wall.element) for each in continua),
+            probes=len(scene.probes),
         )
 
 
@@ -108,6 +112,13 @@ def _expected_grid(case: DiskCase) -> GridSizes | None:
         surface = case.size[1]
     settings = settings_of(case, medium, 2.0 * case.packing.radius, box, sides)
     return GridSizes.of(mesh_of(settings, box, sides, surface=surface, periodic=case.periodic))
+
+
+def _expected_probes(case: DiskCase) -> int:
+    """The disk at each monitor, or the nodes of the element there, and the disk of a column, at its height."""
+    of_element = (case.outside.order + 1) ** 2
+    each = [1 if is_in(case.packing.box, monitor.position) else of_element for monitor in case.monitor]
+    return sum(each) + bool(case.column_sides) * len(each)
 
 
 def must_fit_here(case: DiskCase) -> None:
@@ -214,7 +225,7 @@ def checkpoint_bytes(z: SceneSizes, *, history: bool) -> float:
 
 def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
     """Motion, ledger and record of the stepped scene, its pairs, and the fields of a snapshot of the whole one."""
-    moving = motion_bytes(z.moving) + ledger_bytes(z.moving) + record_bytes(len(case.monitor), 256, 6, z.supported)
+    moving = motion_bytes(z.moving) + ledger_bytes(z.moving) + record_bytes(z.probes, 256, 6, z.supported)
     moving += 8 * z.moving * case.output.peaks
     snapshot = 48.0 * whole.disks
     if not _has_history(case):

@@ -31,6 +31,9 @@ from dembound.packings.tiling import Assembly
 Monitors = tuple[dict[str, int], dict[str, Between]]
 """Name -> node, and name -> place of those in a continuum."""
 
+DIGITS = 1e-9
+"""Part of the last digit of a place by which a limit may be missed."""
+
 
 def monitors_of(
     case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam | None, outside: Surroundings | None
@@ -90,11 +93,22 @@ class _Around:
             if (x, y) != monitor.position:
                 below = monitor.position[1] < self._lowest
                 where = "below the ground, where incident motion is not known" if below else "in the layer that absorbs"
+                x, y = self._rounded(monitor.position, np.array([x, y]))
                 nearest = f"the nearest place allowed is ({x:.10g}, {y:.10g}) m"
                 problems.append(f"monitor[{number}, {monitor.name}].position: lies {where}; {nearest}")
         if problems:
             raise CaseError(problems)
         return [each for each, beyond in zip(monitors, self.outside.is_beyond(places), strict=True) if beyond]
+
+    def _rounded(self, position: tuple[float, float], allowed: np.ndarray) -> np.ndarray:
+        """The nearest place (2,) m allowed in place of a position (m), in numbers of few digits, so beyond the limit.
+
+        They are multiples of a power of ten below a tenth of the elements.
+        """
+        element = float(self.outside.body.mesh.element_sizes.min())
+        unit = 10.0 ** (np.floor(np.log10(element)) - 1)
+        way = np.sign(np.subtract(allowed, position))
+        return np.where(way == 0.0, allowed, way * np.ceil(way * allowed / unit - DIGITS) * unit + 0.0)  # no -0
 
     def disk_at(self, position: tuple[float, float]) -> tuple[np.ndarray, int]:
         """Place (2,) m, and number in the brick, of the disk nearest to a position (m).

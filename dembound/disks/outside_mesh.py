@@ -66,7 +66,8 @@ class ElementSizes(NamedTuple):
             if not case.outside.element:  # lower ones would only shorten the step
                 settings = settings._replace(element=max(0.5 * largest, min(largest, 2.0 * least)))
         box = np.where(narrow, np.maximum(extent, least), extent)
-        width, height = (side if one else settings.side(side) for side, one in zip(box.tolist(), narrow, strict=True))
+        each = settings.sides(*box.tolist()) if not any(periodic) else [settings.side(side) for side in box.tolist()]
+        width, height = (side if one else own for side, own, one in zip(box.tolist(), each, narrow, strict=True))
         across, up = narrow.tolist()
         return cls(settings, box, (width, height), (across, up))
 

@@ -12,7 +12,8 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.body import DiskBody, parts_of
 from dembound.disks.contact_arrays import plain_contacts
-from dembound.disks.edges import edge_without, edges_beside_column, find_edges
+from dembound.disks.edges import edges_beside_column, find_edges
+from dembound.disks.hollowed import hollowed
 from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive
 from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
@@ -22,13 +23,10 @@ from dembound.disks.packed_material import PackedMaterial, make_packed_material,
 from dembound.disks.stress import particle_stress
 from dembound.disks.surroundings import Surroundings, surroundings_of
 from dembound.disks.system import DiskSystem
-from dembound.errors import CaseError
-from dembound.holes import Hole
 from dembound.kernels.contacts import REFERENCE
 from dembound.motion.layout import Layout
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
-from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly, tile
 
 UPRIGHT = (True, False)
@@ -86,11 +84,11 @@ def build(case: DiskCase) -> DiskScene:
     edges = find_edges(body, case.periodic, case.packing.regular_sides)
     first, later = (tuple(hole for hole in case.hole if hole.stage == stage) for stage in ("before", "after"))
     if first:
-        body, edges, _ = _hollowed(case, ground.brick, body, edges, first)
+        body, edges, _ = hollowed(case, ground.brick, body, edges, first)
     scene = _scene(case, ground, body, edges)
     if not later:
         return scene
-    body, edges, kept = _hollowed(case, ground.brick, body, edges, later)
+    body, edges, kept = hollowed(case, ground.brick, body, edges, later)
     column = np.arange(0 if scene.seam is None else scene.seam.count)
     kept = np.concatenate([column, len(column) + kept])
     return replace(_scene(case, ground, body, edges), before=scene, kept=kept)
@@ -162,26 +160,6 @@ def ground_of(case: DiskCase) -> PackedMaterial:
     """The case's brick, packed or from the cache, with its material."""
     brick = case.packing.pack(nominal_moduli(case.material).emod)
     return make_packed_material(brick, case.material, case.motion.held)
-
-
-def _hollowed(
-    case: DiskCase, brick: Brick, body: Assembly, edges: Mapping[str, Edge], holes: tuple[Hole, ...]
-) -> tuple[Assembly, dict[str, Edge], np.ndarray]:
-    """A body and its sides without the particles in holes, and the indices (m,) of the remaining particles.
-
-    The surface of a hole is free: no particles are added to a side.
-    """
-    removed = np.logical_or.reduce([hole.contains(body.positions) for hole in holes])
-    left, kept = body.without(removed)
-    if sides := case.free_field_sides:
-        seam = with_column(brick, body, sides, case.column_rows)[1]
-        if not np.isin(seam.node - seam.count, kept).all():
-            raise CaseError([f"hole: reaches the free field of {' or '.join(sides)}, which has no hole"])
-    if sides := case.outside_sides:
-        before, after = (len(cut_contacts(brick, each, sides, case.periodic).node) for each in (body, left))
-        if after < before:
-            raise CaseError([f"hole: reaches the continuum of {' or '.join(sides)}, which has no hole"])
-    return left, {side: edge_without(edge, kept) for side, edge in edges.items()}, kept
 
 
 def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -43,11 +43,40 @@ class Candidate(NamedTuple):
     error: float
 
 
-def smallest_box(scene: DiskScene) -> str:
-    """The cheapest box of disks in place of a scene, in words; empty if there is none, or it would gain little."""
+def box_facts(scene: DiskScene) -> dict[str, str]:
+    """The cheapest box of disks in place of a scene, and its tables; none if it would gain little."""
     best = cheapest_box(scene) if may_be_boxed(scene.case) else None
     if best is None:
-        return ""
+        return {}
+    return {"smaller box": _in_words(scene, best), "its tables": _as_toml(box_tables(scene.case, best.box))}
+
+
+def box_tables(case: DiskCase, box: Box) -> dict[str, dict[str, Any]]:
+    """The keys of a case with disks in a box (m) only, by table; those of the packing that it keeps are left out."""
+    left, bottom, right, top = box
+    sides = SIDES if top < case.size[1] else SIDES[:3]
+    outside = {
+        f"boundary.{side}": {"type": "outside"}
+        | {f"wave_{motion}": name for motion, name in case.side(side).waves.items()}
+        for side in sides
+    }
+    packing = {"size": [right - left, top - bottom], "origin": [left, bottom]}
+    return {"ground": {"size": list(case.size)}, "packing": packing, **outside}
+
+
+def _as_toml(tables: Mapping[str, Mapping[str, Any]]) -> str:
+    """Tables of texts and places as lines of a case."""
+    lines = []
+    for table, keys in tables.items():
+        lines.append(f"[{table}]")
+        for key, value in keys.items():
+            shown = f'"{value}"' if isinstance(value, str) else "[" + ", ".join(f"{each:.10g}" for each in value) + "]"
+            lines.append(f"{key} = {shown}")
+    return "\n".join(lines)
+
+
+def _in_words(scene: DiskScene, best: Candidate) -> str:
+    """A box, what it holds, what it saves, and its error."""
     left, bottom, right, top = best.box
     share, error = best.cost / _cost(scene), in_percent(best.error)
     return (

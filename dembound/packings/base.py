@@ -101,6 +101,12 @@ class Packing(Table, ABC):
         (left, bottom), (width, height) = self.origin, self.extent
         return left, bottom, left + width, bottom + height
 
+    def gaps(self, ground: Extent) -> dict[str, float]:
+        """How far (m) a ground of this width and height goes on beyond the box's sides, but for those at its end."""
+        left, bottom, right, top = self.box
+        gaps = {"left": left, "right": ground[0] - right, "bottom": bottom, "top": ground[1] - top}
+        return {side: gap for side, gap in gaps.items() if gap > TYPED * max(ground)}
+
     @property
     def first_row(self) -> int:
         """Number of rows of bricks in the ground below the box."""

@@ -88,7 +88,10 @@ def _extended_disks(case: DiskCase, most: int) -> Extended:
     """A scene of disks with more bricks."""
     if case.ground.size is not None:
         reason = "its disks fill a box of the ground only, and are not continued beyond"
-        raise CaseError([f"ground.size: the scene cannot be extended, as {reason}"], case.name)
+        instead = "take --reference finest, or let the disks fill the ground: packing.size = [{:g}, {:g}], no [ground]"
+        raise CaseError(
+            [f"ground.size: the scene cannot be extended, as {reason}; {instead.format(*case.ground.size)}"], case.name
+        )
     moving = _moving(case, set(case.driving))
     scene = build(case)
     front = front_of(scene.ground, case.run.safety)

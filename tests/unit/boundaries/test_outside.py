@@ -55,7 +55,7 @@ def test_it_is_artificial_and_has_no_keys() -> None:
             '[boundary.bottom]\ntype = "symmetry"\n[static]\n',
             'boundary.bottom.type: is "symmetry", which takes [static] and loads on all disks out',
         ),
-        ('[boundary.right]\ntype = "free_field"\n', 'boundary.right.type: is "free_field"; beside'),
+        ('[boundary.right]\ntype = "free_field"\n', 'boundary.right.type: is "free_field", which cannot be in a case'),
         ('[motion]\nheld = ["y"]\n', 'boundary.left.type: "outside" moves freely, but motion.held holds y'),
         (
             '[boundary.bottom]\ntype = "outside"\n[static]\n',
@@ -71,6 +71,19 @@ def test_it_is_artificial_and_has_no_keys() -> None:
 )
 def test_what_it_cannot_be_beside_gets_one_line(more: str, line: str) -> None:
     assert line in problems(CASE + more)
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"), [("free_field", "cannot be in a case with boundary.right"), ("viscous", "beside boundary.bottom")]
+)
+def test_a_wrong_side_beside_several_continua_has_one_line(kind: str, said: str) -> None:
+    """Nor is the bottom blamed for waves that the wrong side keeps from entering."""
+    text = f'{BELOW}[boundary.right]\ntype = "outside"\n[boundary.left]\ntype = "{kind}"\n'
+    with pytest.raises(CaseError) as error:
+        loads(text)
+    (line,) = error.value.problems
+    assert line.startswith(f'boundary.left.type: is "{kind}"')
+    assert said in line
 
 
 @pytest.mark.parametrize("kind", ['"fixed"', '"symmetry"', '"viscous"', '"velocity"\nwave_p = "w"', '"outside"'])
@@ -105,6 +118,6 @@ def test_other_waves_get_one_line(text: str, line: str) -> None:
 
 def test_a_hole_that_reaches_it_is_refused() -> None:
     hole = '[[hole]]\nname = "h"\ntype = "circle"\nradius = 1.0\ncentre = '
-    with pytest.raises(CaseError, match="hole: reaches the continuum of left"):
+    with pytest.raises(CaseError, match=r"hole\[1, h\]: reaches boundary.left, where the continuum has no hole"):
         build(loads(CASE + hole + "[0.5, 2.5]\n"))
     assert build(loads(CASE + hole + "[5.0, 2.5]\n")).outside is not None
