@@ -115,10 +115,11 @@ def _expected_grid(case: DiskCase) -> GridSizes | None:
 
 
 def _expected_probes(case: DiskCase) -> int:
-    """The disk at each monitor, or the nodes of the element there, and the disk of a column, at its height."""
-    of_element = (case.outside.order + 1) ** 2
+    """The disk at each monitor, or the nodes of the element there with the disk of a column, and each one's twin."""
+    twin = int(bool(case.column_sides))
+    of_element = (case.outside.order + 1) ** 2 + twin
     each = [1 if is_in(case.packing.box, monitor.position) else of_element for monitor in case.monitor]
-    return sum(each) + bool(case.column_sides) * len(each)
+    return sum(each) + twin * len(each)
 
 
 def must_fit_here(case: DiskCase) -> None:

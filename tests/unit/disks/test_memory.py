@@ -1,6 +1,7 @@
 """Memory is counted from the shapes of arrays, and numbers of disks and contacts are known before a scene is built."""
 
 import pytest
+from small_cases import SURROUNDED, small
 
 from dembound.disks import layout
 from dembound.disks.memory import SceneSizes, expected_bytes, pairs_bytes, run_bytes, scene_bytes
@@ -139,3 +140,12 @@ def test_both_scenes_of_an_excavation_count(bar) -> None:
     added = run_bytes(case, [one], before=one) - run_bytes(case, [one])
     assert added == pytest.approx(scene_bytes(case, one), rel=1e-12)
     assert run_bytes(case, [one, one]) - run_bytes(case, [one]) == pytest.approx(scene_bytes(case, one), rel=1e-12)
+
+
+def test_a_monitor_in_a_continuum_records_the_nodes_of_an_element() -> None:
+    """Of order 3 there are 16; beside a column also its disk, and each monitor has a twin."""
+    places = [{"name": "in", "position": [6.5, 3.5]}, {"name": "beyond", "position": [-1.0, 3.5]}]
+    waves = {"boundary.bottom.wave_s": "pulse", "wave.pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.05}}
+    for changes, probes in (({}, 17), (waves, 20)):
+        case = small(SURROUNDED, changes={"monitor": places, **changes})
+        assert SceneSizes.expected(case).probes == SceneSizes.of(build(case)).probes == probes
