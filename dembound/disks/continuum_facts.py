@@ -9,7 +9,7 @@ import numpy as np
 
 from dembound.boundaries.sides import normal_axis
 from dembound.casefile.disks.outside import OutsideTable
-from dembound.disks import step_cost
+from dembound.disks import bragg, step_cost
 from dembound.disks.outside_settings import (
     ROUNDING,
     buried,
@@ -28,6 +28,9 @@ from dembound.outside.layer import Profile
 
 SHOWN = 5e-4
 """Depth (m) of a skin below which it is printed as zero."""
+
+LEAST_SHOWN = 1e-5
+"""Share of the velocity below which what copies send back is not printed."""
 
 QUIET_STEPS, FLAT = 10_000, 12.0
 """Steps up to which noise has not been seen to grow, and width over height from which on it is warned of: with ν = 0.25
@@ -58,6 +61,8 @@ def continuum_facts(scene: DiskScene) -> dict[str, str]:
     facts |= {"absorbing layers": _layers(outside, signals), "continuum cost": _cost(scene)}
     if signals and not any(choice.jumps(signal) for signal in signals):
         facts["dispersion of the disks"] = _dispersion(scene, outside, signals)
+        if copies := _copies(scene, signals):
+            facts["copies of the brick"] = copies
     return facts
 
 
@@ -168,6 +173,25 @@ def _dispersion(scene: DiskScene, outside: Surroundings, signals: Sequence[Signa
     more = f"; more than outside.accuracy = {in_percent(accuracy)}" if max(ties, across) > accuracy else ""
     return (
         f"{in_percent(ties)} returned by the ties, {in_percent(across)} of the velocity over the scene's length{more}"
+    )
+
+
+def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
+    """What remains in random packings, as all copies of a brick send back the same waves; empty for next to nothing."""
+    case, ground = scene.case, scene.ground
+    if not case.packing.packed_under_stress:
+        return ""
+    if len(ground.brick.radii) > bragg.MOST_DISKS:
+        return f"send back short waves, which is not computed for bricks of more than {bragg.MOST_DISKS:,} disks"
+    axes = sorted({normal_axis(side) for side in case.driving})
+    share = bragg.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1))
+    if share < LEAST_SHOWN:
+        return ""
+    accuracy = case.outside.accuracy
+    more = f"; more than outside.accuracy = {in_percent(accuracy)}, shorter bricks send back less"
+    return (
+        f"send back up to {in_percent(share)} of the velocity over the ground's length, which a continuum does not"
+        f"{more if share > accuracy else ''}"
     )
 
 
