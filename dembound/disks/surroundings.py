@@ -171,7 +171,8 @@ class Surroundings:
 
     def incident(self, waves: tuple[Incident | None, Incident | None]) -> IncidentForces:
         """Forces by which waves along x and y (None for none) enter from below; above, the continuum has them, too."""
-        return IncidentForces.of(self.wall.on("bottom"), self.body.medium, self.box[1], waves)
+        below = np.flatnonzero(self.wall.bonds.side == SIDES.index("bottom"))
+        return IncidentForces.of(self.wall.only(below), self.body.medium, self.box[1], waves)
 
     def adds_forces(self, layout: Layout) -> Callable[[np.ndarray, np.ndarray, float], None]:
         """A function of displacements u (3, slots), forces (3, slots) and a factor.

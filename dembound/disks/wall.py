@@ -26,7 +26,6 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.boundaries.sides import SIDES
 from dembound.disks.packed_material import PackedMaterial
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import WallTies
@@ -121,12 +120,6 @@ class CutBonds:
         corrector = self.corrector + _uniform((self.point - point).T)
         return replace(self, point=point, corrector=corrector)
 
-    def on(self, side: str) -> CutBonds:
-        """Those that a side cuts."""
-        chosen = self.side == SIDES.index(side)
-        some = {name: values[..., chosen] for name, values in vars(self).items() if name != "point"}
-        return CutBonds(**some, point=self.point[chosen])
-
     def numbered_from(self, first: int) -> CutBonds:
         """The same where the body's first disk is that of this number."""
         return replace(self, particle=self.particle + first)
@@ -193,10 +186,11 @@ class Wall:
         ordered = {name: values[..., order] for name, values in vars(bonds).items() if name != "point"}
         return cls(CutBonds(**ordered, point=bonds.point[order]), mesh, element[order], inside[order], lag, mean)
 
-    def on(self, side: str) -> Wall:
-        """The ties of bonds that a side cuts."""
-        chosen = self.bonds.side == SIDES.index(side)
-        return replace(self, bonds=self.bonds.on(side), element=self.element[chosen], local=self.local[chosen])
+    def only(self, chosen: np.ndarray) -> Wall:
+        """Some of the ties (k,), ascending."""
+        ties = {name: values[..., chosen] for name, values in vars(self.bonds).items() if name != "point"}
+        bonds = CutBonds(**ties, point=self.bonds.point[chosen])
+        return replace(self, bonds=bonds, element=self.element[chosen], local=self.local[chosen])
 
     @cached_property
     def elements(self) -> np.ndarray:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from dembound.disks.bragg import sent_back
-from dembound.disks.continuum_facts import ANGLES, continuum_facts, continuum_warnings, in_percent, lattice_errors
+from dembound.disks.continuum_facts import ANGLES, continuum_facts, continuum_warnings
 from dembound.disks.outside_settings import signals_of
+from dembound.disks.packing_errors import in_percent, lattice_errors
 from dembound.disks.scene import build
 from dembound.kinds import with_changes
 
@@ -88,7 +89,7 @@ def test_ties_return_what_a_half_bond_does(case) -> None:
     scene = build(with_changes(case, {"wave": burst}))
     k = 2.0 * np.pi / 80.0
 
-    ties, across = lattice_errors(scene, scene.outside, signals_of(scene.case))
+    ties, across = lattice_errors(scene, signals_of(scene.case))
     assert ties == pytest.approx(0.1 * k**2, rel=0.03)
     assert across == pytest.approx(40.0 * k**3 / 24.0, rel=0.03)
 
