@@ -11,9 +11,9 @@ import numpy as np
 from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.disks import step_cost
-from dembound.disks.continuum_facts import in_percent
 from dembound.disks.outside_mesh import medium_of
 from dembound.disks.outside_settings import extents, least_element, mesh_of, settings_of, signals_of
+from dembound.disks.packing_errors import in_percent
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.outside import choice

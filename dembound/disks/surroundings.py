@@ -167,8 +167,9 @@ class Surroundings:
         builder.add(np.union1d(self.first + self.wall.nodes, others), 2, prescribed=True)
 
     def incident(self, waves: tuple[Incident | None, Incident | None]) -> IncidentForces:
-        """Forces by which waves along x and y (None for none) enter from below."""
-        return IncidentForces.of(self.wall, self.body.medium, self.box[1], waves)
+        """Forces by which waves along x and y (None for none) enter from below; above, the continuum has them, too."""
+        below = np.flatnonzero(self.wall.bonds.side == SIDES.index("bottom"))
+        return IncidentForces.of(self.wall.only(below), self.body.medium, self.box[1], waves)
 
     def adds_forces(self, layout: Layout) -> Callable[[np.ndarray, np.ndarray, float], None]:
         """A function of displacements u (3, slots), forces (3, slots) and a factor.
