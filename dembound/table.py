@@ -149,13 +149,17 @@ def one_of(key: str, types: Iterable[type[Any]]) -> Any:
     return Annotated[Union[tuple(types)], Field(discriminator=key)]  # noqa: UP007  # types known at run time
 
 
+Box = tuple[float, float, float, float]
+"""A rectangle, with its edges: left, bottom, right and top, m."""
+
+
 def shifted_place(place: tuple[float, float], by: tuple[float, float]) -> tuple[float, float]:
     """A place (x, y) shifted by (x, y), m."""
     return place[0] + by[0], place[1] + by[1]
 
 
-def shifted_box(box: tuple[float, float, float, float], by: tuple[float, float]) -> tuple[float, float, float, float]:
-    """A rectangle x0, y0, x1, y1 shifted by (x, y), m."""
+def shifted_box(box: Box, by: tuple[float, float]) -> Box:
+    """A rectangle shifted by (x, y), m."""
     return *shifted_place((box[0], box[1]), by), *shifted_place((box[2], box[3]), by)
 
 

@@ -25,6 +25,7 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.kinds import loads
 from dembound.motion.simulation import Simulation
+from dembound.outside.interpolation import interpolation
 from dembound.plot.style import COLOURS
 
 BRICK, BODY, ALONE = 25.0, (2, 1), (34, 17)
@@ -115,7 +116,7 @@ def beside(scene: DiskScene, reference: Reference, step: float) -> np.ndarray:
     """The same means in the body and, where it has no disks, of the continuum in the places of the disks."""
     points = reference.disks.reshape(-1, 2)
     far, disk = cKDTree(scene.positions[: scene.recorded]).query(points)
-    at = scene.outside.body.mesh.interpolation(points)
+    at = interpolation(scene.outside.body.mesh, points)
     nodes, weights = scene.recorded + at.node, at.weight / MEAN
     inside = far < 1e-6
     nodes[inside], weights[inside] = disk[inside, None], 1.0 / (MEAN * nodes.shape[1])

@@ -17,8 +17,7 @@ from decay import disks_and_grid, grid_alone, kinetic, step_beside
 from drawings import DASHPOTS, PICTURES
 from lasting import SPEED, TYPES, exact_settlement, half_space, inner, settlement
 from oblique import reflection as of_dashpots
-
-from dembound.plot.style import save
+from report import report
 
 BOXES = {"whole": None, "notch in the surface": (5, 4, 7, 6), "hole": (5, 4, 7, 5)}
 """Names of boxes of elements left out."""
@@ -82,17 +81,6 @@ def of_noise() -> Iterator[str]:
     yield f"frequencies of rotations at λ = ∞ and 2 D: {branches(0.0)[2]:.3f}, {branches(np.pi)[2]:.3f} c_p/D"
 
 
-def main(results: Path) -> None:
-    """Print all measurements, and draw the pictures into a folder."""
-    np.set_printoptions(precision=3, linewidth=200)
-    for measurements in (of_angles(), of_loads_that_stay(), of_noise()):
-        for line in measurements:
-            print(line, flush=True)
-    results.mkdir(parents=True, exist_ok=True)
-    for name, draw in PICTURES.items():
-        save(draw(), results / f"{name}.png")
-        print(f"wrote {results / name}.png")
-
-
 if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "results/outside"))
+    np.set_printoptions(precision=3, linewidth=200)
+    report((of_angles(), of_loads_that_stay(), of_noise()), PICTURES, "results/outside")

@@ -5,17 +5,14 @@
 It takes about a minute. The pictures are RESULTS/*.png.
 """
 
-import sys
 from collections.abc import Iterator
-from pathlib import Path
 
 import bars
 import grains
 import sides
 from oblique import reflection
 from pictures import PICTURES
-
-from dembound.plot.style import save
+from report import report
 
 
 def of_sides() -> Iterator[str]:
@@ -95,16 +92,5 @@ def of_bars() -> Iterator[str]:
         yield f"m = {horizon}: whole outermost volumes make E_eff/E = {stiffer:.4f}"
 
 
-def main(results: Path) -> None:
-    """Print all measurements, and draw the pictures into a folder."""
-    for measurements in (of_sides(), of_grains(), of_bars()):
-        for line in measurements:
-            print(line, flush=True)
-    results.mkdir(parents=True, exist_ok=True)
-    for name, draw in PICTURES.items():
-        save(draw(), results / f"{name}.png")
-        print(f"wrote {results / name}.png")
-
-
 if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "results/where_methods_fail"))
+    report((of_sides(), of_grains(), of_bars()), PICTURES, "results/where_methods_fail")

@@ -20,13 +20,14 @@ from dembound.bar.summary import part_of, spalls_of, summarise_bar
 from dembound.bar.warnings import bar_warnings, warnings_after_bar
 from dembound.bar.wave_front import front_of_bar
 from dembound.casefile.bar import SCHEMA, BarCase
-from dembound.motion.kind import Beginning, Box, Finding, Kind, OnLook
+from dembound.motion.kind import Beginning, Finding, Kind, OnLook
 from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run
 from dembound.results.reader import has_monitors
+from dembound.table import Box
 
 if TYPE_CHECKING:
     import meshio

@@ -3,9 +3,10 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Literal
 
+from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Drivable
 from dembound.boundaries.free import Free
-from dembound.boundaries.sides import OPPOSITE
+from dembound.boundaries.sides import OPPOSITE, SIDES
 
 
 class Outside(Drivable):
@@ -32,17 +33,16 @@ class Outside(Drivable):
         yield from super().problems(side, tables)
         boundary = tables["boundary"]
         for other, table in boundary.items():
-            allowed = table is None or table.is_free or table.is_periodic or table.is_mirror or table.is_outside
-            if (other not in (side, OPPOSITE[side]) and not allowed) or (table and table.needs_column):
-                must = f'beside boundary.{side} it must be "free", "periodic", "symmetry" or "{self.type}"'
-                yield f'boundary.{other}.type: is "{table.type}"; {must}'
+            if _first_beside(other, boundary) == side and not _goes_on(other, tables):
+                yield _not_beside(other, table, self.type, side)
             if table and table.is_mirror and _has_column(tables):
                 yield f'boundary.{other}.type: is "{table.type}", which takes [static] and loads on all disks out'
         across = {each: boundary.get(each, Free()) for each in ("left", "right")}
+        wrong = any(_first_beside(other, boundary) for other in across)
         sideways = all(table and (table.is_periodic or table.is_outside) for table in across.values())
         if self.waves and side != "bottom":
             yield f'boundary.{side}.type: is "{self.type}", through which waves enter at the bottom only'
-        elif self.waves and not sideways:
+        elif self.waves and not (sideways or wrong):
             must = f'boundary.left and right are both "{self.type}" or periodic'
             yield f"boundary.{side}.type: waves enter through it only where {must}"
         for other, table in across.items():
@@ -54,6 +54,37 @@ class Outside(Drivable):
         motion = tables.get("motion")
         for held in motion.held if motion else ():
             yield f'boundary.{side}.type: "{self.type}" moves freely, but motion.held holds {held}'
+
+
+def _first_beside(side: str, boundary: Mapping[str, Any]) -> str | None:
+    """The first side with a continuum that this side cannot be beside; None if there is none.
+
+    A free field is the ground beyond all sides, so it is beside none of them.
+    """
+    table = boundary.get(side)
+    if table is None or table.is_free or table.is_periodic or table.is_mirror or table.is_outside:
+        return None
+    beside = SIDES if table.needs_column else [each for each in SIDES if each not in (side, OPPOSITE[side])]
+    return next((each for each in beside if (other := boundary.get(each)) and other.is_outside), None)
+
+
+def _not_beside(side: str, table: Boundary, outside: str, other: str) -> str:
+    """The mistake of a side that cannot be beside another one with a continuum, whose type is `outside`."""
+    if table.needs_column:
+        return (
+            f'boundary.{side}.type: is "{table.type}", which cannot be in a case with boundary.{other} = "{outside}"; '
+            f'make it "{outside}", too, which has a column of its own where waves enter'
+        )
+    must = f'beside boundary.{other} it must be "free", "periodic", "symmetry" or "{outside}"'
+    return f'boundary.{side}.type: is "{table.type}"; {must}'
+
+
+def _goes_on(side: str, tables: Mapping[str, Any]) -> bool:
+    """Whether the ground goes on beyond a side of its box of disks, for which the box has a mistake of its own."""
+    ground, packing = tables.get("ground"), tables.get("packing")
+    if not (ground and ground.size and packing):
+        return False
+    return side in packing.gaps(ground.size)
 
 
 def _has_column(tables: Mapping[str, Any]) -> bool:

@@ -9,202 +9,27 @@ v = Σ drive · signal(t) whatever the forces. Where two sides meet at a corner,
 up, and a prescribed row replaces all others.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 
+from dembound.boundaries.edge import BoundaryMedium, Edge
 from dembound.boundaries.sides import normal_axis
+from dembound.boundaries.signals import Incident, OneOf, Signal, Signals, Waves
+from dembound.boundaries.support_table import Shares, Supports
 
-Signal = Callable[[np.ndarray], np.ndarray]
-"""A time function: times (k,) in s -> values (k,)."""
-
-
-class Signals(Protocol):
-    """Signals that are computed together."""
-
-    @property
-    def count(self) -> int:
-        """Their number q."""
-
-    def __call__(self, times: np.ndarray, half_step: float) -> np.ndarray:
-        """Their values (k, q) at times (k,) s of steps; velocities that ties see are half a step (s) behind."""
-
-
-@dataclass(frozen=True)
-class OneOf:
-    """One of several signals."""
-
-    signals: Signals
-    number: int
-
-    def __call__(self, times: np.ndarray, half_step: float = 0.0) -> np.ndarray:
-        """Its values (k,) at times (k,) s of steps, with half their length, s."""
-        return self.signals(times, half_step)[:, self.number]
-
-
-class Incident(Protocol):
-    """A wave that may enter through a side."""
-
-    def velocity(self, t: np.ndarray) -> np.ndarray:
-        """Particle velocity, m/s, at the times t, s; same shape as t."""
-
-    def displacement(self, t: np.ndarray) -> np.ndarray:
-        """Particle displacement, m, at the times t, s; same shape as t."""
-
-
-Waves = Mapping[str, Incident]
-"""The waves of a case by name."""
-
-
-@dataclass(frozen=True)
-class BoundaryMedium:
-    """The medium that a side represents.
-
-    density kg/m³, bulk; p_wave_speed, s_wave_speed m/s, nominal; mirror_stiffness: diameters (k,) m -> stiffness of
-    the contact and bond between two touching disks of that diameter, normal (k,) N/m and bending (k,) N·m/rad.
-    """
-
-    density: float
-    p_wave_speed: float
-    s_wave_speed: float
-    mirror_stiffness: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
-
-    @property
-    def shear_modulus(self) -> float:
-        """G = ρc_s² in Pa."""
-        return self.density * self.s_wave_speed**2
-
-    def impedances(self, beta_p: float, beta_s: float, normal_axis: int) -> np.ndarray:
-        """Dashpot constants per metre of boundary, (2,) in Pa·s/m: βρc, P along the normal, S across it."""
-        along_normal = beta_p * self.density * self.p_wave_speed
-        across = beta_s * self.density * self.s_wave_speed
-        return np.array([along_normal, across] if normal_axis == 0 else [across, along_normal])
-
-
-@dataclass(frozen=True)
-class Edge:
-    """One side of the scene: the exposed particles and the length of the side.
-
-    side left, right, bottom or top; nodes (k,) particle indices; positions (k, 2) m; diameters (k,) m; length m;
-    shares (k,) of the particles' diameters that are inside the scene, see half_mass.py.
-    """
-
-    side: str
-    nodes: np.ndarray
-    positions: np.ndarray
-    diameters: np.ndarray
-    length: float
-    shares: np.ndarray | float = 1.0
-
-    @property
-    def axis(self) -> int:
-        """Axis of the normal: 0 for left and right, 1 for bottom and top."""
-        return normal_axis(self.side)
-
-    def only(self, chosen: np.ndarray, length: float) -> "Edge":
-        """Some of its particles, chosen (k,) bool, on a part of the side of this length (m)."""
-        return Edge(self.side, self.nodes[chosen], self.positions[chosen], self.diameters[chosen], length)
-
-    @property
-    def widths(self) -> np.ndarray:
-        """(k,) m of the side on which the forces of the medium beyond act through each particle."""
-        return self.diameters * self.shares
-
-    @property
-    def diameter_sum_ratio(self) -> float:
-        """ΣD/H: the summed diameters over the length of the side; 1 for a row of touching equal disks."""
-        return float(self.diameters.sum() / self.length)
-
-
-@dataclass(frozen=True)
-class Shares:
-    """What each side adds to the rows of a support table: a rows as added by sides, see `SupportBuilder.add`.
-
-    Attributes
-    ----------
-    side : (a,) the side's index in `sides`; call : (a,) number of the call that added it, with which all rows of a call
-    have the component in common.
-    node, component, damping, follow, stiffness, prescribed, drive : (a,) as given; damping, follow, stiffness and drive
-    are zero where a prescribed row has replaced them, and of several prescribed rows only one is listed.
-    signal : (a,) index of the signal of the drive, −1 for none; incident : (a,) bool, whether it is the velocity of a
-    wave that enters through the dashpot.
-    sides : their names. power : side -> index of the signal that is the power (W) of the waves that enter through it
-    other than through dashpots.
-    """
-
-    side: np.ndarray
-    call: np.ndarray
-    node: np.ndarray
-    component: np.ndarray
-    damping: np.ndarray
-    follow: np.ndarray
-    stiffness: np.ndarray
-    prescribed: np.ndarray
-    drive: np.ndarray
-    signal: np.ndarray
-    incident: np.ndarray
-    sides: tuple[str, ...]
-    power: Mapping[str, int] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Supports:
-    """The table: r rows, one per supported degree of freedom, and the d drives that act on them.
-
-    Of rows: node; component (0 x, 1 y, 2 rotation); damping, follow N·s/m; stiffness N/m (N·m/rad of a rotation);
-    prescribed bool. Of drives, any number to a row: drive_row; drive N (m/s where prescribed) per unit of signal;
-    drive_signal, the signal's index. shares : what each side adds to the rows; None in a table made from another one.
-    """
-
-    node: np.ndarray
-    component: np.ndarray
-    damping: np.ndarray
-    follow: np.ndarray
-    stiffness: np.ndarray
-    prescribed: np.ndarray
-    drive_row: np.ndarray
-    drive: np.ndarray
-    drive_signal: np.ndarray
-    signals: tuple[Signal, ...] = ()
-    shares: Shares | None = None
-
-    def __len__(self) -> int:
-        return len(self.node)
-
-    def springs_at(self, displacement: np.ndarray) -> np.ndarray:
-        """Forces (3, n) N that shift the zero of the springs to displacements (3, n)."""
-        force = np.zeros_like(displacement)
-        force[self.component, self.node] = self.stiffness * displacement[self.component, self.node]
-        return force
-
-    def sampled(self, times: np.ndarray, half_step: float) -> np.ndarray:
-        """Values (steps, q) of all signals at each time: of forces at `times`, of prescribed velocities later.
-
-        Forces act at whole steps; velocities are defined at half steps, so prescribed velocities are sampled half a
-        step later.
-        """
-        ahead = set(self.drive_signal[self.prescribed[self.drive_row]].tolist())
-        values = np.empty((len(times), len(self.signals)))
-        first = 0
-        while first < len(self.signals):
-            signal = self.signals[first]
-            if isinstance(signal, OneOf):  # those of one group follow each other
-                count = signal.signals.count
-                values[:, first : first + count] = signal.signals(times, half_step)
-            else:
-                count = 1
-                values[:, first] = signal(times + half_step * (first in ahead))
-            first += count
-        return values
-
-    def sample(self, times: np.ndarray, half_step: float) -> np.ndarray:
-        """Sum of the drives of every row at each time, (steps, r), see `sampled`."""
-        values = np.zeros((len(times), len(self)))
-        driven = self.sampled(times, half_step)[:, self.drive_signal] * self.drive
-        np.add.at(values, (slice(None), self.drive_row), driven)
-        return values
+__all__ = [
+    "BoundaryMedium",
+    "Edge",
+    "Incident",
+    "Shares",
+    "Signal",
+    "Signals",
+    "SupportBuilder",
+    "Supports",
+    "Waves",
+]
 
 
 @dataclass

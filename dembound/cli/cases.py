@@ -51,7 +51,8 @@ def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None)
         facts, warnings = check(case)
         table = compact_table(title=f"{case.name}: {case.title}" if case.title else case.name, show_header=False)
         for name, value in facts.items():
-            table.add_row(name, value)
+            for number, line in enumerate(value.splitlines()):
+                table.add_row("" if number else name, line)
         out.print(table)
         for warning in warnings:
             print_warning(case.name, warning)

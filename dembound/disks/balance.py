@@ -168,7 +168,11 @@ def _body_sides(scene: DiskBody) -> dict[str, np.ndarray]:
     if any(table.is_periodic for table in scene.case.boundary.values()):
         return {}
     first = 0 if scene.seam is None else scene.seam.count
-    sides = {side: edge.nodes[edge.nodes >= first] for side, edge in scene.edges.items()}
+    sides = {}
+    for side, edge in scene.edges.items():
+        own = edge.nodes[edge.nodes >= first]
+        # the column does not end at the level of a box in the ground, whose disks there are those with ties
+        sides[side] = own if len(own) > 1 else scene.tied.get(side, own)
     return {side: nodes for side, nodes in sides.items() if len(nodes) > 1}
 
 

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from dembound.boundaries import normal_axis
 from dembound.boundaries.half_mass import mass_factor
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.monitor import FREE_FIELD
+from dembound.disks.body_sides import sides_of, tied_of
 from dembound.disks.contacts import ContactList
 from dembound.disks.ground_motion import GroundMotion
 from dembound.disks.ground_waves import GroundWaves
@@ -223,43 +222,12 @@ class DiskBody(Scene):
     @cached_property
     def sides(self) -> dict[str, Edge]:  # type: ignore[override]  # computed once
         """The edges of the body, of its column bottom and top, as ``bottom.free_field``, and those of continua."""
-        sides = dict(self.edges)
-        if self.seam is not None:
-            sides = {}
-            for side, edge in self.edges.items():
-                beside = edge.nodes < self.seam.count
-                width = self.seam.width if edge.axis == 1 else 0.0
-                sides[side] = edge.only(~beside, edge.length - width)
-                if beside.any():
-                    sides[f"{side}{FREE_FIELD}"] = edge.only(beside, width)
-        if self.outside is not None:
-            if self.seam is not None:  # in the ground the column's ends are not at the level of the body's
-                sides |= {side: self._tied_edge(side) for side in self.outside.sides}
-            sides |= self.outside.edges
-        if self.foot is not None:
-            sides |= {name.replace("bottom", f"bottom{FREE_FIELD}"): edge for name, edge in self.foot.edges.items()}
-        return sides
-
-    def _tied_edge(self, side: str) -> Edge:
-        """The disks of a side that ties act on."""
-        nodes, length = self.tied[side], float(self.assembly.extent[1 - normal_axis(side)])
-        return Edge(side, nodes, self.assembly.positions[nodes], 2.0 * self.assembly.radii[nodes], length)
+        return sides_of(self)
 
     @cached_property
     def tied(self) -> dict[str, np.ndarray]:  # type: ignore[override]  # computed once
         """Nodes (k,) that ties act on, by side: particles beside a free field or a continuum, nodes of continua."""
-        if self.outside is not None:
-            tied = dict(self.outside.tied_by_side)
-            if self.foot is not None:
-                of_foot = self.foot.tied_by_side
-                tied |= {name.replace("bottom", f"bottom{FREE_FIELD}"): nodes for name, nodes in of_foot.items()}
-            return tied
-        if self.seam is None:
-            return {}
-        node = self.seam.node
-        left = self.assembly.positions[node, 0] < 0.5 * self.size[0]
-        near = {"left": node[left], "right": node[~left]}
-        return {side: nodes for side, nodes in near.items() if self.case.side(side).needs_column}
+        return tied_of(self)
 
     @property
     def damp(self) -> float:

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from dembound.motion.kind import Box, Finding
+from dembound.motion.kind import Finding
 from dembound.motion.trackers import Run
+from dembound.table import Box
 
 BREAK_TIME, BREAK_X, BREAK_Y = "break time", "break x", "break y"
 """Names of what is found about the first broken bonds."""

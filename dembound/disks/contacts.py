@@ -1,11 +1,12 @@
 """The pairs of a scene: particles in contact or nearly in contact, listed anew as particles move."""
 
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
 import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.constants import brick_constants, limits_of, shared_constants
+from dembound.disks.contact_arrays import History, Pairs, in_places
 from dembound.disks.contact_forces import acting
 from dembound.disks.neighbours import cells_of, near_pairs, pair_keys
 from dembound.disks.packed_material import PackedMaterial
@@ -14,8 +15,9 @@ from dembound.disks.row_plan import RowPlan
 from dembound.kernels import contacts as kernel
 from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS
+from dembound.kernels.contact_measures import slack
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED
-from dembound.kernels.tables import Contacts, PairRows
+from dembound.kernels.tables import PairRows
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.layout import Layout
 from dembound.motion.state import Arrays
@@ -27,15 +29,8 @@ SKIN = 0.05
 The list is renewed once a particle has moved by half of it.
 """
 
-
-@dataclass(frozen=True)
-class Pairs:
-    """Pairs: first, second (b,) particles, image (b, 2) int8 whole periods between them, contact_type (b,)."""
-
-    first: np.ndarray
-    second: np.ndarray
-    image: np.ndarray
-    contact_type: np.ndarray
+_KEPT = ("first", "second", "contact_type", "state", "shear", "slip", "cracked")
+"""The arrays of the pairs, beside their forces, that memory() returns."""
 
 
 class ContactList:
@@ -103,7 +98,7 @@ class ContactList:
         bonded = np.full(len(first), INTACT if ground.moduli.pb_emod > 0.0 else NONE, dtype=np.uint8)
         zero = np.zeros(len(first))
         self._constants = self.bonds
-        self._list(pairs, bonded, zero, zero, np.full(len(first), -1))
+        self._list(pairs, History(bonded, zero, zero, np.full(len(first), -1)))
         widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
         self.arms = np.zeros(self.layout.count)
         self.arms[self._slot] = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
@@ -116,7 +111,7 @@ class ContactList:
             first, second = self.pairs
             pairs = Pairs(first, second, self.image, self.of("contact_type"))
             self._plan = PairPlan.of(first, second, pairs.contact_type, len(self.bonds), *plan)
-            self._list(pairs, *(self.of(name) for name in ("state", "shear", "slip", "cracked")))
+            self._list(pairs, History(*(self.of(name) for name in ("state", "shear", "slip", "cracked"))))
 
     def _spread(self, displacement: np.ndarray) -> np.ndarray:
         """Displacements (3, n) of all nodes as those (3, slots) of the particles."""
@@ -144,7 +139,7 @@ class ContactList:
         along_path = (self.limits.geometry == UPDATED) | (now.state != INTACT)
         touch, rest = now.constants[now.contact_type][:, [3, 2]].T
         small.slip[:] += np.where(along_path & (touch >= rest), small.shear - now.shear, 0.0)
-        if kernel.slack(u, small, self.limits, True) > 0.0:
+        if slack(u, small, self.limits, True) > 0.0:
             return small.slip
         return "after the static stage a contact has opened or closed or slides, or a bond is at its strength"
 
@@ -199,13 +194,13 @@ class ContactList:
             np.concatenate([place[row], own + np.count_nonzero(extra) + met.contact_type]),
         )
         del first, second, row
-        self._list(
-            pairs,
+        history = History(
             np.concatenate([self.of("state")[kept], np.full(len(met.first), NONE, dtype=np.uint8)]),
             np.concatenate([self.of("shear")[kept], np.zeros(len(met.first))]),
             np.concatenate([self.of("slip")[kept], np.zeros(len(met.first))]),
             np.concatenate([self.of("cracked")[kept], np.full(len(met.first), -1)]),
         )
+        self._list(pairs, history)
         self._set_origin(displacement[:2, self.nodes])
 
     def _remaining(self, moved: np.ndarray) -> np.ndarray:
@@ -244,7 +239,7 @@ class ContactList:
         self._constants = other._constants
         self._set_origin(other.origin[:, other._slot[kept] - other._slots.start])
         pairs = Pairs(first[left], second[left], other.image[left], other.of("contact_type")[left])
-        self._list(pairs, *(other.of(name)[left] for name in ("state", "shear", "slip", "cracked", "place")))
+        self._list(pairs, History(*(other.of(name)[left] for name in History._fields)))
 
     def copy_twins(self, column: "ContactList", twin: np.ndarray, displacement: np.ndarray) -> None:
         """Copy the history of each pair's twin from a free-field column settled alone, at displacements (3, n).
@@ -349,8 +344,7 @@ class ContactList:
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[memory[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, memory["image"], memory["contact_type"])
-        columns = (memory[name] for name in ("state", "shear", "slip", "cracked"))
-        self._list(pairs, *columns)
+        self._list(pairs, History(*(memory[name] for name in ("state", "shear", "slip", "cracked"))))
         self.arrays.force[:, self.live] = memory["force"].T
         self._cracks = [Cracks(*(memory[f"crack_{field.name}"] for field in fields(Cracks)))]
 
@@ -361,94 +355,11 @@ class ContactList:
         self.origin[:, slot] = displacement
         self.cells = cells_of(self.assembly.positions + displacement.T, self.assembly.radii, slot, self.periods)
 
-    def _list(
-        self,
-        pairs: Pairs,
-        state: np.ndarray,
-        shear: np.ndarray,
-        slip: np.ndarray,
-        cracked: np.ndarray,
-        place: np.ndarray | None = None,
-    ) -> None:
+    def _list(self, pairs: Pairs, history: History) -> None:
         """Give the pairs their places, and list the contact ends of each particle."""
-        first, second = (self._slot[particles].astype(np.int32) for particles in (pairs.first, pairs.second))
-        in_rows = np.full(len(first), -1)
+        placed = in_places(pairs, history, self._slot, self._constants, self._plan)
+        self.arrays, self.live, self.image = placed.arrays, placed.live, placed.image
         if self._plan is not None:
-            in_rows = self._plan.place(pairs.first, pairs.second, pairs.contact_type)
-        order = np.lexsort((pairs.image[:, 1], pairs.image[:, 0], second, first, in_rows, in_rows < 0))
-        self.image = pairs.image[order]
-        first, second, in_rows = first[order], second[order], in_rows[order]
-        places = 0 if self._plan is None else self._plan.count
-        shared = int(np.count_nonzero(in_rows >= 0))
-        self.live = np.concatenate([in_rows[:shared], places + np.arange(len(order) - shared)])
-        count, begin, stop = places + len(order) - shared, self._slots.start, self._slots.stop
-        owner = np.concatenate([first, second])
-        end = np.concatenate([2 * self.live, 2 * self.live + 1]).astype(np.uint32)
-        start = np.zeros(stop + 1, dtype=np.uint32)
-        np.cumsum(np.bincount(owner - begin, minlength=stop - begin), out=start[begin + 1 :])
-
-        def placed(values: np.ndarray, empty: float = 0.0) -> np.ndarray:
-            """Values of the pairs in their places."""
-            column = np.full((count, *values.shape[1:]), empty, dtype=values.dtype)
-            column[self.live] = values
-            return column
-
-        self.arrays = Contacts(
-            begin=begin,
-            first=placed(first.astype(np.uint32), int(self._slot[0])),
-            second=placed(second.astype(np.uint32), int(self._slot[0])),
-            contact_type=placed(pairs.contact_type[order].astype(np.uint32), len(self._constants)),
-            constants=self._constants if self._plan is None else np.vstack([self._constants, NOTHING]),
-            state=placed(state[order], NONE),
-            shear=placed(shear[order]),
-            slip=placed(slip[order]),
-            cracked=placed(cracked[order], -1),
-            place=np.zeros((count, 2)) if place is None else placed(place[order]),
-            force=np.zeros((4, count)),
-            start=start,
-            end=end[np.lexsort((end, owner))],
-        )
-        if self._plan is not None:
-            self._list_rows(in_rows[:shared], owner, end)
-
-    def _list_rows(self, in_rows: np.ndarray, owner: np.ndarray, end: np.ndarray) -> None:
-        """Make the rows for kernels, of pairs in some places (k,), and list the ends (e,) of others by their owners."""
-        assert self._plan is not None
-        self.rows = self._plan.rows(in_rows, self.bonds)
-        others = end >= 2 * self._plan.count
-        order = np.lexsort((end[others], owner[others]))
-        slot, start = np.unique(owner[others][order], return_index=True)
-        self.strays = slot, np.append(start, len(order)), end[others][order]
-        self.extra = np.zeros((3, self.layout.count))
-
-
-NOTHING = np.array([[1e6, 0.0, 1e6, -1e100, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0]])
-"""Constants of a place without a pair: far apart, without stiffness."""
-
-_KEPT = ("first", "second", "contact_type", "state", "shear", "slip", "cracked")
-"""The arrays of the pairs, beside their forces, that memory() returns."""
-
-
-def plain_contacts(ground: PackedMaterial, assembly: Assembly, slot: np.ndarray) -> Contacts:
-    """The contacts of the elastic law, without history, forces and rows, for its strain energy.
-
-    slot : (n,) in which kernels hold the assembly's particles.
-    """
-    first, second = slot[assembly.pairs.T].astype(np.uint32, order="C")
-    bonded = INTACT if ground.moduli.pb_emod > 0.0 else NONE
-    nothing = np.zeros(0)
-    return Contacts(
-        begin=int(slot.min()),
-        first=first,
-        second=second,
-        contact_type=assembly.contact_type.astype(np.uint32),
-        constants=brick_constants(ground, gaps_close=False, locked_in=0.0),
-        state=np.full(len(first), bonded, dtype=np.uint8),
-        shear=nothing,
-        slip=nothing,
-        cracked=np.zeros(0, dtype=np.int64),
-        place=np.zeros((0, 2)),
-        force=np.zeros((4, 0)),
-        start=first[:0],
-        end=first[:0],
-    )
+            assert placed.strays is not None
+            self.rows, self.strays = self._plan.rows(placed.in_rows, self.bonds), placed.strays
+            self.extra = np.zeros((3, self.layout.count))

@@ -20,6 +20,7 @@ from dembound.disks.outside_settings import (
     margin_below_surface,
     signals_of,
 )
+from dembound.disks.packing_errors import in_percent, packing_facts
 from dembound.disks.scene import DiskScene
 from dembound.disks.surroundings import Surroundings
 from dembound.outside import choice
@@ -29,9 +30,9 @@ from dembound.outside.layer import Profile
 SHOWN = 5e-4
 """Depth (m) of a skin below which it is printed as zero."""
 
-QUIET_STEPS, FLAT = 10_000, 12.0
-"""Steps up to which noise has not been seen to grow, and width over height from which on it is warned of: with ν = 0.25
-it grew in ground 30 times as wide as high, and decayed in ground 7.5 times as wide."""
+QUIET_STEPS, FLAT = 10_000, 31.0
+"""Steps up to which noise has not been seen to grow, and width over height up to which it was seen to decay, with ν =
+0.25 and 0.4 and elements as wide as high, see `Settings.sides`."""
 
 LARGE = 0.01
 """Error of elements as small as is useful, above which there is a warning."""
@@ -57,7 +58,7 @@ def continuum_facts(scene: DiskScene) -> dict[str, str]:
         facts["below the column"] = f"{_elements(scene.foot)}; through it waves enter and leave"
     facts |= {"absorbing layers": _layers(outside, signals), "continuum cost": _cost(scene)}
     if signals and not any(choice.jumps(signal) for signal in signals):
-        facts["dispersion of the disks"] = _dispersion(scene, outside, signals)
+        facts |= packing_facts(scene, signals)
     return facts
 
 
@@ -161,37 +162,6 @@ def _cost(scene: DiskScene) -> str:
     return f"of the stepping about: {', '.join(shares)}"
 
 
-def _dispersion(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal]) -> str:
-    """What remains whatever the settings, as the disks are a lattice."""
-    accuracy = scene.case.outside.accuracy
-    ties, across = lattice_errors(scene, outside, signals)
-    more = f"; more than outside.accuracy = {in_percent(accuracy)}" if max(ties, across) > accuracy else ""
-    return (
-        f"{in_percent(ties)} returned by the ties, {in_percent(across)} of the velocity over the scene's length{more}"
-    )
-
-
-def lattice_errors(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal]) -> tuple[float, float]:
-    """RMS over the energy of velocities of what ties return, and of the lag of waves over the scene's longer side L.
-
-    Half of a lattice's bond has the impedance ρc/cos(kD/2), so that a continuum beyond it returns (kD)²/16; the ties'
-    dashpots, `damping` times ρc_pD, add (kD)²·damping/8. Waves on the lattice lag by the phase kL(kD)²/24. For S waves;
-    of signals the largest.
-    """
-    speed = choice.slowest(outside.body.medium)
-    diameter, length = scene.ground.brick.mean_diameter, max(scene.case.size)
-    returned = 1.0 / 16.0 + outside.settings.damping / 8.0
-    found = []
-    for signal in signals:
-        frequency, energy = choice.energies(signal)
-        k = 2.0 * math.pi * frequency / speed
-        square = (k * diameter) ** 2
-        errors = [returned * square, k * length * square / 24.0]
-        found.append([math.sqrt(float(np.sum(energy * np.minimum(e, 1.0) ** 2) / energy.sum())) for e in errors])
-    ties, across = np.max(found, axis=0).tolist()
-    return ties, across
-
-
 def continuum_warnings(scene: DiskScene, steps: float) -> Iterator[str]:
     """Settings given in the case that are poorer than its accuracy, and layers that may amplify noise in many steps."""
     outside, keys = scene.outside, scene.case.outside
@@ -287,8 +257,3 @@ def _from_the_surface(scene: DiskScene, outside: Surroundings, keys: OutsideTabl
             f"returns from these, more than {asked}; "
             f"{enough} elements are enough"
         )
-
-
-def in_percent(share: float) -> str:
-    """A share with two digits, as "0.13 %", at most 100 %."""
-    return f"{100.0 * share:.2g} %" if share < 0.995 else "100 %"

@@ -12,13 +12,15 @@
 | ``total`` | 1 | (m,) | 1 where the other fields contain the motion of the ground, 0 below that of a column |
 | ``peakVelocity`` | m/s | (m,) | largest speed in the whole run, in every file; if the case asks for it |
 
+Nodes on the first side of a periodic continuum are repeated on the side opposite, which the last cells reach.
+
 ``linVelVec``, ``speed``, ``displacement``, ``stress`` and ``peakVelocity`` have the names of those of disks. Where
 there is ``scattered``, ``stress`` and ``peakVelocity`` are those of the scattered motion.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -49,5 +51,40 @@ def continuum_mesh(columns: Arrays, snapshot: Arrays) -> meshio.Mesh:
         data["total"] = columns["continuum/total"]
     if "continuum/peak_velocity" in columns:
         data["peakVelocity"] = columns["continuum/peak_velocity"]
-    points = in_space(columns["continuum/position"] + displacement)
-    return meshio.Mesh(points, [("quad", columns["continuum/cell"].astype(np.int32))], point_data=shown(data))
+    across = Across.of(columns)
+    points = np.concatenate([columns["continuum/position"], across.place])
+    node = np.concatenate([np.arange(len(displacement)), across.node])
+    cells = np.concatenate([columns["continuum/cell"], across.cell]).astype(np.int32)
+    shift = in_space(points + displacement[node])
+    return meshio.Mesh(shift, [("quad", cells)], point_data=shown({name: each[node] for name, each in data.items()}))
+
+
+class Across(NamedTuple):
+    """What a periodic continuum has across its sides.
+
+    node : (k,) nodes that are repeated. place : (k, 2) m, where, a period on. cell : (c, 4) corners of the cells
+    between the last nodes and those, which are numbered after all nodes.
+    """
+
+    node: np.ndarray
+    place: np.ndarray
+    cell: np.ndarray
+
+    @classmethod
+    def of(cls, columns: Arrays) -> Across:
+        """That of a record; empty for a continuum that is not periodic."""
+        position, node = columns["continuum/position"], columns["continuum/node"].astype(np.int64)
+        low, high = (columns["continuum/element"][:, None, None, end] for end in (slice(0, 2), slice(2, 4)))
+        is_last = np.zeros((1, *node.shape[1:], 2), dtype=np.bool_)
+        is_last[:, :, -1, 0] = is_last[:, -1, :, 1] = True
+        place = position[node]
+        wraps = is_last & (place < 0.5 * (low + high))  # the last line of points is the first one of the mesh
+        place = np.where(wraps, high, place)
+        of_node = wraps.any(axis=3)
+        kept = np.column_stack([node[of_node], wraps[of_node]])
+        chosen, first, number = np.unique(kept, axis=0, return_index=True, return_inverse=True)
+        corner = node.copy()
+        corner[of_node] = len(position) + number.ravel()
+        cells = np.stack([corner[:, :-1, :-1], corner[:, :-1, 1:], corner[:, 1:, 1:], corner[:, 1:, :-1]], axis=3)
+        cells = cells.reshape(-1, 4)
+        return cls(chosen[:, 0], place[of_node][first], cells[(cells >= len(position)).any(axis=1)])

@@ -9,7 +9,7 @@ from dembound.disks.incident_facts import incident_facts
 from dembound.disks.layout import fill
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
-from dembound.disks.smallest_box import smallest_box
+from dembound.disks.smallest_box import box_facts
 from dembound.disks.summary import describe_packing, describe_side
 from dembound.disks.warnings import particles_per_wavelength, strong_waves
 
@@ -25,8 +25,7 @@ def disk_facts(scene: DiskScene) -> dict[str, str]:
         facts |= continuum_facts(scene)
     if scene.ground_waves is not None:
         facts |= incident_facts(scene)
-    if box := smallest_box(scene):
-        facts["smaller box"] = box
+    facts |= box_facts(scene)
     for side in scene.edges:
         facts[f"{side} side"] = _side_fact(scene, side)
     facts |= _load_facts(scene)

@@ -15,11 +15,11 @@ from dataclasses import replace
 import numpy as np
 
 from dembound.disks.homogenise import Network
-from dembound.disks.outside_settings import Box
 from dembound.laws import Stiffness
 from dembound.outside.mesh import Mesh
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import tile
+from dembound.table import Box
 
 SLENDER = 2.0
 """Least height of the strip over its width, so that its surfaces are apart: what one surface changes decays with the

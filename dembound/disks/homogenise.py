@@ -56,10 +56,11 @@ class Network(NamedTuple):
         c, s = (self.vectors / np.hypot(*self.vectors.T)[:, None]).T
         return c, s
 
-    def motion_matrix(self) -> csr_matrix:
+    def motion_matrix(self, phase: np.ndarray | float = 1.0) -> csr_matrix:
         """Elongations (3b) per unit motion of the disks (3n): all x, all y, all rotations.
 
-        As in the law they are n·Δu, t·Δu − l_iθ_i − l_jθ_j and θ_j − θ_i.
+        As in the law they are n·Δu, t·Δu − l_iθ_i − l_jθ_j and θ_j − θ_i. phase : (b,) by which the motion of the
+        second disk of a contact is multiplied.
         """
         from scipy.sparse import coo_matrix
 
@@ -67,14 +68,14 @@ class Network(NamedTuple):
         c, s = self.directions
         i, j = self.pairs.T.astype(np.int64)
         row = np.arange(contacts)
+        first, second = np.ones(contacts), np.ones(contacts) * phase
         entries = [
-            (row, j, c), (row, i, -c), (row, count + j, s), (row, count + i, -s),
-            (contacts + row, j, -s), (contacts + row, i, s),
-            (contacts + row, count + j, c), (contacts + row, count + i, -c),
+            (row, j, c * second), (row, i, -c), (row, count + j, s * second), (row, count + i, -s),
+            (contacts + row, j, -s * second), (contacts + row, i, s),
+            (contacts + row, count + j, c * second), (contacts + row, count + i, -c),
             (contacts + row, 2 * count + i, -self.stiffness.arm_i),
-            (contacts + row, 2 * count + j, -self.stiffness.arm_j),
-            (2 * contacts + row, 2 * count + j, np.ones(contacts)),
-            (2 * contacts + row, 2 * count + i, -np.ones(contacts)),
+            (contacts + row, 2 * count + j, -self.stiffness.arm_j * second),
+            (2 * contacts + row, 2 * count + j, second), (2 * contacts + row, 2 * count + i, -first),
         ]  # fmt: skip
         rows, columns, values = (np.concatenate(part) for part in zip(*entries, strict=True))
         return coo_matrix((values, (rows, columns)), shape=(3 * contacts, 3 * count)).tocsr()

@@ -26,12 +26,13 @@ from dembound.disks.summary import asked_stress, describe_static, summarise_disk
 from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
 from dembound.disks.wave_front import front_of
-from dembound.motion.kind import Beginning, Box, Finding, Kind, OnLook, Reduction, Stage
+from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Reduction, Stage
 from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run
+from dembound.table import Box
 
 if TYPE_CHECKING:
     import meshio

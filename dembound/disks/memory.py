@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.reach import is_in
 from dembound.casefile.types import LAWS
 from dembound.disks.outside_settings import mesh_of, settings_of, signals_of
 from dembound.disks.packed_material import nominal_moduli
@@ -33,11 +34,11 @@ NEAR = 1.08
 
 
 @dataclass(frozen=True)
-class Sizes:
+class SceneSizes:
     """Numbers of disks, of the slots that hold them, of contacts, and of lines of the support table.
 
     in_rows : whether copies of a disk stand side by side, see layout.py. grid : those of a continuum beyond the sides,
-    None without it. ties : number of half bonds to it.
+    None without it. ties : number of half bonds to it. probes : nodes whose motion is recorded at every step.
     """
 
     disks: float
@@ -47,6 +48,7 @@ class Sizes:
     in_rows: bool
     grid: GridSizes | None = None
     ties: int = 0
+    probes: int = 0
 
     @property
     def moving(self) -> float:
@@ -54,7 +56,7 @@ class Sizes:
         return self.slots + (0 if self.grid is None else self.grid.nodes)
 
     @classmethod
-    def expected(cls, case: DiskCase) -> Sizes:
+    def expected(cls, case: DiskCase) -> SceneSizes:
         """Those of a case that has not been built, without its holes: of random bricks within some 3 %."""
         from dembound.disks.layout import LEAST_FILL
         from dembound.disks.row_plan import columns_of
@@ -77,10 +79,11 @@ class Sizes:
             supported=min(3.0 * disks if everywhere else sides, 3.0 * disks),
             in_rows=in_rows,
             grid=_expected_grid(case),
+            probes=_expected_probes(case),
         )
 
     @classmethod
-    def of(cls, scene: DiskScene) -> Sizes:
+    def of(cls, scene: DiskScene) -> SceneSizes:
         """Those of a scene."""
         continua = scene.continua
         return cls(
@@ -91,6 +94,7 @@ class Sizes:
             in_rows=not (scene.slots is None or scene.slots.is_plain),
             grid=GridSizes.all_of([each.body.mesh for each in continua]) if continua else None,
             ties=sum(len(each.wall.element) for each in continua),
+            probes=len(scene.probes),
         )
 
 
@@ -110,10 +114,18 @@ def _expected_grid(case: DiskCase) -> GridSizes | None:
     return GridSizes.of(mesh_of(settings, box, sides, surface=surface, periodic=case.periodic))
 
 
+def _expected_probes(case: DiskCase) -> int:
+    """The disk at each monitor, or the nodes of the element there with the disk of a column, and each one's twin."""
+    twin = int(bool(case.column_sides))
+    of_element = (case.outside.order + 1) ** 2 + twin
+    each = [1 if is_in(case.packing.box, monitor.position) else of_element for monitor in case.monitor]
+    return sum(each) + twin * len(each)
+
+
 def must_fit_here(case: DiskCase) -> None:
     """Raise CaseError if a run of a case needs more memory than is free here; nothing is built for this."""
     key = "packing.size" if case.packing.size is not None else "packing.bricks"
-    expected = Sizes.expected(case)
+    expected = SceneSizes.expected(case)
     things = f"{expected.disks:.3g} disks"
     if expected.grid is not None:
         things += f" and {expected.grid.nodes:.3g} nodes of the continuum beyond them"
@@ -123,12 +135,12 @@ def must_fit_here(case: DiskCase) -> None:
 
 def expected_bytes(case: DiskCase) -> float:
     """Largest memory (bytes) of a run of a case, computed without building it."""
-    expected = Sizes.expected(case)
+    expected = SceneSizes.expected(case)
     excavated = any(hole.stage == "after" for hole in case.hole)
     return run_bytes(case, [expected], expected if excavated else None)
 
 
-def run_bytes(case: DiskCase, scenes: Sequence[Sizes], before: Sizes | None = None) -> float:
+def run_bytes(case: DiskCase, scenes: Sequence[SceneSizes], before: SceneSizes | None = None) -> float:
     """Largest memory (bytes) of a run.
 
     scenes : that of the case, and the smaller ones in its place, the last of which is stepped; before : the scene
@@ -147,7 +159,7 @@ def run_bytes(case: DiskCase, scenes: Sequence[Sizes], before: Sizes | None = No
     return largest(stages, case)
 
 
-def scene_bytes(case: DiskCase, z: Sizes) -> float:
+def scene_bytes(case: DiskCase, z: SceneSizes) -> float:
     """Of a scene: positions, radii, twins and tiles (36 n), its slots, mass, inertia and part of a cell; its contacts.
 
     Pairs and types (12 b), for the kernels one by one 4 n + 16 b; in rows the node of each slot. Steady loads (3, n).
@@ -158,12 +170,12 @@ def scene_bytes(case: DiskCase, z: Sizes) -> float:
     return (36 + 8 + 24 + 24 * bool(case.load)) * z.disks + 12 * z.contacts + rows
 
 
-def building_bytes(z: Sizes) -> float:
+def building_bytes(z: SceneSizes) -> float:
     """Temporary arrays as contacts are sorted: columns and lanes (24 n), ends of contacts with their keys (66 b)."""
     return 24 * z.disks + 66 * z.contacts
 
 
-def pairs_bytes(z: Sizes) -> float:
+def pairs_bytes(z: SceneSizes) -> float:
     """Of the list of pairs with a history.
 
     In q places 37 bytes of numbers, types and states, and forces (4, q); by pair its place, image and two ends (18 p);
@@ -174,7 +186,7 @@ def pairs_bytes(z: Sizes) -> float:
     return (37 + 32) * places + 18 * pairs + 28 * z.slots + 8 * z.disks + rows
 
 
-def listing_bytes(z: Sizes) -> float:
+def listing_bytes(z: SceneSizes) -> float:
     """As pairs are listed anew: the old list without forces (55 p), the new one with the arrays it is sorted by.
 
     These are the pairs and their history (51 p), sorted (24 p) with places and owners (24 p), the order of the ends
@@ -185,7 +197,7 @@ def listing_bytes(z: Sizes) -> float:
     return (55 + 51 + 24 + 24 + 24) * pairs + 37 * places + 28 * z.slots + 8 * z.disks + rows
 
 
-def export_bytes(case: DiskCase, z: Sizes) -> float:
+def export_bytes(case: DiskCase, z: SceneSizes) -> float:
     """Of a snapshot as a file for ParaView, when the scene is gone.
 
     Particles and fields as read (84 n), points and vertices with offsets and types (52 n), fields in single precision
@@ -196,7 +208,7 @@ def export_bytes(case: DiskCase, z: Sizes) -> float:
     return (84 + 52 + 72 + 80 + more) * z.disks if case.output.snapshots else 0.0
 
 
-def stress_bytes(z: Sizes) -> float:
+def stress_bytes(z: SceneSizes) -> float:
     """Of stresses: displacements in slots, moments and their quotient (3, n), and a piece of the pairs.
 
     For each of its pairs, their constants (12) and 15 numbers of places, vectors, forces and products.
@@ -204,7 +216,7 @@ def stress_bytes(z: Sizes) -> float:
     return 24 * z.slots + 48 * z.disks + 27 * 8 * min(PIECE, _pairs(z)[1])
 
 
-def checkpoint_bytes(z: Sizes, *, history: bool) -> float:
+def checkpoint_bytes(z: SceneSizes, *, history: bool) -> float:
     """Of a checkpoint: displacements and velocities of disks and nodes (48 n), columns of pairs with their forces.
 
     The columns are numbers, types, images and states (12 p), shear, slip and step (24 p), and forces (32 p).
@@ -212,9 +224,9 @@ def checkpoint_bytes(z: Sizes, *, history: bool) -> float:
     return 48 * (z.disks + z.moving - z.slots) + (68 * _pairs(z)[0] if history else 0.0)
 
 
-def _run_bytes(case: DiskCase, whole: Sizes, z: Sizes) -> float:
+def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:
     """Motion, ledger and record of the stepped scene, its pairs, and the fields of a snapshot of the whole one."""
-    moving = motion_bytes(z.moving) + ledger_bytes(z.moving) + record_bytes(len(case.monitor), 256, 6, z.supported)
+    moving = motion_bytes(z.moving) + ledger_bytes(z.moving) + record_bytes(z.probes, 256, 6, z.supported)
     moving += 8 * z.moving * case.output.peaks
     snapshot = 48.0 * whole.disks
     if not _has_history(case):
@@ -236,14 +248,14 @@ def _run_bytes(case: DiskCase, whole: Sizes, z: Sizes) -> float:
     return moving + kept + pairs + steady + settled
 
 
-def _settling_bytes(case: DiskCase, z: Sizes) -> float:
+def _settling_bytes(case: DiskCase, z: SceneSizes) -> float:
     """Of a static stage: masses of its own, pairs under any law, and at its end loads, forces and stresses."""
     loads = 24 * (3 * z.disks + z.slots)  # those of the case and of the stage, also in slots, and those of contacts
     moving = motion_bytes(z.slots) + pairs_bytes(z) + loads + stress_bytes(z)
     return 24 * z.disks + max(listing_bytes(z), moving + record_bytes(0, 256, 6, z.supported))
 
 
-def _pairs(z: Sizes) -> tuple[float, float]:
+def _pairs(z: SceneSizes) -> tuple[float, float]:
     """Numbers of listed pairs and of places for them."""
     pairs = NEAR * z.contacts
     return pairs, pairs * z.slots / z.disks

@@ -25,12 +25,16 @@ from dembound.disks.surroundings import Surroundings
 from dembound.disks.wave_front import INDEX
 from dembound.errors import CaseError
 from dembound.motion.between import Between
+from dembound.outside.interpolation import interpolation, slopes
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, nearest_in_column
 from dembound.packings.tiling import Assembly
 
 Monitors = tuple[dict[str, int], dict[str, Between]]
 """Name -> node, and name -> place of those in a continuum."""
+
+DIGITS = 1e-9
+"""Part of the last digit of a place by which a limit may be missed."""
 
 
 def monitors_of(
@@ -128,11 +132,22 @@ class _Around:
             if (x, y) != monitor.position:
                 below = monitor.position[1] < self._lowest
                 where = "below the ground, where incident motion is not known" if below else "in the layer that absorbs"
+                x, y = self._rounded(monitor.position, np.array([x, y]))
                 nearest = f"the nearest place allowed is ({x:.10g}, {y:.10g}) m"
                 problems.append(f"monitor[{number}, {monitor.name}].position: lies {where}; {nearest}")
         if problems:
             raise CaseError(problems)
         return [each for each, beyond in zip(monitors, self.outside.is_beyond(places), strict=True) if beyond]
+
+    def _rounded(self, position: tuple[float, float], allowed: np.ndarray) -> np.ndarray:
+        """The nearest place (2,) m allowed in place of a position (m), in numbers of few digits, so beyond the limit.
+
+        They are multiples of a power of ten below a tenth of the elements.
+        """
+        element = float(self.outside.body.mesh.element_sizes.min())
+        unit = 10.0 ** (np.floor(np.log10(element)) - 1)
+        way = np.sign(np.subtract(allowed, position))
+        return np.where(way == 0.0, allowed, way * np.ceil(way * allowed / unit - DIGITS) * unit + 0.0)  # no -0
 
     def disk_at(self, position: tuple[float, float]) -> tuple[np.ndarray, int]:
         """Place (2,) m, and number in the brick, of the disk nearest to a position (m).
@@ -157,12 +172,12 @@ def _in_continuum(
 ) -> Between:
     """The motion of a disk of the brick, `kind`, at a place (2,) m of a continuum; twin : its twin's number."""
     mesh = outside.body.mesh
-    interpolation, slopes = mesh.interpolation(place[None]), mesh.slopes(place[None])[:, 0]
-    share = np.zeros((slopes.shape[1], 3, 3))
-    share[:, [0, 1], [0, 1]] = interpolation.weight[0, :, None]
+    at, slope = interpolation(mesh, place[None]), slopes(mesh, place[None])[:, 0]
+    share = np.zeros((slope.shape[1], 3, 3))
+    share[:, [0, 1], [0, 1]] = at.weight[0, :, None]
     for component in (0, 1):
-        share[:, :, component] += (ground.continuum.corrector[:, kind, INDEX[component]] @ slopes).T
-    node = outside.first + interpolation.node[0]
+        share[:, :, component] += (ground.continuum.corrector[:, kind, INDEX[component]] @ slope).T
+    node = outside.first + at.node[0]
     if twin is not None:
         node, share = np.append(node, twin), np.concatenate([share, np.eye(3)[None]])
     return Between(place, node, share)

@@ -11,13 +11,14 @@ import numpy as np
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.free_surface import inset
-from dembound.disks.outside_settings import Box, Settings, least_element, mesh_of, settings_of
+from dembound.disks.outside_settings import Settings, least_element, mesh_of, settings_of
 from dembound.disks.packed_material import PackedMaterial
 from dembound.errors import CaseError
 from dembound.outside.layer import LONG_WAVES
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import WHOLE, Mesh
 from dembound.packings.tiling import Assembly
+from dembound.table import Box
 
 NARROW = 2.0
 """Width, in elements, up to which waves only run straight away from a periodic body."""
@@ -26,7 +27,7 @@ AT = (0, 2, 1, 3)
 """Where the edges of the sides are in a box, in the order of `SIDES`."""
 
 
-class Sizes(NamedTuple):
+class ElementSizes(NamedTuple):
     """Sizes of the elements round a body.
 
     From a body that is periodic and narrow, no wider than `NARROW` elements or half of the shortest wave, waves run
@@ -51,7 +52,7 @@ class Sizes(NamedTuple):
         body: Assembly,
         sides: Sequence[str],
         periodic: tuple[bool, bool],
-    ) -> Sizes:
+    ) -> ElementSizes:
         """Those of a body with a continuum beyond some sides.
 
         Raises CaseError if no size is given and nothing in the case makes waves.
@@ -65,7 +66,8 @@ class Sizes(NamedTuple):
             if not case.outside.element:  # lower ones would only shorten the step
                 settings = settings._replace(element=max(0.5 * largest, min(largest, 2.0 * least)))
         box = np.where(narrow, np.maximum(extent, least), extent)
-        width, height = (side if one else settings.side(side) for side, one in zip(box.tolist(), narrow, strict=True))
+        each = settings.sides(*box.tolist()) if not any(periodic) else [settings.side(side) for side in box.tolist()]
+        width, height = (side if one else own for side, own, one in zip(box.tolist(), each, narrow, strict=True))
         across, up = narrow.tolist()
         return cls(settings, box, (width, height), (across, up))
 
@@ -87,7 +89,9 @@ class Rim(NamedTuple):
     massless: dict[str, float]
 
     @classmethod
-    def of(cls, case: DiskCase, ground: PackedMaterial, body: Assembly, sides: Sequence[str], size: Sizes) -> Rim:
+    def of(
+        cls, case: DiskCase, ground: PackedMaterial, body: Assembly, sides: Sequence[str], size: ElementSizes
+    ) -> Rim:
         """That of a body with a continuum beyond some sides.
 
         Raises CaseError if no element of the least useful height fits between a body and the surface above it.
@@ -109,6 +113,40 @@ class Rim(NamedTuple):
             massless["top"] = mass[3] + gap - surface
         left, bottom, right, top = box
         return cls((left, bottom, right, top), surface, skins, massless)
+
+
+class Outline(NamedTuple):
+    """The continuum beyond some sides of a body, before anything is tied to it.
+
+    sides : of the body, with a continuum beyond. size : of its elements. rim : where it begins and ends. mesh : its
+    elements, up to the free surface of the ground.
+    """
+
+    sides: tuple[str, ...]
+    size: ElementSizes
+    rim: Rim
+    mesh: Mesh
+
+    @classmethod
+    def of(
+        cls,
+        case: DiskCase,
+        ground: PackedMaterial,
+        body: Assembly,
+        sides: Sequence[str],
+        periodic: tuple[bool, bool],
+    ) -> Outline:
+        """That of a body which is periodic along some axes.
+
+        Raises CaseError for settings with which there is no mesh.
+        """
+        size = ElementSizes.of(case, ground, body, sides, periodic)
+        rim = Rim.of(case, ground, body, sides, size)
+        mirrors = [side for side in SIDES if case.side(side).is_mirror and not periodic[normal_axis(side)]]
+        mesh = mesh_of(
+            size.settings, rim.box, sides, size.element, surface=rim.surface, periodic=periodic, mirrors=mirrors
+        )
+        return cls(tuple(sides), size, rim, mesh)
 
 
 def _gap_above(case: DiskCase, body: Assembly) -> float:
@@ -133,19 +171,6 @@ def medium_of(ground: PackedMaterial) -> Medium:
     """The continuum that a packing is equivalent to, with all six constants."""
     c = ground.material_tensor
     return Medium(ground.density, c[0, 0], c[1, 1], c[0, 1], c[2, 2], c[0, 2], c[1, 2])
-
-
-def mesh_beyond(
-    case: DiskCase, ground: PackedMaterial, body: Assembly, sides: Sequence[str], periodic: tuple[bool, bool]
-) -> Mesh:
-    """The elements beyond some sides of a body, up to the free surface of the ground.
-
-    Raises CaseError for settings with which there is no mesh.
-    """
-    size = Sizes.of(case, ground, body, sides, periodic)
-    rim = Rim.of(case, ground, body, sides, size)
-    mirrors = [side for side in SIDES if case.side(side).is_mirror and not periodic[normal_axis(side)]]
-    return mesh_of(size.settings, rim.box, sides, size.element, surface=rim.surface, periodic=periodic, mirrors=mirrors)
 
 
 def mass_extent(ground: PackedMaterial, body: Assembly) -> np.ndarray:

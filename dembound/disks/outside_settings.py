@@ -16,9 +16,14 @@ from dembound.outside.choice import Signal
 from dembound.outside.layer import Absorption
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
+from dembound.table import Box
 from dembound.waves import Constant
 
-Box = tuple[float, float, float, float]
+FLAT = 5.0
+"""Length of ground over its height from which on elements are about as wide as high.
+
+Elements twice as wide as high amplify noise in ground 9 times as wide as high, with ν = 0.25, not in ground 5 times so.
+"""
 
 MOST_ALONG = 100_000
 """Largest number of elements along a side."""
@@ -55,6 +60,17 @@ class Settings(NamedTuple):
             count = min(count, max(math.floor(length / self.least + ROUNDING), 1))
         return length / count
 
+    def sides(self, width: float, height: float) -> tuple[float, float]:
+        """Width and height (m) of elements, a whole number of which are a width and height (m).
+
+        In flat ground they are about as wide as high: layers of elements longer than deep amplify noise there.
+        """
+        wide, high = self.side(width), self.side(height)
+        if max(width, height) <= FLAT * min(width, height):
+            return wide, high
+        shorter = self._replace(element=min(wide, high))
+        return shorter.side(width), shorter.side(height)
+
 
 def settings_of(case: DiskCase, medium: Medium, diameter: float, box: Box, sides: Sequence[str]) -> Settings:
     """Those of a case for the continuum on some sides of a box (left, bottom, right, top; m).
@@ -85,16 +101,16 @@ def settings_of(case: DiskCase, medium: Medium, diameter: float, box: Box, sides
 class Buried(NamedTuple):
     """A hole or force beside a side: its depth below the free surface and distance from the side, m.
 
-    width : of the body, m.
+    size : width and height of the body, m.
     """
 
     depth: float
     beside: float
-    width: float
+    size: tuple[float, float]
 
     def error(self, settings: Settings, medium: Medium, margin: int) -> float:
         """Error of velocities of what the surface sends back along layers beyond so many elements."""
-        beyond = (margin + choice.WITHIN * settings.layers) * settings.side(self.width)
+        beyond = (margin + choice.WITHIN * settings.layers) * settings.sides(*self.size)[0]
         speeds = choice.slowest(medium) / fastest(medium)
         return choice.grazing_error(self.depth, speeds, settings.absorption.reflection, self.beside + beyond)
 
@@ -106,24 +122,25 @@ def buried(case: DiskCase, box: Box, sides: Sequence[str]) -> list[Buried]:
         return []
     places = [0.5 * (low + high) for low, high in extents(case)]
     edges = [box[2 * (side == "right")] for side in sides if normal_axis(side) == 0]
-    return [Buried(surface - y, abs(x - edge), box[2] - box[0]) for x, y in places for edge in edges if y < surface]
+    size = box[2] - box[0], box[3] - box[1]
+    return [Buried(surface - y, abs(x - edge), size) for x, y in places for edge in edges if y < surface]
 
 
 def margin_below_surface(settings: Settings, source: Buried, medium: Medium, accuracy: float) -> int:
     """Number of elements beside a box with which layers absorb what comes back from the free surface; at least 1."""
     speeds = choice.slowest(medium) / fastest(medium)
     offset = choice.offset(source.depth, speeds, settings.absorption.reflection, accuracy)
-    elements = (offset - source.beside) / settings.side(source.width) - choice.WITHIN * settings.layers
+    elements = (offset - source.beside) / settings.sides(*source.size)[0] - choice.WITHIN * settings.layers
     return max(math.ceil(elements - ROUNDING), 1)
 
 
 def _margin(settings: Settings, box: Box, sides: Sequence[str], inner: float) -> int:
     """Number of elements beside a box, with which a length (m) lies within the layers along one axis; at least 1."""
-    wanted = []
+    wanted, element = [], settings.sides(box[2] - box[0], box[3] - box[1])
     for axis in (0, 1):
         length, beyond = box[2 + axis] - box[axis], sum(normal_axis(side) == axis for side in sides)
         if beyond:
-            wanted.append(math.ceil((inner - length) / (beyond * settings.side(length)) - ROUNDING))
+            wanted.append(math.ceil((inner - length) / (beyond * element[axis]) - ROUNDING))
     return max(min(wanted), 1)
 
 
@@ -145,7 +162,7 @@ def mesh_of(
     Raises CaseError for more elements along a side than anything needs.
     """
     width, height = box[2] - box[0], box[3] - box[1]
-    element = element or (settings.side(width), settings.side(height))
+    element = element or settings.sides(width, height)
     most = max(width / element[0], height / element[1], ((surface or box[3]) - box[3]) / element[1])
     if most > MOST_ALONG:
         raise CaseError([f"outside.element: makes {most:.3g} elements along a side, must make at most {MOST_ALONG:,}"])

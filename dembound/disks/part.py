@@ -5,13 +5,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dembound.disks.contacts import ContactList, plain_contacts
+from dembound.disks.contact_arrays import plain_contacts
+from dembound.disks.contacts import ContactList
 from dembound.disks.layout import Rows, with_special
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.rows import elastic_constants
 from dembound.kernels import bonded, bonded_lanes, elastic, elastic_lanes  # noqa: F401  # they register their laws
 from dembound.kernels.common import CHUNKS, LIST_ENDS
-from dembound.kernels.contacts import REFERENCE, SLID, strain_energy
+from dembound.kernels.contact_measures import strain_energy
+from dembound.kernels.contacts import REFERENCE, SLID
 from dembound.kernels.tables import Bonded, Contacts, LaneBonded, LaneRows, Links, Seam, SeamEnds, WatchedLinks
 from dembound.motion.cracks import NO_CRACKS, Cracks
 from dembound.motion.layout import Layout

@@ -18,7 +18,7 @@ import numpy as np
 
 from dembound.boundaries import SIDES
 from dembound.disks.elastic_again import never_elastic_again, settled_refused
-from dembound.disks.half import halves
+from dembound.disks.halves import halves
 from dembound.disks.one_row import one_row
 from dembound.disks.scene import DiskScene
 from dembound.disks.smaller import (

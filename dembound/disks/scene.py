@@ -11,26 +11,24 @@ from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Su
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.body import DiskBody, parts_of
-from dembound.disks.contacts import plain_contacts
-from dembound.disks.edges import edge_without, edges_beside_column, find_edges
+from dembound.disks.contact_arrays import plain_contacts
+from dembound.disks.edges import edges_beside_column, find_edges
 from dembound.disks.ground_waves import ground_waves
+from dembound.disks.hollowed import hollowed
 from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive
-from dembound.disks.memory import Sizes, must_fit_here, run_bytes
+from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
 from dembound.disks.oblique import let_in
-from dembound.disks.outside_mesh import mesh_beyond
+from dembound.disks.outside_mesh import Outline
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.stress import particle_stress
 from dembound.disks.surroundings import Surroundings, surroundings_of
 from dembound.disks.system import DiskSystem
-from dembound.errors import CaseError
-from dembound.holes import Hole
 from dembound.kernels.contacts import REFERENCE
 from dembound.motion.layout import Layout
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, with_column
-from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly, tile
 
 UPRIGHT = (True, False)
@@ -67,8 +65,8 @@ class DiskScene(DiskBody):
     @property
     def largest_memory(self) -> float:
         """Largest memory (bytes) of a run of it, or of the scene it is stepped in place of."""
-        before = None if self.before is None else Sizes.of(self.before)
-        return run_bytes(self.case, [Sizes.of(scene) for scene in self.chain], before)
+        before = None if self.before is None else SceneSizes.of(self.before)
+        return run_bytes(self.case, [SceneSizes.of(scene) for scene in self.chain], before)
 
     @property
     def chain(self) -> "tuple[DiskScene, ...]":
@@ -88,11 +86,11 @@ def build(case: DiskCase) -> DiskScene:
     edges = find_edges(body, case.periodic, case.packing.regular_sides)
     first, later = (tuple(hole for hole in case.hole if hole.stage == stage) for stage in ("before", "after"))
     if first:
-        body, edges, _ = _hollowed(case, ground.brick, body, edges, first)
+        body, edges, _ = hollowed(case, ground.brick, body, edges, first)
     scene = _scene(case, ground, body, edges)
     if not later:
         return scene
-    body, edges, kept = _hollowed(case, ground.brick, body, edges, later)
+    body, edges, kept = hollowed(case, ground.brick, body, edges, later)
     column = np.arange(0 if scene.seam is None else scene.seam.count)
     kept = np.concatenate([column, len(column) + kept])
     return replace(_scene(case, ground, body, edges), before=scene, kept=kept)
@@ -101,9 +99,9 @@ def build(case: DiskCase) -> DiskScene:
 def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Mapping[str, Edge]) -> DiskScene:
     """The scene of a body and its sides, with a free-field column and a continuum if the case has such sides."""
     body, seam, beyond = assembly, None, case.outside_sides
-    mesh = mesh_beyond(case, ground, body, beyond, case.periodic) if beyond else None
+    outline = Outline.of(case, ground, body, beyond, case.periodic) if beyond else None
     if sides := case.column_sides:
-        left = 0.0 if mesh is None else mesh.origin[0]
+        left = 0.0 if outline is None else outline.mesh.origin[0]
         assembly, seam = with_column(ground.brick, body, sides, case.column_rows, left)
         edges = edges_beside_column(assembly, seam, edges)
     assembly, seam = with_half_contacts(case, ground.brick, assembly, seam, edges)
@@ -111,9 +109,9 @@ def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Ma
     edges = with_shares(count, edges, case.boundary)
     slots, rows = lay_out(assembly, ground, parts_of(count, seam), mass_factor(count, edges, case.boundary))
     outside = None
-    if mesh is not None:
+    if outline is not None:
         first, twin = (0, None) if seam is None else (seam.count, seam.twin)
-        outside = surroundings_of(case, ground, body, mesh, slots, beyond, first, twin)
+        outside = surroundings_of(ground, body, outline, slots, first, twin)
     foot = None
     if seam is not None and "bottom" in beyond:
         foot = _foot(case, ground, assembly, seam, slots if outside is None else outside.laid_out(slots))
@@ -139,9 +137,8 @@ def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Ma
 
 def _foot(case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam, layout: Layout) -> Surroundings:
     """The continuum below the free-field column, which is as wide; layout : of all nodes before its own."""
-    column, sides = assembly.part(slice(0, seam.count)), ("bottom",)
-    mesh = mesh_beyond(case, ground, column, sides, UPRIGHT)
-    return surroundings_of(case, ground, column, mesh, layout, sides)
+    column = assembly.part(slice(0, seam.count))
+    return surroundings_of(ground, column, Outline.of(case, ground, column, ("bottom",), UPRIGHT), layout)
 
 
 def column_alone(scene: DiskScene) -> DiskScene:
@@ -167,26 +164,6 @@ def ground_of(case: DiskCase) -> PackedMaterial:
     """The case's brick, packed or from the cache, with its material."""
     brick = case.packing.pack(nominal_moduli(case.material).emod)
     return make_packed_material(brick, case.material, case.motion.held)
-
-
-def _hollowed(
-    case: DiskCase, brick: Brick, body: Assembly, edges: Mapping[str, Edge], holes: tuple[Hole, ...]
-) -> tuple[Assembly, dict[str, Edge], np.ndarray]:
-    """A body and its sides without the particles in holes, and the indices (m,) of the remaining particles.
-
-    The surface of a hole is free: no particles are added to a side.
-    """
-    removed = np.logical_or.reduce([hole.contains(body.positions) for hole in holes])
-    left, kept = body.without(removed)
-    if sides := case.free_field_sides:
-        seam = with_column(brick, body, sides, case.column_rows)[1]
-        if not np.isin(seam.node - seam.count, kept).all():
-            raise CaseError([f"hole: reaches the free field of {' or '.join(sides)}, which has no hole"])
-    if sides := case.outside_sides:
-        before, after = (len(cut_contacts(brick, each, sides, case.periodic).node) for each in (body, left))
-        if after < before:
-            raise CaseError([f"hole: reaches the continuum of {' or '.join(sides)}, which has no hole"])
-    return left, {side: edge_without(edge, kept) for side, edge in edges.items()}, kept
 
 
 def with_boundaries(scene: DiskScene, case: DiskCase) -> DiskScene:

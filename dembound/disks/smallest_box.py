@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.disks import step_cost
-from dembound.disks.continuum_facts import in_percent
 from dembound.disks.outside_mesh import medium_of
-from dembound.disks.outside_settings import Box, extents, least_element, mesh_of, settings_of, signals_of
+from dembound.disks.outside_settings import extents, least_element, mesh_of, settings_of, signals_of
+from dembound.disks.packing_errors import in_percent
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.outside import choice
 from dembound.outside.memory import GridSizes
+from dembound.table import Box
 
 WORTH = 0.8
 """Part of a scene's cost above which a box is no gain."""
@@ -29,7 +30,7 @@ BAND = 4.0
 """Least distance of holes and loads from the sides of a box, in diameters: cracks near ties are not followed."""
 
 
-class Trial(NamedTuple):
+class Candidate(NamedTuple):
     """A box: its rectangle (m), its disks and those of its free-field column, nodes, and nanoseconds of a step.
 
     error : of velocities, expected of its elements.
@@ -42,11 +43,40 @@ class Trial(NamedTuple):
     error: float
 
 
-def smallest_box(scene: DiskScene) -> str:
-    """The cheapest box of disks in place of a scene, in words; empty if there is none, or it would gain little."""
+def box_facts(scene: DiskScene) -> dict[str, str]:
+    """The cheapest box of disks in place of a scene, and its tables; none if it would gain little."""
     best = cheapest_box(scene) if may_be_boxed(scene.case) else None
     if best is None:
-        return ""
+        return {}
+    return {"smaller box": _in_words(scene, best), "its tables": _as_toml(box_tables(scene.case, best.box))}
+
+
+def box_tables(case: DiskCase, box: Box) -> dict[str, dict[str, Any]]:
+    """The keys of a case with disks in a box (m) only, by table; those of the packing that it keeps are left out."""
+    left, bottom, right, top = box
+    sides = SIDES if top < case.size[1] else SIDES[:3]
+    outside = {
+        f"boundary.{side}": {"type": "outside"}
+        | {f"wave_{motion}": name for motion, name in case.side(side).waves.items()}
+        for side in sides
+    }
+    packing = {"size": [right - left, top - bottom], "origin": [left, bottom]}
+    return {"ground": {"size": list(case.size)}, "packing": packing, **outside}
+
+
+def _as_toml(tables: Mapping[str, Mapping[str, Any]]) -> str:
+    """Tables of texts and places as lines of a case."""
+    lines = []
+    for table, keys in tables.items():
+        lines.append(f"[{table}]")
+        for key, value in keys.items():
+            shown = f'"{value}"' if isinstance(value, str) else "[" + ", ".join(f"{each:.10g}" for each in value) + "]"
+            lines.append(f"{key} = {shown}")
+    return "\n".join(lines)
+
+
+def _in_words(scene: DiskScene, best: Candidate) -> str:
+    """A box, what it holds, what it saves, and its error."""
     left, bottom, right, top = best.box
     share, error = best.cost / _cost(scene), in_percent(best.error)
     return (
@@ -56,9 +86,9 @@ def smallest_box(scene: DiskScene) -> str:
     )
 
 
-def cheapest_box(scene: DiskScene) -> Trial | None:
+def cheapest_box(scene: DiskScene) -> Candidate | None:
     """The cheapest box of disks in place of a scene that `may_be_boxed`; None if it would gain little."""
-    best = min(_trials(scene), key=lambda trial: trial.cost, default=None)
+    best = min(_candidates(scene), key=lambda each: each.cost, default=None)
     return None if best is None or best.cost > WORTH * _cost(scene) else best
 
 
@@ -78,7 +108,7 @@ def may_be_boxed(case: DiskCase) -> bool:
     return plain and beyond and at_top and from_below and bool(signals_of(case)) and any(True for _ in extents(case))
 
 
-def _trials(scene: DiskScene) -> Iterator[Trial]:
+def _candidates(scene: DiskScene) -> Iterator[Candidate]:
     """Boxes with elements of different sizes round them."""
     case, medium, diameter = scene.case, medium_of(scene.ground), scene.ground.brick.mean_diameter
     order, accuracy = case.outside.order, case.outside.accuracy
@@ -89,7 +119,7 @@ def _trials(scene: DiskScene) -> Iterator[Trial]:
         if box[0] >= box[2] or box[1] >= box[3]:  # all that makes waves is on the continuum
             continue
         try:
-            yield _trial(scene, box)
+            yield _candidate(scene, box)
         except CaseError:  # no mesh
             continue
 
@@ -108,7 +138,7 @@ def _round(scene: DiskScene, clearance: float) -> Box:
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
 
-def _trial(scene: DiskScene, box: Box) -> Trial:
+def _candidate(scene: DiskScene, box: Box) -> Candidate:
     """A box with its continuum and column."""
     case, ground = scene.case, scene.ground
     below = box[3] < case.size[1]
@@ -124,4 +154,4 @@ def _trial(scene: DiskScene, box: Box) -> Trial:
     beyond = step_cost.of_continuum(grid.nodes, grid.nodes * grid.absorbing / grid.elements, ties)
     cost = step_cost.of_disk(scene) * (inside + column) + sum(beyond.values())
     error = choice.element_error(signals_of(case), medium_of(ground), settings.order, settings.element)
-    return Trial(box, inside + column, grid.nodes, cost, error)
+    return Candidate(box, inside + column, grid.nodes, cost, error)

@@ -12,6 +12,7 @@ from dembound.disks.outside_mesh import medium_of
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.wave_front import front_of, slowest_speed
 from dembound.motion.paths import FULL, Source
+from dembound.table import Box
 
 
 def sources_of(case: DiskCase, ground: PackedMaterial) -> list[Source]:
@@ -58,7 +59,7 @@ def _loads(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
             yield Source(place, 0.0, np.inf, slowest, is_local=place != FULL)
 
 
-def _place_of(load: Load) -> tuple[float, float, float, float]:
+def _place_of(load: Load) -> Box:
     """The rectangle that a load acts on."""
     if load.position is not None:
         return *load.position, *load.position

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from dembound.disks.memory import Sizes, checkpoint_bytes
+from dembound.disks.memory import SceneSizes, checkpoint_bytes
 from dembound.motion.storage import POINT, Storage, mesh_bytes
 from dembound.outside.memory import memories_bytes
 
@@ -24,7 +24,7 @@ NODE_SNAPSHOT = 72.0 + mesh_bytes(1.0, NODE_CHANGING + 1.0, 1.0, 4, 0.0) + POINT
 
 def storage_of(scene: DiskScene) -> Storage:
     """Bytes on disk of a scene."""
-    sizes, output = Sizes.of(scene), scene.case.output
+    sizes, output = SceneSizes.of(scene), scene.case.output
     own = 4.0 * scene.has_history + 24.0 * output.stress
     record = 48.0 + 8.0 * scene.has_history + 24.0 * output.stress
     vtu = mesh_bytes(1.0, CHANGING + CONSTANT + own + 4.0 * output.peaks, 1.0, 1, 0.0)
@@ -38,7 +38,7 @@ def storage_of(scene: DiskScene) -> Storage:
     return Storage(header, snapshot, _checkpoint_bytes(scene, sizes))
 
 
-def _checkpoint_bytes(scene: DiskScene, sizes: Sizes) -> float:
+def _checkpoint_bytes(scene: DiskScene, sizes: SceneSizes) -> float:
     """Of a checkpoint: besides motion and pairs, the datum, both loads, and speeds (104 n); memories of a continuum.
 
     Under a history-dependent law also the velocity at its change, the state at the last entry of the ledger and origins

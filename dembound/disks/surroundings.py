@@ -2,33 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.boundaries.support import Edge, Incident, SupportBuilder
-from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.outside import CONTINUUM
 from dembound.disks.free_surface import mass_of
 from dembound.disks.incident import IncidentForces
-from dembound.disks.outside_mesh import Rim, Sizes, box_of, mass_extent, medium_of
+from dembound.disks.outside_mesh import Outline, box_of, mass_extent, medium_of
 from dembound.disks.outside_settings import Settings
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.wall import CutBonds, Wall, lag_of
 from dembound.errors import CaseError
 from dembound.kernels.lanes import LANES
-from dembound.kernels.tables import Repeats, WallTies
+from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import tie_forces
 from dembound.motion.layout import Layout
-from dembound.motion.part import Tie
 from dembound.outside.body import GridBody
-from dembound.outside.mesh import Mesh
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly
+from dembound.table import Box
 
 ROUNDING = 1e-9
 """Distance over the size of the mesh up to which places are the same."""
@@ -52,7 +49,7 @@ class Surroundings:
     body: GridBody
     wall: Wall
     first: int
-    box: tuple[float, float, float, float]
+    box: Box
     skins: Mapping[str, float]
     twin: np.ndarray | None = None
     surface_mass: float = 0.0
@@ -179,8 +176,9 @@ class Surroundings:
         builder.add(np.union1d(self.first + self.wall.nodes, others), 2, prescribed=True)
 
     def incident(self, waves: tuple[Incident | None, Incident | None]) -> IncidentForces:
-        """Forces by which waves along x and y (None for none) enter from below."""
-        return IncidentForces.of(self.wall, self.body.medium, self.box[1], waves)
+        """Forces by which waves along x and y (None for none) enter from below; above, the continuum has them, too."""
+        below = np.flatnonzero(self.wall.bonds.side == SIDES.index("bottom"))
+        return IncidentForces.of(self.wall.only(below), self.body.medium, self.box[1], waves)
 
     def adds_forces(self, layout: Layout) -> Callable[[np.ndarray, np.ndarray, float], None]:
         """A function of displacements u (3, slots), forces (3, slots) and a factor.
@@ -200,70 +198,22 @@ class Surroundings:
         return add
 
 
-class WallTie(Tie):
-    """The half bonds between the disks and the continuum.
-
-    Parameters
-    ----------
-    surroundings : of the body. layout : the slots of all nodes of the scene.
-    """
-
-    def __init__(self, surroundings: Surroundings, layout: Layout) -> None:
-        self._surroundings, self._layout = surroundings, layout
-        self._last: tuple[np.ndarray, WallTies] | None = None
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """Disks and nodes of the continuum (k,) that it acts on, ascending."""
-        return self._surroundings.tied
-
-    def bundle(self, supported: np.ndarray) -> NamedTuple:
-        """Its arrays for the kernels."""
-        if self._last is None or self._last[0] is not supported:  # it is asked for at every return of the loop
-            self._last = supported, self._surroundings.ties(self._layout, supported)
-        return self._last[1]
-
-
-class TwinTie(Tie):
-    """Repeats the forces that earlier ties exert on the twins of some disks on these disks.
-
-    Parameters
-    ----------
-    disks : (k,) ascending. twin : (n,) twin of each of the scene's nodes.
-    """
-
-    def __init__(self, disks: np.ndarray, twin: np.ndarray) -> None:
-        self._disks, self._twin = disks, twin
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """The disks (k,)."""
-        return self._disks
-
-    def bundle(self, supported: np.ndarray) -> NamedTuple:
-        """Its arrays for the kernels."""
-        return Repeats(*(np.searchsorted(supported, nodes) for nodes in (self._twin[self._disks], self._disks)))
-
-
 def surroundings_of(
-    case: DiskCase,
     ground: PackedMaterial,
     body: Assembly,
-    mesh: Mesh,
+    outline: Outline,
     layout: Layout,
-    sides: Sequence[str],
     first: int = 0,
     twin: np.ndarray | None = None,
 ) -> Surroundings:
-    """The continuum on a mesh beyond some sides of a body.
+    """The continuum with an outline round a body.
 
     layout : of the nodes before its own, of which the body's disks are those from number `first` on. twin : (m,) of
     each disk that in the free-field column; None without a column.
 
     Raises CaseError if the packing's sides cut no bonds.
     """
-    size = Sizes.of(case, ground, body, sides, mesh.periodic)
-    rim = Rim.of(case, ground, body, sides, size)
+    sides, size, rim, mesh = outline
     cut = cut_contacts(ground.brick, body, sides, mesh.periodic)
     if len(cut.node) == 0:
         raise CaseError([f"boundary.{sides[0]}: cuts no bonds, so nothing can be tied to the continuum"])
@@ -278,6 +228,4 @@ def surroundings_of(
     bonds = CutBonds.of(ground, cut, body.positions).between(mesh.sides).numbered_from(first)
     wall = Wall.of(mesh, bonds, lag_of(ground, size.settings.damping), size.narrow)
     surface_mass = rim.massless.get("top", 0.0) * ground.density
-    return Surroundings(
-        tuple(sides), size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, twin, surface_mass
-    )
+    return Surroundings(sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, twin, surface_mass)

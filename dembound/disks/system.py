@@ -10,19 +10,20 @@ import numpy as np
 
 from dembound.disks.balance import Balance
 from dembound.disks.body import DiskBody
+from dembound.disks.contact_arrays import plain_contacts
 from dembound.disks.contact_forces import contact_columns, pieces
-from dembound.disks.contacts import ContactList, plain_contacts
+from dembound.disks.contacts import ContactList
+from dembound.disks.continuum_ties import grids, tied_nodes, walls
 from dembound.disks.elastic_again import elastic_again, never_elastic_again, settled_refused
 from dembound.disks.layout import with_supports
 from dembound.disks.near_ties import NearTies
 from dembound.disks.part import DiskPart, FreeFieldSeam
 from dembound.disks.rotation import turned_as_a_whole, turns_freely
 from dembound.disks.stress import part_stress
-from dembound.disks.surroundings import TwinTie, WallTie
 from dembound.kernels.common import BROKE, LAW_ENDS, LIST_ENDS
 from dembound.kernels.contacts import REFERENCE, UPDATED
 from dembound.kernels.follower import turn_forces
-from dembound.motion.part import System, Tie
+from dembound.motion.part import System
 from dembound.motion.state import Arrays, State, within
 from dembound.outside.part import GridPart
 
@@ -74,7 +75,7 @@ class DiskSystem(System):
         lists: Mapping[str, ContactList] = {}
         if scene.has_history:
             lists = scene.contact_lists() if start is None else start.contacts
-        supported = scene.layout.slot[np.union1d(scene.supports.node, _tied(scene))]
+        supported = scene.layout.slot[np.union1d(scene.supports.node, tied_nodes(scene))]
         parts = [
             DiskPart(
                 name, scene.ground, scene.assembly.part(nodes), nodes, with_supports(rows, supported), scene.layout,
@@ -85,7 +86,7 @@ class DiskSystem(System):
         ties = [] if scene.seam is None else [FreeFieldSeam(scene.seam, parts[0])]
         self.disk_parts, self._seams = tuple(parts), tuple(ties)
         super().__init__(
-            [*parts, *_grids(scene, time_step)], [*_walls(scene), *ties], scene.steady_load if load is None else load
+            [*parts, *grids(scene, time_step)], [*walls(scene), *ties], scene.steady_load if load is None else load
         )
         self.balance: Balance | None = None
         self.is_elastic_again = False
@@ -340,30 +341,3 @@ class DiskSystem(System):
         """Energy (J) stored in contacts and bonds less the work of steady and balancing forces since the start."""
         steady = float(np.sum(self.load * (state.displacement - state.datum)))
         return sum(self.stored(state.u)) - steady - self.balancing_work(state.u)
-
-
-def _tied(scene: DiskBody) -> np.ndarray:
-    """Nodes (k,) of a scene that ties act on."""
-    tied = [np.zeros(0, dtype=np.int64), *(each.tied for each in scene.continua), scene.on_foot]
-    if scene.seam is not None:
-        tied.append(scene.seam.node)
-    return np.concatenate(tied)
-
-
-def _grids(scene: DiskBody, time_step: float) -> list[GridPart]:
-    """The continua of a scene."""
-    return [
-        GridPart(each.body, time_step, name=name, first_node=each.first, supported=each.wall.nodes)
-        for each, name in ((scene.outside, "continuum"), (scene.foot, "foot"))
-        if each is not None
-    ]
-
-
-def _walls(scene: DiskBody) -> list[Tie]:
-    """Their ties, and those that repeat the forces of the column's foot on the body."""
-    walls: list[Tie] = [] if scene.outside is None else [WallTie(scene.outside, scene.layout)]
-    if scene.foot is not None:
-        assert scene.twin is not None
-        foot = WallTie(scene.foot, scene.layout)
-        walls = [foot, TwinTie(scene.on_foot, scene.twin), *walls]  # these forces are there before they are repeated
-    return walls

@@ -30,8 +30,12 @@ from dembound.disks.packed_material import PackedMaterial
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import WallTies
 from dembound.motion.layout import aligned_zeros
+from dembound.outside.interpolation import located
 from dembound.outside.mesh import Mesh
 from dembound.packings.cut import CutContacts
+
+ROUNDING = 1e-9
+"""Part of an element, arm or angle below which a length or rotation is rounding."""
 
 GRADIENT = ((0, 2), (3, 1))
 """The gradient ∂u_a/∂b of components a and axes b, by its number in `homogenise.GRADIENTS`."""
@@ -77,6 +81,9 @@ class CutBonds:
         corrector = _middle(own, other, arms, normal) + _uniform(0.5 * vectors - arms[0] * normal)
         stiffness = 2.0 * np.stack([law.normal[kind], law.shear[kind], law.bending[kind]])
         strained = _uniform(arms[0] * normal) + corrector - own
+        force = _forces(stiffness, normal, arms[0], strained, own[2])
+        if np.all(np.abs(force[2]) <= ROUNDING * stiffness[2]):
+            stiffness[2] = 0.0
         return cls(
             particle=cut.node,
             normal=normal,
@@ -86,7 +93,7 @@ class CutBonds:
             stiffness=stiffness,
             corrector=corrector,
             own=own,
-            force=_forces(stiffness, normal, arms[0], strained, own[2]),
+            force=force,
             side=cut.side,
         )
 
@@ -179,9 +186,10 @@ class Wall:
 
         The mean is for elements with less than a disk to each node, which single bonds would indent.
         """
-        element, local = mesh.located(bonds.point)
+        element, local = located(mesh, bonds.point)
         inside = np.clip(local, -1.0, 1.0)
         bonds = bonds.read_at(bonds.point + 0.5 * (inside - local) * mesh.element_sizes[element])
+        inside = np.where(1.0 - np.abs(inside) < ROUNDING, np.sign(inside), inside)
         order = np.argsort(element, kind="stable")
         ordered = {name: values[..., order] for name, values in vars(bonds).items() if name != "point"}
         return cls(CutBonds(**ordered, point=bonds.point[order]), mesh, element[order], inside[order], lag, mean)
@@ -199,8 +207,34 @@ class Wall:
 
     @cached_property
     def nodes(self) -> np.ndarray:
-        """(m,) the nodes of these elements, ascending."""
-        return np.unique(self.mesh.nodes[self.elements])
+        """(m,) the nodes that ties act on, ascending: of lattices those of the edges alone."""
+        return np.unique(self.mesh.nodes[self.elements][self._acts_on])
+
+    @cached_property
+    def _acts_on(self) -> np.ndarray:
+        """Whether ties act on the nodes of their elements, (e, N, N) by row and column."""
+        (along, along_slope), (up, up_slope) = ([each != 0.0 for each in pair] for pair in self._shapes)
+        xx, yy, xy, yx = np.any(self._corrector != 0.0, axis=0)
+        of_tie = up[:, :, None] & along[:, None, :]
+        of_tie |= (xx | yx)[:, None, None] & up[:, :, None] & along_slope[:, None, :]
+        of_tie |= (yy | xy)[:, None, None] & up_slope[:, :, None] & along[:, None, :]
+        acts: np.ndarray = np.zeros((len(self.elements), *of_tie.shape[1:]), dtype=bool)
+        np.logical_or.at(acts, np.searchsorted(self.elements, self.element), of_tie)
+        return acts
+
+    @cached_property
+    def _corrector(self) -> np.ndarray:
+        """Correctors (3, 4, t) of the bonds, without rounding, and without rotation where a bond does not bend."""
+        corrector = self.bonds.corrector * (self.bonds.stiffness != 0.0)[[0, 0, 2], None]
+        unit = np.ones((3, 1, len(self.bonds.arm)))
+        unit[:2] = self.bonds.arm
+        return np.where(np.abs(corrector) < ROUNDING * unit, 0.0, corrector)
+
+    @cached_property
+    def _shapes(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Along x and y: shape functions (t, N) and slopes at the points of the ties, see `_seen`."""
+        places, sizes = self.local.T, self.mesh.element_sizes[self.element].T
+        return [self._seen(at, size, mean) for at, size, mean in zip(places, sizes, self.mean, strict=True)]
 
     def ties(self, particle: np.ndarray, node: np.ndarray, line: np.ndarray, twin: np.ndarray | None) -> WallTies:
         """The arrays for the kernels.
@@ -208,7 +242,7 @@ class Wall:
         particle : (n,) slot of every disk of the body; node : (m,) that of every node of the mesh; line : (slots,) line
         of slots in the support table; twin : (n,) slot of every disk's twin in the free-field column, None for none.
         """
-        bonds, mesh, sizes = self.bonds, self.mesh, self.mesh.element_sizes[self.element]
+        bonds, mesh = self.bonds, self.mesh
         start, place = self._blocks
         lanes = LANES * int(start[-1])
 
@@ -223,10 +257,7 @@ class Wall:
             wide = laid(values)
             return np.ascontiguousarray(wide.reshape(len(wide), -1, LANES).swapaxes(0, 1)).ravel()
 
-        (along, along_slope), (up, up_slope) = (
-            [in_blocks(values.T) for values in self._seen(at, size, of_mean)]
-            for at, size, of_mean in zip(self.local.T, sizes.T, self.mean, strict=True)
-        )
+        (along, along_slope), (up, up_slope) = ([in_blocks(values.T) for values in pair] for pair in self._shapes)
         own = np.full(lanes, particle[bonds.particle[0]])
         own[place] = particle[bonds.particle]
         twins = np.full(lanes, -1)
@@ -238,6 +269,7 @@ class Wall:
             start=start,
             node=nodes,
             line=line[nodes],
+            reach=np.concatenate([_range(self._acts_on, axis) for axis in (1, 2)], axis=1),
             particle=own,
             particle_line=line[own],
             twin=twins,
@@ -245,7 +277,7 @@ class Wall:
             along_slope=along_slope,
             up=up,
             up_slope=up_slope,
-            corrector=in_blocks(bonds.corrector.reshape(12, -1)),
+            corrector=in_blocks(self._corrector.reshape(12, -1)),
             normal=laid(bonds.normal).ravel(),
             arm=laid(bonds.arm),
             stiffness=laid(bonds.stiffness).ravel(),
@@ -274,6 +306,12 @@ class Wall:
         many = np.diff(first)
         start = np.concatenate([[0], np.cumsum(-(-many // LANES))])
         return start, np.repeat(LANES * start[:-1] - first[:-1], many) + np.arange(len(self.element))
+
+
+def _range(acts: np.ndarray, across: int) -> np.ndarray:
+    """First number and the end (e, 2) of the columns (across = 1) or rows (2) of acts (e, N, N) in which it is true."""
+    any_of = np.any(acts, axis=across)
+    return np.stack([np.argmax(any_of, axis=1), acts.shape[1] - np.argmax(any_of[:, ::-1], axis=1)], axis=1)
 
 
 def lag_of(ground: PackedMaterial, damping: float) -> float:

@@ -61,10 +61,17 @@ def _steady_without_static(scene: DiskScene) -> Iterator[str]:
         return
     for load in scene.case.load:
         if load.wave is None:
-            yield (
-                f"load.{load.name}: is steady, and without [static] acts suddenly at t = 0; "
-                "viscous sides creep under it"
-            )
+            yield f"load.{load.name}: is steady, and without [static] acts suddenly at t = 0{_gives_way(scene, load)}"
+
+
+def _gives_way(scene: DiskScene, load: Load) -> str:
+    """What does not come to rest under a load that stays, in words."""
+    tables = scene.case.boundary.values()
+    if any(table.factors for table in tables):
+        return "; viscous sides creep under it"
+    if any(table.is_outside for table in tables) and load.position is None and load.region is None:
+        return "; the ground beyond the sides, of which nothing is held, moves under it as long as the run lasts"
+    return ""
 
 
 def _locked_in(scene: DiskScene) -> Iterator[str]:

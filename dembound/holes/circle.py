@@ -4,8 +4,8 @@ from typing import Literal, Self
 
 import numpy as np
 
-from dembound.holes.hole import Box, Hole
-from dembound.table import quantity, shifted_place
+from dembound.holes.hole import Hole
+from dembound.table import Box, quantity, shifted_place
 
 
 class Circle(Hole):

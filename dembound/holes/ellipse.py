@@ -5,8 +5,8 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from dembound.holes.hole import Box, Hole
-from dembound.table import quantity, shifted_place
+from dembound.holes.hole import Hole
+from dembound.table import Box, quantity, shifted_place
 
 Length = Annotated[float, Field(gt=0.0)]
 

@@ -5,9 +5,7 @@ from typing import Literal, Self
 
 import numpy as np
 
-from dembound.table import FileName, Table, quantity
-
-Box = tuple[float, float, float, float]
+from dembound.table import Box, FileName, Table, quantity
 
 
 class Hole(Table, ABC):

@@ -5,8 +5,8 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import field_validator
 
-from dembound.holes.hole import Box, Hole
-from dembound.table import quantity, shifted_box
+from dembound.holes.hole import Hole
+from dembound.table import Box, quantity, shifted_box
 
 
 class Rectangle(Hole):

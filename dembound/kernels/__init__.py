@@ -15,8 +15,8 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 
 def sources_digest(folder: Path) -> str:
-    """A short hash of the contents of the Python files in a folder."""
-    return hashlib.sha256(b"".join(path.read_bytes() for path in sorted(folder.glob("*.py")))).hexdigest()[:16]
+    """A short hash of the contents of the Python files in a folder and below."""
+    return hashlib.sha256(b"".join(path.read_bytes() for path in sorted(folder.rglob("*.py")))).hexdigest()[:16]
 
 
 def prune(folder: Path, keep: str, age: float = 7 * 86400.0) -> None:

@@ -10,7 +10,6 @@ import numpy as np
 from numba import njit, prange
 
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, largest
-from dembound.kernels.contacts import moved
 
 ACROSS = ((0, 0), (1, 0), (-1, 1), (0, 1), (1, 1))
 """Steps to a cell itself and to half of those that touch it."""
@@ -53,6 +52,20 @@ def _farthest_of(c, cells, boxes):
             if cells.start[other + 1] > cells.start[other]:
                 far = max(far, _span(boxes[c], boxes[other]))
     return far
+
+
+@njit(**PARALLEL)
+def moved(u, begin, origin):
+    """Largest displacement (m) of the n particles from `begin` on since the displacements origin (2, n)."""
+    n = origin.shape[1]
+    most = np.empty(CHUNKS)
+    for chunk in prange(CHUNKS):
+        square = 0.0
+        for i in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
+            x, y = u[0, begin + i] - origin[0, i], u[1, begin + i] - origin[1, i]
+            square = max(square, x**2 + y**2)
+        most[chunk] = square
+    return np.sqrt(largest(most))
 
 
 @njit(**PARALLEL)

@@ -16,7 +16,8 @@ the contact and of the bond. Force (4,) of a pair: x and y on i (the opposite on
 import numpy as np
 from numba import njit, prange
 
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum, largest
+from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
+from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
 """States of a pair: without bond, bonded, bond broken in tension, bond broken in shear."""
@@ -40,59 +41,6 @@ arcsin(½ωΔt) per step: 2e-6 for waves of 1000 steps a period. A chain of cont
 0.05 for all φ below 2π/3 (stability.OPENING).
 """
 
-TURN = 0.01
-"""Largest rotation of a pair under the law of small displacements, whose error is half its square."""
-
-
-@njit(**FAST, inline="always")
-def _pair(c, u, first, second, contact_type, constants):
-    """Particles of a pair, its row of constants, and the displacements of j relative to i."""
-    i = U(first[c])
-    j = U(second[c])
-    k = U(contact_type[c])
-    return i, j, k, u[U(0), j] - u[U(0), i], u[U(1), j] - u[U(1), i]
-
-
-@njit(**FAST, inline="always")
-def _reference_strain(i, j, k, dx, dy, u, constants):
-    """Normal and tangent at the start, distance, stretch, shear of a pair for small displacements."""
-    rest = constants[k, U(2)]
-    nx = constants[k, U(0)] / rest
-    ny = constants[k, U(1)] / rest
-    stretch = nx * dx + ny * dy
-    arm_i = 0.5 * rest + constants[k, U(4)]
-    shear = nx * dy - ny * dx - arm_i * u[U(2), i] - (rest - arm_i) * u[U(2), j]
-    return nx, ny, rest, stretch, shear
-
-
-@njit(**FAST, inline="always")
-def _updated_stretch(k, dx, dy, constants):
-    """Normal and distance of a pair whose vector has changed by dx, dy, and its stretch.
-
-    The stretch is (d² − d_0²)/(d + d_0), which keeps the digits that d − d_0 loses.
-    """
-    x = constants[k, U(0)]
-    y = constants[k, U(1)]
-    rest = constants[k, U(2)]
-    distance = np.sqrt((x + dx) * (x + dx) + (y + dy) * (y + dy))
-    stretch = ((x + x + dx) * dx + (y + y + dy) * dy) / (distance + rest)
-    return (x + dx) / distance, (y + dy) / distance, distance, stretch
-
-
-@njit(**FAST, inline="always")
-def _slide(i, j, k, nx, ny, distance, v, constants):
-    """Rate (m/s) of the shear of a pair with normal and distance."""
-    arm_i = 0.5 * distance + constants[k, U(4)]
-    across = nx * (v[U(1), j] - v[U(1), i]) - ny * (v[U(0), j] - v[U(0), i])
-    return across - arm_i * v[U(2), i] - (distance - arm_i) * v[U(2), j]
-
-
-@njit(**FAST, inline="always")
-def _updated_strain(i, j, k, dx, dy, was, v, step, constants):
-    """The same with normal and arms that follow the motion; was: the shear before the step (s)."""
-    nx, ny, distance, stretch = _updated_stretch(k, dx, dy, constants)
-    return nx, ny, distance, stretch, was + step * _slide(i, j, k, nx, ny, distance, v, constants)
-
 
 @njit(**FAST, inline="always")
 def _bond_state(Fn, Fs, M, per_area, per_section, limits):
@@ -115,15 +63,15 @@ def push_pair(c, u, v, step, number, contacts, limits):
     rubbed = 0.0
     broken = 0.0
     breaks = 0
-    i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
+    i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
     intact = state[c] == INTACT
     keeps_geometry = geometry == REFERENCE or (geometry == BONDED and intact)
     if keeps_geometry:
-        nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, constants)
-        was = shear - step * _slide(i, j, k, nx, ny, distance, v, constants)
+        nx, ny, distance, stretch, shear = reference_strain(i, j, k, dx, dy, u, constants)
+        was = shear - step * slide(i, j, k, nx, ny, distance, v, constants)
     else:
         was = all_shear[c]
-        nx, ny, distance, stretch, shear = _updated_strain(i, j, k, dx, dy, was, v, step, constants)
+        nx, ny, distance, stretch, shear = updated_strain(i, j, k, dx, dy, was, v, step, constants)
         all_shear[c] = shear
     overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
     arm_i = 0.5 * distance + constants[k, U(4)]
@@ -236,107 +184,9 @@ def start_from_displacements(u, contacts, keeps_slip=False):
     _, first, second, contact_type, constants, _, shear, slip, _, _, _, _, _ = contacts
     for p in prange(first.size):
         c = U(p)
-        i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
-        _, _, _, stretch, sheared = _reference_strain(i, j, k, dx, dy, u, constants)
+        i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
+        _, _, _, stretch, sheared = reference_strain(i, j, k, dx, dy, u, constants)
         shear[c] = sheared
         if keeps_slip and constants[k, U(3)] >= constants[k, U(2)]:
             continue
         slip[c] = sheared if constants[k, U(3)] - constants[k, U(2)] < stretch else 0.0
-
-
-@njit(**PARALLEL)
-def moved(u, begin, origin):
-    """Largest displacement (m) of the n particles from `begin` on since the displacements origin (2, n)."""
-    n = origin.shape[1]
-    most = np.empty(CHUNKS)
-    for chunk in prange(CHUNKS):
-        square = 0.0
-        for i in range(chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS):
-            x, y = u[0, begin + i] - origin[0, i], u[1, begin + i] - origin[1, i]
-            square = max(square, x**2 + y**2)
-        most[chunk] = square
-    return np.sqrt(largest(most))
-
-
-@njit(**PARALLEL)
-def slack(u, contacts, limits, keeps_slip=False):
-    """Least relative motion (m) of two surfaces after which a pair leaves the elastic law; negative: it has left it.
-
-    A pair leaves it where a contact opens, closes or slides, a bond reaches its strength, or, if geometry follows the
-    motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation change by no more than the relative
-    motion of the surfaces, which gives a lower bound for each condition. keeps_slip : contacts have slid earlier.
-    """
-    _, first, second, contact_type, constants, state, _, slip, _, _, _, _, _ = contacts
-    friction, tension, cohesion, tan_fa, geometry = limits
-    b = first.size
-    least = np.empty(CHUNKS)
-    for chunk in prange(CHUNKS):
-        room = np.inf
-        for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
-            c = U(p)
-            i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
-            nx, ny, distance, stretch, shear = _reference_strain(i, j, k, dx, dy, u, constants)
-            if geometry == UPDATED:
-                room = min(room, TURN * distance - abs(nx * dy - ny * dx))
-            kn = constants[k, U(5)]
-            ks = constants[k, U(6)]
-            overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
-            if constants[k, U(3)] >= distance:
-                room = min(room, overlap)
-                if ks > 0.0:
-                    stuck = shear - slip[c] if keeps_slip else shear
-                    room = min(room, (friction * kn * overlap - ks * abs(stuck)) / (ks + friction * kn))
-            else:
-                room = min(room, -overlap)
-            if state[c] == INTACT:
-                # per length of relative motion: tension k̄, bending k̄ R̄·(1/R̄), shear k̄_s
-                per_area = constants[k, U(10)]
-                bending = constants[k, U(9)] * constants[k, U(11)]
-                stress = constants[k, U(7)] * stretch * per_area
-                turned = bending * abs(u[U(2), j] - u[U(2), i])
-                normal = constants[k, U(7)] * per_area
-                sheared = constants[k, U(8)] * per_area
-                room = min(room, (tension - stress - turned) / (2.0 * normal))
-                strength = cohesion - stress * tan_fa - sheared * abs(shear)
-                room = min(room, strength / (sheared + normal * tan_fa))
-        least[chunk] = -room
-    return -largest(least)
-
-
-@njit(**PARALLEL)
-def strain_energy(u, contacts, geometry):
-    """Energy (J) stored in contacts and in bonds at displacements u (3, n), with the tangential ones of the last push.
-
-    With the geometry REFERENCE shear and slip are not read.
-    """
-    _, first, second, contact_type, constants, state, all_shear, slip, _, _, _, _, _ = contacts
-    b = first.size
-    stored = np.empty((CHUNKS, 2))
-    for chunk in prange(CHUNKS):
-        in_contacts = 0.0
-        in_bonds = 0.0
-        for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
-            c = U(p)
-            i, j, k, dx, dy = _pair(c, u, first, second, contact_type, constants)
-            intact = state[c] == INTACT
-            if geometry >= REFERENCE or (geometry == BONDED and intact):
-                _, _, _, stretch, shear = _reference_strain(i, j, k, dx, dy, u, constants)
-            else:
-                _, _, _, stretch = _updated_stretch(k, dx, dy, constants)
-                shear = all_shear[c]
-            overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
-            slid = shear
-            if constants[k, U(3)] < constants[k, U(2)] and overlap <= 0.0:  # open, as at the start
-                overlap = 0.0
-                slid = 0.0
-            elif geometry != REFERENCE:
-                overlap = max(overlap, 0.0)
-                slid -= slip[c]
-            in_contacts += 0.5 * (constants[k, U(5)] * overlap * overlap + constants[k, U(6)] * slid * slid)
-            if intact:
-                turn = u[U(2), j] - u[U(2), i]
-                in_bonds += 0.5 * (constants[k, U(7)] * stretch * stretch + constants[k, U(8)] * shear * shear)
-                in_bonds += 0.5 * constants[k, U(9)] * turn * turn
-        stored[chunk, 0] = in_contacts
-        stored[chunk, 1] = in_bonds
-    return column_sum(stored, 0), column_sum(stored, 1)

@@ -18,7 +18,7 @@ from numba import njit, prange
 
 from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS, DONE, FAST, LAW_ENDS, LIST_ENDS, PARALLEL, U, largest
-from dembound.kernels.contacts import slack
+from dembound.kernels.contact_measures import slack
 from dembound.kernels.law import answer, generic, is_law, is_tie
 from dembound.kernels.step import move_particle, note_damping
 from dembound.kernels.tables import Links, NeighbourTable, Seam, WatchedLinks

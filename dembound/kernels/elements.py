@@ -14,9 +14,9 @@ from typing import Any
 from numba import njit
 
 from dembound.kernels.common import FAST, U
-from dembound.kernels.grid_tables import ALONG, Shape
 from dembound.kernels.lane_step import larger
 from dembound.kernels.lanes import LANES, combine, combine_more, load, store
+from dembound.kernels.tables import ALONG, Shape
 
 WITHIN: dict[str, Any] = FAST | {"forceinline": True}
 """Options of functions that are called for each block: passing their arrays would take as long as a few nodes."""

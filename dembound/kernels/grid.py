@@ -13,10 +13,10 @@ from numba import get_thread_id, njit, prange
 from dembound.kernels import lane_step
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
 from dembound.kernels.elements import WITHIN, absorbing_forces, block_forces, gather, shape_of
-from dembound.kernels.grid_tables import Grid
 from dembound.kernels.lanes import LANES, at_most, choose, lane, load, splat, store
 from dembound.kernels.law import is_law
 from dembound.kernels.step import kick
+from dembound.kernels.tables import Grid
 
 _STEP = U(LANES)
 

@@ -1,6 +1,6 @@
 """The functions that the loop calls for a law, for a tie, and for forces that rotate.
 
-Each of these is a named tuple of arrays (tables.py), a bundle. Its type determines, when the loop is compiled, which
+Each of these is a named tuple of arrays (tables/), a bundle. Its type determines, when the loop is compiled, which
 kernels are called. A new law is a bundle with its kernels, registered with `is_law`; the loop is not changed.
 """
 

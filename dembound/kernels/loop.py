@@ -31,7 +31,7 @@ def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
 
     u, u_next, v : (3, n) displacement now, work space for the next one, velocity half a step earlier; u contains the
     result. laws, ties : tuples of bundles, a law for every part. turning : tables.Followers, or None. The other bundles
-    are explained in tables.py.
+    are explained in tables/.
     """
     for c in range(3):
         if body.free[c] == 0.0:

@@ -21,6 +21,7 @@ from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.motion.storage import Storage
 from dembound.motion.trackers import Run
+from dembound.table import Box
 
 if TYPE_CHECKING:
     import meshio
@@ -61,10 +62,6 @@ class Plan:
     steps: int
     regular_steps: int
     refused: tuple[str, ...] = ()
-
-
-Box = tuple[float, float, float, float]
-"""A rectangle x0, y0, x1, y1 in m, with its edges."""
 
 
 class Finding(NamedTuple):

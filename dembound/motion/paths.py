@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.boundaries import normal_axis
+from dembound.table import Box
 
 PRECURSOR = 10.0
 """Where a precursor ends, as the argument z of Airy's function: Ai(z) is 1e-9 of Ai(0) at 9.6."""
@@ -52,7 +53,7 @@ class Source:
     is_local : whether it is confined to a place, and so does not move a free-field column in the same way.
     """
 
-    box: tuple[float, float, float, float]
+    box: Box
     start: float
     over: float
     slowest: float

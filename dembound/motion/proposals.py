@@ -24,7 +24,7 @@ RAYLEIGH = 0.87
 
 
 @dataclass(frozen=True)
-class Ground:
+class WaveScene:
     """The scene of a plan as seen by waves.
 
     sources : where motion starts.
@@ -61,7 +61,7 @@ def proposals(planned: Plan) -> dict[str, str]:
     if not scene.case.monitor or not (sources := planned.kind.sources(scene)):
         return {}
     across = [axis for axis in (0, 1) if axis in planned.stepped.uniform_axes or scene.size[axis] == 0.0]
-    ground = Ground(
+    seen = WaveScene(
         planned,
         sources,
         planned.kind.front(scene, planned.time_step),
@@ -70,7 +70,7 @@ def proposals(planned: Plan) -> dict[str, str]:
         [axis for axis in (0, 1) if axis not in across],
     )
     asked = scene.case.run.duration
-    passed = _passed(ground)
+    passed = _passed(seen)
     needed = passed if passed is not None and passed < GAIN * asked else asked
     lines = {}
     if needed < asked:
@@ -78,94 +78,92 @@ def proposals(planned: Plan) -> dict[str, str]:
             f"the slowest waves, and what sides reflect of them, have passed all monitors by {needed:.3g} s; "
             f"run.duration is {asked:g} s"
         )
-    lines |= {"echoes": "; ".join(_echoes(ground, needed))}
-    lines |= {"smaller scene": "; ".join(_smaller(ground, needed))}
+    lines |= {"echoes": "; ".join(_echoes(seen, needed))}
+    lines |= {"smaller scene": "; ".join(_smaller(seen, needed))}
     return {name: line for name, line in lines.items() if line}
 
 
-def _passed(ground: Ground) -> float | None:
+def _passed(seen: WaveScene) -> float | None:
     """Time (s) by which the waves of all sources have passed all monitors, rounded up; None where it is not known."""
-    planned, case = ground.planned, ground.planned.scene.case
-    if planned.kind.has_coda(planned.scene) or not all(np.isfinite(source.over) for source in ground.sources):
+    planned, case = seen.planned, seen.planned.scene.case
+    if planned.kind.has_coda(planned.scene) or not all(np.isfinite(source.over) for source in seen.sources):
         return None
-    mirrors: dict[int, list[float]] = {axis: [] for axis in ground.axes}
+    mirrors: dict[int, list[float]] = {axis: [] for axis in seen.axes}
     for side in SIDES:
         table, axis = case.side(side), normal_axis(side)
         if axis in mirrors and not any(factor > 0.0 for factor in table.factors.values()):
-            mirrors[axis].append(ground.plane(side))
+            mirrors[axis].append(seen.plane(side))
     if any(len(planes) > 1 for planes in mirrors.values()):
         return None  # periodic sides, too
-    at_surface = any(case.side(side).is_free and normal_axis(side) in ground.axes for side in SIDES)
-    times = [source.over + LATE * _slowest_way(source, ground, mirrors, at_surface) for source in ground.sources]
+    at_surface = any(case.side(side).is_free and normal_axis(side) in seen.axes for side in SIDES)
+    times = [source.over + LATE * _slowest_way(source, seen, mirrors, at_surface) for source in seen.sources]
     return _rounded_up(max(times))
 
 
-def _slowest_way(source: Source, ground: Ground, mirrors: dict[int, list[float]], at_surface: bool) -> float:
+def _slowest_way(source: Source, seen: WaveScene, mirrors: dict[int, list[float]], at_surface: bool) -> float:
     """Time (s) the slowest waves of a source take to the farthest monitor, also over sides that reflect."""
-    gaps = np.zeros((2, len(ground.places)))
+    gaps = np.zeros((2, len(seen.places)))
     for axis, planes in mirrors.items():
         low, high = source.box[axis], source.box[2 + axis]
         if np.isfinite([low, high]).all():
-            at = ground.places[:, axis]
+            at = seen.places[:, axis]
             images = [at, *(2.0 * plane - at for plane in planes)]
             gaps[axis] = np.max([np.maximum(abs(image - low), abs(image - high)) for image in images], axis=0)
-    slowest = source.slowest * (RAYLEIGH if source.is_local and at_surface and len(ground.axes) > 1 else 1.0)
+    slowest = source.slowest * (RAYLEIGH if source.is_local and at_surface and len(seen.axes) > 1 else 1.0)
     return float(np.hypot(*gaps).max()) / slowest
 
 
-def _movable(ground: Ground) -> Iterator[str]:
+def _movable(seen: WaveScene) -> Iterator[str]:
     """Artificial sides that no wave drives, of the axes along which waves run."""
-    case = ground.planned.scene.case
+    case = seen.planned.scene.case
     for side in SIDES:
         table = case.side(side)
-        if table.is_artificial and not (table.is_outside or table.waves) and normal_axis(side) in ground.axes:
+        if table.is_artificial and not (table.is_outside or table.waves) and normal_axis(side) in seen.axes:
             yield side
 
 
-def _echoes(ground: Ground, needed: float) -> Iterator[str]:
+def _echoes(seen: WaveScene, needed: float) -> Iterator[str]:
     """When the first echo of each artificial side comes to a monitor, if within the time needed (s)."""
-    for side in _movable(ground):
+    for side in _movable(seen):
         times = [
-            source.start + source.distance_over(side, ground.plane(side), ground.places) / ground.front.speed
-            for source in ground.of_side(side)
+            source.start + source.distance_over(side, seen.plane(side), seen.places) / seen.front.speed
+            for source in seen.of_side(side)
         ]
-        first = np.min(times, axis=0, initial=np.inf) if times else np.full(len(ground.places), np.inf)
+        first = np.min(times, axis=0, initial=np.inf) if times else np.full(len(seen.places), np.inf)
         k = int(first.argmin())
         if first[k] < needed:
-            kind = ground.planned.scene.case.side(side).type
-            yield f"{side} ({kind}) may reflect to {ground.names[k]} from {first[k]:.3g} s on"
+            kind = seen.planned.scene.case.side(side).type
+            yield f"{side} ({kind}) may reflect to {seen.names[k]} from {first[k]:.3g} s on"
 
 
-def _smaller(ground: Ground, needed: float) -> Iterator[str]:
+def _smaller(seen: WaveScene, needed: float) -> Iterator[str]:
     """Lengths of the scene with which still no echo comes within the time needed (s)."""
-    planned = ground.planned
-    if planned.kind.has_static_stage(planned.scene) or any(source.box == FULL for source in ground.sources):
+    planned = seen.planned
+    if planned.kind.has_static_stage(planned.scene) or any(source.box == FULL for source in seen.sources):
         return
     unit = planned.kind.unit(planned.scene)
-    for axis in ground.axes:
+    for axis in seen.axes:
         own = float(planned.scene.size[axis])
-        spare = {
-            side: _spare(ground, side, needed, unit[axis]) for side in _movable(ground) if normal_axis(side) == axis
-        }
+        spare = {side: _spare(seen, side, needed, unit[axis]) for side in _movable(seen) if normal_axis(side) == axis}
         smaller = own - sum(spare.values())
         if smaller < GAIN * own:
             nearer = " and ".join(f"{side} {length:g} m nearer" for side, length in spare.items() if length > 0.0)
             yield f"{smaller:g} m instead of {own:g} m along {'xy'[axis]} ({nearer}): no echo before {needed:.3g} s"
 
 
-def _spare(ground: Ground, side: str, needed: float, unit: float) -> float:
+def _spare(seen: WaveScene, side: str, needed: float, unit: float) -> float:
     """Length (m), of whole units, by which a side may be nearer; at least one unit beyond all monitors and sources."""
-    axis, plane = normal_axis(side), ground.plane(side)
+    axis, plane = normal_axis(side), seen.plane(side)
     outwards = 1.0 if plane > 0.0 else -1.0
-    there = plane_needed(side, ground.of_side(side), ground.places, ground.front, needed)
-    least = max(outwards * there, *(outwards * value + unit for value in _inside(ground, axis)))
+    there = plane_needed(side, seen.of_side(side), seen.places, seen.front, needed)
+    least = max(outwards * there, *(outwards * value + unit for value in _inside(seen, axis)))
     return unit * max(0.0, float(np.floor((outwards * plane - least) / unit + ROUNDING)))
 
 
-def _inside(ground: Ground, axis: int) -> Iterator[float]:
+def _inside(seen: WaveScene, axis: int) -> Iterator[float]:
     """Coordinates (m) of what a smaller scene must contain: monitors and sources."""
-    yield from ground.places[:, axis]
-    for source in ground.sources:
+    yield from seen.places[:, axis]
+    for source in seen.sources:
         yield from (value for value in (source.box[axis], source.box[2 + axis]) if np.isfinite(value))
 
 

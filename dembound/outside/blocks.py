@@ -5,8 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from dembound.kernels.grid_tables import ALONG, Absorber, Blocks, Elements
 from dembound.kernels.lanes import LANES
+from dembound.kernels.tables import ALONG, Absorber, Blocks, Elements
 from dembound.motion.layout import aligned_zeros
 from dembound.outside.layer import Absorption, Profile
 from dembound.outside.medium import Medium

@@ -8,8 +8,8 @@ import numpy as np
 
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.grid import fill_forces
-from dembound.kernels.grid_tables import Absorber, Grid
 from dembound.kernels.lanes import LANES
+from dembound.kernels.tables import Absorber, Grid
 from dembound.motion.layout import aligned_zeros
 from dembound.outside.blocks import ElementBlocks, absorber_of, elements_of
 from dembound.outside.layer import USUAL, Absorption

@@ -10,6 +10,7 @@ import numpy as np
 from dembound.boundaries.sides import SIDES
 from dembound.outside.axis import Axis
 from dembound.outside.gll import Rule
+from dembound.table import Box
 
 WHOLE = 1e-9
 """Part of an element by which a length may exceed a whole number of them."""
@@ -29,13 +30,6 @@ class Around(NamedTuple):
 
 
 NONE = Around()
-
-
-class Interpolation(NamedTuple):
-    """How displacements at k points follow from those of nodes: Σ weight·u over node, both (k, N²)."""
-
-    node: np.ndarray
-    weight: np.ndarray
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -86,7 +80,7 @@ class Mesh:
     @classmethod
     def around(
         cls,
-        box: tuple[float, float, float, float],
+        box: Box,
         element: tuple[float, float],
         order: int = 4,
         *,
@@ -150,7 +144,7 @@ class Mesh:
         return len(self.widths), len(self.heights)
 
     @cached_property
-    def _element_at(self) -> np.ndarray:
+    def element_at(self) -> np.ndarray:
         """Number of the element in every row and column, −1 in the box."""
         numbers = np.zeros(self.cells[::-1], dtype=np.int64)
         if self.box is not None:
@@ -163,7 +157,7 @@ class Mesh:
     @cached_property
     def elements(self) -> np.ndarray:
         """(E, 2) column and row of every element, row by row from the bottom."""
-        return np.argwhere(self._element_at >= 0)[:, ::-1]
+        return np.argwhere(self.element_at >= 0)[:, ::-1]
 
     @cached_property
     def element_sizes(self) -> np.ndarray:
@@ -325,55 +319,6 @@ class Mesh:
         edge = nodes[at_side, -last]
         each = 0.5 * self.element_sizes[at_side, 1 - axis, None] * self.rule.weights
         return np.bincount(edge.ravel(), each.ravel(), self.count)
-
-    def located(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The element (k,) nearest to each of the points (k, 2) m, and their places (k, 2) in it, −1 … 1 inside.
-
-        Of points beyond periodic sides it is that at their images.
-        """
-        places = np.asarray(points) - self.origin
-        places = np.where(self.periodic, places % self.size, places)
-        column, row = (self.axes[a].cell_at(places[:, a]) for a in (0, 1))
-        chosen = self._element_at[row, column]
-        in_box = chosen < 0
-        chosen[in_box] = self._nearest_to_box(places[in_box])
-        first = np.stack([self.axes[a].edges[self.elements[chosen, a]] for a in (0, 1)], axis=1)
-        return chosen, 2.0 * (places - first) / self.element_sizes[chosen] - 1.0
-
-    def _nearest_to_box(self, places: np.ndarray) -> np.ndarray:
-        """The element (k,) beside the box that is nearest to each of these places (k, 2) m from the origin."""
-        if self.box is None:
-            return np.zeros(0, dtype=np.int64)
-        near = (self.elements >= np.array(self.box[:2]) - 1) & (self.elements <= self.box[2:])
-        beside = np.flatnonzero(near.all(axis=1))
-        beyond = np.zeros((len(places), len(beside)))
-        for a, axis in enumerate(self.axes):
-            cell, place = self.elements[beside, a], places[:, a, None]
-            beyond += np.maximum(np.maximum(axis.edges[cell] - place, place - axis.edges[cell + 1]), 0.0) ** 2
-        return beside[np.argmin(beyond, axis=1)]
-
-    def interpolation(self, points: np.ndarray) -> Interpolation:
-        """How displacements at points (k, 2) m follow from those of nodes.
-
-        Those of a point within no element are extrapolated from the nearest one.
-        """
-        chosen, local = self.located(points)
-        x, y = (self.rule.shape(local[:, a]) for a in (0, 1))
-        count = len(local)
-        return Interpolation(self.nodes[chosen].reshape(count, -1), (y[:, :, None] * x[:, None, :]).reshape(count, -1))
-
-    def slopes(self, points: np.ndarray) -> np.ndarray:
-        """Derivatives (2, k, N²) along x and along y, 1/m, of the weights of `interpolation`."""
-        chosen, local = self.located(points)
-        (x, x_slope), (y, y_slope) = (
-            (
-                self.rule.shape(local[:, a]),
-                self.rule.slope(local[:, a]) * (2.0 / self.element_sizes[chosen, a])[:, None],
-            )
-            for a in (0, 1)
-        )
-        each = y[:, :, None] * x_slope[:, None, :], y_slope[:, :, None] * x[:, None, :]
-        return np.stack(each).reshape(2, len(local), -1)
 
 
 def _divided(length: float, largest: float) -> tuple[float, ...]:

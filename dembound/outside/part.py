@@ -3,7 +3,7 @@
 import numpy as np
 
 from dembound.kernels.grid import strain_energies
-from dembound.kernels.grid_tables import Grid
+from dembound.kernels.tables import Grid
 from dembound.motion.cracks import NO_CRACKS, Cracks
 from dembound.motion.part import Part
 from dembound.motion.state import Arrays, State

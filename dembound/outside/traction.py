@@ -8,12 +8,10 @@ import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.outside.mesh import Mesh
+from dembound.table import Box
 
 ROUNDING = 1e-9
 """Distance over the size of the mesh up to which places are the same."""
-
-Box = tuple[float, float, float, float]
-"""Left, bottom, right and top, m."""
 
 NO_DEPTH: Mapping[str, float] = {}
 

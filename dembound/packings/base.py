@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from dembound.errors import CaseError
 from dembound.packings.brick import Brick
 from dembound.packings.dense import Recipe, radius_range
-from dembound.table import Table, quantity
+from dembound.table import Box, Table, quantity
 
 Extent = tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]]
 Count = tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
@@ -96,10 +96,16 @@ class Packing(Table, ABC):
         return across * width, up * height
 
     @property
-    def box(self) -> tuple[float, float, float, float]:
+    def box(self) -> Box:
         """Left, bottom, right and top of the disks' box in metres."""
         (left, bottom), (width, height) = self.origin, self.extent
         return left, bottom, left + width, bottom + height
+
+    def gaps(self, ground: Extent) -> dict[str, float]:
+        """How far (m) a ground of this width and height goes on beyond the box's sides, but for those at its end."""
+        left, bottom, right, top = self.box
+        gaps = {"left": left, "right": ground[0] - right, "bottom": bottom, "top": ground[1] - top}
+        return {side: gap for side, gap in gaps.items() if gap > TYPED * max(ground)}
 
     @property
     def first_row(self) -> int:

@@ -44,7 +44,7 @@ OF_SIDES: dict[str, tuple[str, dict[str, Any]]] = {
 """Columns of every side, their names in the legend, in which {} is the side, and their lines; a side has one colour."""
 
 HUES = (COLOURS[0], "#67001F", *COLOURS[1:], "#8C510A", "#999999", "#5E3C99")
-"""A colour for each column of the ledger."""
+"""A colour for each column of the ledger, and for each side: four of a body, as many of a continuum, and a column's."""
 
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 """Prefixes of the unit of energy, by their power of ten."""
@@ -59,7 +59,11 @@ OWN_LOOKS: dict[str, dict[str, Any]] = {
 NEGLIGIBLE = 1e-6
 """A column that stays below this share of the largest is left out."""
 
-BESIDE = {"free_field": " of the column", "continuum": " of the continuum"}
+BESIDE = {
+    "free_field": " of the column",
+    "continuum": " of the continuum",
+    "free_field.continuum": " of the continuum below the column",
+}
 """By the ending of their names, what sides belong to other than the body."""
 
 
@@ -126,7 +130,7 @@ def _of_sides(sides: dict[str, dict[str, np.ndarray]], bar: bool) -> Iterator[En
         for index, (side, energies) in enumerate(sides.items()):
             name, _, beside = side.partition(".")
             place = f"{name} {'end' if bar else 'side'}" + BESIDE.get(beside, "")
-            own = {"color": COLOURS[index % len(COLOURS)], "markersize": 5.0, "markevery": (3 * index, 12)}
+            own = {"color": HUES[index % len(HUES)], "markersize": 5.0, "markevery": (3 * index, 12)}
             yield EnergyLine(label.format(place), energies[column], looks | own)
 
 

@@ -32,11 +32,10 @@ from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
 from dembound.disks.wave_front import front_of
 from dembound.errors import CaseError
-from dembound.motion.kind import Box
 from dembound.motion.paths import Front, Source, plane_needed
 from dembound.motion.silence import monitored
 from dembound.packings.tiling import count_disks
-from dembound.table import shifted_box, shifted_place
+from dembound.table import Box, shifted_box, shifted_place
 
 MOST = 8_000_000
 """Particles of the largest scene that is made unless another limit is given; its run takes some 2 GB."""
@@ -89,9 +88,12 @@ def _extended_disks(case: DiskCase, most: int) -> Extended:
     """A scene of disks with more bricks."""
     if case.ground.size is not None:
         reason = "its disks fill a box of the ground only, and are not continued beyond"
-        raise CaseError([f"ground.size: the scene cannot be extended, as {reason}"], case.name)
+        instead = "take --reference finest, or let the disks fill the ground: packing.size = [{:g}, {:g}], no [ground]"
+        raise CaseError(
+            [f"ground.size: the scene cannot be extended, as {reason}; {instead.format(*case.ground.size)}"], case.name
+        )
     if case.incident is not None:
-        reason = "its wave comes through the ground beyond all sides"
+        reason = "its wave comes through the ground beyond all sides; take --reference finest"
         raise CaseError([f"incident: the scene cannot be extended, as {reason}"], case.name)
     moving = _moving(case, set(case.driving))
     scene = build(case)
@@ -213,7 +215,7 @@ def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
         raise CaseError(problems, case.name)
 
 
-def _reaches(box: tuple[float, float, float, float], side: str, plane: float) -> bool:
+def _reaches(box: Box, side: str, plane: float) -> bool:
     """Whether a rectangle reaches a plane (m along its normal), or beyond."""
     axis = normal_axis(side)
     return box[2 + axis] >= plane if side in ("right", "top") else box[axis] <= plane

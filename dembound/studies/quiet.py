@@ -14,6 +14,7 @@ from dembound.bar.scene import build_bar
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.load import Load
 from dembound.casefile.model import as_kind
 from dembound.casefile.types import LAWS
 from dembound.disks import stability as of_disks
@@ -29,6 +30,10 @@ PARTICLES = 2500
 
 NOISE = 1e-5
 """Root mean square velocity (m/s) of the noise: strains of 1e-8, at which no bond breaks."""
+
+
+NOTHING = Load.model_construct(name="nothing", acceleration=(0.0, 0.0))
+"""A load of zero on all of the ground, for which a case keeps its free-field column beside a continuum."""
 
 
 @dataclass(frozen=True)
@@ -108,8 +113,10 @@ def of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
 def of_disk_case(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[str]]:
     """A body of disks under the linear law, and under the case's own if that has a history."""
     plain = replace(_at_rest(case), static=None, monitor=())
-    if (outside := build(case).outside) is not None:  # whose settings were chosen from the waves
-        plain = replace(plain, outside=case.outside.model_copy(update=outside.settings.given))
+    whole = build(case)
+    if whole.outside is not None:  # whose settings were chosen from the waves
+        plain = replace(plain, outside=case.outside.model_copy(update=whole.outside.settings.given))
+        plain = replace(plain, load=(NOTHING,) if whole.seam is not None else ())
     words = _left_out(case) + ["no static stage: contacts begin as packed"] * (case.static is not None)
     if not full:
         plain, about = _reduced(plain)
@@ -118,8 +125,10 @@ def of_disk_case(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[str]]
     linear = plain.material.model_copy(update={"law": own.linear})
     scene = build(replace(plain, material=linear))
     size = f"{scene.size[0]:.4g} m × {scene.size[1]:.4g} m, {scene.disk_count:,} disks"
-    if scene.outside is not None:
-        size += f" and {scene.outside.count:,} nodes of a continuum"
+    if scene.continua:
+        size += f" and {sum(each.count for each in scene.continua):,} nodes of a continuum"
+    if scene.seam is not None:
+        size += ", with the free-field column"
     found = [_under(scene, own.linear)]
     if own.has_history:
         opens = scene.ground.moduli.emod > 0.0 and case.material.locked_in is None

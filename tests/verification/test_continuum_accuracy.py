@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from dembound.casefile import Case
-from dembound.disks.continuum_facts import lattice_errors
 from dembound.disks.outside_settings import signals_of
+from dembound.disks.packing_errors import lattice_errors
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.kinds import with_changes
@@ -73,7 +73,7 @@ def test_velocities_have_the_accuracy_asked_for(lab, wave: str, where: str) -> N
     for scene in scenes:
         error = velocities(scene, 0.0, step, steps) - large
         relative = np.sqrt(np.sum(error[:, away] ** 2) / np.sum(large[:, away] ** 2))
-        ties, _ = lattice_errors(scene, scene.outside, signals_of(scene.case))
+        ties, _ = lattice_errors(scene, signals_of(scene.case))
         assert relative < max(scene.case.outside.accuracy, ties)
     if wave == "ricker":
         assert relative > 0.25 * ties

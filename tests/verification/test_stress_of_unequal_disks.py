@@ -6,7 +6,7 @@ A disk that is pushed by F from both sides has Σ f l = −F·2R, whatever its n
 import numpy as np
 import pytest
 
-from dembound.disks.contacts import plain_contacts
+from dembound.disks.contact_arrays import plain_contacts
 from dembound.disks.stress import particle_stress
 from dembound.kernels.contacts import REFERENCE, UPDATED
 

@@ -15,6 +15,7 @@ from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation
+from dembound.outside.interpolation import interpolation
 
 PULSE = {"type": "cosine", "amplitude": 1.0, "period": 0.075}
 END = 0.14  # s, when the pulse has passed
@@ -58,7 +59,7 @@ def test_surface_waves_need_the_skin_at_its_depth(lab, surrounded, monkeypatch) 
         """Error at both places with a skin so many times as deep, over the motion."""
         monkeypatch.setattr(PackedMaterial, "skin", lambda ground, side: times * depth(ground, side))
         scene = build(surrounded)
-        at = scene.outside.body.mesh.interpolation(points)
+        at = interpolation(scene.outside.body.mesh, points)
         nodes, weights = (values.reshape(2, -1) for values in (scene.recorded + at.node, at.weight / DISKS))
         return float(np.linalg.norm(means(scene, nodes, weights, step) - alone) / np.linalg.norm(alone))
 

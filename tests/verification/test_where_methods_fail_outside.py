@@ -6,6 +6,7 @@ from angles import Side, branches, reflection
 from decay import step_beside
 
 from dembound.motion.simulation import Simulation
+from dembound.motion.trackers import Every, Run
 from dembound.outside.alone import GridScene
 from dembound.outside.body import GridBody
 from dembound.outside.layer import Absorption
@@ -57,18 +58,33 @@ def test_rotations_of_disks_run_backwards() -> None:
     assert (np.diff([branches(turn)[:2] for turn in turns], axis=0) > 0.0).all()
 
 
+class Idle(Every):
+    """Does nothing; a run has at least one tracker."""
+
+    name = "idle"
+
+    def see(self, run: Run) -> None:
+        """Nothing."""
+
+
 def noise_below(absorption: Absorption) -> list[float]:
     """Kinetic energies after 5,000 and 10,000 steps of noise in periodic ground of 24 m × 8 m, Poisson's ratio 0.25."""
     layers = {"margin": Around(bottom=1), "layer": Around(bottom=3), "periodic": (True, False)}
     mesh = Mesh.around((0.0, 0.0, 24.0, 8.0), (6.0, 4.0), 4, **layers)
     medium = Medium.isotropic(2500.0, 1000.0, 1000.0 / np.sqrt(3.0))
-    body = GridBody(mesh=mesh, medium=medium, absorption=absorption)
+    return energies_of_noise(GridBody(mesh=mesh, medium=medium, absorption=absorption), (5000, 10_000))
+
+
+def energies_of_noise(body: GridBody, after: tuple[int, ...]) -> list[float]:
+    """Kinetic energies after some numbers of steps of noise in a continuum, of any unit."""
     simulation = Simulation(GridScene(body), 0.9 * step_limit(body))
     noise = np.zeros((3, body.count))
-    noise[:2] = np.random.default_rng(0).standard_normal((2, body.count)) * ~mesh.held
+    noise[:2] = np.random.default_rng(0).standard_normal((2, body.count)) * ~body.mesh.held
     simulation.state.velocity = noise
+    simulation.trackers.clear()  # a watch would stop what grows
+    simulation.track(Idle(after[-1] + 1))
     energies = []
-    for steps in (5000, 10_000):
+    for steps in after:
         simulation.run(steps)
         energies.append(float(np.sum(body.mass * simulation.state.velocity**2)))
     return energies
@@ -81,3 +97,21 @@ def test_layers_along_one_direction_amplify_noise() -> None:
 
     earlier, later = noise_below(Absorption())
     assert later < 0.5 * earlier
+
+
+def noise_in_flat_ground(width: float) -> list[float]:
+    """Kinetic energies after 15,000 and 25,000 steps of noise in 96 m × 8 m, ν = 0.25, with elements 4 m high."""
+    mesh = Mesh.uniform(
+        order=4, element=(width, 4.0), cells=(round(96.0 / width) + 8, 6), layer=Around(left=3, right=3, bottom=3)
+    )
+    body = GridBody(mesh=mesh, medium=Medium.isotropic(2500.0, 1000.0, 1000.0 / np.sqrt(3.0)))
+    return energies_of_noise(body, (15_000, 25_000))
+
+
+def test_layers_of_elements_longer_than_deep_amplify_noise_in_flat_ground() -> None:
+    """Elements as wide as high do not."""
+    earlier, later = noise_in_flat_ground(8.0)
+    assert later > 100.0 * earlier
+
+    earlier, later = noise_in_flat_ground(4.0)
+    assert later < 2.0 * earlier

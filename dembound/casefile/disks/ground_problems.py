@@ -33,8 +33,7 @@ def ground_problems(ground: Ground, packing: Packing, boundaries: Mapping[str, B
     highest = boundaries.get("top")
     if highest is not None and highest.is_outside and abs(height - top) <= near:
         yield 'boundary.top.type: is "outside", but the disks reach the surface of the ground; it must be "free"'
-    gaps = {"left": left, "bottom": bottom, "right": width - right, "top": height - top}
-    for side, gap in gaps.items():
+    for side, gap in packing.gaps(ground.size).items():
         table = boundaries.get(side)
-        if gap > near and not (side in boundaries and (table is None or table.is_outside)):
+        if not (side in boundaries and (table is None or table.is_outside)):
             yield f'boundary.{side}.type: the ground goes on {gap:g} m beyond this side, so it must be "outside"'

@@ -7,6 +7,7 @@ import numpy as np
 
 from dembound.casefile.messages import corners, numbered
 from dembound.holes import Hole
+from dembound.table import Box
 
 
 def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
@@ -20,7 +21,7 @@ def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
             yield from _places_in_it(place, hole, key, tables[key])
 
 
-def _outside(place: str, hole: Hole, box: tuple[float, float, float, float]) -> Iterator[str]:
+def _outside(place: str, hole: Hole, box: Box) -> Iterator[str]:
     """A hole outside the disks' box (left, bottom, right, top; m)."""
     x0, y0, x1, y1 = hole.box
     left, bottom, right, top = box

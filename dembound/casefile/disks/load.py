@@ -2,7 +2,7 @@
 
 from pydantic import model_validator
 
-from dembound.table import FileName, Table, quantity
+from dembound.table import Box, FileName, Table, quantity
 
 Vector = tuple[float, float]
 
@@ -19,7 +19,7 @@ class Load(Table):
     force: Vector | None = quantity(None, unit="N/m", help="force per metre of thickness on all its particles together")
     acceleration: Vector | None = quantity(None, unit="m/s²", help="body force per mass of each particle")
     position: Vector | None = quantity(None, unit="m", help="where; the nearest particle is loaded")
-    region: tuple[float, float, float, float] | None = quantity(
+    region: Box | None = quantity(
         None,
         unit="m",
         help="rectangle x0, y0, x1, y1; all particles centred in it are loaded, or the continuum's surface in it",

@@ -34,4 +34,4 @@ class OutsideTable(Table):
         0.3, unit="1", help="α of the layers, over c_p/2L, with L the larger side within them", gt=0.0
     )
     delay: float = quantity(0.1, unit="1", help="τ of the layers, in time steps; 0 grows in long runs", ge=0.0)
-    damping: float = quantity(0.3, unit="1", help="dashpots of the ties, over ρ c_p D", ge=0.0)
+    damping: float = quantity(0.1, unit="1", help="dashpots of the ties, over ρ c_p D", ge=0.0)

@@ -1,5 +1,6 @@
 """Mistakes between the tables of a case of disks."""
 
+import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -13,7 +14,7 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
-from dembound.casefile.disks.reach import is_in, reach
+from dembound.casefile.disks.reach import Box, is_in, reach
 from dembound.casefile.disks.static_problems import static_problems
 from dembound.casefile.messages import corners, numbered, show
 from dembound.packings import Packing
@@ -86,11 +87,25 @@ def _places_outside(
 ) -> Iterator[str]:
     """Loads or monitors neither in the scene nor in a continuum round it; an invalid side is None."""
     allowed = reach(ground, packing, boundary)
-    outside = " and ".join(side for side, table in boundary.items() if table and table.is_outside)
-    beyond = f" or in the continuum of {outside}" if outside else ""
     for place, table in numbered(key, tables):
         for where in ("position", "region"):
             values = getattr(table, where, None) or ()
             if not all(is_in(allowed, place) for place in zip(values[::2], values[1::2], strict=True)):
-                box = corners(0.0, 0.0, *(ground.size or packing.extent))
-                yield f"{place}.{where}: is {show(values)}, must be in the scene, {box}{beyond}"
+                yield f"{place}.{where}: is {show(values)}, must be {_within(allowed)}"
+
+
+def _within(box: Box) -> str:
+    """Where a place in a box is, with the sides beyond which a continuum goes on."""
+    if all(map(math.isfinite, box)):
+        return f"in the scene, {corners(*box)}"
+    left, bottom, right, top = box
+    ends = [*_limits("x", left, right), *_limits("y", bottom, top)]
+    return f"in the scene or its continuum, {' and '.join(ends)} (m)"
+
+
+def _limits(name: str, least: float, largest: float) -> list[str]:
+    """The limits of a coordinate (m) that are finite."""
+    below, above = math.isfinite(least), math.isfinite(largest)
+    if below and above:
+        return [f"{least:.10g} <= {name} <= {largest:.10g}"]
+    return [f"{name} >= {least:.10g}"] * below + [f"{name} <= {largest:.10g}"] * above

@@ -7,9 +7,7 @@ from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks.ground import Ground
 from dembound.packings import Packing
 from dembound.packings.base import TYPED
-
-Box = tuple[float, float, float, float]
-"""Left, bottom, right and top, m."""
+from dembound.table import Box
 
 
 def reach(ground: Ground, packing: Packing, boundary: Mapping[str, Boundary | None]) -> Box:

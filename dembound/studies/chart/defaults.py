@@ -5,14 +5,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import islice
 from typing import Any, get_args
 
-from dembound.boundaries import SIDES
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import homogenised_beta
 from dembound.disks.scene import build
-from dembound.disks.smallest_box import cheapest_box, may_be_boxed
+from dembound.disks.smallest_box import box_tables, cheapest_box, may_be_boxed
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.methods import FiniteDifference, Method, Patch, Peridynamics, Switch
@@ -120,19 +119,13 @@ def _continuum(case: DiskCase, *choices: Mapping[str, Boundary]) -> Named:
 
 def _box(case: DiskCase) -> Named:
     """The smallest box of disks round holes and loads, if that saves much and all monitors may be around it."""
-    if not may_be_boxed(case) or (trial := cheapest_box(build(case))) is None:
+    if not may_be_boxed(case) or (best := cheapest_box(build(case))) is None:
         return
-    left, bottom, right, top = trial.box
-    size = [right - left, top - bottom]
-    packing = {key: value for key, value in case.packing.given().items() if key != "bricks"}
-    sides = SIDES if top < case.size[1] else SIDES[:3]
-    changes = {
-        "ground.size": list(case.size),
-        "packing": packing | {"size": size, "origin": [left, bottom]},
-        **{f"boundary.{side}": _beyond(case.side(side)) for side in sides},
-    }
+    tables = box_tables(case, best.box)
+    packing = {key: value for key, value in case.packing.given().items() if key != "bricks"} | tables.pop("packing")
+    changes = {"ground.size": tables.pop("ground")["size"], "packing": packing, **tables}
     if _is_valid(case, changes, build):
-        yield "box of {:g} m × {:g} m, outside".format(*size), changes
+        yield "box of {:g} m × {:g} m, outside".format(*packing["size"]), changes
 
 
 def _beyond(table: Boundary) -> dict[str, Any]:

@@ -8,11 +8,12 @@ import numpy as np
 
 from dembound.casefile import Case
 from dembound.motion.clock import Clock
-from dembound.motion.kind import Box, Finding, Plan
+from dembound.motion.kind import Finding, Plan
 from dembound.motion.simulation import Simulation
 from dembound.motion.trackers import Records
 from dembound.results.histories import Quantity
 from dembound.running import Progress, Reports, plan, simulation_of
+from dembound.table import Box
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,6 @@ from dembound.casefile.chart import ReferenceName
 from dembound.casefile.messages import counted
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import kind_of
-from dembound.motion.kind import Box
 from dembound.results.histories import Quantity
 from dembound.running import Progress
 from dembound.studies.chart.choices import Choice, choices_of, digest, from_table
@@ -24,6 +23,7 @@ from dembound.studies.chart.front import EQUAL, ROUNDING, Point, cheapest_within
 from dembound.studies.chart.measure import Outcome, measure
 from dembound.studies.chart.record import Record, record_in
 from dembound.studies.chart.reference import reference_of
+from dembound.table import Box
 
 LEVELS = (0.01, 0.001)
 """Errors within which the cheapest choice is named."""

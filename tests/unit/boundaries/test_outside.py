@@ -7,7 +7,7 @@ from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import loads
 
-CASE = """
+BODY = """
 [packing]
 pattern = "A"
 size = [10.0, 5.0]
@@ -15,8 +15,6 @@ radius = 0.5
 [material]
 density = 2500.0
 p_wave_speed = 1000.0
-[boundary.left]
-type = "outside"
 [wave.w]
 type = "cosine"
 amplitude = 1.0
@@ -24,11 +22,14 @@ period = 0.1
 [run]
 duration = 0.1
 """
+CASE = BODY + '[boundary.left]\ntype = "outside"\n'
+BELOW = BODY + '[boundary.bottom]\ntype = "outside"\nwave_s = "w"\n'
+PERIODIC = '[boundary.left]\ntype = "periodic"\n[boundary.right]\ntype = "periodic"\n'
 
 
-def problems(more: str) -> str:
+def problems(text: str) -> str:
     with pytest.raises(CaseError) as error:
-        loads(CASE + more)
+        loads(text)
     return str(error.value)
 
 
@@ -54,7 +55,7 @@ def test_it_is_artificial_and_has_no_keys() -> None:
             '[boundary.bottom]\ntype = "symmetry"\n[static]\n',
             'boundary.bottom.type: is "symmetry", which takes [static] and loads on all disks out',
         ),
-        ('[boundary.right]\ntype = "free_field"\n', 'boundary.right.type: is "free_field"; beside'),
+        ('[boundary.right]\ntype = "free_field"\n', 'boundary.right.type: is "free_field", which cannot be in a case'),
         ('[motion]\nheld = ["y"]\n', 'boundary.left.type: "outside" moves freely, but motion.held holds y'),
         (
             '[boundary.bottom]\ntype = "outside"\n[static]\n',
@@ -69,33 +70,25 @@ def test_it_is_artificial_and_has_no_keys() -> None:
     ],
 )
 def test_what_it_cannot_be_beside_gets_one_line(more: str, line: str) -> None:
-    assert line in problems(more)
+    assert line in problems(CASE + more)
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"), [("free_field", "cannot be in a case with boundary.right"), ("viscous", "beside boundary.bottom")]
+)
+def test_a_wrong_side_beside_several_continua_has_one_line(kind: str, said: str) -> None:
+    """Nor is the bottom blamed for waves that the wrong side keeps from entering."""
+    text = f'{BELOW}[boundary.right]\ntype = "outside"\n[boundary.left]\ntype = "{kind}"\n'
+    with pytest.raises(CaseError) as error:
+        loads(text)
+    (line,) = error.value.problems
+    assert line.startswith(f'boundary.left.type: is "{kind}"')
+    assert said in line
 
 
 @pytest.mark.parametrize("kind", ['"fixed"', '"symmetry"', '"viscous"', '"velocity"\nwave_p = "w"', '"outside"'])
 def test_the_opposite_side_may_be_anything_but_a_free_field(kind: str) -> None:
     assert loads(f"{CASE}[boundary.right]\ntype = {kind}\n").side("left").is_outside
-
-
-BELOW = """
-[packing]
-pattern = "A"
-size = [10.0, 5.0]
-radius = 0.5
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-[wave.w]
-type = "cosine"
-amplitude = 1.0
-period = 0.1
-[run]
-duration = 0.1
-[boundary.bottom]
-type = "outside"
-wave_s = "w"
-"""
-PERIODIC = '[boundary.left]\ntype = "periodic"\n[boundary.right]\ntype = "periodic"\n'
 
 
 def test_waves_enter_through_the_bottom_of_a_periodic_body() -> None:
@@ -120,13 +113,11 @@ def test_waves_enter_through_the_bottom_of_a_periodic_body() -> None:
     ],
 )
 def test_other_waves_get_one_line(text: str, line: str) -> None:
-    with pytest.raises(CaseError) as error:
-        loads(text)
-    assert line in str(error.value)
+    assert line in problems(text)
 
 
 def test_a_hole_that_reaches_it_is_refused() -> None:
     hole = '[[hole]]\nname = "h"\ntype = "circle"\nradius = 1.0\ncentre = '
-    with pytest.raises(CaseError, match="hole: reaches the continuum of left"):
+    with pytest.raises(CaseError, match=r"hole\[1, h\]: reaches boundary.left, where the continuum has no hole"):
         build(loads(CASE + hole + "[0.5, 2.5]\n"))
     assert build(loads(CASE + hole + "[5.0, 2.5]\n")).outside is not None

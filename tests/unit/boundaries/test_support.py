@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
+from dembound.boundaries.support import SupportBuilder, Supports
 
 NODES = np.array([4, 2])
 
@@ -16,35 +16,10 @@ def square(times: np.ndarray) -> np.ndarray:
     return times**2
 
 
-def no_mirror(diameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    return 0.0 * diameters, 0.0 * diameters
-
-
-MEDIUM = BoundaryMedium(density=2000.0, p_wave_speed=1000.0, s_wave_speed=500.0, mirror_stiffness=no_mirror)
-
-
 def row(table: Supports, node: int, component: int) -> int:
     """The number of the one row on a degree of freedom."""
     (found,) = np.flatnonzero((table.node == node) & (table.component == component))
     return int(found)
-
-
-def test_a_medium_gives_p_dashpots_along_the_normal_and_s_across() -> None:
-    # βρc by hand: 0.5·2000·1000 and 3·2000·500
-    assert MEDIUM.impedances(0.5, 3.0, normal_axis=0).tolist() == [1e6, 3e6]
-    assert MEDIUM.impedances(0.5, 3.0, normal_axis=1).tolist() == [3e6, 1e6]
-
-
-def test_a_medium_has_the_shear_modulus_of_its_s_waves() -> None:
-    assert MEDIUM.shear_modulus == 5e8  # 2000·500²
-
-
-@pytest.mark.parametrize(("side", "axis"), [("left", 0), ("right", 0), ("bottom", 1), ("top", 1)])
-def test_an_edge_knows_its_normal_and_how_much_its_disks_cover(side: str, axis: int) -> None:
-    edge = Edge(side, NODES, positions=np.zeros((2, 2)), diameters=np.array([0.5, 1.0]), length=1.25)
-
-    assert edge.axis == axis
-    assert edge.diameter_sum_ratio == 1.2
 
 
 def test_one_row_per_node_sorted_by_node_with_numbers_or_arrays() -> None:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from dembound.disks import contact_forces as module
+from dembound.disks.contact_arrays import plain_contacts
 from dembound.disks.contact_forces import acting, contact_columns, pieces
-from dembound.disks.contacts import plain_contacts
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.disks.system import DiskSystem

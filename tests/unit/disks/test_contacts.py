@@ -5,7 +5,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from dembound.disks.contacts import ContactList, plain_contacts
+from dembound.disks.contact_arrays import plain_contacts
+from dembound.disks.contacts import ContactList
 from dembound.disks.scene import DiskScene, build
 from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED, note_places
 

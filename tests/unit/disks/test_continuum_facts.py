@@ -5,8 +5,10 @@ import re
 import numpy as np
 import pytest
 
-from dembound.disks.continuum_facts import ANGLES, continuum_facts, continuum_warnings, in_percent, lattice_errors
+from dembound.disks.bragg import sent_back
+from dembound.disks.continuum_facts import ANGLES, continuum_facts, continuum_warnings
 from dembound.disks.outside_settings import signals_of
+from dembound.disks.packing_errors import in_percent, lattice_errors
 from dembound.disks.scene import build
 from dembound.kinds import with_changes
 
@@ -82,13 +84,13 @@ def test_the_dispersion_of_the_disks_is_said_where_it_is_more_than_asked_for(cas
 
 
 def test_ties_return_what_a_half_bond_does(case) -> None:
-    """Of one frequency: a burst of 40 cycles of 8.84 Hz, λ_S = 80 D; (kD)²(1/16 + 0.3/8), and 40 k (kD)²/24."""
+    """Of one frequency: a burst of 40 cycles of 8.84 Hz, λ_S = 80 D; (kD)²(1/16 + 0.1/8), and 40 k (kD)²/24."""
     burst = {"pulse": {"type": "sine_burst", "amplitude": 1.0, "frequency": 8.838835, "cycles": 40}}
     scene = build(with_changes(case, {"wave": burst}))
     k = 2.0 * np.pi / 80.0
 
-    ties, across = lattice_errors(scene, scene.outside, signals_of(scene.case))
-    assert ties == pytest.approx(0.1 * k**2, rel=0.03)
+    ties, across = lattice_errors(scene, signals_of(scene.case))
+    assert ties == pytest.approx(0.075 * k**2, rel=0.03)
     assert across == pytest.approx(40.0 * k**3 / 24.0, rel=0.03)
 
 
@@ -97,6 +99,26 @@ def test_elements_that_cannot_be_small_enough_are_said(case) -> None:
 
     assert "above outside.accuracy, as elements smaller than 11.2 m shorten the time step" in facts["continuum waves"]
     assert "above outside.accuracy" not in facts_of(case)["continuum waves"]
+
+
+def test_copies_of_a_random_brick_are_said_to_send_waves_back(case) -> None:
+    """Bricks of 10 m do so from 36 Hz on, as do forces along both axes and waves from below along y."""
+    short = {"type": "cosine", "amplitude": 1.0, "period": 0.05}
+    below = {side: {"type": "outside"} for side in ("left", "right")} | {
+        "bottom": {"type": "outside", "wave_s": "pulse"}
+    }
+    of_forces = with_changes(case, {"packing": RANDOM, "wave": {"pulse": short}})
+    for changed, axes in ((of_forces, (0, 1)), (with_changes(of_forces, {"load": [], "boundary": below}), (1,))):
+        scene = build(changed)
+        share = in_percent(sent_back(scene.ground, signals_of(changed), (40.0, 20.0), axes))
+        fact = continuum_facts(scene)["copies of the brick"]
+        assert fact.startswith(f"send back up to {share} of the velocity")
+        assert fact.endswith("shorter bricks send back less")
+        more = build(with_changes(changed, {"outside.accuracy": 0.2}))
+        assert continuum_facts(more)["copies of the brick"].endswith("which a continuum does not")
+
+    assert "copies of the brick" not in facts_of(case, packing=RANDOM)  # 13 Hz
+    assert "copies of the brick" not in facts_of(case, wave={"pulse": short})  # a lattice
 
 
 def test_a_force_that_jumps_has_no_shortest_wave(case) -> None:

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dembound.disks.half import HalfScene, halves
+from dembound.disks.half import HalfScene
+from dembound.disks.halves import halves
 from dembound.disks.one_row import OneRow
 from dembound.disks.reduction import difference, reduced
 from dembound.disks.scene import build

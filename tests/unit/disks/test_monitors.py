@@ -146,6 +146,16 @@ def test_places_in_the_layer_are_refused_with_the_nearest_one_outside() -> None:
     assert list(scene_of({"a": (-4.0, 1.0), "c": (12.0, -4.0)}).between) == ["a", "c"]
 
 
+def test_the_nearest_place_has_few_digits_and_is_allowed() -> None:
+    """Layers begin 8/3 m beside the body and 2 m below it: places are rounded towards it."""
+    element = {"outside": {"element": 3.0}}
+    with pytest.raises(CaseError) as error:
+        scene_of({"a": (-3.0, -2.5), "b": (11.0, 1.234567)}, element)
+    nearest = [line.split("allowed is ")[1] for line in error.value.problems]
+    assert nearest == ["(-2.6, -2) m", "(10.6, 1.234567) m"]
+    assert len(scene_of({"a": (-2.6, -2.0), "b": (10.6, 1.234567)}, element).between) == 2
+
+
 @pytest.mark.parametrize("sides", ["outside", "periodic"])
 def test_below_the_ground_that_waves_enter_there_is_no_monitor(sides: str) -> None:
     """There the continuum has what is scattered, and no column the rest."""

@@ -143,6 +143,17 @@ def test_elements_lie_where_there_are_sides(case) -> None:
     assert math.isclose(mesh.inner, 60.0)
 
 
+def test_elements_of_flat_ground_are_about_as_wide_as_high(case) -> None:
+    """With those of at most 6 m, 8 m of height are two rows of 4 m; other ground keeps what divides its sides."""
+    found = chosen(case())._replace(element=6.0, least=0.0)
+    assert found.sides(240.0, 8.0) == (4.0, 4.0)
+    assert found.sides(8.0, 240.0) == (4.0, 4.0)
+    assert found.sides(39.0, 8.0) == (39.0 / 7.0, 4.0)  # 4.9 times as wide as high
+    assert found._replace(least=5.0).sides(240.0, 8.0) == (240.0 / 40.0, 8.0)
+    mesh = mesh_of(found, (0.0, 0.0, 240.0, 8.0), SIDES)
+    assert {(width, height) for width, height in mesh.shapes.tolist()} == {(4.0, 4.0)}
+
+
 HOLE = {"name": "hole", "type": "circle", "centre": [20.0, 8.0], "radius": 4.0}
 
 
@@ -153,7 +164,7 @@ def test_layers_begin_farther_beside_deep_ground(case) -> None:
     deep = with_changes(case(), placed | {"hole": [HOLE | {"centre": [50.0, 108.0]}], "outside.element": 5.0})
     box = (30.0, 100.0, 70.0, 120.0)
     sources = buried(deep, box, (*SIDES, "top"))
-    assert sources == [Buried(132.0, 20.0, 40.0)] * 2
+    assert sources == [Buried(132.0, 20.0, (40.0, 20.0))] * 2
     found = settings_of(deep, ROCK, 1.0, box, (*SIDES, "top"))
     errors = [sources[0].error(found, ROCK, margin) for margin in (found.margin - 1, found.margin)]
     assert errors[1] <= 1e-3 < errors[0]

@@ -10,7 +10,8 @@ from dembound.disks.system import DiskSystem
 from dembound.kernels import elastic, loop
 from dembound.kernels.bonded import seam_ends_forces
 from dembound.kernels.common import BROKE, DONE, LAW_ENDS, LIST_ENDS
-from dembound.kernels.contacts import INTACT, SHEAR, slack
+from dembound.kernels.contact_measures import slack
+from dembound.kernels.contacts import INTACT, SHEAR
 from dembound.kernels.tables import Body, Links, Log, Seam, SeamEnds, Supports
 from dembound.motion.state import State
 

@@ -186,8 +186,8 @@ def test_a_hole_must_leave_the_ground_that_the_column_meets(ground, pattern: str
     whole = build(ground(pattern))
     assert scene.count < whole.count
     assert np.array_equal(scene.seam.neighbour, whole.seam.neighbour)
-    for left, right in ((-1.0, 0.1 * width), (0.9 * width, width + 1.0)):
-        with pytest.raises(CaseError, match="hole: reaches the free field of left or right, which has no hole"):
+    for side, left, right in (("left", -1.0, 0.1 * width), ("right", 0.9 * width, width + 1.0)):
+        with pytest.raises(CaseError, match=rf"hole\[1, niche\]: reaches boundary.{side}, where the free field has no"):
             hollow(left, right)
 
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from dembound.casefile import Case
+from dembound.disks.continuum_ties import TwinTie
 from dembound.disks.facts import disk_facts
-from dembound.disks.outside_mesh import Sizes, box_of
+from dembound.disks.outside_mesh import ElementSizes, box_of
 from dembound.disks.outside_settings import least_element
 from dembound.disks.scene import DiskScene, build, column_alone, ground_of
 from dembound.disks.settled import among, settling_keys
-from dembound.disks.static import _without_own_continua
-from dembound.disks.surroundings import TwinTie
+from dembound.disks.static_scene import without_own_continua
 from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.kinds import loads, with_changes
@@ -125,7 +125,7 @@ def test_at_rest_its_ties_have_no_forces_where_all_moves_as_the_column(shaken: D
 def test_a_hole_that_reaches_a_side_is_refused(stage: str) -> None:
     hole = {"name": "shaft", "type": "circle", "centre": [20.0, 17.0], "radius": 2.0, "stage": stage}
     more = WEIGHT if stage == "after" else {}
-    with pytest.raises(CaseError, match=r"^hole: reaches the continuum of left or right or bottom or top, which has"):
+    with pytest.raises(CaseError, match=r"^hole\[1, shaft\]: reaches boundary.top, where the continuum has no hole"):
         scene({"hole": [hole]}, more)
 
 
@@ -148,9 +148,9 @@ def test_sizes_of_elements_round_a_narrow_column() -> None:
     ground = ground_of(made)
     body = build(made).assembly
 
-    def sizes(width: float, periodic: bool) -> Sizes:
+    def sizes(width: float, periodic: bool) -> ElementSizes:
         strip = replace(body, size=np.array([width, 30.0]), extent=np.array([width, 30.0]))
-        return Sizes.of(made, ground, strip, ("bottom",), (periodic, False))
+        return ElementSizes.of(made, ground, strip, ("bottom",), (periodic, False))
 
     assert (sizes(36.0, True).narrow, sizes(36.0, True).element) == ((False, False), (6.0, 6.0))
     assert (sizes(12.0, True).narrow, sizes(12.0, True).element) == ((True, False), (12.0, 6.0))
@@ -172,7 +172,7 @@ def test_a_column_alone_has_free_ends_and_no_column_of_its_own() -> None:
 
 def test_in_a_static_stage_supports_hold_what_the_foot_does() -> None:
     whole = scene(WEIGHT)
-    settling = _without_own_continua(whole)
+    settling = without_own_continua(whole)
     assert settling.continua == (whole.outside,)
     moved = np.arange(3.0 * settling.count).reshape(3, -1)
     of_all = among(moved, whole)
@@ -180,7 +180,7 @@ def test_in_a_static_stage_supports_hold_what_the_foot_does() -> None:
     assert np.array_equal(of_all[:, : whole.disk_count], moved[:, : whole.disk_count])
     assert not of_all[:, whole.disk_count :].any()
     tied_by_itself = scene({})
-    assert _without_own_continua(tied_by_itself).continua == ()
+    assert without_own_continua(tied_by_itself).continua == ()
 
 
 def test_a_static_stage_depends_on_the_continuum_that_settles() -> None:
@@ -199,7 +199,7 @@ def test_a_static_stage_depends_on_the_continuum_that_settles() -> None:
 def test_contacts_of_a_static_stage_are_those_of_the_run() -> None:
     """The run has nodes of the foot, which the static stage has not."""
     whole = scene(WEIGHT, {"material.law": "linearpbond", "material.pb_ten": 1e9, "material.pb_coh": 1e9})
-    contacts = _without_own_continua(whole).contact_lists()
+    contacts = without_own_continua(whole).contact_lists()
     displacement = np.zeros((3, whole.count))
     displacement[0, whole.seam.count] = 1e-4
     force = np.zeros((3, whole.count))

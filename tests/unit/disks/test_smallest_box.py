@@ -1,5 +1,6 @@
 """The box of disks that check proposes, and the time of a step that it is compared by."""
 
+import tomllib
 from dataclasses import replace
 from typing import Any
 
@@ -9,7 +10,7 @@ from dembound.api import case
 from dembound.casefile.disks import DiskCase
 from dembound.disks import step_cost
 from dembound.disks.scene import build
-from dembound.disks.smallest_box import smallest_box
+from dembound.disks.smallest_box import box_facts
 
 SIZE = (120.0, 100.0)
 VISCOUS = {"type": "viscous"}
@@ -35,7 +36,7 @@ def tunnel(**changes: Any) -> DiskCase:
 
 
 def test_the_box_holds_the_hole_in_its_middle_and_is_cheaper() -> None:
-    words = smallest_box(build(tunnel()))
+    words = box_facts(build(tunnel()))["smaller box"]
     width, height = (float(part.split(" m")[0]) for part in words.split(" × ")[:2])
     left, bottom = (float(part) for part in words[words.index("(") + 1 : words.index(")")].split(", "))
 
@@ -45,26 +46,23 @@ def test_the_box_holds_the_hole_in_its_middle_and_is_cheaper() -> None:
 
 
 def test_the_proposed_box_has_the_disks_and_nodes_it_says() -> None:
-    words = smallest_box(build(tunnel()))
-    width, height = (float(part.split(" m")[0]) for part in words.split(" × ")[:2])
-    origin = [float(part) for part in words[words.index("(") + 1 : words.index(")")].split(", ")]
-    outside = {"type": "outside"}
-    boxed = build(
-        tunnel(
-            ground={"size": list(SIZE)},
-            packing={"pattern": "A", "size": [width, height], "origin": origin, "radius": 0.5},
-            boundary={"left": outside, "right": outside, "top": outside, "bottom": outside | {"wave_s": "pulse"}},
-        )
-    )
+    """Its tables are those of a case in which nothing else has changed."""
+    facts = box_facts(build(tunnel()))
+    words, tables = facts["smaller box"], tomllib.loads(facts["its tables"])
+    assert tables["boundary"].pop("bottom") == {"type": "outside", "wave_s": "pulse"}
+    assert tables["boundary"] == {side: {"type": "outside"} for side in ("left", "right", "top")}
+    packing = {"pattern": "A", "radius": 0.5} | tables.pop("packing")
+    tables["boundary"]["bottom"] = {"type": "outside", "wave_s": "pulse"}
+    boxed = build(tunnel(packing=packing, **tables))
     assert boxed.outside is not None
     assert f": {boxed.disk_count:,} disks and {boxed.outside.count:,} nodes instead of " in words
-    assert smallest_box(boxed) == ""
+    assert box_facts(boxed) == {}
 
 
 def test_a_load_near_the_surface_has_a_box_up_to_it() -> None:
     load = [{"name": "blow", "position": [60.0, 98.0], "force": [0.0, -1.0], "wave": "pulse"}]
     sides = dict.fromkeys(("left", "right", "bottom"), VISCOUS)
-    words = smallest_box(build(tunnel(hole=[], load=load, boundary=sides)))
+    words = box_facts(build(tunnel(hole=[], load=load, boundary=sides)))["smaller box"]
     height = float(words.split(" × ")[1].split(" m")[0])
     bottom = float(words[words.index("(") + 1 : words.index(")")].split(", ")[1])
 
@@ -82,7 +80,7 @@ def test_a_load_near_the_surface_has_a_box_up_to_it() -> None:
     ids=["nothing in it", "not ground all round", "periodic", "a wave from the left"],
 )
 def test_there_is_no_box(changes: dict[str, Any]) -> None:
-    assert smallest_box(build(tunnel(**changes))) == ""
+    assert box_facts(build(tunnel(**changes))) == {}
 
 
 def test_a_step_costs_what_its_parts_do() -> None:

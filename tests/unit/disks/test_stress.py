@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.disks import contact_forces as module
-from dembound.disks.contacts import plain_contacts
+from dembound.disks.contact_arrays import plain_contacts
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.disks.static import settle

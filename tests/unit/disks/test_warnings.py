@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from small_cases import SURROUNDED, small
 
 from dembound.casefile import Case
 from dembound.casefile.magnitudes import stress_in_words
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import build
-from dembound.disks.warnings import disk_warnings, particles_per_wavelength
+from dembound.disks.warnings import _steady_without_static, disk_warnings, particles_per_wavelength
 from dembound.running import plan
 from dembound.waves.spectrum import HANN_FADE
 
@@ -28,6 +29,9 @@ DENSE = {
 """A packing with its default of 10 MPa locked in."""
 
 PERIODIC = {f"boundary.{side}": {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
+
+
+BELOW = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
 
 
 def warned(case: Case) -> list[str]:
@@ -150,6 +154,25 @@ def test_a_steady_load_without_a_static_stage_is_warned_of(bar, static: dict, su
     found = warned(bar({"load": [weight, tap], **SLOW, **static}))
 
     assert [warning.split(",")[0] for warning in found] == ["load.weight: is steady"] * sudden
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"boundary": {"right": {"type": "viscous"}}}, "; viscous sides creep under it"),
+        ({"boundary": BELOW}, "; the ground beyond the sides, of which nothing is held, moves under it as long as the"),
+        ({"boundary": BELOW, "load": [{"name": "weight", "force": [0.0, -1.0], "position": [5.0, 2.5]}]}, "t = 0"),
+        ({"boundary": {"bottom": {"type": "fixed"}}}, "t = 0"),
+    ],
+    ids=["viscous", "outside", "in one place", "fixed"],
+)
+def test_what_moves_on_under_a_steady_load_is_said(changes: dict, said: str) -> None:
+    base = {key: table for key, table in SURROUNDED.items() if key != "boundary"}
+    weight = {"load": [{"name": "weight", "acceleration": [0.0, -10.0]}]}
+    (line,) = _steady_without_static(build(small(base | weight | changes)))
+    assert line.startswith("load.weight: is steady, and without [static] acts suddenly at t = 0")
+    assert said in line
+    assert line.endswith(said) or "as long as the run lasts" in line
 
 
 def test_a_lattice_without_stress_is_not_warned_of(bar) -> None:

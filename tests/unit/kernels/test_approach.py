@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dembound.disks.neighbours import CELL, cells_of
-from dembound.kernels.approach import approach
+from dembound.kernels.approach import approach, moved
 
 COUNT, SIZE, RADIUS = 3000, (60.0, 20.0), 0.25
 
@@ -80,3 +80,15 @@ def test_cells_of_a_few_disks(places) -> None:
     u[0, 0] = 0.1
     least = 0.1 if len(places) == 2 else 0.0  # a disk alone, or far from all others, meets none
     assert least <= approach(u, 0, np.zeros((2, len(places))), cells) <= 0.2
+
+
+def test_the_largest_motion_since_the_list_was_made() -> None:
+    u, origin = np.zeros((3, 500)), np.full((2, 500), 1.0)
+    u[:2] = origin
+    u[:2, 321] += [3.0, -4.0]
+    u[2] = 100.0  # turning takes nobody nearer
+
+    assert moved(u, 0, origin) == 5.0
+    # of the particles from 320 or 322 on
+    assert moved(u, 320, origin[:, 320:]) == 5.0
+    assert moved(u, 322, origin[:, 322:]) == 0.0

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from dembound.kernels import bonded, follower  # noqa: F401  (they make the law and the forces that turn known)
+from dembound.kernels.approach import moved
 from dembound.kernels.common import BROKE, CHUNKS, DONE, LIST_ENDS
-from dembound.kernels.contacts import BONDED, INTACT, SHEAR, TENSION, UPDATED, moved
+from dembound.kernels.contacts import BONDED, INTACT, SHEAR, TENSION, UPDATED
 from dembound.kernels.loop import advance
 from dembound.kernels.tables import Bonded, Cells, Contacts, Followers, Limits, Log
 

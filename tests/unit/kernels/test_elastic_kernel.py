@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from dembound.kernels import tables
+from dembound.kernels.approach import moved
 from dembound.kernels.common import CHUNKS, DONE, LAW_ENDS, LIST_ENDS
-from dembound.kernels.contacts import BONDED, moved, slack
+from dembound.kernels.contact_measures import slack
+from dembound.kernels.contacts import BONDED
 from dembound.kernels.elastic import contact_forces
 from dembound.kernels.loop import advance
 

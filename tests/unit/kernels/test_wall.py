@@ -69,6 +69,7 @@ def ties(of: Given | None = None, lag: float = 0.0) -> WallTies:
         start=np.array([0, 1, 2]),
         node=node,
         line=LINES[node],
+        reach=np.tile([0, POINTS, 0, POINTS], (ELEMENTS, 1)),
         particle=particle,
         particle_line=LINES[particle],
         twin=laid(of.twin, -1),
@@ -142,6 +143,19 @@ def test_a_tie_is_half_a_bond() -> None:
 
     # sums of five forces of some ten
     np.testing.assert_allclose(forces(bundle, u, np.zeros_like(u)), expected, rtol=0.0, atol=1e-13)
+
+
+def test_nodes_out_of_reach_are_left_out() -> None:
+    """Where shape functions are zero, forces are the same without these nodes, whatever their motion."""
+    of, u = given(corrector=np.zeros((12, TIES))), motion()
+    of.along[[0, 2]] = 0.0
+    of.up[0] = 0.0
+    bundle = ties(of)
+    near = bundle._replace(reach=np.array([[1, 2, 1, POINTS], [0, POINTS, 0, POINTS]]))
+    force = forces(bundle, u, np.zeros_like(u))
+    u[:2, bundle.node.reshape(ELEMENTS, POINTS, POINTS)[0, :, [0, 2]]] = np.nan
+
+    np.testing.assert_array_equal(forces(near, u, np.zeros_like(u)), force)
 
 
 def test_velocities_count_as_displacements_in_the_lag() -> None:

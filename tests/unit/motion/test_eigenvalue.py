@@ -34,7 +34,8 @@ def test_it_is_that_of_the_matrix_without_what_is_held(held: int) -> None:
     matrix = stiffness / np.tile(mass, 2)[:, None]
     exact = np.linalg.eigvals(matrix[np.ix_(kept, kept)]).real.max()
 
-    assert 0.0 <= found / exact - 1.0 <= TOLERANCE
+    rounding = 1e-13  # of 70 to 120 dense eigenvalues, whose matrix is not symmetric
+    assert -rounding <= found / exact - 1.0 <= TOLERANCE
 
 
 def test_nothing_moves() -> None:

@@ -13,7 +13,8 @@ from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.disks.system import DiskSystem, Start
 from dembound.errors import RunError
-from dembound.kernels.contacts import REFERENCE, UPDATED, strain_energy
+from dembound.kernels.contact_measures import strain_energy
+from dembound.kernels.contacts import REFERENCE, UPDATED
 from dembound.kinds import loads
 from dembound.motion.energy import GAIN, Entry, Ledger
 from dembound.motion.simulation import Simulation

@@ -1,16 +1,10 @@
-"""Meshes: nodes, elements, layers, and interpolation."""
+"""Meshes: nodes, elements and layers."""
 
 import numpy as np
 import pytest
+from meshes import ORDER, buried, one_across, uneven
 
 from dembound.outside.mesh import NONE, Around, Mesh
-
-ORDER = 4
-
-
-def buried() -> Mesh:
-    """Round a box of 2 × 1 elements of 3 × 2 m on all four sides."""
-    return Mesh.around((10.0, 20.0, 16.0, 22.0), (3.0, 2.0), ORDER, margin=Around(1, 2, 1, 1), layer=Around(2, 1, 1, 1))
 
 
 def below() -> Mesh:
@@ -121,32 +115,6 @@ def test_the_surface_is_what_is_free_beyond_the_box() -> None:
     assert (round_a_pipe.free_sides[:, [1, 3]] == 2.0).all()
 
 
-def test_a_polynomial_is_interpolated_and_extrapolated() -> None:
-    mesh = buried()
-    points = np.array([[2.2, 17.3], [23.9, 25.9], [10.1, 20.05], [15.9, 21.8], [13.0, 20.4], [0.9, 16.0]])
-    field = mesh.positions[:, 0] ** 2 - 3.0 * mesh.positions[:, 1] * mesh.positions[:, 0]
-    node, weight = mesh.interpolation(points)
-
-    # also within the box, from the nearest element
-    expected = points[:, 0] ** 2 - 3.0 * points[:, 1] * points[:, 0]
-    np.testing.assert_allclose((weight * field[node]).sum(axis=1), expected, rtol=1e-12)
-    np.testing.assert_allclose(weight.sum(axis=1), 1.0, rtol=1e-13)
-    nearest = mesh.positions[node].mean(axis=1) - points
-    assert (np.abs(nearest) <= np.array([3.0, 2.0])).all()
-
-
-def uneven() -> Mesh:
-    """Columns of three widths and rows of three heights, round a box of 3 × 2 m whose corner is at (4, 5) m."""
-    return Mesh(
-        order=ORDER,
-        widths=(1.5, 2.5, 2.0, 1.0, 2.0),
-        heights=(3.0, 2.0, 2.0, 3.0, 1.0),
-        origin=(0.0, 0.0),
-        box=(2, 2, 4, 3),
-        layer=Around(2, 1, 1, 2),
-    )
-
-
 def test_columns_and_rows_have_their_sizes() -> None:
     mesh = uneven()
     columns, rows = np.array([0.0, 1.5, 4.0, 6.0, 7.0, 9.0]), np.array([0.0, 3.0, 5.0, 7.0, 10.0, 11.0])
@@ -176,42 +144,6 @@ def test_depth_is_a_share_of_the_thickness_of_unequal_elements() -> None:
     assert mesh.axes[0].thickness == (4.0, 2.0)
     assert mesh.axes[1].thickness == (3.0, 4.0)
     assert mesh.inner == 4.0
-
-
-def test_points_are_located_in_unequal_elements() -> None:
-    mesh = uneven()
-    rng = np.random.default_rng(0)
-    for number, nodes in enumerate(mesh.nodes):
-        local = rng.uniform(-1.0, 1.0, (5, 2))
-        low, high = mesh.positions[nodes[0, 0]], mesh.positions[nodes[-1, -1]]
-        element, found = mesh.located(low + 0.5 * (1.0 + local) * (high - low))
-        assert (element == number).all()
-        np.testing.assert_allclose(found, local, rtol=0.0, atol=1e-13)
-
-
-def test_points_in_the_box_and_beyond_the_mesh_belong_to_the_nearest_element() -> None:
-    """As found by comparing all of them; those on an edge to the first of both elements."""
-    mesh = uneven()
-    points = np.random.default_rng(1).uniform((-3.0, -3.0), (12.0, 14.0), (400, 2))
-    points[:200] = np.random.default_rng(2).uniform((4.0, 5.0), (7.0, 7.0), (200, 2))
-    low, high = (mesh.positions[mesh.nodes[:, i, i]] for i in (0, -1))
-    beyond = np.maximum(np.maximum(low - points[:, None], points[:, None] - high), 0.0)
-    nearest = np.argmin(np.sum(beyond**2, axis=2), axis=1)
-
-    np.testing.assert_array_equal(mesh.located(points)[0], nearest)
-    on_edges = mesh.located(np.array([[1.5, 1.0], [3.0, 5.0], [7.0, 6.0], [5.0, 7.0]]))[0]
-    np.testing.assert_array_equal(mesh.elements[on_edges], [[0, 0], [1, 1], [4, 2], [2, 3]])
-
-
-def test_a_polynomial_is_interpolated_in_unequal_elements() -> None:
-    mesh = uneven()
-    points = np.random.default_rng(3).uniform((0.0, 0.0), (9.0, 11.0), (50, 2))
-    x, y = mesh.positions.T
-    node, weight = mesh.interpolation(points)
-
-    found = (weight * (x**4 - 2.0 * x * y**3)[node]).sum(axis=1)
-    expected = points[:, 0] ** 4 - 2.0 * points[:, 0] * points[:, 1] ** 3
-    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13 * np.abs(expected).max())
 
 
 def test_elements_round_a_box_divide_its_sides() -> None:
@@ -251,26 +183,6 @@ def test_boxes_and_surfaces_that_cannot_be_are_refused() -> None:
             Mesh.around((0.0, 0.0, 6.0, 2.0), (3.0, 2.0), surface=3.0, **there)
 
 
-def test_slopes_are_those_of_the_field() -> None:
-    points = np.array([[2.2, 17.3], [23.9, 25.9], [10.1, 20.05], [13.0, 20.4], [0.9, 16.0]])
-    mesh = buried()
-    x, y = mesh.positions.T
-    field = (x**2 - 3.0 * y * x + y**4)[mesh.interpolation(points).node]
-    x, y = points.T
-
-    along, up = (mesh.slopes(points) * field).sum(axis=2)
-    np.testing.assert_allclose(along, 2.0 * x - 3.0 * y, rtol=1e-9)
-    np.testing.assert_allclose(up, 4.0 * y**3 - 3.0 * x, rtol=1e-9)
-
-
-def test_slopes_in_the_element_that_closes_a_period() -> None:
-    mesh = Mesh.uniform(order=3, element=(1.5, 1.0), cells=(4, 2), periodic=(True, False))
-    point = np.array([[5.7, 0.3]])  # of the last column, whose right nodes are those of the first one
-    local = mesh.rule.slope(np.array([0.6]))[0] / 0.75
-
-    np.testing.assert_allclose(mesh.slopes(point)[0].reshape(4, 4).sum(axis=0), local, rtol=1e-12)
-
-
 def test_what_lies_between_the_layers() -> None:
     low, high = buried().between_layers
 
@@ -300,17 +212,11 @@ def test_planes_of_symmetry_are_neither_free_nor_absorb() -> None:
 
 
 def test_one_element_across_has_itself_as_its_neighbour() -> None:
-    mesh = Mesh.around(
-        (0.0, 0.0, 6.0, 4.0), (6.0, 2.0), ORDER, margin=Around(bottom=1), layer=Around(bottom=2), periodic=(True, False)
-    )
+    mesh = one_across()
     assert mesh.count == ORDER * (3 * ORDER + 1)
     assert (mesh.nodes[:, :, 0] == mesh.nodes[:, :, -1]).all()
     assert mesh.areas.sum() == pytest.approx(6.0 * 6.0)
     assert mesh.sides == (0.0, 6.0, 0.0, 4.0)
-    # points beyond a periodic side have places within it
-    element, place = mesh.located(np.array([[-1.0, -1.0], [7.0, 0.5]]))
-    assert mesh.elements[element].tolist() == [[0, 2], [0, 2]]
-    np.testing.assert_allclose(place, [[2.0 * 5.0 / 6.0 - 1.0, 0.0], [2.0 / 6.0 - 1.0, 1.5]])
     # cells across the side are left out
     corners = mesh.positions[mesh.node_cells]
     assert len(corners) == 3 * ORDER * (ORDER - 1)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dembound.boundaries.support import SupportBuilder
-from dembound.kernels.grid_tables import Grid
+from dembound.kernels.tables import Grid
 from dembound.motion.energy import Ledger
 from dembound.motion.layout import Layout
 from dembound.motion.part import System

@@ -50,6 +50,27 @@ def divided(cracked_run, tmp_path):
     return run
 
 
+@pytest.fixture
+def surrounded(divided):
+    """The same with all sides that a box in the ground, its continuum and its column have."""
+    with h5py.File(divided, "r+") as file:
+        own = file["energy/sides/bottom"]
+        for side in ALL_SIDES:
+            if side not in SIDES:
+                file.copy(own, f"energy/sides/{side}")
+    return divided
+
+
+def test_each_of_many_sides_has_its_own_colour_and_name(surrounded):
+    lines = plot_energy(surrounded).axes[0].lines
+    came_in = [line for line in lines if line.get_label().startswith("in: through the ")]
+    assert len(came_in) == len({line.get_label() for line in lines if line in came_in}) == len(ALL_SIDES) - 1
+    assert len({line.get_color() for line in came_in}) == len(came_in)
+
+
+PLACES = ("left", "right", "bottom", "top")
+ALL_SIDES = (*PLACES, *(f"{side}.continuum" for side in PLACES), "bottom.free_field", "bottom.free_field.continuum")
+
 SIDES = {"bottom": (5.0, 2.0, 0.0), "left": (0.0, 3.0, 0.25), "bottom.free_field": (-0.5, 1.5, 0.0)}
 
 

@@ -139,7 +139,8 @@ def test_sides_of_a_continuum_under_waves_from_below_move_as_free_fields_do(bar)
 
 def test_a_box_in_the_ground_is_not_extended(bar) -> None:
     sides = {side: {"type": "outside"} for side in ("left", "right", "bottom")}
-    with pytest.raises(CaseError, match=r"^ground\.size: the scene cannot be extended"):
+    said = r"^ground\.size: the scene cannot be extended, .* --reference finest, .* packing\.size = \[30, 5\]"
+    with pytest.raises(CaseError, match=said):
         extended(bar({**FIELD, "boundary": sides, "ground.size": [30.0, 5.0], "packing.origin": [10.0, 0.0]}))
 
 

@@ -5,6 +5,8 @@ import pytest
 from small_cases import SURROUNDED, small
 
 from dembound.bar.scene import build_bar
+from dembound.disks.scene import build
+from dembound.disks.stability import step_limit
 from dembound.kinds import loads, with_changes
 from dembound.studies.quiet import PARTICLES, UNLOADED, parts_of, trials
 
@@ -122,3 +124,27 @@ def test_a_continuum_has_noise_of_its_own_but_under_a_law_with_a_history() -> No
     assert list(parts_of(trial)) == ["body", "continuum"]
     full = with_changes(linear, {"material.law": "linearpbond"})
     assert [list(parts_of(each)) for each in trials(full)[0]] == [["body", "continuum"], ["body"]]
+
+
+@pytest.mark.parametrize(
+    "moves",
+    [
+        {"boundary.bottom.wave_s": "pulse", "wave.pulse": {"type": "cosine", "amplitude": 1.0, "period": 0.05}},
+        {
+            "load": [{"name": "gravity", "acceleration": [0.0, -9.81]}],
+            "static.boundary.bottom.type": "fixed",
+            "static.ratio": 1e-3,
+        },
+    ],
+    ids=["waves", "static"],
+)
+def test_the_column_beside_a_continuum_and_its_foot_are_kept(moves: dict[str, object]) -> None:
+    """Though the waves or loads are left out for which there is one: the step limit is that of the whole scene."""
+    case = small(SURROUNDED, changes=moves)
+    (trial,), words = trials(case)
+
+    assert words[0] == "12 m × 6 m, 78 disks and 460 nodes of a continuum, with the free-field column"
+    assert list(parts_of(trial)) == ["column", "body", "continuum", "foot"]
+    assert not trial.scene.steady_load.any()
+    assert len(trial.scene.supports.drive) == 0
+    assert trial.limit == pytest.approx(step_limit(build(case)), rel=1e-6)

@@ -74,6 +74,7 @@ def test_where_the_ground_goes_on_a_side_is_outside(missing: str, gap: str) -> N
     others = tuple(side for side in ALL if side != missing)
     said = f'boundary.{missing}.type: the ground goes on {gap} m beyond this side, so it must be "outside"'
     assert problems(sides=others) == [said]
+    assert problems(sides=others, more=f'[boundary.{missing}]\ntype = "viscous"\n') == [said]
 
 
 def test_at_the_edge_of_the_ground_a_side_may_be_any() -> None:

@@ -169,9 +169,9 @@ def test_monitors_may_lie_in_a_continuum() -> None:
     assert problems(left + monitor("a", "[-99.5, 5]")) == []
     assert problems(left + base + monitor("a", "[-99.5, -7]")) == []
     # neither above the free surface nor beyond other sides
-    allowed = "[0, 0] to [10, 5] (m) or in the continuum of left"
+    allowed = "in the scene or its continuum, x <= 10 and 0 <= y <= 5 (m)"
     assert problems(left + monitor("a", "[-2, 5.5]") + monitor("b", "[11, 1]") + monitor("c", "[-2, -1]")) == [
-        f"monitor[{place}].position: is {where}, must be in the scene, {allowed}"
+        f"monitor[{place}].position: is {where}, must be {allowed}"
         for place, where in (("1, a", "[-2.0, 5.5]"), ("2, b", "[11.0, 1.0]"), ("3, c", "[-2.0, -1.0]"))
     ]
     # a side with a mistake of its own has one line

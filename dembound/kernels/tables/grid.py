@@ -1,8 +1,8 @@
 """Bundles of arrays of a grid of spectral elements.
 
-Elements of N × N points are computed in blocks of eight, one in each lane (lanes.py). An element has (N − 2)² *core*
-points, whose nodes are of no other element, and 4(N − 1) *rim* points. Q = N² points and R rim points; points are
-numbered row by row, q = N·row + column.
+Elements of N × N points are computed in blocks of eight, one in each lane (kernels/lanes.py). An element has (N − 2)²
+*core* points, whose nodes are of no other element, and 4(N − 1) *rim* points. Q = N² points and R rim points; points
+are numbered row by row, q = N·row + column.
 """
 
 from typing import NamedTuple

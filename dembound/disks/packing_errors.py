@@ -1,0 +1,82 @@
+"""What remains whatever the settings of a continuum, as a body consists of disks: dispersion, and copies of bricks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from dembound.boundaries.sides import normal_axis
+from dembound.disks import bragg
+from dembound.disks.scene import DiskScene
+from dembound.outside import choice
+from dembound.outside.choice import Signal
+
+LEAST_SHOWN = 1e-5
+"""Share of the velocity below which what copies send back is not printed."""
+
+
+def packing_facts(scene: DiskScene, signals: Sequence[Signal]) -> dict[str, str]:
+    """Facts about a scene with a continuum and signals that do not jump."""
+    facts = {"dispersion of the disks": _dispersion(scene, signals)}
+    if copies := _copies(scene, signals):
+        facts["copies of the brick"] = copies
+    return facts
+
+
+def _dispersion(scene: DiskScene, signals: Sequence[Signal]) -> str:
+    """What remains as the disks are a lattice."""
+    accuracy = scene.case.outside.accuracy
+    ties, across = lattice_errors(scene, signals)
+    more = f"; more than outside.accuracy = {in_percent(accuracy)}" if max(ties, across) > accuracy else ""
+    return (
+        f"{in_percent(ties)} returned by the ties, {in_percent(across)} of the velocity over the scene's length{more}"
+    )
+
+
+def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
+    """What remains in random packings, as all copies of a brick send back the same waves; empty for next to nothing."""
+    case, ground = scene.case, scene.ground
+    if not case.packing.packed_under_stress:
+        return ""
+    if len(ground.brick.radii) > bragg.MOST_DISKS:
+        return f"send back short waves, which is not computed for bricks of more than {bragg.MOST_DISKS:,} disks"
+    axes = sorted({normal_axis(side) for side in case.driving})
+    share = bragg.sent_back(ground, signals, case.size, axes if axes and not case.load else (0, 1))
+    if share < LEAST_SHOWN:
+        return ""
+    accuracy = case.outside.accuracy
+    more = f"; more than outside.accuracy = {in_percent(accuracy)}, shorter bricks send back less"
+    return (
+        f"send back up to {in_percent(share)} of the velocity over the ground's length, which a continuum does not"
+        f"{more if share > accuracy else ''}"
+    )
+
+
+def lattice_errors(scene: DiskScene, signals: Sequence[Signal]) -> tuple[float, float]:
+    """RMS over the energy of velocities of what ties return, and of the lag of waves over the scene's longer side L.
+
+    Half of a lattice's bond has the impedance ρc/cos(kD/2), so that a continuum beyond it returns (kD)²/16; the ties'
+    dashpots, `damping` times ρc_pD, add (kD)²·damping/8. Waves on the lattice lag by the phase kL(kD)²/24. For S waves;
+    of signals the largest.
+    """
+    outside = scene.outside
+    assert outside is not None
+    speed = choice.slowest(outside.body.medium)
+    diameter, length = scene.ground.brick.mean_diameter, max(scene.case.size)
+    returned = 1.0 / 16.0 + outside.settings.damping / 8.0
+    found = []
+    for signal in signals:
+        frequency, energy = choice.energies(signal)
+        k = 2.0 * math.pi * frequency / speed
+        square = (k * diameter) ** 2
+        errors = [returned * square, k * length * square / 24.0]
+        found.append([math.sqrt(float(np.sum(energy * np.minimum(e, 1.0) ** 2) / energy.sum())) for e in errors])
+    ties, across = np.max(found, axis=0).tolist()
+    return ties, across
+
+
+def in_percent(share: float) -> str:
+    """A share with two digits, as "0.13 %", at most 100 %."""
+    return f"{100.0 * share:.2g} %" if share < 0.995 else "100 %"

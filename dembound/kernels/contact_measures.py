@@ -1,0 +1,95 @@
+"""Measures of contacts with a history that leave them as they are: how far they may still move, and their energy."""
+
+import numpy as np
+from numba import njit, prange
+
+from dembound.kernels.common import CHUNKS, PARALLEL, U, column_sum, largest
+from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, UPDATED
+from dembound.kernels.pair_strain import pair, reference_strain, updated_stretch
+
+TURN = 0.01
+"""Largest rotation of a pair under the law of small displacements, whose error is half its square."""
+
+
+@njit(**PARALLEL)
+def slack(u, contacts, limits, keeps_slip=False):
+    """Least relative motion (m) of two surfaces after which a pair leaves the elastic law; negative: it has left it.
+
+    A pair leaves it where a contact opens, closes or slides, a bond reaches its strength, or, if geometry follows the
+    motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation change by no more than the relative
+    motion of the surfaces, which gives a lower bound for each condition. keeps_slip : contacts have slid earlier.
+    """
+    _, first, second, contact_type, constants, state, _, slip, _, _, _, _, _ = contacts
+    friction, tension, cohesion, tan_fa, geometry = limits
+    b = first.size
+    least = np.empty(CHUNKS)
+    for chunk in prange(CHUNKS):
+        room = np.inf
+        for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
+            c = U(p)
+            i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
+            nx, ny, distance, stretch, shear = reference_strain(i, j, k, dx, dy, u, constants)
+            if geometry == UPDATED:
+                room = min(room, TURN * distance - abs(nx * dy - ny * dx))
+            kn = constants[k, U(5)]
+            ks = constants[k, U(6)]
+            overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
+            if constants[k, U(3)] >= distance:
+                room = min(room, overlap)
+                if ks > 0.0:
+                    stuck = shear - slip[c] if keeps_slip else shear
+                    room = min(room, (friction * kn * overlap - ks * abs(stuck)) / (ks + friction * kn))
+            else:
+                room = min(room, -overlap)
+            if state[c] == INTACT:
+                # per length of relative motion: tension k̄, bending k̄ R̄·(1/R̄), shear k̄_s
+                per_area = constants[k, U(10)]
+                bending = constants[k, U(9)] * constants[k, U(11)]
+                stress = constants[k, U(7)] * stretch * per_area
+                turned = bending * abs(u[U(2), j] - u[U(2), i])
+                normal = constants[k, U(7)] * per_area
+                sheared = constants[k, U(8)] * per_area
+                room = min(room, (tension - stress - turned) / (2.0 * normal))
+                strength = cohesion - stress * tan_fa - sheared * abs(shear)
+                room = min(room, strength / (sheared + normal * tan_fa))
+        least[chunk] = -room
+    return -largest(least)
+
+
+@njit(**PARALLEL)
+def strain_energy(u, contacts, geometry):
+    """Energy (J) stored in contacts and in bonds at displacements u (3, n), with the tangential ones of the last push.
+
+    With the geometry REFERENCE shear and slip are not read.
+    """
+    _, first, second, contact_type, constants, state, all_shear, slip, _, _, _, _, _ = contacts
+    b = first.size
+    stored = np.empty((CHUNKS, 2))
+    for chunk in prange(CHUNKS):
+        in_contacts = 0.0
+        in_bonds = 0.0
+        for p in range(chunk * b // CHUNKS, (chunk + 1) * b // CHUNKS):
+            c = U(p)
+            i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
+            intact = state[c] == INTACT
+            if geometry >= REFERENCE or (geometry == BONDED and intact):
+                _, _, _, stretch, shear = reference_strain(i, j, k, dx, dy, u, constants)
+            else:
+                _, _, _, stretch = updated_stretch(k, dx, dy, constants)
+                shear = all_shear[c]
+            overlap = constants[k, U(3)] - constants[k, U(2)] - stretch
+            slid = shear
+            if constants[k, U(3)] < constants[k, U(2)] and overlap <= 0.0:  # open, as at the start
+                overlap = 0.0
+                slid = 0.0
+            elif geometry != REFERENCE:
+                overlap = max(overlap, 0.0)
+                slid -= slip[c]
+            in_contacts += 0.5 * (constants[k, U(5)] * overlap * overlap + constants[k, U(6)] * slid * slid)
+            if intact:
+                turn = u[U(2), j] - u[U(2), i]
+                in_bonds += 0.5 * (constants[k, U(7)] * stretch * stretch + constants[k, U(8)] * shear * shear)
+                in_bonds += 0.5 * constants[k, U(9)] * turn * turn
+        stored[chunk, 0] = in_contacts
+        stored[chunk, 1] = in_bonds
+    return column_sum(stored, 0), column_sum(stored, 1)

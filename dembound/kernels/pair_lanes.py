@@ -1,0 +1,232 @@
+"""Forces of pairs with a history in rows of copies, eight pairs at once (lanes.py).
+
+The formulas are those of contacts.py. A block of eight pairs is computed pair by pair in the step in which one breaks,
+and, where intact bonds keep the geometry of the start, from then on.
+"""
+
+import numpy as np
+from numba import njit, prange
+
+from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
+from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, push_pair
+from dembound.kernels.lane_step import INLINED, larger, next_place, place_of
+from dembound.kernels.lanes import (
+    LANES,
+    at_most,
+    bits,
+    byte_of,
+    choose,
+    lane,
+    load,
+    magnitude,
+    root,
+    splat,
+    store,
+    where_equal,
+    with_sign,
+)
+
+_ALL = np.uint8(2**LANES - 1)
+_INTACT = np.uint8(INTACT)
+
+
+@njit(**INLINED)
+def _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result):
+    """The pairs of a block in turn."""
+    for k in range(LANES):
+        if exists & np.uint8(1 << k):
+            rubbed, broken, broke = push_pair(U(LANES) * block + U(k), u, v, step, number, contacts, limits)
+            result[0] += rubbed
+            result[1] += broken
+            result[2] += broke
+
+
+@njit(**INLINED)
+def _apart(u, i, j):
+    """Displacements of eight disks in slots from j on, relative to those from i on."""
+    return load(u[0], j) - load(u[0], i), load(u[1], j) - load(u[1], i)
+
+
+@njit(**INLINED)
+def _slide(normal, arms, i, j, v):
+    """Rate (m/s) of the shear of pairs."""
+    (nx, ny), (arm_i, arm_j) = normal, arms
+    dvx, dvy = _apart(v, i, j)
+    return nx * dvy - ny * dvx - arm_i * load(v[2], i) - arm_j * load(v[2], j)
+
+
+@njit(**INLINED)
+def _contact(k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, friction):
+    """Normal and shear force of contacts, their slip, the energy (J) that friction takes, and whether any slides."""
+    overlap = (k[q, U(3)] - k[q, U(2)]) - stretch
+    slip = load(contacts.slip, c)
+    N = k[q, U(5)] * overlap
+    S = k[q, U(6)] * (shear - slip)
+    rubbed = splat(0.0)
+    slides = False
+    if gives_way:
+        N = larger(N, 0.0)
+        N = choose(at_most(overlap + step * opening, 0.0), CLOSING * N, N)
+        most = friction * N
+        stays = at_most(magnitude(S), most)
+        slides = (byte_of(stays) & exists) != exists
+        if slides:
+            before = k[q, U(6)] * (shear - step * _slide(normal, arms, i, j, v) - slip)
+            S = choose(stays, S, with_sign(most, S))
+            slid = choose(stays, slip, shear - S * (1.0 / k[q, U(6)]))
+            rubbed = choose(bits(exists), 0.5 * (before + S) * (slid - slip), 0.0)
+            slip = slid
+    return N, S, slip, rubbed, slides
+
+
+@njit(**INLINED)
+def _bond(k, q, stretch, shear, bent, whole, limits):
+    """Normal and shear force and moment of bonds, and the bits of those that would break."""
+    normal = k[q, U(7)] * stretch
+    sheared = k[q, U(8)] * shear
+    moment = k[q, U(9)] * bent
+    stress = normal * k[q, U(10)]
+    torn = at_most(limits.tension, stress + magnitude(moment) * k[q, U(11)])
+    cut = at_most(limits.cohesion - stress * limits.tan_fa, magnitude(sheared) * k[q, U(10)])
+    breaks = byte_of(torn) | byte_of(cut)
+    return choose(whole, normal, 0.0), choose(whole, sheared, 0.0), choose(whole, moment, 0.0), breaks
+
+
+@njit(**INLINED)
+def _store_forces(force, c, exists, fx, fy, on_i, on_j):
+    """Store the forces of eight pairs, zero where there is none."""
+    if exists != _ALL:
+        there = bits(exists)
+        fx, fy = choose(there, fx, 0.0), choose(there, fy, 0.0)
+        on_i, on_j = choose(there, on_i, 0.0), choose(there, on_j, 0.0)
+    store(force[0], c, fx)
+    store(force[1], c, fy)
+    store(force[2], c, on_i)
+    store(force[3], c, on_j)
+
+
+@njit(**INLINED)
+def _act(
+    c, q, i, j, block, exists, normal, arms, strain, opening, gives_way, follows,
+    u, v, step, number, pairs, contacts, limits, result,
+):  # fmt: skip
+    """Forces of the eight pairs of a block from their strain: stretch, shear and bending angle.
+
+    normal, arms : directions and lever arms, numbers or lanes; opening : speed at which the disks part, where a contact
+    gives way; follows : whether the geometry follows the motion. Returns the energy (J) that friction took; result (3,)
+    is advanced where pairs are computed in turn.
+    """
+    k = pairs.constants
+    nothing = splat(0.0)
+    (nx, ny), (arm_i, arm_j), (stretch, shear, bent) = normal, arms, strain
+    whole = where_equal(contacts.state, c, _INTACT)
+    intact = byte_of(whole) & exists
+    pull, side, moment, rubbed, slip, slides = nothing, nothing, nothing, nothing, nothing, False
+    if k[q, U(5)] > 0.0 or k[q, U(6)] > 0.0:
+        N, side, slip, rubbed, slides = _contact(
+            k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, limits.friction
+        )
+        pull = -1.0 * N
+    if intact != 0:
+        stretched, sheared, moment, breaks = _bond(k, q, stretch, shear, bent, whole, limits)
+        if (breaks & intact) != 0:
+            _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
+            return nothing
+        pull += stretched
+        side += sheared
+    if follows:
+        store(contacts.shear, c, shear)
+    if slides:
+        store(contacts.slip, c, slip)
+    fx, fy = nx * pull - ny * side, ny * pull + nx * side
+    _store_forces(contacts.force, c, exists, fx, fy, arm_i * side + moment, arm_j * side - moment)
+    return rubbed
+
+
+@njit(**FAST)
+def _push_reference(pairs, q, block, exists, i, u, v, step, number, contacts, limits, result):
+    """Forces of the pairs of a block of row q in the geometry of the start; their first disks are from slot i on."""
+    c, j = U(LANES) * block, i + U(pairs.step[q, U(1)])
+    k = pairs.constants
+    nx, ny = k[q, U(12)], k[q, U(13)]
+    rest = k[q, U(2)]
+    arm_i = 0.5 * rest + k[q, U(4)]
+    arm_j = rest - arm_i
+    dx, dy = _apart(u, i, j)
+    turn_i, turn_j = load(u[2], i), load(u[2], j)
+    strain = nx * dx + ny * dy, nx * dy - ny * dx - arm_i * turn_i - arm_j * turn_j, turn_j - turn_i
+    gives_way = limits.geometry != REFERENCE or k[q, U(3)] < rest
+    opening = splat(0.0)
+    if gives_way:
+        dvx, dvy = _apart(v, i, j)
+        opening = nx * dvx + ny * dvy
+    return _act(
+        c, q, i, j, block, exists, (nx, ny), (arm_i, arm_j), strain, opening, gives_way, False,
+        u, v, step, number, pairs, contacts, limits, result,
+    )  # fmt: skip
+
+
+@njit(**FAST)
+def _push_updated(pairs, q, block, exists, i, u, v, step, number, contacts, limits, result):
+    """The same where normals and arms follow the motion, see pair_strain.updated_strain."""
+    c, j = U(LANES) * block, i + U(pairs.step[q, U(1)])
+    k = pairs.constants
+    dx, dy = _apart(u, i, j)
+    dvx, dvy = _apart(v, i, j)
+    x = k[q, U(0)] + dx
+    y = k[q, U(1)] + dy
+    distance = root(x * x + y * y)
+    stretch = ((k[q, U(0)] + x) * dx + (k[q, U(1)] + y) * dy) / (distance + k[q, U(2)])
+    inverse = 1.0 / distance
+    nx, ny = x * inverse, y * inverse
+    arm_i = 0.5 * distance + k[q, U(4)]
+    arm_j = distance - arm_i
+    shear = load(contacts.shear, c) + step * _slide((nx, ny), (arm_i, arm_j), i, j, v)
+    strain = stretch, shear, load(u[2], j) - load(u[2], i)
+    return _act(
+        c, q, i, j, block, exists, (nx, ny), (arm_i, arm_j), strain, nx * dvx + ny * dvy, True, True,
+        u, v, step, number, pairs, contacts, limits, result,
+    )  # fmt: skip
+
+
+@njit(**FAST)
+def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, result):
+    """The pairs in blocks first to last − 1; result (3,): energy taken by friction and by cracks, bonds that broke."""
+    result[:] = 0.0
+    if first == last:
+        return
+    rubbed = splat(0.0)
+    group, column, q = place_of(pairs, first)
+    for block in range(first, last):
+        if block > first:
+            group, column, q = next_place(pairs, block, group, column, q)
+        here, row, exists = U(block), U(q), pairs.exists[U(block)]
+        if exists != 0:
+            disks = pairs.disk_block[U(group)] + column * pairs.disk_rows[U(group)] + pairs.step[row, U(0)]
+            i = U(LANES * disks)
+            intact = byte_of(where_equal(contacts.state, U(LANES) * here, _INTACT)) & exists
+            if limits.geometry == UPDATED or (limits.geometry == BONDED and intact == 0):
+                rubbed += _push_updated(pairs, row, here, exists, i, u, v, step, number, contacts, limits, result)
+            elif limits.geometry == BONDED and intact != exists:
+                _push_one_by_one(here, exists, u, v, step, number, contacts, limits, result)
+            else:
+                rubbed += _push_reference(pairs, row, here, exists, i, u, v, step, number, contacts, limits, result)
+    for k in range(LANES):
+        result[0] += lane(rubbed, U(k))
+
+
+@njit(**PARALLEL)
+def push_rows(u, v, step, number, pairs, contacts, limits, lost):
+    """Forces of the pairs in rows, see contacts.push."""
+    n = pairs.exists.size
+    result = np.zeros((CHUNKS, 3))
+    for chunk in prange(CHUNKS):
+        _push_blocks(
+            pairs, chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS, u, v, step, number, contacts, limits, result[chunk]
+        )
+        lost[chunk, 0] = result[chunk, 0]
+        lost[chunk, 1] = result[chunk, 1]
+    breaks = 0
+    for chunk in range(CHUNKS):
+        breaks += int(result[chunk, 2])
+    return breaks

@@ -1,0 +1,38 @@
+"""Bundles of arrays, the arguments of kernels."""
+
+from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
+from dembound.kernels.tables.grid import ALONG, Absorber, Blocks, Elements, Grid, Shape
+from dembound.kernels.tables.laws import BarBonds, Bonded, LaneBonded, Links, WatchedLinks
+from dembound.kernels.tables.motion import Body, Followers, Log, Supports
+from dembound.kernels.tables.sides import NO_SIDES, Sides
+from dembound.kernels.tables.ties import Repeats, Seam, SeamEnds, WallTies
+
+__all__ = [
+    "ALONG",
+    "NO_SIDES",
+    "Absorber",
+    "BarBonds",
+    "Blocks",
+    "Body",
+    "Bonded",
+    "Cells",
+    "Contacts",
+    "Elements",
+    "Followers",
+    "Grid",
+    "LaneBonded",
+    "LaneRows",
+    "Limits",
+    "Links",
+    "Log",
+    "NeighbourTable",
+    "PairRows",
+    "Repeats",
+    "Seam",
+    "SeamEnds",
+    "Shape",
+    "Sides",
+    "Supports",
+    "WallTies",
+    "WatchedLinks",
+]

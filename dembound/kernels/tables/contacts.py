@@ -1,0 +1,134 @@
+"""Arrays of contacts. n particles, b contacts, e = 2b contact ends."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class NeighbourTable(NamedTuple):
+    """Contacts of the elastic law, one row per particle, of the particles from number `begin` on.
+
+    Row i, that of particle i, is start[i]:start[i + 1] of neighbour (e,) and contact_type (e,), its row of
+    constants (p, 6); see kernels/elastic.py. start ends with the last particle's row; those before `begin` are empty.
+    """
+
+    begin: int
+
+    start: np.ndarray
+    neighbour: np.ndarray
+    contact_type: np.ndarray
+    constants: np.ndarray
+
+
+class LaneRows(NamedTuple):
+    """Contacts of the elastic law between r rows of copies in g groups, see kernels/elastic_lanes.py.
+
+    group_row, group_block : (g + 1,) rows and blocks of eight slots of each group; column by column, every row of a
+    group has a block there. inverse_mass 1/kg, inverse_inertia 1/(kg·m²) : (r,) of a row's disks. start : (r + 1, 2)
+    where the entries of each row begin, and those of them that not all copies have. shift : (e,) slots from a disk to
+    its neighbour; mask : (e,) where the bits of the copies that have the contact begin in masks (m,) uint8, one byte a
+    column; constants (e, 8), turn (e, 3), own (r, 3) see there. special : (blocks,) bool, blocks with supported disks,
+    strays, or masses of their own. Contacts that are in no entry are strays, of k disks in stray (k,), ascending slots;
+    those of each begin in stray_neighbour (s,) and stray_type (s,), a row of stray_constants (p, 6), at stray_start
+    (k + 1,). extra : (3, slots) work space.
+    """
+
+    group_row: np.ndarray
+    group_block: np.ndarray
+    inverse_mass: np.ndarray
+    inverse_inertia: np.ndarray
+    start: np.ndarray
+    shift: np.ndarray
+    mask: np.ndarray
+    masks: np.ndarray
+    constants: np.ndarray
+    turn: np.ndarray
+    own: np.ndarray
+    special: np.ndarray
+    stray: np.ndarray
+    stray_start: np.ndarray
+    stray_neighbour: np.ndarray
+    stray_type: np.ndarray
+    stray_constants: np.ndarray
+    extra: np.ndarray
+
+
+class Contacts(NamedTuple):
+    """Contacts with a history, each listed once; see kernels/contacts.py for the columns of constants and force.
+
+    first, second, contact_type : (b,) uint32 particles, and the row of the pair in constants (p, 12).
+    state : (b,) uint8, see kernels/contacts.py; shear, slip : (b,) m, the tangential displacement since the start, not
+    kept up to date for pairs in the geometry of the start, and the part of it that slid; cracked : (b,) int64, step in
+    which the bond broke, else −1; place : (b, 2) m, mean displacement of the two disks in that step; force : (4, b).
+    start, end : rows of contact ends, one per particle, those before number `begin` empty, end (e,) uint32 = 2·contact
+    + (0 first, 1 second).
+    """
+
+    begin: int
+
+    first: np.ndarray
+    second: np.ndarray
+    contact_type: np.ndarray
+    constants: np.ndarray
+    state: np.ndarray
+    shear: np.ndarray
+    slip: np.ndarray
+    cracked: np.ndarray
+    place: np.ndarray
+    force: np.ndarray
+    start: np.ndarray
+    end: np.ndarray
+
+
+class Limits(NamedTuple):
+    """Friction of contacts and strength of bonds.
+
+    friction, tan_fa : pure numbers; tension, cohesion : Pa; geometry : one of those in kernels/contacts.py.
+    """
+
+    friction: float
+    tension: float
+    cohesion: float
+    tan_fa: float
+    geometry: int
+
+
+class PairRows(NamedTuple):
+    """Pairs in rows of copies, q rows in g groups, which come before all others among the contacts.
+
+    group_row, group_block : (g + 1,) rows and blocks of pairs of each group; column by column, every row of a group has
+    a block there, as disks have (LaneRows). disk_block, disk_rows : (g,) first block and number of rows of the group's
+    disks. step : (q, 2) row of the first disk within its group, and slots from the first disk to the second; constants
+    : (q, 14) those of Contacts, and the direction from the first disk to the second at the start; exists : (blocks,)
+    uint8, the bits of the lanes that hold a pair.
+    start : (3r + 1,) entries of each row of disks, by pairs of which the disk is the first, of which it is the second,
+    and of which it is the second in a part of the copies: offset (e,) places from the first one of the column. mask :
+    (e,) where the bits of these copies begin in masks (m,) uint8, one byte a column, else −1.
+    """
+
+    group_row: np.ndarray
+    group_block: np.ndarray
+    disk_block: np.ndarray
+    disk_rows: np.ndarray
+    step: np.ndarray
+    constants: np.ndarray
+    exists: np.ndarray
+    start: np.ndarray
+    offset: np.ndarray
+    mask: np.ndarray
+    masks: np.ndarray
+
+
+class Cells(NamedTuple):
+    """Cells of the n disks at the displacements at which pairs were listed, see kernels/approach.py.
+
+    Cell c contains the disks member[start[c]:start[c + 1]], of those from `begin` on; divisions : (2,) columns and rows
+    of cells, which are numbered row by row; wraps : (2,) whether the first touches the last along x and y. reach : m,
+    no two disks of cells that do not touch can meet before one has moved so far.
+    """
+
+    start: np.ndarray
+    member: np.ndarray
+    divisions: np.ndarray
+    wraps: np.ndarray
+    reach: float

@@ -1,0 +1,109 @@
+"""Arrays of laws, of disks and of bars; a law's type chooses its kernels."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
+
+
+class Links(NamedTuple):
+    """The elastic law on the particles of the rows; fastest (chunks,), damped (chunks, 2) : work space."""
+
+    rows: NeighbourTable | LaneRows
+    fastest: np.ndarray
+    damped: np.ndarray
+
+
+class WatchedLinks(NamedTuple):
+    """The elastic law with a check for contacts that would leave it.
+
+    contacts, limits : the pairs and their limits; origin : (2, n) displacements at which the list of pairs was made, of
+    the n particles of the rows; skin : m, largest gap of listed pairs; cells : of the particles then; arms : (begin +
+    n,) m, longest arm of a particle's contacts; way : (2,) m, distance surfaces have moved since the contacts were
+    checked, and the distance they may move; keeps_slip : whether contacts have slid earlier.
+    """
+
+    links: Links
+    contacts: Contacts
+    limits: Limits
+    origin: np.ndarray
+    skin: float
+    cells: Cells
+    arms: np.ndarray
+    way: np.ndarray
+    keeps_slip: bool = False
+
+
+class Bonded(NamedTuple):
+    """The history-dependent law on the n particles of the contacts.
+
+    limits : friction and strengths; origin : (2, n) displacements at which all pairs with gaps up to skin (m) were
+    listed; cells : of the particles then; stops : return after a step in which a bond broke; way : (2,) m, distance
+    particles have moved since this was checked, and the distance they may move; fastest (chunks,), damped, lost
+    (chunks, 2) : work space.
+    """
+
+    contacts: Contacts
+    limits: Limits
+    origin: np.ndarray
+    skin: float
+    cells: Cells
+    stops: bool
+    way: np.ndarray
+    fastest: np.ndarray
+    damped: np.ndarray
+    lost: np.ndarray
+
+
+class LaneBonded(NamedTuple):
+    """The history-dependent law in rows of copies; the other pairs come after those in rows.
+
+    bonded : the law, for all pairs; rows : the disks, whose contacts are not used; pairs : the rows of pairs. stray :
+    (k,) ascending slots of disks with ends of other pairs; stray_start (k + 1,), stray_end (e,) those ends, as in
+    Contacts. extra : (3, slots), also_lost (chunks, 2) : work space.
+    """
+
+    bonded: Bonded
+    rows: LaneRows
+    pairs: PairRows
+    stray: np.ndarray
+    stray_start: np.ndarray
+    stray_end: np.ndarray
+    extra: np.ndarray
+    also_lost: np.ndarray
+
+
+class BarBonds(NamedTuple):
+    """Springs and bonds of a bar of n nodes; horizon m, 0 if there is no peridynamic bond.
+
+    spring : (n − 1,) N/m of the local springs between neighbours, 0 where there is none; spring_limit : (n − 1,) m, the
+    elongation at which each breaks, or where it triggers (n − 1,) the method; bond : (m, n) N/m, row p − 1
+    those between nodes i and i + p; bond_limit : (m,) m, the elongation at which they break. spring_broken (n − 1,),
+    bond_broken (m, n) : step in which each broke, −1 for not. plain : (r, 2) ranges of nodes between equal springs that
+    all trigger at plain_limit m; plain_push 1/s : Δt k/m of them, less what attenuation takes; mixed : (q, 4) the
+    ranges of all others, with the number of bond lengths there, 0 or m, and whether they have springs. section : m².
+    mobility : (n,) Δt/m, less what attenuation takes, 0 for supported nodes; keep : part of the velocity of a node that
+    remains after attenuation in a step; drag : (n,) N·s/m of its dashpots, or (0,) for none. space (n + m + 1,), mean
+    (n,), before (k,), reached (1,) : work space.
+    """
+
+    spring: np.ndarray
+    spring_limit: np.ndarray
+    triggers: np.ndarray
+    bond: np.ndarray
+    bond_limit: np.ndarray
+    spring_broken: np.ndarray
+    bond_broken: np.ndarray
+    plain: np.ndarray
+    plain_push: float
+    plain_limit: float
+    mixed: np.ndarray
+    section: float
+    mobility: np.ndarray
+    keep: float
+    drag: np.ndarray
+    space: np.ndarray
+    mean: np.ndarray
+    before: np.ndarray
+    reached: np.ndarray

@@ -1,0 +1,36 @@
+"""Pairs in motion, for the tests of what is computed of them."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from dembound.kernels.common import CHUNKS
+from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED, push
+from dembound.kernels.tables import Contacts, Limits
+
+PARTICLES, PAIRS = 25, 60
+STEP = 0.1
+UNBREAKABLE = Limits(friction=0.5, tension=np.inf, cohesion=np.inf, tan_fa=0.0, geometry=UPDATED)
+GEOMETRIES = pytest.mark.parametrize("geometry", [UPDATED, BONDED, REFERENCE])
+
+
+def motion(steps: int, size: float = 0.3) -> list[tuple[np.ndarray, np.ndarray]]:
+    """(u, v) (3, n) of a smooth random motion, v the mean velocity since the step before."""
+    rng = np.random.default_rng(2)
+    swing, rate, phase = rng.uniform(-size, size, (3, 3, PARTICLES))
+    times = STEP * np.arange(steps + 1)
+    path = [swing * np.sin(10.0 * rate * t + phase) - swing * np.sin(phase) for t in times]
+    return [(after, (after - before) / STEP) for before, after in pairwise(path)]
+
+
+def pushed(pairs: Contacts, limits: Limits, u: np.ndarray, v: np.ndarray, number: int = 0) -> np.ndarray:
+    """One push by the kernel; what friction and cracks took."""
+    lost = np.full((CHUNKS, 2), np.nan)
+    push(u, v, STEP, number, pairs, limits, lost)
+    return lost.sum(axis=0)
+
+
+def two(x: float = 0.0, y: float = 0.0, turn: float = 0.0) -> np.ndarray:
+    """Motion (3, 2) of a pair of which the second disk moves."""
+    return np.array([[0.0, x], [0.0, y], [0.0, turn]])

@@ -1,0 +1,143 @@
+"""How far pairs may move under the elastic law, and their energy, against the conditions and springs written out."""
+
+import numpy as np
+import pytest
+from moving_pairs import GEOMETRIES, PAIRS, PARTICLES, STEP, UNBREAKABLE, motion, pushed, two
+
+from dembound.kernels.contact_measures import slack, strain_energy
+from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, sum_forces
+from dembound.kernels.tables import Contacts, Limits
+
+
+def outside(u: np.ndarray, pairs: Contacts, limits: Limits, law) -> np.ndarray:
+    """By how much each pair (b,) breaks the conditions of the elastic law, written out one by one; 0: by none."""
+    excess = np.zeros(len(pairs.first))
+    for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
+        _, _, _, stretch, shear, *_ = law.strain(c, u[:, i], u[:, j], u[:, i], u[:, j], STEP)
+        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, per_area, bend = pairs.constants[c]
+        overlap = touch - rest - stretch
+        conditions = [-overlap, k_s * abs(shear) - limits.friction * k_n * overlap] if touch >= rest else [overlap]
+        if pairs.state[c] == INTACT:
+            stress, turn = b_n * stretch * per_area, u[2, j] - u[2, i]
+            conditions += [
+                stress + abs(b_m * turn) * bend - limits.tension,
+                b_s * abs(shear) * per_area - (limits.cohesion - stress * limits.tan_fa),
+            ]
+        excess[c] = max(0.0, *conditions)
+    return excess
+
+
+LIMITS = Limits(friction=0.8, tension=0.9, cohesion=0.8, tan_fa=0.5, geometry=REFERENCE)
+
+
+def test_a_motion_smaller_than_the_slack_takes_no_pair_out_of_the_elastic_law(random_pairs, plain) -> None:
+    rng = np.random.default_rng(8)
+    pairs = random_pairs(PARTICLES, PAIRS, gap=0.2)
+    law = plain(pairs, LIMITS)
+    arm = 1.1  # half of the longest distance and the largest difference of radii
+    tried = 0
+    for _ in range(60):
+        u = 0.025 * rng.uniform(-1.0, 1.0, (3, PARTICLES))
+        room = slack(u, pairs, LIMITS)
+        if room <= 0.0:
+            continue
+        tried += 1
+        way = rng.choice([-1.0, 1.0], (3, PARTICLES)) * rng.uniform(0.5, 1.0, (3, PARTICLES))
+        surface = np.hypot(way[0], way[1]) + arm * np.abs(way[2])
+        # every surface moves by half of it at most, so no two move by more against each other; 1e-14 for rounding
+        assert not (outside(u + 0.5 * room * way / surface.max(), pairs, LIMITS, law) > 1e-14).any()
+    assert tried > 20
+
+
+def test_slack_is_negative_just_where_a_pair_is_outside(random_pairs, plain) -> None:
+    rng = np.random.default_rng(9)
+    pairs = random_pairs(PARTICLES, PAIRS, gap=0.2)
+    law = plain(pairs, LIMITS)
+    found = []
+    for size in np.repeat([0.03, 0.08, 0.2], 20):
+        u = size * rng.uniform(-1.0, 1.0, (3, PARTICLES))
+        found.append(slack(u, pairs, LIMITS) < 0.0)
+        assert found[-1] == (outside(u, pairs, LIMITS, law) > 0.0).any()
+    assert 10 < sum(found) < 50
+
+
+@pytest.mark.parametrize(
+    ("motion", "room"),
+    [
+        (two(), 0.2 / 4.0),  # friction: 0.5·4·0.1 N left, k_s + μ k_n = 4 N/m
+        (two(-0.05), 0.3 / 4.0),
+        (two(0.099), 0.001 * 0.5),
+        (two(0.11), -0.01),
+    ],
+)
+def test_the_slack_of_one_contact_by_hand(one_pair, motion: np.ndarray, room: float) -> None:
+    limits = UNBREAKABLE._replace(geometry=BONDED)
+    assert slack(motion, one_pair(overlap=0.1), limits) == pytest.approx(room, rel=1e-12)
+
+
+def test_a_pair_that_turns_leaves_small_displacements(one_pair) -> None:
+    pair = one_pair(overlap=10.0)
+    limits = UNBREAKABLE._replace(friction=100.0)
+    distance = pair.constants[0, 2]
+    assert slack(two(0.0, 0.004 * distance), pair, limits) == pytest.approx(0.006 * distance, rel=1e-9)
+    assert slack(two(0.0, -0.011 * distance), pair, limits) < 0.0
+    assert slack(two(0.0, -0.011 * distance), pair, limits._replace(geometry=BONDED)) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("motion", "changes", "room"),
+    [
+        # σ = 3 x/2 + 0.75 |θ|, whose two parts change by 1.5 per metre of relative motion at most
+        (two(0.04, turn=-0.08), {"tension": 0.3}, (0.3 - 0.06 - 0.06) / 3.0),
+        (two(0.2, turn=0.2), {"tension": 0.3}, (0.3 - 0.3 - 0.15) / 3.0),
+        # τ = y/2 against 0.4 − 0.6 · 3 x/2: 0.5 and 0.6 · 1.5 per metre
+        (two(-0.1, -0.3), {"cohesion": 0.4, "tan_fa": 0.6}, (0.4 + 0.09 - 0.15) / 1.4),
+        (two(0.3, 0.3), {"cohesion": 0.4, "tan_fa": 0.6}, (0.4 - 0.27 - 0.15) / 1.4),
+    ],
+)
+def test_the_slack_of_one_bond_by_hand(one_pair, motion: np.ndarray, changes: dict, room: float) -> None:
+    # the contact is pressed together so much that it is far from opening and sliding
+    limits = UNBREAKABLE._replace(friction=100.0, geometry=BONDED, **changes)
+    assert slack(motion, one_pair(INTACT, overlap=1.0), limits) == pytest.approx(room, rel=1e-12)
+
+
+def test_without_pairs_there_is_all_the_slack_there_is(one_pair) -> None:
+    pair = one_pair()
+    nobody = Contacts(pair.begin, *(column[:0] for column in pair[1:]))
+    assert slack(two(), nobody, UNBREAKABLE) == np.inf
+
+
+@GEOMETRIES
+def test_stored_energy_is_that_of_all_springs(random_pairs, plain, geometry: int) -> None:
+    limits = UNBREAKABLE._replace(geometry=geometry)
+    pairs = random_pairs(PARTICLES, PAIRS)
+    for u, v in motion(5):
+        pushed(pairs, limits, u, v)
+    law, contact, bond = plain(pairs, limits), 0.0, 0.0
+    for c, (i, j) in enumerate(zip(pairs.first, pairs.second, strict=True)):
+        _, _, _, stretch, shear, *_ = law.strain(c, u[:, i], u[:, j], v[:, i], v[:, j], 0.0)
+        _, _, rest, touch, _, k_n, k_s, b_n, b_s, b_m, _, _ = pairs.constants[c]
+        overlap = touch - rest - stretch
+        rub = k_s * (shear - (0.0 if geometry == REFERENCE else pairs.slip[c]))
+        if overlap > 0.0 or (geometry == REFERENCE and touch >= rest):
+            contact += 0.5 * (k_n * overlap**2 + rub**2 / k_s)
+        if pairs.state[c] == INTACT:
+            bond += 0.5 * (b_n * stretch**2 + b_s * shear**2 + b_m * (u[2, j] - u[2, i]) ** 2)
+
+    # 60 terms of size 0.1
+    assert strain_energy(u, pairs, geometry) == pytest.approx((contact, bond), rel=1e-13)
+
+
+def test_forces_are_the_slope_of_the_stored_energy(random_pairs) -> None:
+    pairs = random_pairs(PARTICLES, PAIRS)
+    closed = pairs._replace(constants=pairs.constants.copy())
+    closed.constants[:, 3] = closed.constants[:, 2] + 0.05
+    limits, (u, v) = UNBREAKABLE._replace(geometry=REFERENCE), motion(1)[0]
+    pushed(closed, limits, u, v)
+    force = np.empty_like(u)
+    sum_forces(closed, force)
+    way = np.random.default_rng(6).uniform(-1.0, 1.0, u.shape)
+    ahead, behind = (sum(strain_energy(u + side * way, closed, REFERENCE)) for side in (0.5, -0.5))
+
+    # quadratic, so the difference quotient is exact but for rounding of energies of size 100
+    assert ahead - behind == pytest.approx(-np.sum(force * way), abs=1e-12)
