@@ -1,4 +1,4 @@
-"""Modified Bessel functions of all orders n = 0 … N−1, as ratios of neighbouring orders, which neither over- nor underflow.
+"""Modified Bessel functions of all orders n = 0 … N−1, as ratios of neighbouring orders, which never overflow.
 
 K_{n+1}(z)/K_n(z) is computed upwards and I_{n+1}(z)/I_n(z) downwards, the directions in which the recurrences
 K_{n+1} = K_{n−1} + (2n/z) K_n and I_{n−1} = I_{n+1} + (2n/z) I_n are stable (Abramowitz & Stegun 9.6.26). Re z > 0.

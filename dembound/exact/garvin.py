@@ -15,9 +15,12 @@ b² − 2p² and Rayleigh's function R = Γ² + 4p²η_aη_b, the motion is a su
 
 (Garvin 1956, Proc. R. Soc. Lond. A 234, 528–541, for the surface; Sánchez-Sesma et al. 2013 for the interior.)
 
-A path begins at the ray's arrival τ₀. With τ = τ₀ cosh ξ the integrands are smooth functions of ξ. All paths but that of
-P to S are hyperbolas, p = a (sin α cosh ξ + i cos α sinh ξ), η_a = a (cos α cosh ξ − i sin α sinh ξ), dp/dξ = iη_a, with the
-angle α of the ray to the vertical; the other one is found by Newton's method.
+A path begins at the ray's arrival τ₀, where dp/dτ is infinite as (τ − τ₀)^−½. All paths but that of P to S are
+hyperbolas: at distance x and height H from the source or its mirror image, L = √(x² + H²), they are
+
+    p = (xτ + iH√(τ²−τ₀²))/L²,    η_a = (Hτ − ix√(τ²−τ₀²))/L²,    dp/dτ = iη_a/√(τ²−τ₀²),    τ₀ = aL .
+
+The other one is found by Newton's method.
 """
 
 import math
@@ -52,8 +55,8 @@ def buried_explosion(
 ) -> np.ndarray:
     """Displacement (2, k) m at times (k,) s, along x and z, of the place (distance, depth) m.
 
-    depth : 0 at the surface. moment_rate : M′, N/s, at an array of times t ≥ 0 of any shape, nothing before; it may begin
-    with a jump and must be continuous afterwards. With the second derivative M″ the result is the velocity in m/s.
+    depth : 0 at the surface. moment_rate : M′, N/s, at an array of times t ≥ 0 of any shape, nothing before; it may
+    begin with a jump and must be continuous afterwards. With M″ instead the result is the velocity in m/s.
 
     The integrals are done by quadrature whose panels are halved until the last halving changed the motion by less than
     `tolerance` times its largest value.

@@ -1,11 +1,11 @@
 """A circular cavity in a full space under a plane P or SV wave, in plane strain.
 
 The wave travels in the direction d; angles θ are counted from d, anticlockwise, and x, y are along d and 90° to its
-left. Its particle velocity is v(t − x/c), along d in a P wave and to the left of d in an SV wave, so that v(t) is the
-motion at the cavity's axis without the cavity. With u = ∇φ + (∂ψ/∂y, −∂ψ/∂x) the Laplace transforms of the incident
+left. Its particle velocity is v(t − x/c), along d in a P wave, and to the right of d, −y, in an SV wave (+x for a wave
+straight up), so that v(t) is the motion at the cavity's axis without the cavity. With u = ∇φ + (∂ψ/∂y, −∂ψ/∂x) the Laplace transforms of the incident
 potentials, and their expansion about the axis (Abramowitz & Stegun 9.6.34), are
 
-    φ = −(c_p/s) ĝ e^{−k_p x}   or   ψ = (c_s/s) ĝ e^{−k_s x},    e^{−kx} = Σ ε_n (−1)ⁿ I_n(kr) cos nθ,
+    φ = −(c_p/s) ĝ e^{−k_p x}   or   ψ = −(c_s/s) ĝ e^{−k_s x},    e^{−kx} = Σ ε_n (−1)ⁿ I_n(kr) cos nθ,
 
 with ĝ = v̂/s, k_p = s/c_p, k_s = s/c_s, ε_0 = 1 and other ε_n = 2. The scattered potentials are
 
@@ -19,12 +19,10 @@ T = cos nθ, T′ = sin nθ, σ = 1 for P and T = sin nθ, T′ = cos nθ, σ = 
     r²/μ σ_rθ = −σ(2n(F* − 1) F + [k_s²r² + 2(n² − G*)] G) T′,
     r²/μ σ_θ = ([(k_s² − 2k_p²)r² + 2(F* − n²)] F − 2n(G* − 1) G) T,
 
-and A_n and B_n make σ_r and σ_rθ zero at r = a: two equations for
-each n. Orders beyond |k_s a| fall faster than exponentially (Pao & Mow 1973, Diffraction of elastic waves, chapter III, for
-harmonic waves). Time histories by `transform.respond`.
+and A_n and B_n make σ_r and σ_rθ zero at r = a: two equations for each n. Orders beyond |k_s a| fall faster than exponentially (Pao & Mow 1973, Diffraction of elastic waves, chapter III,
+for harmonic waves). Time histories by `transform.respond`.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -32,7 +30,7 @@ import numpy as np
 
 from dembound.exact.bessel import decaying_ratios, from_ratios, growing_ratios
 from dembound.exact.solid import Solid
-from dembound.exact.transform import Response, Signal, respond
+from dembound.exact.transform import Signal, respond
 
 MOST = 2**16
 """Largest number of samples in time; orders are as many as the highest frequency needs."""
@@ -59,8 +57,8 @@ class PlaneWave:
     """A plane wave and the direction in which it travels.
 
     kind : P or SV. angle : of the direction, rad anticlockwise from the x axis of the places. velocity : m/s at the
-    cavity's axis, without the cavity, at an array of times t ≥ 0, nothing before; along the direction (P), or 90° to the
-    left of it (SV).
+    cavity's axis, without the cavity, at an array of times t ≥ 0, nothing before; along the direction (P), or 90° to
+    the right of it (SV).
     """
 
     kind: WaveKind
@@ -104,7 +102,7 @@ def scattered_motion(
         return [total[:, :2], s * total[:, :2], total[:, 2:]]
 
     moved, moving, stress = respond(transforms, wave.velocity, times, tolerance, most=MOST)
-    turn = np.moveaxis([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]], 2, 0)
+    turn = np.moveaxis(np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]), 2, 0)
     return ScatteredMotion(turn @ moved, turn @ moving, stress)
 
 
@@ -137,8 +135,8 @@ class _Cavity:
             motion = [cosine * moved, -sine * moved]
             stress = [mean + half * twice_cosine, mean - half * twice_cosine, -half * twice_sine]
         else:
-            shear = -self.solid.shear * k * moved
-            motion = [sine * moved, cosine * moved]
+            shear = self.solid.shear * k * moved
+            motion = [-sine * moved, -cosine * moved]
             stress = [shear * twice_sine, -shear * twice_sine, shear * twice_cosine]
         return np.stack([*motion, *stress], axis=1)
 
@@ -178,7 +176,8 @@ class _Cavity:
         z, none = s / speed * a, _Radial(np.zeros((orders, len(s))), np.zeros((orders, len(s))))
         ratios = growing_ratios(z, orders)
         factor = np.where(n == 0, 1.0, 2.0) * (-1.0) ** n
-        wave = _Radial(-speed / s**2 * factor * from_ratios(ive(0, z) * np.exp(z.real), ratios), n + z * ratios)
+        factor = -factor if self.kind == "p" else factor  # of φ, and of −ψ
+        wave = _Radial(speed / s**2 * factor * from_ratios(ive(0, z) * np.exp(z.real), ratios), n + z * ratios)
         unit = [
             _Radial(np.ones((orders, len(s))), n - s / c * a * wall)
             for c, wall in zip((self.solid.p_wave_speed, self.solid.s_wave_speed), at_wall, strict=True)

@@ -4,9 +4,9 @@ The response to a signal p(t) has the transform H(s)·p̂(s). On the line s = c 
 
     u(t) = e^{ct}/2π ∫ H(c + iω) p̂(c + iω) e^{iωt} dω ,
 
-which is a discrete Fourier transform over a window W of time. What happens beyond the window is added to what happens in
-it, but multiplied by e^{−cW}, so nothing has to be over at its end. With c = ln(10⁸)/W that error is 1e-8 of the largest
-response, and what the finite sampling leaves grows by at most e^{ct} = 10 in the eighth of the window that is used.
+which is a discrete Fourier transform over a window W of time. What happens beyond the window is added to what happens
+in it, but multiplied by e^{−cW}, so nothing has to be over at its end. With c = ln(10⁸)/W that error is 1e-8 of the
+largest response, and what the sampling leaves grows by at most e^{ct} = 10 in the eighth of the window that is used.
 """
 
 import math
@@ -48,8 +48,8 @@ def respond(
     times its largest value. known : parts of the responses that are not in the transforms, and are added. window : its
     length over the latest time; most : largest number of samples.
 
-    Raises RuntimeError if the tolerance is not reached: every doubling divides the error by 8 or more for a smooth signal,
-    by 4 for a response that has kinks, by 2 for one that jumps.
+    Raises RuntimeError if the tolerance is not reached: the smoother the response, the fewer doublings are needed; a
+    response that jumps never converges.
     """
     times = np.asarray(times, dtype=float)
     frequencies = _Frequencies(response, window * float(np.abs(times).max(initial=1e-300)), NEGLIGIBLE * tolerance)

@@ -54,8 +54,8 @@ def test_motion_obeys_hookes_and_newtons_laws(kind: WaveKind, place: tuple[float
     mixed = SOLID.lame + SOLID.shear
     force = SOLID.shear * (xx + yy) + mixed * np.stack([xx[0] + xy[1], xy[0] + yy[1]])
     inertia = SOLID.density * np.gradient(v, times, axis=-1)
-    # differences in time err by (2π·0.25e-3·3/0.06)²/6 = 1e-3 of a pulse of three such frequencies; those in space, over
-    # 0.1 m of 36 m/3, by 4e-4, and the tolerance by 1e-7/(h k)² = 4e-5
+    # differences in time err by (2π·0.25e-3·3/0.06)²/6 = 1e-3 of a pulse of three such frequencies; those in space,
+    # over 0.1 m of 36 m/3, by 4e-4, and the tolerance by 1e-7/(h k)² = 4e-5
     np.testing.assert_allclose(force / h**2, inertia, rtol=0.0, atol=2e-3 * np.abs(inertia).max())
     np.testing.assert_allclose(np.gradient(u[0], times, axis=-1), v, rtol=0.0, atol=2e-3 * np.abs(v).max())
 
@@ -69,11 +69,11 @@ def test_motion_obeys_hookes_and_newtons_laws(kind: WaveKind, place: tuple[float
 
 @pytest.mark.parametrize(("kind", "across"), [("p", False), ("sv", True)])
 def test_wave_is_undisturbed_until_the_scattered_one_arrives(kind: WaveKind, across: bool) -> None:
-    """At the axis at t = 0; an SV wave moves to the left of its direction; behind the cavity nothing moves before."""
+    """At the axis at t = 0; an SV wave moves to the right of its direction; behind the cavity nothing moves before."""
     angle, speed = 0.4, SOLID.s_wave_speed if across else SOLID.p_wave_speed
     direction = np.array([math.cos(angle), math.sin(angle)])
     side = np.array([-direction[1], direction[0]])
-    polarised = side if across else direction
+    polarised = -side if across else direction
     place = -10.0 * RADIUS * direction + 3.0 * RADIUS * side
     # met where the wave touches the wall first; from there the scattered P wave needs (|place| − a)/c_p
     echo = -RADIUS / speed + (np.hypot(*place) - RADIUS) / SOLID.p_wave_speed
@@ -150,8 +150,8 @@ def test_slow_p_wave_concentrates_as_uniaxial_strain_and_two_as_uniaxial_stress(
 
 
 def test_slow_sv_wave_concentrates_as_pure_shear() -> None:
-    """σ_θ = −4τ sin 2θ, τ = −ρc_s v."""
-    np.testing.assert_allclose(slow_stress("sv", 0.0, WALL), [0.0, 0.0, 4.0], rtol=0.0, atol=5e-4)
+    """σ_θ = −4τ sin 2θ, τ = ρc_s v."""
+    np.testing.assert_allclose(slow_stress("sv", 0.0, WALL), [0.0, 0.0, -4.0], rtol=0.0, atol=5e-4)
 
 
 def test_places_in_the_cavity_are_refused() -> None:
