@@ -11,14 +11,14 @@ so that σ_r = −p at the wall; inverted by `transform.respond`. At the front, 
 p √(a/r)/(ρc_p); the front's share √(a/r) e^{−k(r−a)} of velocity and stresses is taken out of the transforms and added
 in closed form, which keeps steep fronts steep.
 
-A line source. A line of isotropic moment M(t) per unit length (N; the body force −M ∇δ, M > 0 is an explosion) moves the
-full space by û = M̂ k K₁(kr)/(2πρc_p²), as this cavity does outside of it with
+A line source. A line of isotropic moment M(t) per unit length (N; the body force −M ∇δ, M > 0 is an explosion) moves
+the full space by û = M̂ k K₁(kr)/(2πρc_p²), as this cavity does outside of it with
 
     M̂ = 2πρc_p² A/k ,    which is    M = πa² p (λ+2μ)/μ = πa² p (c_p/c_s)²
 
-if the pressure is slow, T ≫ a/c_p. In an intact body radial forces of q (N/m) per metre of a circle of radius a have the
-moment M = πa² q · 2I₁(ka)/(ka), where the last factor is 1 if they are slow, and two pairs of forces ±F at distance d,
-one along each axis, M = Fd. A pressure in a hole has (c_p/c_s)² times as much as the same forces in an intact body,
+if the pressure is slow, T ≫ a/c_p. In an intact body radial forces of q (N/m) per metre of a circle of radius a have
+the moment M = πa² q · 2I₁(ka)/(ka), where the last factor is 1 if they are slow, and two pairs of forces ±F at distance
+d, one along each axis, M = Fd. A pressure in a hole has (c_p/c_s)² times as much as the same forces in an intact body,
 because the wall yields more than the body that has been taken out.
 """
 

@@ -2,8 +2,8 @@
 
 The wave travels in the direction d; angles θ are counted from d, anticlockwise, and x, y are along d and 90° to its
 left. Its particle velocity is v(t − x/c), along d in a P wave, and to the right of d, −y, in an SV wave (+x for a wave
-straight up), so that v(t) is the motion at the cavity's axis without the cavity. With u = ∇φ + (∂ψ/∂y, −∂ψ/∂x) the Laplace transforms of the incident
-potentials, and their expansion about the axis (Abramowitz & Stegun 9.6.34), are
+straight up), so that v(t) is the motion at the cavity's axis without the cavity. With u = ∇φ + (∂ψ/∂y, −∂ψ/∂x) the
+Laplace transforms of the incident potentials, and their expansion about the axis (Abramowitz & Stegun 9.6.34), are
 
     φ = −(c_p/s) ĝ e^{−k_p x}   or   ψ = −(c_s/s) ĝ e^{−k_s x},    e^{−kx} = Σ ε_n (−1)ⁿ I_n(kr) cos nθ,
 
@@ -19,8 +19,9 @@ T = cos nθ, T′ = sin nθ, σ = 1 for P and T = sin nθ, T′ = cos nθ, σ = 
     r²/μ σ_rθ = −σ(2n(F* − 1) F + [k_s²r² + 2(n² − G*)] G) T′,
     r²/μ σ_θ = ([(k_s² − 2k_p²)r² + 2(F* − n²)] F − 2n(G* − 1) G) T,
 
-and A_n and B_n make σ_r and σ_rθ zero at r = a: two equations for each n. Orders beyond |k_s a| fall faster than exponentially (Pao & Mow 1973, Diffraction of elastic waves, chapter III,
-for harmonic waves). Time histories by `transform.respond`.
+and A_n and B_n make σ_r and σ_rθ zero at r = a: two equations for each n (Pao & Mow 1973, Diffraction of elastic waves
+and dynamic stress concentrations, chapter III, for harmonic waves). Terms of orders beyond |k_s a| fall faster than
+exponentially. Time histories by `transform.respond`.
 """
 
 from dataclasses import dataclass
