@@ -14,7 +14,7 @@ def test_moduli_follow_from_the_speeds() -> None:
     assert solid.lame == pytest.approx(solid.shear)  # ν = 1/4
 
 
-@pytest.mark.parametrize("speeds", [(1000.0, 0.0), (1000.0, 900.0), (-1.0, 0.5)])
+@pytest.mark.parametrize("speeds", [(1000.0, 0.0), (1000.0, 1000.0), (-1.0, 0.5)])
 def test_what_is_no_solid_is_refused(speeds: tuple[float, float]) -> None:
     with pytest.raises(ValueError, match="speeds must be"):
         Solid(2500.0, *speeds)
