@@ -249,6 +249,7 @@ def exact(
     case = load_disks(path, changes, name or f"{path.stem}_exact")
     folder = output / case.name
     found = write_exact(case, folder / "run.h5", problem)
-    if found.until < case.run.duration:
-        out.print(f"{case.name}: up to {found.until:.4g} s, when the free surface sends waves back")
+    for monitor, end in found.until.items():
+        if end < case.run.duration:
+            out.print(f"{case.name}: {monitor} up to {end:.4g} s, when scattered waves come back from the free surface")
     out.print(f"{case.name}: {found.sentence}, histories in {folder}")

@@ -30,6 +30,9 @@ import numpy as np
 from dembound.exact.solid import Solid
 from dembound.exact.transform import Signal, respond
 
+SAMPLES = 2000
+"""Number of times at which the largest pressure is looked for."""
+
 
 class CavityMotion(NamedTuple):
     """Radial motion at k times, each (k,); stresses are positive in tension."""
@@ -67,7 +70,10 @@ def cavity_motion(
 
     since = np.asarray(times, dtype=float) - delay
     arrived = np.where(since >= 0.0, pressure(np.maximum(since, 0.0)), 0.0)
-    return CavityMotion(*respond(behind_front, pressure, times, tolerance, known=list(front * arrived)))
+    largest = _largest(pressure, times)
+    sizes = largest * np.abs(front[:, 0])
+    sizes[0] = 0.5 * largest * radius**2 / (solid.shear * distance)  # at rest
+    return CavityMotion(*respond(behind_front, pressure, times, tolerance, sizes.tolist(), known=list(front * arrived)))
 
 
 def cavity_moment(
@@ -86,7 +92,14 @@ def cavity_moment(
         unit = 2.0 * math.pi * solid.uniaxial / k * np.exp(k * radius) / _wall(k, radius, solid)
         return [unit, s * unit, s**2 * unit]
 
-    return np.stack(respond(moment, pressure, times, tolerance))
+    advance, slow = radius / solid.p_wave_speed, math.pi * radius**2 * solid.uniaxial / solid.shear
+    sizes = [_largest(pressure, times) * slow / advance**order for order in range(3)]
+    return np.stack(respond(moment, pressure, times, tolerance, sizes))
+
+
+def _largest(pressure: Signal, times: np.ndarray) -> float:
+    """Largest size of a pressure (Pa) up to the last of some times."""
+    return float(np.abs(pressure(np.linspace(0.0, float(np.abs(times).max(initial=0.0)), SAMPLES))).max())
 
 
 def _transforms(s: np.ndarray, distance: float, radius: float, solid: Solid) -> np.ndarray:

@@ -39,6 +39,9 @@ MOST = 2**16
 BLOCK = 128
 """Number of frequencies computed at once, with the orders of the highest of them."""
 
+SAMPLES = 2000
+"""Number of times at which the size of a wave is looked for."""
+
 WaveKind = Literal["p", "sv"]
 
 
@@ -79,8 +82,8 @@ def scattered_motion(
     """Motion of places (m, 2), in m from the cavity's axis and not inside the cavity, at times (k,) s.
 
     The wave is at the axis at t = 0, so it meets the wall before, at t = −a/c; times may be negative. tolerance : of
-    displacements, velocities and stresses over their largest value among all places. more_orders : beyond those whose
-    terms are larger than rounding errors.
+    displacements, velocities and stresses over their largest value among all places, or that of the wave alone.
+    more_orders : beyond those whose terms are larger than rounding errors.
 
     Raises ValueError for a radius that is not positive and places in the cavity; RuntimeError if the tolerance is not
     reached, as with a wave that jumps.
@@ -102,9 +105,17 @@ def scattered_motion(
             total[..., part] += cavity.scattered(s[part], distance, turned)
         return [total[:, :2], s * total[:, :2], total[:, 2:]]
 
-    moved, moving, stress = respond(transforms, wave.velocity, times, tolerance, most=MOST)
+    moved, moving, stress = respond(transforms, wave.velocity, times, tolerance, _sizes(wave, times, solid), most=MOST)
     turn = np.moveaxis(np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]), 2, 0)
     return ScatteredMotion(turn @ moved, turn @ moving, stress)
+
+
+def _sizes(wave: PlaneWave, times: np.ndarray, solid: Solid) -> list[float]:
+    """Displacement, velocity and stress of the wave alone, up to the last of some times."""
+    grid = np.linspace(0.0, float(np.abs(times).max(initial=0.0)), SAMPLES)
+    velocity = np.abs(wave.velocity(grid))
+    largest = float(velocity.max())
+    return [float(np.trapezoid(velocity, grid)), largest, largest * solid.density * solid.p_wave_speed]
 
 
 class _Radial(NamedTuple):

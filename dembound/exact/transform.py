@@ -38,15 +38,17 @@ def respond(
     signal: Signal,
     times: np.ndarray,
     tolerance: float,
+    sizes: Sequence[float],
     known: Sequence[np.ndarray] | None = None,
     window: float = WINDOW,
     most: int = MOST,
 ) -> list[np.ndarray]:
     """Responses (…, k) of all kinds to a signal at times (k,) s, which may be negative.
 
-    The samples in the window are doubled until the last doubling has changed each of the kinds by less than `tolerance`
-    times its largest value. known : parts of the responses that are not in the transforms, and are added. window : its
-    length over the latest time; most : largest number of samples.
+    The samples in the window are doubled until the last doubling has changed each kind by less than `tolerance` times
+    its largest value, or times its usual size, in `sizes`, if that is larger: a response may not have arrived yet.
+    known : parts of the responses that are not in the transforms, and are added. window : its length over the latest
+    time; most : largest number of samples.
 
     Raises RuntimeError if the tolerance is not reached: the smoother the response, the fewer doublings are needed; a
     response that jumps never converges.
@@ -62,7 +64,7 @@ def respond(
         if known is not None:
             finer = [part + more for part, more in zip(finer, known, strict=True)]
         if coarser is not None:
-            change = max(_change(*pair) for pair in zip(coarser, finer, strict=True))
+            change = max(_change(*kind) for kind in zip(coarser, finer, sizes, strict=True))
         samples, coarser = 2 * samples, finer
     return finer
 
@@ -106,7 +108,7 @@ class _Frequencies:
             self._number = np.concatenate([self._number, new])
 
 
-def _change(coarse: np.ndarray, fine: np.ndarray) -> float:
-    """Largest difference over the largest value."""
-    size = np.abs(fine).max(initial=0.0)
-    return float(np.abs(fine - coarse).max(initial=0.0) / size) if size > 0.0 else 0.0
+def _change(coarse: np.ndarray, fine: np.ndarray, size: float) -> float:
+    """Largest difference over the largest value, or over the usual size if that is larger."""
+    size = float(np.abs(fine).max(initial=size))
+    return float(np.abs(fine - coarse).max(initial=0.0)) / size if size > 0.0 else 0.0

@@ -68,13 +68,13 @@ class Continuum(Exact):
     def of(cls, case: DiskCase) -> "Continuum":
         """The problem of a case; raises CaseError, with the reasons, if it is none."""
         problem = problem_of(build(case))
-        return cls(problem.name, problem.sentence, problem.until)
+        return cls(problem.name, problem.sentence, min(problem.until.values(), default=math.inf))
 
     def gauges(self, case: Case, recorded: Gauges) -> dict[str, Gauge]:
         """The motion at the monitors' places; errors as of `exact_motions`."""
         assert isinstance(case, DiskCase)
-        _, times, motions = exact_motions(build(case), self.name)
-        return {name: Gauge(recorded[name].position, times, *motion) for name, motion in motions.items()}
+        _, motions = exact_motions(build(case), self.name)
+        return {name: Gauge(recorded[name].position, *motion) for name, motion in motions.items()}
 
 
 @dataclass(frozen=True)

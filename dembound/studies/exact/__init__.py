@@ -53,20 +53,17 @@ def problem_of(scene: DiskScene, name: str | None = None) -> Problem:
             reasons.append(error)
     if not found:
         raise reasons[0]
-    return max(found, key=lambda problem: min(problem.until, scene.case.run.duration))
+    duration = scene.case.run.duration
+    return max(found, key=lambda problem: min([*problem.until.values(), duration]))
 
 
-def exact_motions(scene: DiskScene, name: str | None = None) -> tuple[Problem, np.ndarray, dict[str, Motion]]:
-    """The problem that a scene is, times (k,) s as long as it holds, and the motion of all monitors at these.
-
-    Raises CaseError if it is none, or if no motion is exact.
-    """
+def exact_motions(scene: DiskScene, name: str | None = None) -> tuple[Problem, dict[str, Motion]]:
+    """The problem that a scene is, and the motion of monitors, each as long as it is exact; errors as `problem_of`."""
     problem = problem_of(scene, name)
-    end = min(problem.until, scene.case.run.duration)
-    if end <= 0.0:
-        raise CaseError([f"run.duration: the solution ({problem.name}) holds for no time here"])
-    times = np.linspace(0.0, end, SAMPLES)
-    return problem, times, problem.motions(times)
+    times = np.linspace(0.0, scene.case.run.duration, SAMPLES)
+    needed = times <= max(problem.until.values(), default=0.0)
+    motions = problem.motions(times[needed])
+    return problem, {monitor: motions[monitor].before(end) for monitor, end in problem.until.items()}
 
 
 def write_exact(case: DiskCase, path: Path, name: str | None = None) -> Problem:
@@ -76,7 +73,7 @@ def write_exact(case: DiskCase, path: Path, name: str | None = None) -> Problem:
     exist. Raises CaseError, with the reasons, if the case is none of the problems.
     """
     scene = build(case)
-    problem, times, motions = exact_motions(scene, name)
+    problem, motions = exact_motions(scene, name)
     path.parent.mkdir(parents=True, exist_ok=True)
     with new_file(path) as file:
         facts = {"name": case.name, "case": case.text, "version": __version__, "size": scene.size, "complete": True}
@@ -85,7 +82,8 @@ def write_exact(case: DiskCase, path: Path, name: str | None = None) -> Problem:
         for monitor in case.monitor:
             group = histories.create_group(monitor.name)
             describe(group, header_of_monitor(scene, monitor.name))
-            write(group, "time", times, "s")
-            write(group, "displacement", motions[monitor.name].displacement, DISPLACEMENT_UNIT)
-            write(group, "velocity", motions[monitor.name].velocity, VELOCITY_UNIT)
+            motion = motions[monitor.name]
+            write(group, "time", motion.time, "s")
+            write(group, "displacement", motion.displacement, DISPLACEMENT_UNIT)
+            write(group, "velocity", motion.velocity, VELOCITY_UNIT)
     return problem

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
@@ -15,23 +16,20 @@ from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
 from dembound.exact.solid import Solid
 from dembound.motion.silence import monitored
-from dembound.studies.exact.problem import Motion, Problem, law_problems, places_of, solid_of
+from dembound.studies.exact.problem import (
+    BEGINNING,
+    ROUGH,
+    Motion,
+    Problem,
+    law_problems,
+    must_be_continuous,
+    places_of,
+    solid_of,
+)
 from dembound.waves import Wave
 
 CORNER = 0.25
 """Least distance between the load and a side that does not mirror it, over the distance from load to monitor."""
-
-SAMPLES = 2000
-"""Number of times between which jumps of a wave are looked for."""
-
-JUMP = 0.01
-"""Jump over the largest load above which a load is refused at once.
-
-The quadrature does not converge with such a jump, which takes a minute to detect; with a jump of a tenth of it, as at
-the end of a measured record, it converges.
-"""
-
-CONTINUOUS = "the solution needs a continuous load"
 
 ON_TOP = "must be on the top of the scene, where the solution is computed"
 
@@ -60,6 +58,11 @@ class LambProblem(Problem):
     wave: Wave
     away: Mapping[str, float]
 
+    @property
+    def until(self) -> dict[str, float]:
+        """Always."""
+        return dict.fromkeys(self.away, math.inf)
+
     @classmethod
     def concerns(cls, case: DiskCase) -> bool:
         """Whether a force acts, or nothing that another problem is about."""
@@ -78,9 +81,8 @@ class LambProblem(Problem):
         wave = case.wave[load.wave]
         away = {name: _away(scene, load, name, place) for name, place in places_of(scene).items()}
         for distance in away.values():
-            when, step = _largest_jump(wave.velocity, case.run.duration - abs(distance) / solid.p_wave_speed)
-            if step > JUMP:
-                raise CaseError([f"wave.{load.wave}: has a jump at {when:.3g} s; {CONTINUOUS}"])
+            end = case.run.duration - abs(distance) / solid.p_wave_speed
+            must_be_continuous(load.wave, wave.velocity, BEGINNING * end, end)
         return cls(solid, load, wave, away)
 
     def motions(self, times: np.ndarray) -> dict[str, Motion]:
@@ -96,10 +98,9 @@ class LambProblem(Problem):
                 times, abs(distance), lambda t: self.load.force * self.wave.velocity(t), solid.density, *speeds
             )
         except RuntimeError:
-            rough = f"wave.{self.load.wave}: is so rough that the solution does not converge; {CONTINUOUS}"
-            raise CaseError([rough]) from None
+            raise CaseError([f"wave.{self.load.wave}: {ROUGH}"]) from None
         moved = np.column_stack([np.sign(distance) * along, -down, np.zeros(len(times))])
-        return Motion(moved, np.gradient(moved, times, axis=0))
+        return Motion(times, moved, np.gradient(moved, times, axis=0))
 
 
 def _away(scene: DiskScene, load: LineLoad, name: str, place: np.ndarray) -> float:
@@ -112,26 +113,6 @@ def _away(scene: DiskScene, load: LineLoad, name: str, place: np.ndarray) -> flo
     if away == 0.0:
         raise CaseError([f"monitor.{name}.position: lies under the load, where the solution is infinite"])
     return away
-
-
-def _largest_jump(velocity: Callable[[np.ndarray], np.ndarray], end: float) -> tuple[float, float]:
-    """Time (s) of the largest jump of a wave after t = 0 and before `end` (s), and its size over the largest velocity.
-
-    Every interval between samples is halved repeatedly, and the half with the larger change is kept. The change of a
-    continuous wave decreases with the width, that of a jump does not. Two opposite jumps between two samples are not
-    detected.
-    """
-    # from just after t = 0, where a load may jump; 30 halvings reduce an interval to 1e-9 of its width
-    times = max(end, 0.0) * np.linspace(1e-9, 1.0, SAMPLES)
-    low, high = times[:-1], times[1:]
-    largest = np.abs(velocity(times)).max()
-    for _ in range(30):
-        middle = 0.5 * (low + high)
-        before, after = (np.abs(velocity(middle) - velocity(edge)) for edge in (low, high))
-        low, high = np.where(before > after, low, middle), np.where(before > after, middle, high)
-    steps = np.abs(velocity(high) - velocity(low))
-    k = int(steps.argmax())
-    return float(high[k]), float(steps[k] / largest) if largest > 0.0 else 0.0
 
 
 def _line_load(scene: DiskScene) -> LineLoad:

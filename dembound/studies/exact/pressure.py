@@ -16,7 +16,18 @@ from dembound.exact.cavity import cavity_moment, cavity_motion
 from dembound.exact.garvin import buried_explosion
 from dembound.exact.solid import Solid
 from dembound.holes import Circle
-from dembound.studies.exact.problem import ROUGH, Motion, Problem, echo, hole_of, places_of, solid_of, surface_of
+from dembound.studies.exact.problem import (
+    BEGINNING,
+    ROUGH,
+    Motion,
+    Problem,
+    echoes,
+    hole_of,
+    must_be_continuous,
+    places_of,
+    solid_of,
+    surface_of,
+)
 from dembound.waves import Wave
 
 SHALLOW = 0.25
@@ -53,7 +64,8 @@ class Blast:
             )
         load = driven[0]
         assert load.pressure is not None and load.wave is not None  # noqa: PT018
-        wave, solid = case.wave[load.wave], solid_of(scene)
+        wave, solid, duration = case.wave[load.wave], solid_of(scene), case.run.duration
+        must_be_continuous(load.wave, wave.velocity, -BEGINNING * duration, duration)
         return cls(solid, hole, load.pressure, wave, load.wave, surface_of(scene), places_of(scene))
 
     def history(self, t: np.ndarray) -> np.ndarray:
@@ -79,10 +91,10 @@ class CavityProblem(Problem):
     blast: Blast
 
     @property
-    def until(self) -> float:
-        """When the wave comes back from the free surface to a monitor, s."""
+    def until(self) -> dict[str, float]:
+        """When the wave comes back from the free surface, s."""
         blast = self.blast
-        return blast.wave.start + echo(blast.places, blast.hole, blast.surface, blast.solid.p_wave_speed)
+        return echoes(blast.places, blast.hole, blast.surface, blast.solid.p_wave_speed, blast.wave.start)
 
     @classmethod
     def concerns(cls, case: DiskCase) -> bool:
@@ -105,7 +117,8 @@ class CavityProblem(Problem):
             except RuntimeError:
                 raise blast.rough() from None
             direction = np.append(away / math.hypot(*away), 0.0)
-            found[name] = Motion(np.outer(motion.displacement, direction), np.outer(motion.velocity, direction))
+            moved, moving = (np.outer(values, direction) for values in (motion.displacement, motion.velocity))
+            found[name] = Motion(times, moved, moving)
         return found
 
 
@@ -116,6 +129,11 @@ class GarvinProblem(Problem):
     name: ClassVar[str] = "garvin"
     sentence: ClassVar[str] = "exact line explosion below a free surface (Garvin)"
     blast: Blast
+
+    @property
+    def until(self) -> dict[str, float]:
+        """Always, but for what the hole scatters of the waves that come back, of the order of its size in the depth."""
+        return dict.fromkeys(self.blast.places, math.inf)
 
     @classmethod
     def concerns(cls, case: DiskCase) -> bool:
@@ -157,7 +175,7 @@ class GarvinProblem(Problem):
                     for rate in moment[1:]
                 )
                 still = np.zeros(len(times))
-                found[name] = Motion(*(np.column_stack([both[0], -both[1], still]) for both in (moved, moving)))
+                found[name] = Motion(times, *(np.column_stack([both[0], -both[1], still]) for both in (moved, moving)))
         except RuntimeError:
             raise blast.rough() from None
         return found

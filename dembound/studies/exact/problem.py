@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -18,16 +18,37 @@ from dembound.holes import Circle
 ISOTROPY = 1e-6
 """Relative difference of C11 − C12 and 2 C66 up to which a medium is treated as isotropic."""
 
-ROUGH = "is so rough that the solution does not converge; the solution needs a continuous wave"
+SAMPLES = 2000
+"""Number of times between which jumps of a wave are looked for."""
+
+JUMP = 0.01
+"""Jump over the largest value above which a wave is refused at once.
+
+Solutions do not converge with such a jump, which takes a minute to detect; with a jump of a tenth of it, as at the end
+of a measured record, Lamb's converges.
+"""
+
+BEGINNING = 1e-9
+"""Share of a run after which it has begun: a wave that jumps at t = 0 is continuous from there on."""
+
+CONTINUOUS = "the solution needs a continuous wave"
+ROUGH = f"is so rough that the solution does not converge; {CONTINUOUS}"
 
 
 class Motion(NamedTuple):
-    """Motion of a monitor at k times: x, y, and rotation, which exact problems leave zero."""
+    """Motion of a monitor: x, y, and rotation, which exact problems leave zero."""
 
+    time: np.ndarray
+    """(k,) s"""
     displacement: np.ndarray
     """(k, 3) m, m, rad"""
     velocity: np.ndarray
     """(k, 3) m/s, m/s, rad/s"""
+
+    def before(self, end: float) -> Motion:
+        """The motion up to a time, s."""
+        chosen = self.time <= end
+        return Motion(*(values[chosen] for values in self))
 
 
 class Problem(ABC):
@@ -39,9 +60,9 @@ class Problem(ABC):
     """The solution in words."""
 
     @property
-    def until(self) -> float:
-        """Time (s) up to which the solution is that of the case."""
-        return float("inf")
+    @abstractmethod
+    def until(self) -> dict[str, float]:
+        """Time (s) up to which the solution is that of the case, of each monitor; infinite if it always is."""
 
     @classmethod
     @abstractmethod
@@ -55,7 +76,7 @@ class Problem(ABC):
 
     @abstractmethod
     def motions(self, times: np.ndarray) -> dict[str, Motion]:
-        """Motions of all monitors by name at times (k,) s; raises CaseError where no solution is found."""
+        """Motion of all monitors by name at times (k,) s; raises CaseError where no solution is found."""
 
 
 def solid_of(scene: DiskScene) -> Solid:
@@ -108,10 +129,40 @@ def hole_of(scene: DiskScene) -> Circle:
     return hole
 
 
-def echo(places: Mapping[str, np.ndarray], hole: Circle, surface: float | None, speed: float) -> float:
-    """Time (s) waves need at least from a hole's wall to the free surface and back to the nearest of places (2,) m."""
-    if surface is None or not places:
-        return float("inf")
-    centre = np.array(hole.centre)
-    paths = [np.hypot(place[0] - centre[0], 2.0 * surface - place[1] - centre[1]) for place in places.values()]
-    return float(min(paths) - hole.radius) / speed
+def echoes(
+    places: Mapping[str, np.ndarray], hole: Circle, surface: float | None, speed: float, begin: float
+) -> dict[str, float]:
+    """When (s) waves that leave a hole's wall at a time come back from the free surface at each of places (2,) m."""
+    if surface is None:
+        return dict.fromkeys(places, float("inf"))
+    (x, y), found = hole.centre, {}
+    for name, place in places.items():
+        path = float(np.hypot(place[0] - x, 2.0 * surface - place[1] - y)) - hole.radius
+        found[name] = begin + path / speed
+    return found
+
+
+def must_be_continuous(name: str, velocity: Callable[[np.ndarray], np.ndarray], begin: float, end: float) -> None:
+    """Raise CaseError if the wave of a name jumps between two times, s."""
+    when, step = _largest_jump(velocity, begin, end)
+    if step > JUMP:
+        raise CaseError([f"wave.{name}: has a jump at {when:.3g} s; {CONTINUOUS}"])
+
+
+def _largest_jump(velocity: Callable[[np.ndarray], np.ndarray], begin: float, end: float) -> tuple[float, float]:
+    """Time (s) of the largest jump of a wave between two times (s), and its size over the largest velocity.
+
+    Every interval between samples is halved repeatedly, and the half with the larger change is kept. The change of a
+    continuous wave decreases with the width, that of a jump does not. Two opposite jumps between two samples are not
+    detected.
+    """
+    times = np.linspace(begin, max(begin, end), SAMPLES)
+    low, high = times[:-1], times[1:]
+    largest = np.abs(velocity(times)).max()
+    for _ in range(30):  # to 1e-9 of an interval
+        middle = 0.5 * (low + high)
+        before, after = (np.abs(velocity(middle) - velocity(edge)) for edge in (low, high))
+        low, high = np.where(before > after, low, middle), np.where(before > after, middle, high)
+    steps = np.abs(velocity(high) - velocity(low))
+    k = int(steps.argmax())
+    return float(high[k]), float(steps[k] / largest) if largest > 0.0 else 0.0

@@ -17,7 +17,18 @@ from dembound.exact.scattering import PlaneWave, scattered_motion
 from dembound.exact.solid import Solid
 from dembound.holes import Circle
 from dembound.outside.plane_waves import PlaneWave as GroundWave
-from dembound.studies.exact.problem import ROUGH, Motion, Problem, echo, hole_of, places_of, solid_of, surface_of
+from dembound.studies.exact.problem import (
+    BEGINNING,
+    ROUGH,
+    Motion,
+    Problem,
+    echoes,
+    hole_of,
+    must_be_continuous,
+    places_of,
+    solid_of,
+    surface_of,
+)
 from dembound.waves import Wave
 
 
@@ -40,13 +51,13 @@ class ScatteringProblem(Problem):
     places: Mapping[str, np.ndarray]
 
     @property
-    def until(self) -> float:
-        """When what the hole has scattered comes back from the free surface to a monitor, s."""
+    def until(self) -> dict[str, float]:
+        """When what the hole has scattered comes back from the free surface, s."""
         centre = np.array([self.hole.centre])
         meets = min(
             float(wave.delays(centre)[0]) - self.hole.radius * math.hypot(*wave.slowness) for wave in self.waves
         )
-        return self.wave.start + meets + echo(self.places, self.hole, self.surface, self.solid.p_wave_speed)
+        return echoes(self.places, self.hole, self.surface, self.solid.p_wave_speed, self.wave.start + meets)
 
     @classmethod
     def concerns(cls, case: DiskCase) -> bool:
@@ -64,7 +75,8 @@ class ScatteringProblem(Problem):
         assert scene.outside is not None
         found = ground_waves(case, scene.ground, scene.outside)
         assert found is not None
-        name = case.incident.wave
+        name, duration = case.incident.wave, case.run.duration
+        must_be_continuous(name, case.wave[name].velocity, -BEGINNING * duration, duration)
         return cls(solid, hole, found.waves, case.wave[name], name, surface_of(scene), places_of(scene))
 
     def motions(self, times: np.ndarray) -> dict[str, Motion]:
@@ -82,7 +94,7 @@ class ScatteringProblem(Problem):
                 raise CaseError([f"wave.{self.wave_name}: {ROUGH}"]) from None
             moved[:, :2] += found.displacement
             moving[:, :2] += found.velocity
-        return {name: Motion(moved[k].T, moving[k].T) for k, name in enumerate(self.places)}
+        return {name: Motion(times, moved[k].T, moving[k].T) for k, name in enumerate(self.places)}
 
     def _about_the_hole(self, wave: GroundWave) -> PlaneWave:
         """A plane wave of the ground as one about the hole's axis."""
