@@ -90,4 +90,4 @@ def _goes_on(side: str, tables: Mapping[str, Any]) -> bool:
 def _has_column(tables: Mapping[str, Any]) -> bool:
     """Whether the ground beyond a continuum rests under forces of its own: by a static stage or a load on all of it."""
     loads = [load for load in tables["load"] if load]
-    return bool(tables.get("static")) or any(load.position is None and load.region is None for load in loads)
+    return bool(tables.get("static")) or any(load.is_everywhere for load in loads)

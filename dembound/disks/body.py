@@ -256,7 +256,7 @@ class DiskBody(Scene):
     @cached_property
     def steady_load(self) -> np.ndarray:
         """(3, n) forces and moments (N, N·m) of the loads without a wave."""
-        return steady(self.case, self.assembly, self.mass, self.outside)
+        return steady(self)
 
     @cached_property
     def free(self) -> np.ndarray:

@@ -1,7 +1,10 @@
 """Facts about a case of disks, in words."""
 
+import numpy as np
+
 from dembound.boundaries.words import side_in_words
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.casefile.messages import counted
 from dembound.disks.continuum_facts import continuum_facts
@@ -12,6 +15,9 @@ from dembound.disks.scene import DiskScene
 from dembound.disks.smallest_box import box_facts
 from dembound.disks.summary import describe_packing, describe_side
 from dembound.disks.warnings import particles_per_wavelength, strong_waves
+
+BALANCED = 1e-9
+"""Part of the forces of a pressure below which their sum is a rounding error."""
 
 
 def disk_facts(scene: DiskScene) -> dict[str, str]:
@@ -147,13 +153,24 @@ def _load_facts(scene: DiskScene) -> dict[str, str]:
     """What each load acts on, its whole force, and its time factor."""
     facts = {}
     for load in scene.case.load:
-        nodes, forces = forces_of(load, scene.assembly, scene.mass, scene.outside)
+        nodes, forces = forces_of(load, scene)
         what = "particle" if nodes[0] < scene.disk_count else "node"
         on = counted(len(nodes), what) + (" of the continuum" if what == "node" else "")
-        fx, fy = forces.sum(axis=0)
         factor = "steady" if load.wave is None else f"times wave {load.wave}"
-        facts[f"load {load.name}"] = f"({fx:.4g}, {fy:.4g}) N/m on {on}, {factor}"
+        facts[f"load {load.name}"] = f"{_whole_of(load, scene, forces)} on {on}, {factor}"
     return facts
+
+
+def _whole_of(load: Load, scene: DiskScene, forces: np.ndarray) -> str:
+    """The force of a load on all its nodes, or its pressure with the length of wall that makes forces (k, 3)."""
+    whole = forces[:, :2].sum(axis=0)
+    if load.pressure is None:
+        return "({:.4g}, {:.4g}) N/m".format(*whole)
+    all_forces = np.hypot(*forces[:, :2].T).sum()
+    whole[np.abs(whole) < BALANCED * all_forces] = 0.0
+    left = ", ({:.4g}, {:.4g}) N/m in all".format(*whole) if whole.any() else ""
+    length = all_forces / abs(load.pressure)
+    return f"{load.pressure / 1e6:.4g} MPa on {length:.4g} m of wall of hole {load.hole}{left},"
 
 
 def _side_fact(scene: DiskScene, side: str) -> str:

@@ -1,14 +1,21 @@
 """Loads: the particles, or nodes of a continuum, that a ``[[load]]`` acts on, and its forces."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from dembound.boundaries.support import SupportBuilder
-from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
+from dembound.disks.hole_wall import pressure_on
 from dembound.disks.surroundings import Surroundings
 from dembound.errors import CaseError
 from dembound.outside.traction import Traction, traction_in
 from dembound.packings.tiling import Assembly
+
+if TYPE_CHECKING:
+    from dembound.disks.body import DiskBody
 
 EVERYWHERE = (-np.inf, -np.inf, np.inf, np.inf)
 """The region (m) of the whole plane."""
@@ -17,32 +24,37 @@ ROUNDING = 1e-6
 """Part of an element by which a traction's part of the surface may be shorter."""
 
 
-def forces_of(
-    load: Load, assembly: Assembly, mass: np.ndarray, outside: Surroundings | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes (k,) a load acts on, and its forces on them (k, 2) N before the time factor.
+def forces_of(load: Load, scene: DiskBody) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (k,) a load acts on, and its forces and moments on them (k, 3) N and N·m before the time factor.
 
-    mass : (n,) kg, of the particles first. On particles a force is shared in proportion to the masses, which are as the
-    areas of the disks and halved for half cells; an acceleration acts on each particle's mass. On the free surface of a
-    continuum a force is a uniform traction over the part of the surface in the load's region.
+    On particles a force is shared in proportion to the masses, which are as the areas of the disks and halved for half
+    cells; an acceleration acts on each particle's mass. On the free surface of a continuum a force is a uniform
+    traction over the part of the surface in the load's region. For a pressure see `hole_wall`.
 
-    Raises CaseError if there is neither a particle nor a free surface, or both, and for tractions on less than an
-    element or on a layer that absorbs.
+    Raises CaseError if there is neither a particle nor a free surface, or both, for tractions on less than an element
+    or on a layer that absorbs, and for holes without a wall.
     """
-    traction = None if outside is None else _traction(load, outside)
-    if outside is not None and traction is not None:
-        if len(_particles(load, assembly)) > 0:
+    if load.pressure is not None:
+        return pressure_on(load, scene)
+    traction = None if scene.outside is None else _traction(load, scene.outside)
+    nodes = _particles(load, scene.assembly)
+    if scene.outside is not None and traction is not None:
+        if len(nodes) > 0:
             raise _error(load, "region: has particles and free surface of the continuum; give each its own load")
-        return outside.first + traction.node, traction.share[:, None] * np.array(load.vector)
-    nodes = _particles(load, assembly)
+        return scene.outside.first + traction.node, _along(load, traction.share)
     if len(nodes) == 0:
-        surface = "" if outside is None else ", nor does it have free surface of the continuum"
+        surface = "" if scene.outside is None else ", nor does it have free surface of the continuum"
         problem = f"no particle is centred in its region {list(load.region or ())} (m){surface}"
         raise CaseError([f"load.{load.name}: {problem}"])
-    share = mass[nodes]
+    share = scene.mass[nodes]
     if load.acceleration is None:
         share = share / share.sum()
-    return nodes, share[:, None] * np.array(load.vector)
+    return nodes, _along(load, share)
+
+
+def _along(load: Load, share: np.ndarray) -> np.ndarray:
+    """Forces and moments (k, 3) along a load's vector, of which nodes have shares (k,)."""
+    return share[:, None] * np.array([*load.vector, 0.0])
 
 
 def _particles(load: Load, assembly: Assembly) -> np.ndarray:
@@ -80,22 +92,21 @@ def _error(load: Load, problem: str) -> CaseError:
     return CaseError([f"load.{load.name}.{problem}"])
 
 
-def drive(
-    case: DiskCase, assembly: Assembly, mass: np.ndarray, outside: Surroundings | None, supports: SupportBuilder
-) -> None:
-    """Add the loads that follow a wave to the support table."""
-    for load in case.load:
+def drive(scene: DiskBody, supports: SupportBuilder) -> None:
+    """Add the loads of a scene that follow a wave to a support table."""
+    for load in scene.case.load:
         if load.wave is not None:
-            nodes, forces = forces_of(load, assembly, mass, outside)
-            for axis in load.axes:
-                supports.add(nodes, axis, drive=forces[:, axis], signal=case.wave[load.wave].velocity)
+            nodes, forces = forces_of(load, scene)
+            for component in np.flatnonzero(forces.any(axis=0)).tolist():
+                signal = scene.case.wave[load.wave].velocity
+                supports.add(nodes, component, drive=forces[:, component], signal=signal)
 
 
-def steady(case: DiskCase, assembly: Assembly, mass: np.ndarray, outside: Surroundings | None) -> np.ndarray:
-    """Forces and moments (3, n) N, N·m of the loads without a wave on nodes of these masses (n,) kg."""
-    force = np.zeros((3, len(mass)))
-    for load in case.load:
+def steady(scene: DiskBody) -> np.ndarray:
+    """Forces and moments (3, n) N, N·m of a scene's loads without a wave."""
+    force = np.zeros((3, scene.count))
+    for load in scene.case.load:
         if load.wave is None:
-            nodes, forces = forces_of(load, assembly, mass, outside)
-            force[:2, nodes] += forces.T
+            nodes, forces = forces_of(load, scene)
+            force[:, nodes] += forces.T
     return force

@@ -68,7 +68,7 @@ class SceneSizes:
         in_rows = across * up > 1 and lanes * LEAST_FILL <= 1.0
         if case.column_sides:
             disks *= 1.0 + case.column_rows[1] / (across * up)
-        everywhere = any(load.wave is not None and load.position is None for load in case.load)
+        everywhere = any(load.wave is not None and (load.is_everywhere or load.region) for load in case.load)
         width, height = packing.extent
         lengths = {"left": height, "right": height, "bottom": width, "top": width}
         sides = sum(3.0 * lengths[side] / (2.0 * packing.radius) for side in case.boundary)  # three components each

@@ -61,9 +61,11 @@ def strongest_force(scene: DiskBody) -> float:
     peak = sum(case.wave[name].peak() for name in sorted(case.entering))
     forces = [ground.density * speed * diameter * peak]
     for load in case.load:
-        if load.acceleration is None:
+        times = 1.0 if load.wave is None else case.wave[load.wave].peak()
+        if load.pressure is not None:
+            forces.append(abs(load.pressure) * times * diameter)
+        elif load.force is not None:
             width = diameter if load.region is None else max(load.region[2] - load.region[0], diameter)
-            times = 1.0 if load.wave is None else case.wave[load.wave].peak()
             forces.append(float(np.hypot(*load.vector)) * times * diameter / width)
     return max(forces)
 

@@ -11,6 +11,7 @@ import numpy as np
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
+from dembound.holes import Hole
 from dembound.outside import choice
 from dembound.outside.choice import Signal
 from dembound.outside.layer import Absorption
@@ -203,14 +204,25 @@ def signals_of(case: DiskCase) -> list[Signal]:
 
 
 def lasting_time(case: DiskCase) -> float:
-    """Longest time (s) for which a force that begins to act in the run and stays does so; 0 for none."""
+    """Longest time (s) for which a force that begins to act in the run and stays does so; 0 for none.
+
+    A pressure on a closed wall is in balance: the displacement that it makes in the plane does not grow for ever.
+    """
     starts = [case.run.duration]
     for load in case.load:
+        if load.pressure is not None and _is_in_body(case, case.hole_of(load)):
+            continue
         if load.wave is None and case.static is None:
             starts.append(0.0)
         elif load.wave is not None and case.wave[load.wave].stays:
             starts.append(case.wave[load.wave].start)
     return max(case.run.duration - min(starts), 0.0)
+
+
+def _is_in_body(case: DiskCase, hole: Hole) -> bool:
+    """Whether a hole reaches no side of the disks."""
+    (x0, y0, x1, y1), (left, bottom, right, top) = hole.box, case.packing.box
+    return left < x0 and bottom < y0 and x1 < right and y1 < top
 
 
 def clearance(case: DiskCase, box: Box, sides: Sequence[str]) -> float:

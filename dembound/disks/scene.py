@@ -154,7 +154,7 @@ def column_alone(scene: DiskScene) -> DiskScene:
     if static is not None:
         ends = {side: table for side, table in static.boundary.items() if side not in sides}
         static = static.model_copy(update={"boundary": ends})
-    everywhere = tuple(load for load in case.load if load.position is None and load.region is None)
+    everywhere = tuple(load for load in case.load if load.is_everywhere)
     alone = replace(case, boundary=sides | upright, static=static, load=everywhere, hole=(), monitor=())
     column = tile(brick, (1, case.column_rows[1]), UPRIGHT)
     return _scene(alone, scene.ground, column, find_edges(column, UPRIGHT, case.packing.regular_sides))
@@ -223,7 +223,7 @@ def _supports(scene: DiskScene) -> Supports:
             edge, builder.side = scene.edges[side], side
             table.support(edge, boundary_medium(case, ground, edge.axis), case.wave, builder)
     builder.side = ""
-    drive(case, scene.assembly, scene.mass, scene.outside, builder)
+    drive(scene, builder)
     for each in scene.continua:
         each.support(builder)
     bottom = case.side("bottom")

@@ -176,8 +176,10 @@ def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str
 
 
 def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
-    """Description and value (Pa) of the stress of a load: ρaL, or the force over the width it acts on."""
+    """Description and value (Pa) of the stress of a load: ρaL, a pressure, or the force over the width it acts on."""
     factor = 1.0 if load.wave is None else scene.case.wave[load.wave].peak()
+    if load.pressure is not None:
+        return "its pressure", abs(load.pressure) * factor
     low, high = np.zeros(2), scene.size
     if load.region is not None:
         low, high = np.array(load.region[:2]), np.array(load.region[2:])

@@ -5,6 +5,7 @@ from typing import Literal, Self
 import numpy as np
 
 from dembound.holes.hole import Hole
+from dembound.holes.outline import EllipseOutline
 from dembound.table import Box, quantity, shifted_place
 
 
@@ -28,3 +29,8 @@ class Circle(Hole):
         """The square around it: x0, y0, x1, y1 in m."""
         (x, y), r = self.centre, self.radius
         return x - r, y - r, x + r, y + r
+
+    @property
+    def outline(self) -> EllipseOutline:
+        """The circle."""
+        return EllipseOutline(self.centre, (self.radius, self.radius))

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from dembound.holes.hole import Hole
+from dembound.holes.outline import EllipseOutline
 from dembound.table import Box, quantity, shifted_place
 
 Length = Annotated[float, Field(gt=0.0)]
@@ -40,3 +41,8 @@ class Ellipse(Hole):
         (x, y), (a, b), (c, s) = self.centre, self.semi_axes, self._direction
         wide, high = float(np.hypot(a * c, b * s)), float(np.hypot(a * s, b * c))
         return x - wide, y - high, x + wide, y + high
+
+    @property
+    def outline(self) -> EllipseOutline:
+        """The ellipse."""
+        return EllipseOutline(self.centre, self.semi_axes, float(np.radians(self.angle)))

@@ -5,6 +5,7 @@ from typing import Literal, Self
 
 import numpy as np
 
+from dembound.holes.outline import Outline
 from dembound.table import Box, FileName, Table, quantity
 
 
@@ -31,3 +32,8 @@ class Hole(Table, ABC):
     @abstractmethod
     def box(self) -> Box:
         """The smallest rectangle around it: x0, y0, x1, y1 in m."""
+
+    @property
+    def outline(self) -> Outline | None:
+        """Its rim, which a pressure on its wall needs; None if it has none that is a simple closed curve."""
+        return None

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import field_validator
 
 from dembound.holes.hole import Hole
+from dembound.holes.outline import PolygonOutline
 from dembound.table import Box, quantity, shifted_place
 
 Points = tuple[tuple[float, float], ...]
@@ -42,3 +43,9 @@ class Polygon(Hole):
         """The upright rectangle around it: x0, y0, x1, y1 in m."""
         x, y = zip(*self.points, strict=True)
         return min(x), min(y), max(x), max(y)
+
+    @property
+    def outline(self) -> PolygonOutline | None:
+        """Its edges; None if they cross or touch, as the ground is then not always on the same side."""
+        outline = PolygonOutline(np.array(self.points))
+        return None if outline.crosses_itself else outline

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import field_validator
 
 from dembound.holes.hole import Hole
+from dembound.holes.outline import PolygonOutline
 from dembound.table import Box, quantity, shifted_box
 
 
@@ -36,3 +37,9 @@ class Rectangle(Hole):
     def box(self) -> Box:
         """The rectangle itself: x0, y0, x1, y1 in m."""
         return self.corners
+
+    @property
+    def outline(self) -> PolygonOutline:
+        """Its four edges."""
+        x0, y0, x1, y1 = self.corners
+        return PolygonOutline(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]))

@@ -1,9 +1,10 @@
-"""The contacts that end at the sides of a body: those of the infinite tiling with disks beyond."""
+"""The contacts that end at the sides of a body or at a hole: those of the infinite tiling with disks beyond."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -12,6 +13,17 @@ from dembound.packings.tiling import Assembly
 
 BEYOND = (("left", "right"), ("bottom", "top"))
 """The sides at low and at high coordinates, along x and along y."""
+
+
+class Hole(Protocol):
+    """What has been removed: which positions (k, 2) m lie in it, and the rectangle around it, m."""
+
+    def contains(self, positions: np.ndarray) -> np.ndarray:
+        """Which positions (k, 2) m lie in it, (k,) bool."""
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """Left, bottom, right and top, m."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +38,7 @@ class CutContacts:
     other : (e,) int64, the disk of the brick that the one beyond is a copy of.
     tile : (e, 2) int64, in which copy of the brick it is, counted as in the body.
     image : (e, 2) int64, that copy less the one of the body's disk.
-    side : (e,) int64, the side it lies beyond: 0 left, 1 right, 2 bottom, 3 top; of two the first.
+    side : (e,) int64, the side it lies beyond: 0 left, 1 right, 2 bottom, 3 top; of two the first; −1 in a hole.
     """
 
     node: np.ndarray
@@ -54,24 +66,47 @@ def cut_contacts(
     periodic : whether the body is periodic along x and along y, so that nothing is beyond its sides there.
     """
     where = body.tile.astype(np.int64)
-    contact, second, owner = _ends(brick)
     # images are ±1 at most where bricks are as wide as two disks, so only the outer tiles have contacts beyond
     reach = np.abs(brick.images).max(axis=0, initial=1)
     outer = ((where < reach) | (where >= np.array(body.copies) - reach)).any(axis=1)
-    edge = np.flatnonzero(outer)
-    first_of, last_of = (np.searchsorted(owner, body.brick_particle[edge], way) for way in ("left", "right"))
+    found = _ends_at(brick, body, np.flatnonzero(outer), periodic)
+    out = _beyond(found.tile, brick.edge_rows[found.other], body.copies)
+    found = replace(found, side=np.argmax(out, axis=1))
+    allowed = np.array([side in sides for axis in BEYOND for side in axis])
+    return found.only(_is_absent(found, brick, body) & out.any(axis=1) & ~(out & ~allowed).any(axis=1))
+
+
+def contacts_into(brick: Brick, body: Assembly, hole: Hole) -> CutContacts:
+    """The contacts of a body with disks that a hole has removed; their side is −1."""
+    x0, y0, x1, y1 = hole.box
+    reach = np.abs(brick.vectors).max(axis=0)
+    near = ((body.positions >= np.array([x0, y0]) - reach) & (body.positions <= np.array([x1, y1]) + reach)).all(axis=1)
+    found = _ends_at(brick, body, np.flatnonzero(near))
+    removed = hole.contains(body.positions[found.node] + found.vectors(brick)) & _is_absent(found, brick, body)
+    never_there = _beyond(found.tile, brick.edge_rows[found.other], body.copies).any(axis=1)
+    return found.only(removed & ~never_there)
+
+
+def _ends_at(
+    brick: Brick, body: Assembly, disks: np.ndarray, periodic: tuple[bool, bool] = (False, False)
+) -> CutContacts:
+    """All contacts of some disks (k,) of a body, cut or not; periodic : where numbers of copies wrap around."""
+    contact, second, owner = _ends(brick)
+    first_of, last_of = (np.searchsorted(owner, body.brick_particle[disks], way) for way in ("left", "right"))
     many = last_of - first_of
     entry = np.repeat(first_of, many) + np.arange(many.sum()) - np.repeat(np.cumsum(many) - many, many)
-    node, contact_type, is_second = np.repeat(edge, many), contact[entry], second[entry]
+    node, contact_type, is_second = np.repeat(disks, many), contact[entry], second[entry]
     other = np.where(is_second, brick.pairs[contact_type, 0], brick.pairs[contact_type, 1])
     image = np.where(is_second[:, None], -brick.images[contact_type], brick.images[contact_type])
-    place = where[node] + image
+    place = body.tile[node].astype(np.int64) + image
     place = np.where(periodic, place % body.copies, place)
-    out = _beyond(place, brick.edge_rows[other], body.copies)
-    found = CutContacts(node, contact_type, is_second, other, place, image, np.argmax(out, axis=1))
-    absent = ~np.isin(_key(place, other, brick), _key(where, body.brick_particle, brick))
-    allowed = np.array([side in sides for axis in BEYOND for side in axis])
-    return found.only(absent & out.any(axis=1) & ~(out & ~allowed).any(axis=1))
+    return CutContacts(node, contact_type, is_second, other, place, image, np.full(len(node), -1))
+
+
+def _is_absent(found: CutContacts, brick: Brick, body: Assembly) -> np.ndarray:
+    """Whether the other disks of contacts (e,) are not in a body."""
+    where = body.tile.astype(np.int64)
+    return ~np.isin(_key(found.tile, found.other, brick), _key(where, body.brick_particle, brick))
 
 
 def _beyond(tile: np.ndarray, closing: np.ndarray, copies: tuple[int, int]) -> np.ndarray:

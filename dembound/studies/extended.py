@@ -234,7 +234,7 @@ def _at_places(case: DiskCase, scene: DiskScene, by: tuple[float, float], size: 
 
     def shifted_load(load: Load) -> Load:
         if load.position is not None:
-            (node,), _ = forces_of(load, scene.assembly, scene.mass)
+            (node,), _ = forces_of(load, scene)
             return load.model_copy(update={"position": shifted(scene.positions[node])})
         if load.region is None:
             return load

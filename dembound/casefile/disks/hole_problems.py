@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from dembound.casefile.messages import corners, numbered
+from dembound.casefile.disks.load import Load
+from dembound.casefile.messages import choices, corners, numbered, show
 from dembound.holes import Hole
 from dembound.table import Box
 
@@ -19,6 +20,9 @@ def hole_problems(tables: Mapping[str, Any], has_static: bool) -> Iterator[str]:
             yield f'{place}.stage: is "after", but the case has no [static] stage to come after'
         for key in ("load", "monitor"):
             yield from _places_in_it(place, hole, key, tables[key])
+    for place, load in numbered("load", tables["load"]):
+        if load.pressure is not None:
+            yield from _no_wall(place, load, tables)
 
 
 def _outside(place: str, hole: Hole, box: Box) -> Iterator[str]:
@@ -34,3 +38,30 @@ def _places_in_it(place: str, hole: Hole, key: str, tables: Any) -> Iterator[str
     for where, table in numbered(key, tables):
         if table.position is not None and hole.contains(np.array([table.position]))[0]:
             yield f"{where}.position: lies in {place}; must be where particles remain"
+
+
+def _no_wall(place: str, load: Load, tables: Mapping[str, Any]) -> Iterator[str]:
+    """A pressure on a hole that the case does not have, or whose wall is not all of its outline.
+
+    A hole that is invalid on its own has no name here.
+    """
+    holes = {hole.name: hole for hole in tables["hole"] if hole}
+    if load.hole not in holes:
+        if None not in tables["hole"]:
+            defined = f"defined: {choices(str(load.hole), holes)}" if holes else "none is defined"
+            yield f"{place}.hole: {show(load.hole)} is not a hole of this case; {defined}"
+        return
+    hole = holes[load.hole]
+    if load.on == "outline" and hole.outline is None:
+        yield f'{place}.on: "outline" needs edges that do not cross; give hole {hole.name} such, or on = "bonds"'
+    if tables["packing"]:
+        yield from _at_periodic_sides(place, hole, tables)
+
+
+def _at_periodic_sides(place: str, hole: Hole, tables: Mapping[str, Any]) -> Iterator[str]:
+    """A hole that reaches a periodic side, beyond which it is not repeated."""
+    (x0, y0, x1, y1), (left, bottom, right, top) = hole.box, tables["packing"].box
+    reached = {"left": x0 <= left, "right": x1 >= right, "bottom": y0 <= bottom, "top": y1 >= top}
+    for side, table in tables["boundary"].items():
+        if table and table.is_periodic and reached[side]:
+            yield f"{place}.hole: {show(hole.name)} reaches the periodic side {side}, which closes its wall otherwise"

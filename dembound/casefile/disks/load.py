@@ -1,18 +1,23 @@
 """The ``[[load]]`` tables."""
 
+from typing import Literal
+
 from pydantic import model_validator
 
 from dembound.table import Box, FileName, Table, quantity
 
 Vector = tuple[float, float]
 
+ACTIONS = ("force", "acceleration", "pressure")
+"""The keys of which each load has one."""
+
 
 class Load(Table):
-    """A force or an acceleration on one particle, on those of a rectangle, or on all.
+    """A force or an acceleration on one particle, on those of a rectangle, or on all, or a pressure in a hole.
 
     A force is split among the particles of its region in proportion to their area; on the free surface of a continuum
-    it is a uniform traction. A wave's values, taken as pure numbers, are the time factor; without one the load is
-    steady and acts from the static stage on.
+    it is a uniform traction. A pressure pushes the wall of a hole away from it. A wave's values, taken as pure numbers,
+    are the time factor; without one the load is steady and acts from the static stage on.
     """
 
     name: FileName = quantity(..., unit="1", help="name of the load in messages and results")
@@ -24,22 +29,34 @@ class Load(Table):
         unit="m",
         help="rectangle x0, y0, x1, y1; all particles centred in it are loaded, or the continuum's surface in it",
     )
+    pressure: float | None = quantity(None, unit="Pa", help="pressure on the wall of a hole; negative values pull")
+    hole: str | None = quantity(None, unit="1", help="name of the hole on whose wall a pressure acts")
+    on: Literal["outline", "bonds"] = quantity(
+        "outline", unit="1", help="what a pressure acts on: the hole's true outline, or the bonds that it cuts"
+    )
     wave: str | None = quantity(None, unit="1", help="name of the wave that is the time factor; absent: steady")
 
     @property
     def key(self) -> str:
-        """The key that is given: ``force`` or ``acceleration``."""
-        return "acceleration" if self.force is None else "force"
+        """The key that is given: one of `ACTIONS`."""
+        return next(key for key in ACTIONS if getattr(self, key) is not None)
 
     @property
     def vector(self) -> Vector:
-        """The force (N/m) or acceleration (m/s²) along x and y, before the time factor."""
+        """The force (N/m) or acceleration (m/s²) along x and y, before the time factor; not of a pressure."""
         return getattr(self, self.key)
 
     @property
     def axes(self) -> tuple[int, ...]:
         """Axes along which it acts: 0 for x, 1 for y."""
+        if self.pressure is not None:
+            return (0, 1)
         return tuple(axis for axis, value in enumerate(self.vector) if value != 0.0)
+
+    @property
+    def is_everywhere(self) -> bool:
+        """Whether it acts on all particles."""
+        return self.position is None and self.region is None and self.pressure is None
 
     @model_validator(mode="after")
     def _one_action_in_one_place(self) -> "Load":
@@ -49,16 +66,22 @@ class Load(Table):
         return self
 
     def _problems_with_action(self) -> list[str]:
-        """Mistakes in force and acceleration."""
-        given = [key for key in ("force", "acceleration") if getattr(self, key) is not None]
+        """Mistakes in force, acceleration and pressure."""
+        given = [key for key in ACTIONS if getattr(self, key) is not None]
         if not given:
-            return ["force: is missing; give either force or acceleration"]
-        if len(given) == 2:
-            return ["acceleration: is not allowed together with force"]
+            return [f"{ACTIONS[0]}: is missing; give one of {', '.join(ACTIONS)}"]
+        if len(given) > 1:
+            return [f"{key}: is not allowed together with {given[0]}" for key in given[1:]]
+        if self.pressure is not None:
+            return [] if self.pressure != 0.0 else ["pressure: is zero, must not be"]
         return [] if self.axes else [f"{self.key}: is zero along x and y, must not be"]
 
     def _problems_with_place(self) -> list[str]:
-        """Mistakes in position and region."""
+        """Mistakes in position, region and hole."""
+        if self.pressure is not None:
+            return [*self._problems_with_hole()]
+        if stray := [key for key in ("hole", "on") if key in self.model_fields_set]:
+            return [f"{key}: is for a pressure" for key in stray]
         if self.position is not None and self.region is not None:
             return ["region: is not allowed together with position"]
         if self.region is not None:
@@ -67,3 +90,9 @@ class Load(Table):
         if self.force is not None and self.position is None:
             return ["position: is missing; a force needs either position or region"]
         return []
+
+    def _problems_with_hole(self) -> list[str]:
+        """Mistakes in the place of a pressure."""
+        stray = [key for key in ("position", "region") if getattr(self, key) is not None]
+        missing = [] if self.hole is not None else ["hole: is missing; a pressure needs the name of a hole"]
+        return [*missing, *(f"{key}: is not allowed together with pressure; give hole" for key in stray)]

@@ -44,6 +44,10 @@ class DiskCase(Case):
         """Width and height (m) of the ground, or of the disks that fill all of it."""
         return self.packing.extent if self.ground.size is None else self.ground.size
 
+    def hole_of(self, load: Load) -> Hole:
+        """The hole on whose wall a pressure acts."""
+        return next(hole for hole in self.hole if hole.name == load.hole)
+
     @property
     def periodic(self) -> tuple[bool, bool]:
         """Whether the scene is periodic along x and along y."""
@@ -75,7 +79,7 @@ class DiskCase(Case):
             return self.free_field_sides
         if any(self.periodic):
             return ()
-        everywhere = any(load.position is None and load.region is None for load in self.load)
+        everywhere = any(load.is_everywhere for load in self.load)
         driven = any(self.boundary[side].waves for side in self.outside_sides)
         return self.outside_sides if everywhere or driven or self.static is not None else ()
 

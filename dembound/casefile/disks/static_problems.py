@@ -55,9 +55,9 @@ def _unheld_loads(static: Static, boundaries: Sides, loads: Sequence[Load | None
     """Steady loads against which the body, or the free-field column, is not held."""
     beside = any(table.needs_column or table.is_outside for table in boundaries.values() if table)
     for place, load in numbered("load", loads):
-        if load.wave is not None:
+        if load.wave is not None or load.pressure is not None:  # a pressure is in balance
             continue
-        on_column = beside and load.position is None and load.region is None
+        on_column = beside and load.is_everywhere
         what, where = ("free-field column", "bottom or top") if on_column else ("body", "a side")
         for axis in load.axes:
             if not _holds(static, ("bottom", "top") if on_column else SIDES, motion, axis):

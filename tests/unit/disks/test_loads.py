@@ -1,5 +1,7 @@
 """Loads on the particles of a scene: where they act and how hard."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -16,10 +18,10 @@ MASS = np.array([1.0, 2.0, 3.0, 4.0])
 
 
 @pytest.fixture
-def row() -> Assembly:
-    """Four disks along x at 1, 2, 3 and 4 m, with radii in m like their numbers."""
+def row() -> SimpleNamespace:
+    """A scene of four disks along x at 1, 2, 3 and 4 m, with radii in m like their numbers."""
     numbers = np.arange(4, dtype=np.int32)
-    return Assembly(
+    assembly = Assembly(
         positions=np.column_stack([numbers + 1.0, np.zeros(4)]),
         radii=numbers + 1.0,
         brick_particle=numbers,
@@ -30,39 +32,40 @@ def row() -> Assembly:
         size=np.ones(2),
         extent=np.ones(2),
     )
+    return SimpleNamespace(assembly=assembly, mass=MASS, outside=None)
 
 
-def test_a_force_is_shared_by_the_masses(row: Assembly) -> None:
+def test_a_force_is_shared_by_the_masses(row: SimpleNamespace) -> None:
     load = Load(name="a", force=(5.0, -10.0), region=(1.5, -1.0, 3.5, 1.0))
-    nodes, forces = forces_of(load, row, MASS)
+    nodes, forces = forces_of(load, row)
 
     # masses as 2 to 3
     assert nodes.tolist() == [1, 2]
-    np.testing.assert_allclose(forces, [[2.0, -4.0], [3.0, -6.0]], rtol=1e-15)
+    np.testing.assert_allclose(forces, [[2.0, -4.0, 0.0], [3.0, -6.0, 0.0]], rtol=1e-15)
 
 
-def test_an_acceleration_acts_on_every_mass(row: Assembly) -> None:
-    nodes, forces = forces_of(Load(name="a", acceleration=(0.0, -10.0)), row, MASS)
+def test_an_acceleration_acts_on_every_mass(row: SimpleNamespace) -> None:
+    nodes, forces = forces_of(Load(name="a", acceleration=(0.0, -10.0)), row)
 
     assert nodes.tolist() == [0, 1, 2, 3]
-    assert np.array_equal(forces, np.column_stack([np.zeros(4), -10.0 * MASS]))
+    assert np.array_equal(forces, np.column_stack([np.zeros(4), -10.0 * MASS, np.zeros(4)]))
 
 
-def test_a_position_means_the_nearest_disk(row: Assembly) -> None:
-    nodes, forces = forces_of(Load(name="a", force=(7.0, 0.0), position=(2.6, 5.0)), row, MASS)
+def test_a_position_means_the_nearest_disk(row: SimpleNamespace) -> None:
+    nodes, forces = forces_of(Load(name="a", force=(7.0, 0.0), position=(2.6, 5.0)), row)
 
-    assert (nodes.tolist(), forces.tolist()) == ([2], [[7.0, 0.0]])
+    assert (nodes.tolist(), forces.tolist()) == ([2], [[7.0, 0.0, 0.0]])
 
 
-def test_disks_centred_on_the_rim_of_a_region_are_in_it(row: Assembly) -> None:
-    nodes, _ = forces_of(Load(name="a", acceleration=(1.0, 0.0), region=(2.0, 0.0, 3.0, 1.0)), row, MASS)
+def test_disks_centred_on_the_rim_of_a_region_are_in_it(row: SimpleNamespace) -> None:
+    nodes, _ = forces_of(Load(name="a", acceleration=(1.0, 0.0), region=(2.0, 0.0, 3.0, 1.0)), row)
 
     assert nodes.tolist() == [1, 2]
 
 
-def test_a_region_without_disks_is_refused(row: Assembly) -> None:
+def test_a_region_without_disks_is_refused(row: SimpleNamespace) -> None:
     with pytest.raises(CaseError, match=r"load\.far: no particle is centred in its region \[8\.0, "):
-        forces_of(Load(name="far", force=(1.0, 0.0), region=(8.0, 0.0, 9.0, 1.0)), row, MASS)
+        forces_of(Load(name="far", force=(1.0, 0.0), region=(8.0, 0.0, 9.0, 1.0)), row)
 
 
 def loaded(bar, *loads: dict, **changes: object):

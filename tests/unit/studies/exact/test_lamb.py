@@ -8,8 +8,8 @@ from dembound.errors import CaseError
 from dembound.exact import lamb
 from dembound.exact.lamb import surface_displacement
 from dembound.kinds import loads, with_changes
-from dembound.studies import half_space as module
-from dembound.studies.half_space import write_exact
+from dembound.studies.exact import lamb as module
+from dembound.studies.exact import write_exact
 
 CASE = """
 [packing]
@@ -129,7 +129,7 @@ def test_jumps_are_found_beside_steep_flanks_and_before_the_quadrature(tmp_path,
     monkeypatch.setattr(module, "surface_displacement", lambda times, *_: np.zeros((2, len(times))))
     case = with_changes(loads(CASE, tmp_path), {"wave.pulse": {"type": "file", "path": "wave.txt"}})
     if refused:
-        with pytest.raises(CaseError, match=rf"wave\.pulse: has a jump at {at:.3g} s; .* continuous load$"):
+        with pytest.raises(CaseError, match=rf"wave\.pulse: has a jump at {at:.3g} s; .* continuous wave$"):
             write_exact(case, tmp_path / "run.h5")
     else:
         write_exact(case, tmp_path / "run.h5")
@@ -138,7 +138,7 @@ def test_jumps_are_found_beside_steep_flanks_and_before_the_quadrature(tmp_path,
 def test_a_load_whose_quadrature_does_not_settle_is_refused(tmp_path, monkeypatch):
     # as of one that jumps to and fro between two samples; the pulse takes more than the fewest panels
     monkeypatch.setattr(lamb, "MOST_PANELS", lamb.FEWEST_PANELS)
-    with pytest.raises(CaseError, match=r"wave\.pulse: is so rough .* continuous load$"):
+    with pytest.raises(CaseError, match=r"wave\.pulse: is so rough .* continuous wave$"):
         write_exact(loads(CASE), tmp_path / "run.h5")
     assert not list(tmp_path.iterdir())
 

@@ -1,0 +1,135 @@
+"""A pressure on the wall of a hole, as forces and moments on the disks of the wall.
+
+The wall is the hole's true outline as far as it lies within the body. It is shared by the disks that have lost bonds to
+the hole, each having the part nearest to it along the outline, and the force and moment of the pressure on its part
+(holes/outline.py). So the resultants are those of the pressure on the whole outline, zero for a closed one, whatever
+the packing.
+
+Or each cut bond has the force and moment that it would have if the packing were everywhere under this pressure, in
+a square lattice p·D along the bond. The resultants are again zero, but the loaded wall is then that of the disks, in a
+lattice a staircase, and not the outline.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dembound.boundaries.half_mass import half_contacts, half_edges
+from dembound.disks.outside_mesh import Box, box_of
+from dembound.disks.wall import CutBonds
+from dembound.errors import CaseError
+from dembound.holes import Hole
+from dembound.holes.outline import Outline
+from dembound.packings.cut import CutContacts, contacts_into
+from dembound.packings.tiling import Assembly
+
+if TYPE_CHECKING:
+    from dembound.casefile.disks.load import Load
+    from dembound.disks.body import DiskBody
+
+FAR = 4.0
+"""Largest distance from a disk to the ends of its part of an outline, in largest diameters.
+
+In dense packings it is below two, and in the corner of a hole with an angle θ, into which disks of radius R do not fit,
+R/tan(θ/2): 4 diameters at 14°.
+"""
+
+
+def pressure_on(load: Load, scene: DiskBody) -> tuple[np.ndarray, np.ndarray]:
+    """Disks (k,) of the wall that a load presses on, and its forces and moments on them (k, 3) N and N·m per metre.
+
+    There are none while the hole still has its disks, before it is excavated.
+
+    Raises CaseError for holes that cut no bonds, and for those without disks along some part of their outline, as
+    beside another hole.
+    """
+    hole = scene.case.hole_of(load)
+    first = 0 if scene.seam is None else scene.seam.count
+    body = scene.assembly.part(slice(first, scene.disk_count))
+    if hole.contains(body.positions).any():
+        return np.zeros(0, dtype=np.int64), np.zeros((0, 3))
+    cut = contacts_into(scene.ground.brick, body, hole)
+    if len(cut.node) == 0:
+        raise _error(load, "cuts no bonds of the body, so there is no wall to press on")
+    assert load.pressure is not None
+    disks, of = np.unique(cut.node, return_inverse=True)
+    if load.on == "bonds":
+        forces = np.zeros((len(disks), 3))
+        np.add.at(forces, of, _on_bonds(scene, body, cut))
+    else:
+        forces = _on_outline(load, hole, _edges_of(scene, body), body, disks)
+    return first + disks, load.pressure * forces
+
+
+def _edges_of(scene: DiskBody, body: Assembly) -> Box:
+    """Left, bottom, right and top (m) of a body; at sides of half cells the line of their centres."""
+    box = list(box_of(body))
+    for edge in half_edges(scene.edges, scene.case.boundary):
+        at_high_end = edge.side in ("right", "top")
+        box[edge.axis + 2 * at_high_end] = float(np.median(edge.positions[:, edge.axis]))
+    return box[0], box[1], box[2], box[3]
+
+
+def _on_outline(load: Load, hole: Hole, box: Box, body: Assembly, disks: np.ndarray) -> np.ndarray:
+    """Forces and moments (k, 3) on the disks (k,) of a wall under 1 Pa; box : left, bottom, right, top of the body."""
+    outline, places = hole.outline, body.positions[disks]
+    assert outline is not None
+    nearest, parts, forces = outline.nearest(places), outline.within(box), np.zeros((len(disks), 3))
+    beyond = np.array([outline.beyond(nearest, part) for part in parts])
+    for number, part in enumerate(parts):
+        own = np.flatnonzero(np.argmin(beyond, axis=0) == number)
+        if len(own) == 0:
+            raise _bare(load, outline.at(np.array([part[0] + 0.5 * part[1]]))[0])
+        begin, end = shares_of(outline, part, nearest[own])
+        far = [np.hypot(*(piece - places[own]).T) for piece in (begin, end)]
+        for piece, distance in zip((begin, end), far, strict=True):
+            if distance.max() > FAR * 2.0 * body.radii.max():
+                raise _bare(load, piece[np.argmax(distance)])
+        arms = far[1] ** 2 - far[0] ** 2
+        forces[own] = np.column_stack([end[:, 1] - begin[:, 1], begin[:, 0] - end[:, 0], -0.5 * arms])
+    return forces
+
+
+def shares_of(outline: Outline, part: tuple[float, float], nearest: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where the shares of disks in a part of an outline begin and end, (k, 2) m each, counter-clockwise round the hole.
+
+    part : where it begins and how long it is. nearest : (k,) the points nearest to the disks; all in the parameter of
+    the outline. Shares meet in the middle between these, and the outer ones go on to the ends of the part.
+    """
+    (start, length), period = part, outline.period
+    along = (nearest - start) % period
+    if length < period:  # what lies beyond the part belongs to its nearer end
+        along = np.where(along <= length, along, np.where(along - length < period - along, length, 0.0))
+    order = np.argsort(along, kind="stable")
+    middle = 0.5 * (along[order][1:] + along[order][:-1])
+    low, high = 0.0, length
+    if length == period:
+        high = 0.5 * (along[order[0]] + period + along[order[-1]])
+        low = high - period
+    begin, end = np.empty((2, len(along)))
+    begin[order], end[order] = np.append(low, middle), np.append(middle, high)
+    return outline.at(start + begin), outline.at(start + end)
+
+
+def _on_bonds(scene: DiskBody, body: Assembly, cut: CutContacts) -> np.ndarray:
+    """Forces and moments (e, 3) of cut bonds on their disks where the packing is under 1 Pa everywhere."""
+    ground = scene.ground
+    gradient = np.linalg.lstsq(ground.material_tensor, np.array([-1.0, -1.0, 0.0, 0.0]), rcond=None)[0]
+    forces = np.einsum("cge,g->ec", CutBonds.of(ground, cut, body.positions).on_disks, gradient)
+    first = scene.disk_count - len(body.radii)
+    vectors = cut.vectors(ground.brick)
+    halved = half_contacts(first + cut.node, first + cut.node, vectors, scene.edges, scene.case.boundary)
+    return forces * np.where(halved, 0.5, 1.0)[:, None]
+
+
+def _bare(load: Load, place: np.ndarray) -> CaseError:
+    """An outline without disks near a place (2,) m."""
+    x, y = place
+    return _error(load, f"has no wall near ({x:.4g}, {y:.4g}) m of its outline; holes that join need to be one polygon")
+
+
+def _error(load: Load, problem: str) -> CaseError:
+    """A hole on whose wall a load cannot press."""
+    return CaseError([f'load.{load.name}.hole: "{load.hole}" {problem}'])

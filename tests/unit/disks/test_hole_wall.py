@@ -1,0 +1,206 @@
+"""A pressure on the wall of a hole: shares of the outline, forces and moments on disks, resultants."""
+
+import numpy as np
+import pytest
+
+from dembound.disks.facts import disk_facts
+from dembound.disks.hole_wall import shares_of
+from dembound.disks.loads import forces_of
+from dembound.disks.scene import DiskScene, build
+from dembound.errors import CaseError
+from dembound.holes.outline import EllipseOutline, PolygonOutline
+from dembound.kinds import with_changes
+from tests.small_cases import GRAINS, PUSHED, small
+
+P = 2e6
+CENTRE = (6.1, 5.2)
+CIRCLE = {"type": "circle", "centre": CENTRE, "radius": 2.3}
+HOLES = {
+    "circle": CIRCLE,
+    "ellipse": {"type": "ellipse", "centre": CENTRE, "semi_axes": [3.4, 1.3], "angle": 25.0},
+    "rectangle": {"type": "rectangle", "corners": [4.2, 3.1, 8.4, 6.9]},
+    "horseshoe": {"type": "polygon", "points": [[4, 3], [8, 3], [8, 6], [6.5, 7.5], [5.5, 7.5], [4, 6]]},
+    "clockwise": {"type": "polygon", "points": [[4, 6], [5.5, 7.5], [6.5, 7.5], [8, 6], [8, 3], [4, 3]]},
+}
+LATTICE = {"pattern": "A", "size": [12.0, 10.0], "radius": 0.25}
+RANDOM = GRAINS["packing"] | {"size": [12.0, 12.0]}
+
+
+def pressed(packing: dict, hole: dict, changes: dict | None = None, **load: object) -> DiskScene:
+    """A body with a hole in it and a pressure on its wall."""
+    tables = PUSHED | {
+        "packing": packing,
+        "material": {"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
+        "boundary": {},
+        "hole": [{"name": "h", **hole}],
+        "load": [{"name": "p", "pressure": P, "hole": "h", **load}],
+        "monitor": [],
+    }
+    del tables["wave"]
+    return build(with_changes(small(tables), changes or {}))
+
+
+def resultants(scene: DiskScene, number: int = 0) -> tuple[np.ndarray, float]:
+    """Sum of the forces (2,) N of a load, and their moment about the origin, N·m."""
+    nodes, forces = forces_of(scene.case.load[number], scene)
+    x, y = scene.positions[nodes].T
+    return forces[:, :2].sum(axis=0), float(np.sum(x * forces[:, 1] - y * forces[:, 0] + forces[:, 2]))
+
+
+@pytest.mark.parametrize("on", ["outline", "bonds"])
+@pytest.mark.parametrize("packing", [LATTICE, RANDOM], ids=["lattice", "random"])
+@pytest.mark.parametrize("name", HOLES)
+def test_a_pressure_in_a_closed_hole_is_in_balance_and_pushes_outwards(packing: dict, name: str, on: str) -> None:
+    scene = pressed(packing, HOLES[name], on=on)
+    nodes, forces = forces_of(scene.case.load[0], scene)
+    away = scene.positions[nodes] - CENTRE
+    force, moment = resultants(scene)
+    largest = P * 20.0  # of a perimeter of less than 20 m
+
+    # rounding errors, for bonds those of the linear solve of the homogenisation
+    np.testing.assert_allclose(force, 0.0, atol=(1e-12 if on == "outline" else 1e-9) * largest)
+    assert abs(moment) < (1e-12 if on == "outline" else 1e-9) * largest * 10.0
+    assert len(np.unique(nodes)) == len(nodes) > 20
+    # ∫ p x·n ds is twice p times the area; the disks lie up to two diameters of 0.6 m behind the outline
+    area = {"circle": np.pi * 2.3**2, "ellipse": np.pi * 3.4 * 1.3, "rectangle": 4.2 * 3.8}.get(name, 15.75)
+    assert area < np.sum(forces[:, :2] * away) / (2.0 * P) < area + 0.5 * 1.2 * 20.0
+
+
+def test_shares_of_a_circle_are_arcs_between_the_middles_of_neighbours() -> None:
+    circle = EllipseOutline((1.0, 2.0), (3.0, 3.0))
+    angles = np.array([0.2, 5.9, 1.0, 3.0])
+    begin, end = shares_of(circle, (0.0, circle.period), angles)
+    arcs = (circle.nearest(end) - circle.nearest(begin)) % circle.period
+
+    np.testing.assert_allclose(
+        circle.nearest(begin), [0.5 * (0.2 + 5.9 - 2.0 * np.pi) % (2.0 * np.pi), 4.45, 0.6, 2.0], atol=1e-12
+    )
+    np.testing.assert_allclose(arcs.sum(), 2.0 * np.pi, rtol=1e-14)
+    np.testing.assert_allclose(np.hypot(*(end - (1.0, 2.0)).T), 3.0, rtol=1e-14)
+
+
+def test_shares_of_an_open_wall_go_on_to_its_ends() -> None:
+    trench = PolygonOutline(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 9.0], [0.0, 9.0]]))
+    ((_, length),) = parts = trench.within((-5.0, -5.0, 9.0, 2.0))
+    begin, end = shares_of(
+        trench, parts[0], trench.nearest(np.array([[5.0, 1.5], [2.0, -1.0], [-1.0, 1.0], [-1.0, 2.5]]))
+    )
+
+    # down the left wall, along the bottom, up the right wall; the last disk lies above the end
+    assert length == pytest.approx(8.0)
+    np.testing.assert_allclose(begin[[3, 2, 1]], [[0.0, 2.0], [0.0, 1.5], [0.5, 0.0]], atol=1e-12)
+    np.testing.assert_allclose(end[[1, 0]], [[3.75, 0.0], [4.0, 2.0]], atol=1e-12)
+    np.testing.assert_allclose(begin[0], end[1], atol=1e-12)
+
+
+def test_in_a_lattice_every_cut_bond_has_p_times_d() -> None:
+    scene = pressed(LATTICE, CIRCLE, on="bonds")
+    nodes, forces = forces_of(scene.case.load[0], scene)
+    disks = {(round(float(x), 3), round(float(y), 3)) for x, y in scene.positions}
+    for node, force in zip(nodes, forces, strict=True):
+        x, y = scene.positions[node]
+        cut = [
+            (dx, dy)
+            for dx, dy in ((0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5))
+            if (round(float(x + dx), 3), round(float(y + dy), 3)) not in disks
+            and np.hypot(x + dx - CENTRE[0], y + dy - CENTRE[1]) < 2.3
+        ]
+        np.testing.assert_allclose(force, [*(-P * np.sum(cut, axis=0)), 0.0], atol=1e-8 * P)
+
+
+@pytest.mark.parametrize("packing", [LATTICE, RANDOM], ids=["lattice", "random"])
+def test_half_a_hole_beside_a_mirror_has_the_pressure_on_its_opening(packing: dict) -> None:
+    """Of the outline only what lies within the body: the resultant is p times the opening, a diameter of 4.6 m."""
+    half = CIRCLE | {"centre": [0.0, 5.2]}
+    scene = pressed(packing, half, {"boundary.left": {"type": "symmetry"}})
+    force, moment = resultants(scene)
+
+    np.testing.assert_allclose(force, [P * 4.6, 0.0], rtol=1e-12, atol=1e-9 * P)
+    assert moment == pytest.approx(-P * 4.6 * 5.2, rel=1e-12)
+    assert "of wall of hole h, (9.2e+06, 0) N/m in all, on" in disk_facts(scene)["load p"]
+
+
+def test_a_valley_is_loaded_below_the_surface_only() -> None:
+    valley = {"type": "polygon", "points": [[3, 12], [5, 7], [7, 7], [9, 12]]}
+    scene = pressed(LATTICE, valley)
+    force, moment = resultants(scene)
+    left, right = 5.0 - 2.0 * 0.6, 7.0 + 2.0 * 0.6  # at the surface, y = 10 m
+
+    np.testing.assert_allclose(force, [0.0, -P * (right - left)], atol=1e-9 * P)
+    assert moment == pytest.approx(-P * 0.5 * (right**2 - left**2), rel=1e-12)
+
+
+def test_at_a_side_of_half_cells_the_wall_ends_at_their_centres() -> None:
+    half_cells = {"type": "viscous", "half_mass": True}
+    opening = {"type": "rectangle", "corners": [-1.0, 3.0, 2.0, 7.0]}
+    for side, edge in (({"type": "viscous"}, 0.0), (half_cells, 0.25)):
+        scene = pressed(LATTICE, opening, {"boundary.left": side})
+        _, forces = forces_of(scene.case.load[0], scene)
+        upper = forces[:, 1] > 0.0
+        assert forces[upper, 1].sum() == pytest.approx(P * (2.0 - edge), rel=1e-9)
+    # of bonds along the side half
+    scene = pressed(LATTICE, opening, {"boundary.left": half_cells}, on="bonds")
+    _, forces = forces_of(scene.case.load[0], scene)
+    upper = forces[:, 1] > 1e-9 * P
+    assert forces[upper, 1].sum() == pytest.approx(P * (2.0 - 0.25), rel=1e-9)
+
+
+def test_an_excavated_hole_is_pressed_once_it_is_there() -> None:
+    static = {"static": {}, "hole": [{"name": "h", **CIRCLE, "stage": "after"}]}
+    scene = pressed(LATTICE, CIRCLE, static)
+    assert scene.before is not None
+
+    assert not scene.before.steady_load.any()
+    assert scene.steady_load.any()
+    np.testing.assert_array_equal(scene.steady_load, pressed(LATTICE, CIRCLE).steady_load)
+
+
+def test_beside_a_free_field_column_the_body_is_pressed() -> None:
+    beside = {side: {"type": "free_field"} for side in ("left", "right")} | {"bottom": {"type": "viscous"}}
+    scene = pressed(LATTICE, CIRCLE, {"boundary": beside})
+    alone = pressed(LATTICE, CIRCLE)
+    assert scene.seam is not None
+    count = scene.seam.count
+
+    assert not scene.steady_load[:, :count].any()
+    np.testing.assert_allclose(scene.steady_load[:, count:], alone.steady_load, atol=1e-9 * P)
+
+
+@pytest.mark.parametrize(
+    ("hole", "changes", "line"),
+    [
+        (
+            {"type": "ellipse", "centre": [6.0, 5.0], "semi_axes": [2.0, 0.1]},
+            {},
+            'load.p.hole: "h" cuts no bonds of the body, so there is no wall to press on',
+        ),
+        (
+            CIRCLE,
+            {"hole": [{"name": "h", **CIRCLE}, {"name": "g", **CIRCLE, "centre": [9.0, 5.2]}]},
+            'load.p.hole: "h" has no wall near (',
+        ),
+    ],
+)
+def test_an_outline_that_is_not_a_wall_is_refused(hole: dict, changes: dict, line: str) -> None:
+    with pytest.raises(CaseError) as error:
+        pressed(LATTICE, hole, changes).steady_load.any()
+    (found,) = error.value.problems
+    assert found.startswith(line)
+
+
+def test_a_pressure_that_follows_a_wave_drives_forces_and_moments() -> None:
+    flat = {"wave": {"flat": {"type": "constant", "amplitude": 3.0}}}
+    steady = pressed(LATTICE, CIRCLE)
+    driven = pressed(LATTICE, CIRCLE, {**flat, "load.p.wave": "flat"})
+    table, force = driven.supports, np.zeros((3, driven.count))
+    np.add.at(force, (table.component, table.node), table.sample(np.array([1.0]), 0.0)[0])
+
+    assert not driven.steady_load.any()
+    np.testing.assert_allclose(force, 3.0 * steady.steady_load, rtol=1e-12)
+    assert np.abs(force[2]).max() > 0.0
+
+
+def test_facts_name_pressure_wall_and_disks() -> None:
+    fact = disk_facts(pressed(LATTICE, CIRCLE))["load p"]
+    assert fact.startswith("2 MPa on 14.")
+    assert fact.endswith("m of wall of hole h, on 28 particles, steady")

@@ -1,0 +1,121 @@
+"""Outlines of holes: points, nearest points, crossings, and the parts within a box."""
+
+import numpy as np
+import pytest
+
+from dembound.holes import Circle, Ellipse, Polygon, Rectangle
+from dembound.holes.outline import EllipseOutline, Outline, PolygonOutline
+
+HORSESHOE = ((1.0, 1.0), (4.0, 1.0), (4.0, 5.0), (3.0, 5.0), (3.0, 2.0), (2.0, 2.0), (2.0, 5.0), (1.0, 5.0))
+HOLES = [
+    Circle(name="h", type="circle", centre=(3.0, -1.0), radius=2.0),
+    Ellipse(name="h", type="ellipse", centre=(3.0, -1.0), semi_axes=(2.0, 0.5), angle=30.0),
+    Rectangle(name="h", type="rectangle", corners=(1.0, -2.0, 4.0, 1.5)),
+    Polygon(name="h", type="polygon", points=HORSESHOE),
+    Polygon(name="h", type="polygon", points=HORSESHOE[::-1]),
+]
+ONE_ROUND = np.linspace(0.0, 1.0, 20_001)
+
+
+def curve(outline: Outline) -> np.ndarray:
+    """Points (20001, 2) of one round."""
+    return outline.at(outline.period * ONE_ROUND)
+
+
+@pytest.mark.parametrize("hole", HOLES, ids=[hole.type for hole in HOLES])
+def test_an_outline_runs_counter_clockwise_between_inside_and_outside(hole) -> None:
+    outline = hole.outline
+    places = 0.5 * (outline.period / 20_000.0) + outline.period * ONE_ROUND[:-1]  # no corners
+    points, ahead = outline.at(places), outline.at(places + 1e-6)
+    right = np.stack([(ahead - points)[:, 1], (points - ahead)[:, 0]], axis=1)
+    right *= 1e-4 / np.hypot(*right.T)[:, None]
+
+    assert hole.contains(points - right).all()
+    assert not hole.contains(points + right).any()
+    np.testing.assert_allclose(
+        outline.at(np.array([0.3 * outline.period])), outline.at(np.array([-0.7, 1.3]) * outline.period)[:1], atol=1e-12
+    )
+    x0, y0, x1, y1 = hole.box
+    closed = curve(outline)
+    np.testing.assert_allclose([*closed.min(axis=0), *closed.max(axis=0)], [x0, y0, x1, y1], atol=1e-3)
+
+
+OUTLINES = [hole.outline for hole in HOLES] + [EllipseOutline((1.0, 2.0), (9.0, 0.3), 0.7)]
+
+
+@pytest.mark.parametrize("outline", OUTLINES)
+def test_the_nearest_point_is_at_the_least_distance(outline: Outline) -> None:
+    closed = curve(outline)
+    low, high = closed.min(axis=0), closed.max(axis=0)
+    places = np.random.default_rng(1).uniform(low - 1.0, high + 1.0, (400, 2))
+    found = outline.nearest(places)
+    distance = np.hypot(*(outline.at(found) - places).T)
+    least = np.array([np.hypot(*(closed - place).T).min() for place in places])
+
+    assert ((found >= 0.0) & (found < outline.period)).all()
+    # every point of the curve is half a spacing or less, 1 mm, from one of these 20,000
+    spacing = np.hypot(*np.diff(closed, axis=0).T).max()
+    assert (distance <= least + 1e-9).all()
+    assert (distance >= least - 0.51 * spacing).all()
+
+
+def test_a_point_of_the_curve_is_its_own_nearest_one() -> None:
+    for outline in OUTLINES:
+        parameter = outline.period * np.random.default_rng(2).uniform(size=50)
+        np.testing.assert_allclose(outline.at(outline.nearest(outline.at(parameter))), outline.at(parameter), atol=1e-9)
+
+
+@pytest.mark.parametrize("outline", OUTLINES)
+@pytest.mark.parametrize("box", [(2.0, -9.0, 9.0, 9.0), (-9.0, -0.9, 9.0, 3.3), (1.4, -1.4, 3.6, 1.2)])
+def test_parts_within_a_box_are_all_that_lies_in_it(outline: Outline, box: tuple[float, float, float, float]) -> None:
+    places = outline.period * ONE_ROUND[:-1]
+    points = outline.at(places)
+    inside = ((points > box[:2]) & (points < box[2:])).all(axis=1)
+    parts = outline.within(box)
+    covered = np.zeros(len(places), dtype=int)
+    for start, length in parts:
+        covered += (places - start) % outline.period < length
+
+    # but for one point at each end of a part
+    assert np.count_nonzero(covered != inside) <= 2 * len(parts)
+    assert covered.max(initial=0) <= 1
+    for part in parts:
+        assert not outline.beyond(np.array([part[0] + 0.5 * part[1]]), part).any()
+
+
+def test_a_part_is_as_far_as_its_nearer_end() -> None:
+    circle = EllipseOutline((0.0, 0.0), (1.0, 1.0))
+    np.testing.assert_allclose(
+        circle.beyond(np.array([5.5, 6.2, 0.2, 1.2, 2.0]), (5.8, 1.0)),
+        [0.3, 0.0, 0.0, 1.2 + circle.period - 6.8, 2.0 + circle.period - 6.8],
+        atol=1e-12,
+    )
+
+
+def test_all_of_an_outline_is_within_a_box_around_it_and_nothing_within_one_beside_or_inside_it() -> None:
+    for outline in OUTLINES:
+        low, high = curve(outline).min(axis=0), curve(outline).max(axis=0)
+        assert outline.within((*(low - 1.0), *(high + 1.0))) == [(0.0, outline.period)]
+        assert outline.within((*(high + 1.0), *(high + 2.0))) == []
+    assert OUTLINES[0].within((2.9, -1.1, 3.1, -0.9)) == []
+
+
+def test_an_edge_along_a_side_of_the_box_is_not_within_it() -> None:
+    square = PolygonOutline(np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]))
+    ((start, length),) = square.within((-1.0, -1.0, 3.0, 2.0))
+
+    np.testing.assert_allclose(square.at(np.array([start, start + length])), [[0.0, 2.0], [2.0, 2.0]], atol=1e-12)
+    assert length == pytest.approx(6.0)
+    assert square.within((-1.0, -1.0, 2.0, 2.0))[0][1] == pytest.approx(4.0)
+
+
+def test_edges_that_cross_or_touch_are_found() -> None:
+    def crosses(*points: tuple[float, float]) -> bool:
+        return PolygonOutline(np.array(points)).crosses_itself
+
+    assert not any(crosses(*hole.points) for hole in HOLES[3:])
+    assert not crosses((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+    assert not crosses((0.0, 0.0), (1.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 1.0))  # a point twice, three in line
+    assert crosses((0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0))
+    assert crosses((0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (2.0, 0.0), (0.0, 2.0))  # a corner on an edge
+    assert Polygon(name="h", type="polygon", points=((0, 0), (2, 2), (2, 0), (0, 2))).outline is None
