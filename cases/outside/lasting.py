@@ -18,7 +18,7 @@ from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
 from dembound.outside.stability import step_limit
-from dembound.studies.half_space import surface_motions
+from dembound.studies.exact import exact_motions
 
 RADIUS, SPEED = 0.25, 300.0
 """m and m/s: those of Z's problem, section 3.2. The lattice is isotropic, ν = 0."""
@@ -84,8 +84,8 @@ def rule(reached: np.ndarray | float) -> np.ndarray | float:
 
 def exact_settlement(case: api.Case, times: np.ndarray) -> np.ndarray:
     """That of the half-space."""
-    when, motions = surface_motions(build(case))
-    return -np.interp(times, when, motions["receiver"][:, 1])
+    _, when, motions = exact_motions(build(case))
+    return -np.interp(times, when, motions["receiver"].displacement[:, 1])
 
 
 def on_a_grid(ratio: float, times: np.ndarray, elements: int = 3) -> tuple[np.ndarray, np.ndarray, float]:

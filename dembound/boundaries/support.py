@@ -29,8 +29,8 @@ class Signals(Protocol):
     def count(self) -> int:
         """Their number q."""
 
-    def __call__(self, times: np.ndarray) -> np.ndarray:
-        """Their values (k, q) at times (k,) s."""
+    def __call__(self, times: np.ndarray, half_step: float) -> np.ndarray:
+        """Their values (k, q) at times (k,) s of steps; velocities that ties see are half a step (s) behind."""
 
 
 @dataclass(frozen=True)
@@ -40,9 +40,9 @@ class OneOf:
     signals: Signals
     number: int
 
-    def __call__(self, times: np.ndarray) -> np.ndarray:
-        """Its values (k,) at times (k,) s."""
-        return self.signals(times)[:, self.number]
+    def __call__(self, times: np.ndarray, half_step: float = 0.0) -> np.ndarray:
+        """Its values (k,) at times (k,) s of steps, with half their length, s."""
+        return self.signals(times, half_step)[:, self.number]
 
 
 class Incident(Protocol):
@@ -156,8 +156,7 @@ class Supports:
 
     Of rows: node; component (0 x, 1 y, 2 rotation); damping, follow N·s/m; stiffness N/m (N·m/rad of a rotation);
     prescribed bool. Of drives, any number to a row: drive_row; drive N (m/s where prescribed) per unit of signal;
-    drive_signal, the signal's index. behind : indices of signals that are velocities half a step behind, as ties see
-    them. shares : what each side adds to the rows; None in a table made from another one.
+    drive_signal, the signal's index. shares : what each side adds to the rows; None in a table made from another one.
     """
 
     node: np.ndarray
@@ -170,7 +169,6 @@ class Supports:
     drive: np.ndarray
     drive_signal: np.ndarray
     signals: tuple[Signal, ...] = ()
-    behind: frozenset[int] = frozenset()
     shares: Shares | None = None
 
     def __len__(self) -> int:
@@ -186,20 +184,19 @@ class Supports:
         """Values (steps, q) of all signals at each time: of forces at `times`, of prescribed velocities later.
 
         Forces act at whole steps; velocities are defined at half steps, so prescribed velocities are sampled half a
-        step later, and those that ties see half a step earlier.
+        step later.
         """
         ahead = set(self.drive_signal[self.prescribed[self.drive_row]].tolist())
         values = np.zeros((len(times), len(self.signals)))
         first = 0
         while first < len(self.signals):
-            at = times + half_step * ((first in ahead) - (first in self.behind))
             signal = self.signals[first]
             if isinstance(signal, OneOf):  # those of one group follow each other
                 count = signal.signals.count
-                values[:, first : first + count] = signal.signals(at)
+                values[:, first : first + count] = signal.signals(times, half_step)
             else:
                 count = 1
-                values[:, first] = signal(at)
+                values[:, first] = signal(times + half_step * (first in ahead))
             first += count
         return values
 
@@ -238,7 +235,6 @@ class SupportBuilder:
     side: str = ""
     _rows: list[dict[str, np.ndarray]] = field(default_factory=list)
     _signals: list[Signal] = field(default_factory=list)
-    _behind: set[int] = field(default_factory=set)
     _sides: list[str] = field(default_factory=list)
     _power: dict[str, int] = field(default_factory=dict)
 
@@ -280,18 +276,22 @@ class SupportBuilder:
             incident=incident is not None,
         )
 
-    def add_forces(self, nodes: np.ndarray, component: np.ndarray, forces: Signals, *, behind: bool = False) -> None:
+    def add_forces(
+        self, nodes: np.ndarray, component: np.ndarray, forces: Signals, sides: Mapping[str, np.ndarray] | None = None
+    ) -> None:
         """Add forces (N, or N·m) with a signal each on components (k,) of nodes (k,), each degree of freedom once.
 
-        behind : whether they follow from velocities half a step behind, as the forces of ties do.
+        sides : side -> nodes (m,) on which the forces are of this side; by default all are of the present one.
         """
         first = len(self._signals)
         self._signals += [OneOf(forces, number) for number in range(forces.count)]
-        if behind:
-            self._behind |= set(range(first, len(self._signals)))
-        for each in sorted(set(component.tolist()) - set(self.held)):
-            chosen = np.flatnonzero(component == each)
-            self._append(nodes[chosen], component=each, drive=1.0, signal=first + chosen)
+        present = self.side
+        for self.side, own in (sides or {present: nodes}).items():
+            for each in sorted(set(component.tolist()) - set(self.held)):
+                chosen = np.flatnonzero((component == each) & np.isin(nodes, own))
+                if len(chosen):
+                    self._append(nodes[chosen], component=each, drive=1.0, signal=first + chosen)
+        self.side = present
 
     def add_power(self, side: str, power: Signal) -> None:
         """The power (W) of waves that enter through a side by forces alone, for its energies."""
@@ -367,7 +367,6 @@ class SupportBuilder:
             drive=drive[driven],
             drive_signal=signal[driven],
             signals=tuple(self._signals),
-            behind=frozenset(self._behind),
             shares=self._shares(np.flatnonzero(kept & (side >= 0))),
         )
 

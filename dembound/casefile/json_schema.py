@@ -51,12 +51,12 @@ def json_schema(schemas: Sequence[Schema]) -> Json:
 def _kinds(schema: Schema) -> list[TypeAdapter[Any]]:
     """All types that are validated in files of a kind."""
     staged = [kind for pair in schema.staged.values() for kind in pair]
-    return [*schema.tables.values(), *schema.lists.values(), *staged, schema.side, WAVE]
+    return [*schema.tables.values(), *schema.lists.values(), *schema.optional.values(), *staged, schema.side, WAVE]
 
 
 def _case(schema: Schema, tables: Mapping[int, Json], definitions: Json) -> Json:
     """A whole file of one kind; tables : by the identity of their validators. Adds the definitions it refers to."""
-    of = {key: tables[id(kind)] for key, kind in schema.tables.items()}
+    of = {key: tables[id(kind)] for key, kind in (*schema.tables.items(), *schema.optional.items())}
     of["boundary"] = _sides(schema, "side", tables[id(schema.side)], definitions)
     definitions["wave"] = tables[id(WAVE)]
     of["wave"] = {"type": "object", "description": "the waves, by name", "additionalProperties": _place("wave")}

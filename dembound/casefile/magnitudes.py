@@ -40,9 +40,8 @@ SAMPLES = 1001
 
 
 def waves_used(case: Case) -> set[str]:
-    """Names of the waves that drive boundaries or are the time factor of loads."""
-    driving = {name for waves in case.driving.values() for name in waves.values()}
-    return driving | {load.wave for load in case.load if load.wave is not None}
+    """Names of the waves that enter from outside or are the time factor of loads."""
+    return case.entering | {load.wave for load in case.load if load.wave is not None}
 
 
 def is_quasi_static(case: Case, name: str, travel: float) -> bool:

@@ -93,6 +93,11 @@ class Case:
         """The waves that drive sides: side -> kind of wave -> name."""
         return {side: dict(table.waves) for side, table in self.boundary.items() if table.waves}
 
+    @property
+    def entering(self) -> set[str]:
+        """Names of the waves that enter from outside, through driven sides or otherwise."""
+        return {name for waves in self.driving.values() for name in waves.values()}
+
 
 FREE = Free()
 

@@ -117,6 +117,8 @@ class _Reader:
             tables[key] = self._valid(key, data.get(key, {}), kind)
         tables["wave"] = self._named("wave", data.get("wave", {}), WAVE)
         tables["boundary"] = self._sides("boundary", data.get("boundary", {}), schema.side, schema.sides)
+        for key, kind in schema.optional.items():
+            tables[key] = self._valid(key, data[key], kind) if key in data else None
         for key, kinds in schema.staged.items():
             tables[key] = self._staged(key, data[key], *kinds) if key in data else None
         for key, kind in schema.lists.items():

@@ -29,8 +29,8 @@ class Schema:
     tables : those that occur once.
     side : type of [boundary.SIDE]; sides : the names of the sides.
     lists : those that may occur any number of times.
-    problems : finds mistakes between tables, from the tables and the file's data. staged : those that may be absent and
-    have their own sides: the table, and the type of its boundary.SIDE.
+    problems : finds mistakes between tables, from the tables and the file's data. optional : those that may be absent.
+    staged : those that may be absent and have their own sides: the table, and the type of its boundary.SIDE.
     """
 
     case: type[Case]
@@ -42,6 +42,7 @@ class Schema:
     lists: Mapping[str, TypeAdapter[Any]]
     problems: Callable[[Tables, Mapping[str, Any]], Iterator[str]]
     sides: tuple[str, ...] = SIDES
+    optional: Mapping[str, TypeAdapter[Any]] = field(default_factory=dict)
     staged: Mapping[str, tuple[TypeAdapter[Any], TypeAdapter[Any]]] = field(default_factory=dict)
 
     @property
@@ -49,4 +50,4 @@ class Schema:
         """All keys allowed at the top level of a file, in the order of messages."""
         last = ("run", "output", "chart")
         first = [key for key in self.tables if key not in last]
-        return ["title", *first, "boundary", *self.staged, "wave", *self.lists, *last]
+        return ["title", *first, "boundary", *self.staged, *self.optional, "wave", *self.lists, *last]

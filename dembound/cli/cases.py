@@ -231,18 +231,24 @@ def _edge_of(scene: DiskScene, side: str) -> Edge:
 
 @app.command("exact", rich_help_panel="Cases")
 def exact(
-    path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of Lamb's problem.")],
+    path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of a problem with an exact solution.")],
+    problem: Annotated[
+        str | None, typer.Option(help="lamb, cavity, garvin or scattering; absent: the one that holds for longest.")
+    ] = None,
     output: Output = Path("results"),
     changes: Settings = None,
     name: Name = None,
 ) -> None:
-    """Write the exact motion of the half-space of a case of Lamb's problem, at the case's monitors.
+    """Write the exact motion at the monitors of a case, as long as it is known.
 
+    Problems: Lamb's, a pressure in a circular hole, also below a free surface (Garvin's), a hole under a plane wave.
     It is plotted and compared like a run. Its folder is named after the case with "_exact", or by --name.
     """
-    from dembound.studies.half_space import write_exact
+    from dembound.studies.exact import write_exact
 
     case = load_disks(path, changes, name or f"{path.stem}_exact")
     folder = output / case.name
-    write_exact(case, folder / "run.h5")
-    out.print(f"{case.name}: exact histories in {folder}")
+    found = write_exact(case, folder / "run.h5", problem)
+    if found.until < case.run.duration:
+        out.print(f"{case.name}: up to {found.until:.4g} s, when the free surface sends waves back")
+    out.print(f"{case.name}: {found.sentence}, histories in {folder}")

@@ -14,6 +14,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.contacts import ContactList
 from dembound.disks.ground_motion import GroundMotion
+from dembound.disks.ground_waves import GroundWaves
 from dembound.disks.layout import Rows
 from dembound.disks.loads import steady
 from dembound.disks.packed_material import PackedMaterial
@@ -46,7 +47,8 @@ class DiskBody(Scene):
     slots : the slots in which kernels hold its particles; None: in their order.
     outside : the continuum on some sides, whose nodes follow the particles; None for none.
     foot : the continuum below the free-field column, whose nodes come last; None for none.
-    between : name -> place, of the monitors in the continuum.
+    between : name -> place, of the monitors in the continuum, and of twins of monitors without a column.
+    ground_waves : the motion of the ground without the body, which the continuum does not have; None without any.
     """
 
     case: DiskCase
@@ -61,6 +63,7 @@ class DiskBody(Scene):
     outside: Surroundings | None = None
     foot: Surroundings | None = None
     between: Mapping[str, Between] = field(default_factory=dict)
+    ground_waves: GroundWaves | None = None
 
     kind = "disks"
     energy_unit = "J/m"
@@ -137,26 +140,38 @@ class DiskBody(Scene):
             return None
         return nearest_in_column(self.assembly, self.outside.body.mesh.positions)
 
-    def motion_beside(self, values: np.ndarray) -> dict[str, np.ndarray]:
+    def motion_beside(self, values: np.ndarray, of: str, time: float) -> dict[str, np.ndarray]:
         """Motion (m, 3) of the nodes of the continuum, from that of all nodes (n, 3).
 
-        Beside a free-field column it is "scattered_", and "" the sum of it and that of the column at the same height.
+        Where the ground moves or rests without the body it is "scattered_", and "" the sum of it and the ground's.
         """
         own = values[self.nodes_beside]
         if self.outside is None:
             return {}
-        if self.seam is None or self.twin_beside is None:
-            return {"": own}
-        ground = self._ground_motion.at_heights(values[: self.seam.count])
-        return {"": own + ground * (self.twin_beside >= 0)[:, None], "scattered_": own}
+        total = own.copy()
+        if self.seam is not None and self.twin_beside is not None:
+            total += self._ground_motion.at_heights(values[: self.seam.count]) * (self.twin_beside >= 0)[:, None]
+        if self.ground_waves is not None:
+            total += self.ground_waves.motion(of, np.array([time]), self.outside.body.mesh.positions)[0]
+        return {"": total, "scattered_": own} if self._is_scattered else {"": own}
+
+    @property
+    def _is_scattered(self) -> bool:
+        """Whether the continuum has only what differs from the motion of the ground without the body."""
+        return self.seam is not None or self.ground_waves is not None
 
     @property
     def beside(self) -> dict[str, tuple[np.ndarray, str]]:
         """Data of the nodes of the continuum for the record."""
         if self.outside is None:
             return {}
-        twin = {} if self.twin_beside is None else {"twin": (self.twin_beside, "1")}
-        return {**self.outside.columns, **twin}
+        more: dict[str, tuple[np.ndarray, str]] = {}
+        if self.twin_beside is not None:
+            more["twin"] = (self.twin_beside, "1")
+        if self._is_scattered:
+            below = np.zeros(self.outside.count, dtype=np.bool_) if self.twin_beside is None else self.twin_beside < 0
+            more["total"] = (~below, "1")
+        return self.outside.columns | more
 
     @cached_property
     def _ground_motion(self) -> GroundMotion:

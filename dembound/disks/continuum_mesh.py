@@ -42,11 +42,11 @@ def continuum_mesh(columns: Arrays, snapshot: Arrays) -> meshio.Mesh:
         "stress": tensors(snapshot["continuum/stress"]),
         "absorbs": columns["continuum/absorbs"],
     }
-    if "continuum/twin" in columns:
+    if "continuum/total" in columns:
         data["scattered"], data["scatteredVelocity"] = (
             in_space(snapshot[f"continuum/scattered_{name}"][:, :2]) for name in ("displacement", "velocity")
         )
-        data["total"] = columns["continuum/twin"] >= 0
+        data["total"] = columns["continuum/total"]
     if "continuum/peak_velocity" in columns:
         data["peakVelocity"] = columns["continuum/peak_velocity"]
     points = in_space(columns["continuum/position"] + displacement)

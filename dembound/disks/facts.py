@@ -8,6 +8,7 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.casefile.messages import counted
 from dembound.disks.continuum_facts import continuum_facts
+from dembound.disks.incident_facts import incident_facts
 from dembound.disks.layout import fill
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
@@ -28,6 +29,8 @@ def disk_facts(scene: DiskScene) -> dict[str, str]:
     facts |= _packing_facts(scene) | _law_facts(scene) | _hole_facts(case) | _static_facts(case)
     if scene.outside is not None:
         facts |= continuum_facts(scene)
+    if scene.ground_waves is not None:
+        facts |= incident_facts(scene)
     if box := smallest_box(scene):
         facts["smaller box"] = box
     for side in scene.edges:
@@ -48,7 +51,8 @@ def _monitor_facts(scene: DiskScene) -> dict[str, str]:
         what = "in the continuum" if name in scene.between else f"particle {scene.monitors[name]}"
         x, y = places[name]
         twin = scene.monitors.get(f"{name}{FREE_FIELD}")
-        beside = "" if twin is None else f", in the free-field column {twin}"
+        column = "the ground without the body" if scene.seam is None else f"in the free-field column {twin}"
+        beside = "" if twin is None else f", {column}"
         facts[f"monitor {name}"] = f"{what} at ({x:.3f}, {y:.3f}) m{beside}"
     return facts
 

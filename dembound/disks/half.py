@@ -87,10 +87,10 @@ class HalfScene(SmallerScene):
             wide[self.image] *= (-1.0 if self.antisymmetric else 1.0) * np.array([1.0, 1.0, -1.0])
         return wide
 
-    def observed(self, record: np.ndarray) -> np.ndarray:
+    def observed(self, record: np.ndarray, times: np.ndarray) -> np.ndarray:
         """The motion of the monitors, some of which are images."""
         image = self.image[self.of.probes]
-        return self.of.observed(record * np.where(image[:, None], np.tile(self.signs, 2), 1.0))
+        return self.of.observed(record * np.where(image[:, None], np.tile(self.signs, 2), 1.0), times)
 
     def tracked_peaks(self, peaks: np.ndarray) -> np.ndarray:
         """Smallest and largest velocities (p, 3, 2); of an image the largest is the smallest with the other sign."""

@@ -123,11 +123,11 @@ class Drives:
 
     Attributes
     ----------
-    waves : the plane waves. of : which of their amplitudes. factors : (2·HEIGHTS, r) N or N·m per unit.
+    waves : the plane waves. factors : (2·count, r) N or N·m per unit of the displacements, and of the velocities that
+    ties see, of all their amplitudes.
     """
 
     waves: PlaneWaves
-    of: str
     factors: np.ndarray
 
     @property
@@ -135,33 +135,60 @@ class Drives:
         """Number of the degrees of freedom."""
         return self.factors.shape[1]
 
-    def __call__(self, times: np.ndarray) -> np.ndarray:
-        """Forces (k, r) at times (k,) s."""
-        forces = np.empty((len(times), self.count))
-        weighted_sums(self.waves.amplitudes(times, self.of), self.factors, forces)
+    def __call__(self, times: np.ndarray, half_step: float) -> np.ndarray:
+        """Forces (k, r) at times (k,) s; velocities are half a step (s) behind."""
+        waves, forces = self.waves, np.empty((len(times), self.count))
+        moved, moving = waves.amplitudes(times, "displacement"), waves.amplitudes(times - half_step, "velocity")
+        weighted_sums(np.hstack([moved, moving]), self.factors, forces)
         return forces
 
 
-@dataclass(frozen=True, eq=False)
-class IncidentForces:
-    """Forces by which plane waves enter, on tied disks and on nodes of the grid, per unit of amplitudes.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TieForces:
+    """Forces by which waves enter, on tied disks and on nodes of the grid, per unit of amplitudes.
 
     Attributes
     ----------
-    waves : the plane waves.
-    disk : (d,) the tied disks, as numbered in the ties. bonds, ties : (3, d, 2·HEIGHTS) N and N·m on them, of the bonds
+    disk : (d,) the tied disks, as numbered in the ties. bonds, ties : (3, d, count) N and N·m on them, of the bonds
     of the undisturbed packing, and of the ties.
-    node : (m,) the nodes of the mesh that have ties. reactions : (2, m, 2·HEIGHTS) N on them, of the ties.
+    node : (m,) the nodes of the mesh that have ties. reactions : (2, m, count) N on them, of the ties.
     lag : η of the ties, s.
     """
 
-    waves: PlaneWaves
     disk: np.ndarray
     bonds: np.ndarray
     ties: np.ndarray
     node: np.ndarray
     reactions: np.ndarray
     lag: float
+
+    @property
+    def on_disks(self) -> tuple[np.ndarray, np.ndarray]:
+        """Degrees of freedom (2, r), component and number in `disk`, and factors (2·count, r), see `Drives`."""
+        return self._factors(self.bonds + self.ties, self.ties)
+
+    @property
+    def on_nodes(self) -> tuple[np.ndarray, np.ndarray]:
+        """The same of nodes: component and number in `node`."""
+        return self._factors(self.reactions, self.reactions)
+
+    def _factors(self, at_once: np.ndarray, lagged: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Those of forces (c, k, count) per unit of displacements, and with the lag of velocities."""
+        where = np.indices(at_once.shape[:2]).reshape(2, -1)
+        factors = np.concatenate([at_once, self.lag * lagged], axis=2).reshape(where.shape[1], -1).T
+        return where, np.ascontiguousarray(factors)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class IncidentForces(TieForces):
+    """Forces by which plane waves enter from below.
+
+    Attributes
+    ----------
+    waves : the plane waves.
+    """
+
+    waves: PlaneWaves
 
     @classmethod
     def of(
@@ -175,12 +202,20 @@ class IncidentForces:
         summed = np.zeros((3, 4, len(disk)))
         for sums, forces in zip(summed.reshape(12, -1), bonds.on_disks.reshape(12, -1), strict=True):
             np.add.at(sums, place, forces)
-        of_ties, reactions = _tie_forces(wall, disk, -plane.motion(heights, bonds.own[:, :, first]))
-        return cls(plane, disk, plane.strained(edge, summed), of_ties, wall.nodes, reactions, wall.lag)
+        of_ties, reactions = forces_at_rest(wall, disk, -plane.motion(heights, bonds.own[:, :, first]))
+        return cls(
+            waves=plane,
+            disk=disk,
+            bonds=plane.strained(edge, summed),
+            ties=of_ties,
+            node=wall.nodes,
+            reactions=reactions,
+            lag=wall.lag,
+        )
 
     def add_to_disks(self, builder: SupportBuilder, disks: np.ndarray) -> None:
         """Add rows to the disks (d,) of a scene that are, or have the place of, those that are tied."""
-        self._add(builder, disks, self.bonds + self.ties, self.ties)
+        self._add(builder, disks, *self.on_disks)
 
     def at(self, place: np.ndarray) -> "IncidentForces":
         """The same with some of the disks, by their places (k,) among them, maybe more than once; without nodes."""
@@ -196,26 +231,27 @@ class IncidentForces:
 
     def add_to_nodes(self, builder: SupportBuilder, nodes: np.ndarray) -> None:
         """Add rows to the nodes (m,) of a scene."""
-        self._add(builder, nodes, self.reactions, self.reactions)
+        self._add(builder, nodes, *self.on_nodes)
 
-    def _add(self, builder: SupportBuilder, nodes: np.ndarray, at_once: np.ndarray, lagged: np.ndarray) -> None:
-        """Add forces (c, k, 2·HEIGHTS) of displacements, and with the lag of velocities, on nodes (k,)."""
-        component, node = (each.ravel() for each in np.indices(at_once.shape[:2]))
-        for of, forces in (("displacement", at_once), ("velocity", self.lag * lagged)):
-            factors = np.ascontiguousarray(forces.reshape(len(node), -1).T)
-            if factors.any():
-                builder.add_forces(nodes[node], component, Drives(self.waves, of, factors), behind=of == "velocity")
+    def _add(self, builder: SupportBuilder, nodes: np.ndarray, where: np.ndarray, factors: np.ndarray) -> None:
+        """Add forces on nodes (k,), see `on_disks`."""
+        if factors.any():
+            builder.add_forces(nodes[where[1]], where[0], Drives(self.waves, factors))
 
 
-def _tie_forces(wall: Wall, disk: np.ndarray, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Forces of ties (3, d, q) on disks (d,) with motions (3, d, q), and (2, m, q) on the nodes, which are at rest."""
-    disks = int(disk.max()) + 1
-    number = np.arange(disks + wall.mesh.count)
-    ties = wall.ties(number[:disks], number[disks:], number, None)
-    forces = np.zeros((motion.shape[2], len(number), 3))
+def forces_at_rest(wall: Wall, disk: np.ndarray, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Forces of ties (3, d, q) on disks (d,) with motions (3, d, q), and (2, m, q) on the nodes, which are at rest.
+
+    disk : all that are tied, ascending.
+    """
+    count = len(disk) + len(wall.nodes)
+    own, node = np.zeros(int(disk.max()) + 1, dtype=np.int64), np.zeros(wall.mesh.count, dtype=np.int64)
+    own[disk], node[wall.nodes] = np.arange(len(disk)), np.arange(len(disk), count)
+    ties = wall.ties(own, node, np.arange(count), None)
+    forces = np.zeros((motion.shape[2], count, 3))
     for force, each in zip(forces, np.moveaxis(motion, 2, 0), strict=True):
-        u = np.zeros((3, len(number)))
-        u[:, disk] = each
+        u = np.zeros((3, count))
+        u[:, : len(disk)] = each
         tie_forces(ties, u, np.zeros_like(u), force, 0.0)
     of_all = np.moveaxis(forces, 0, 2).swapaxes(0, 1)
-    return of_all[:, disk], of_all[:2, disks + wall.nodes]
+    return of_all[:, : len(disk)], of_all[:2, len(disk) :]

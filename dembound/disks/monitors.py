@@ -11,13 +11,15 @@ column's disk at the same place of the brick is added.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD, Monitor
 from dembound.casefile.disks.reach import reach
+from dembound.disks.ground_waves import GroundWaves
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.surroundings import Surroundings
 from dembound.disks.wave_front import INDEX
@@ -32,9 +34,16 @@ Monitors = tuple[dict[str, int], dict[str, Between]]
 
 
 def monitors_of(
-    case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam | None, outside: Surroundings | None
+    case: DiskCase,
+    ground: PackedMaterial,
+    assembly: Assembly,
+    seam: Seam | None,
+    outside: Surroundings | None,
+    waves: GroundWaves | None = None,
 ) -> Monitors:
     """The particle of the body nearest to each monitor's position, or the continuum there, and their twins.
+
+    waves : with which the ground moves without the body; twins move with them, and monitors in the continuum, too.
 
     Raises CaseError for positions in the layer that absorbs, and for those below the ground if waves come from there.
     """
@@ -47,15 +56,45 @@ def monitors_of(
     nodes = {m.name: first + int(node) for m, node in zip(case.monitor, nearest, strict=True)}
     twins = {} if seam is None else {name: int(seam.twin[node]) for name, node in nodes.items()}
     between: dict[str, Between] = {}
+    disks = {name: (assembly.positions[node], int(assembly.brick_particle[node])) for name, node in nodes.items()}
     if outside is not None:
         around = _Around(case, ground.brick, assembly, first, outside)
         for monitor in around.monitors():
-            name, (place, kind) = monitor.name, around.disk_at(monitor.position)
+            name = monitor.name
+            disks[name] = place, kind = around.disk_at(monitor.position)
             if seam is not None:
                 twins[name] = int(nearest_in_column(assembly, place[None])[0])
             between[name] = _in_continuum(outside, ground, place, kind, twins.get(name))
             nodes[name] = outside.first + int(np.argmin(np.hypot(*(outside.body.mesh.positions - place).T)))
+    if waves is not None:
+        for name, disk in disks.items():
+            moving = _moving(waves, ground, *disk)
+            if name in between:
+                between[name] = replace(between[name], known=moving)
+            between[f"{name}{FREE_FIELD}"] = _in_column(disk[0], twins.get(name), moving)
+        twins = nodes | twins
     return nodes | {f"{name}{FREE_FIELD}": node for name, node in twins.items()}, between
+
+
+Moving = Callable[[np.ndarray], np.ndarray]
+"""Displacement and velocity (s, 6) at times (s,) s."""
+
+
+def _moving(waves: GroundWaves, ground: PackedMaterial, place: np.ndarray, kind: int) -> Moving:
+    """The motion in the undisturbed ground of a disk of the brick, `kind`, at a place (2,) m."""
+    corrector = np.moveaxis(ground.continuum.corrector[:, [kind]], 1, 2)
+
+    def motion(times: np.ndarray) -> np.ndarray:
+        return np.hstack([waves.motion(of, times, place[None], corrector)[:, 0] for of in ("displacement", "velocity")])
+
+    return motion
+
+
+def _in_column(place: np.ndarray, twin: int | None, moving: Moving) -> Between:
+    """A disk at a place (2,) m in the ground without the body; twin : its number in a free-field column, if any."""
+    if twin is None:
+        return Between(place, np.zeros(0, dtype=np.int64), np.zeros((0, 3, 3)), moving)
+    return Between(place, np.array([twin]), np.eye(3)[None], moving)
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ def strongest_force(scene: DiskBody) -> float:
     case, ground = scene.case, scene.ground
     diameter = ground.brick.mean_diameter
     speed = max(ground.wave_speeds(axis)[0] for axis in (0, 1))
-    peak = sum(case.wave[name].peak() for waves in case.driving.values() for name in waves.values())
+    peak = sum(case.wave[name].peak() for name in sorted(case.entering))
     forces = [ground.density * speed * diameter * peak]
     for load in case.load:
         times = 1.0 if load.wave is None else case.wave[load.wave].peak()

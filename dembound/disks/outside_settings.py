@@ -175,9 +175,8 @@ def fastest(medium: Medium) -> float:
 
 def signals_of(case: DiskCase) -> list[Signal]:
     """The forces of a case, and its other waves as velocities; steady forces jump, unless there is a static stage."""
-    driven = {name for waves in case.driving.values() for name in waves.values()}
     factors = {load.wave for load in case.load}
-    velocities = [name for name in case.wave if name in driven or name not in factors]
+    velocities = [name for name in case.wave if name in case.entering or name not in factors]
     signals = [Signal(case.wave[name], is_force=False) for name in velocities]
     for load in case.load:
         if load.wave is not None:

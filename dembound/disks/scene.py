@@ -13,10 +13,12 @@ from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.body import DiskBody, parts_of
 from dembound.disks.contacts import plain_contacts
 from dembound.disks.edges import edge_without, edges_beside_column, find_edges
+from dembound.disks.ground_waves import ground_waves
 from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive
 from dembound.disks.memory import Sizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
+from dembound.disks.oblique import let_in
 from dembound.disks.outside_mesh import mesh_beyond
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.stress import particle_stress
@@ -115,7 +117,8 @@ def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Ma
     foot = None
     if seam is not None and "bottom" in beyond:
         foot = _foot(case, ground, assembly, seam, slots if outside is None else outside.laid_out(slots))
-    monitors, between = monitors_of(case, ground, assembly, seam, outside)
+    waves = None if outside is None else ground_waves(case, ground, outside)
+    monitors, between = monitors_of(case, ground, assembly, seam, outside, waves)
     scene = DiskScene(
         case=case,
         ground=ground,
@@ -129,6 +132,7 @@ def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Ma
         outside=outside,
         foot=foot,
         between=between,
+        ground_waves=waves,
     )
     return replace(scene, supports=_supports(scene))
 
@@ -248,6 +252,8 @@ def _supports(scene: DiskScene) -> Supports:
     bottom = case.side("bottom")
     if bottom.is_outside and bottom.waves:
         _let_in(scene, bottom.waves_by_axis(1), builder)
+    if scene.outside is not None and scene.ground_waves is not None:
+        let_in(scene.outside, scene.ground_waves, scene.positions, builder)
     return builder.table()
 
 

@@ -43,9 +43,9 @@ class SmallerScene(DiskScene):
         """(p,) disks whose motion is recorded, in place of those of the larger scene."""
         return self.like[self.of.probes]
 
-    def observed(self, record: np.ndarray) -> np.ndarray:
+    def observed(self, record: np.ndarray, times: np.ndarray) -> np.ndarray:
         """The motion of the monitors."""
-        return self.of.observed(record)
+        return self.of.observed(record, times)
 
     def tracked_peaks(self, peaks: np.ndarray) -> np.ndarray:
         """Smallest and largest velocities (p, 3, 2) of its `tracked` disks as those of the larger scene's."""
@@ -141,5 +141,4 @@ def supports_at(place: np.ndarray, table: Supports, share: np.ndarray) -> Suppor
         drive=np.where(prescribed, 1.0, share[node])[drive_row] * table.drive[drives],
         drive_signal=table.drive_signal[drives],
         signals=table.signals,
-        behind=table.behind,
     )

@@ -1,4 +1,4 @@
-"""Where the motion of a scene of disks starts: driven sides, loads, and the holes that scatter waves."""
+"""Where the motion of a scene of disks starts: driven sides, waves at an angle, loads, and holes that scatter them."""
 
 from collections.abc import Iterator
 
@@ -7,6 +7,8 @@ import numpy as np
 from dembound.boundaries import axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
+from dembound.disks.ground_waves import incident_in
+from dembound.disks.outside_mesh import medium_of
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.wave_front import front_of, slowest_speed
 from dembound.motion.paths import FULL, Source
@@ -17,7 +19,7 @@ def sources_of(case: DiskCase, ground: PackedMaterial) -> list[Source]:
 
     Steady loads are none if a static stage balances them, else they start at once and never end.
     """
-    driven = list(_sides(case, ground))
+    driven = [*_sides(case, ground), *_incident(case, ground)]
     speed = front_of(ground, case.run.safety).speed
     return [*driven, *_loads(case, ground), *_holes(case, driven, speed, slowest_speed(ground))]
 
@@ -31,6 +33,17 @@ def _sides(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
             if axis_of_motion(side, motion) not in ground.held:
                 wave, speed = case.wave[name], ground.wave_speeds(axis)[0 if motion == "p" else 1]
                 yield Source((box[0], box[1], box[2], box[3]), wave.start, wave.duration(), speed)
+
+
+def _incident(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
+    """The wave at an angle, which is everywhere: from its first arrival in the ground until it has come down again."""
+    if case.incident is None:
+        return
+    wave, signal = incident_in(case, medium_of(ground)), case.wave[case.incident.wave]
+    width, height = case.size
+    corners = np.array([(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)])
+    delays, slowest = wave.delays(corners), slowest_speed(ground)
+    yield Source(FULL, signal.start + delays.min(), signal.duration() + delays.max() + height / slowest, slowest)
 
 
 def _loads(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:

@@ -44,7 +44,7 @@ class Surroundings:
     bonds to it, by the numbers of disks in the scene. first : number of its first node in the scene. box : left,
     bottom, right and top of the body, m; waves from below pass its lower side at their own time. skins : how deep free
     edges lie below those of the packing, m, by side. twin : (m,) of each disk the twin in the free-field column,
-    relative to which it is tied; None: tied by its own motion.
+    relative to which it is tied; None: tied by its own motion. surface_mass : kg/m², of the skin on its upper edge.
     """
 
     sides: tuple[str, ...]
@@ -55,6 +55,7 @@ class Surroundings:
     box: tuple[float, float, float, float]
     skins: Mapping[str, float]
     twin: np.ndarray | None = None
+    surface_mass: float = 0.0
 
     @property
     def count(self) -> int:
@@ -73,6 +74,14 @@ class Surroundings:
         too_low = (thickness[:, 0] > 0.0) & (places < low - self._near)
         too_high = (thickness[:, 1] > 0.0) & (places > high + self._near)
         return np.where(too_low, low, np.where(too_high, high, places))
+
+    @property
+    def free_surface(self) -> tuple[float, float] | None:
+        """Height y (m) and mass (kg/m²) of the free surface of the ground; None if it goes on above."""
+        mesh = self.body.mesh
+        if mesh.layer.top:
+            return None
+        return float(mesh.origin[1] + mesh.size[1]), self.surface_mass
 
     @property
     def _near(self) -> float:
@@ -268,4 +277,7 @@ def surroundings_of(
     )
     bonds = CutBonds.of(ground, cut, body.positions).between(mesh.sides).numbered_from(first)
     wall = Wall.of(mesh, bonds, lag_of(ground, size.settings.damping), size.narrow)
-    return Surroundings(tuple(sides), size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, twin)
+    surface_mass = rim.massless.get("top", 0.0) * ground.density
+    return Surroundings(
+        tuple(sides), size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, twin, surface_mass
+    )

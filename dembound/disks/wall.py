@@ -186,6 +186,12 @@ class Wall:
         ordered = {name: values[..., order] for name, values in vars(bonds).items() if name != "point"}
         return cls(CutBonds(**ordered, point=bonds.point[order]), mesh, element[order], inside[order], lag, mean)
 
+    def only(self, chosen: np.ndarray) -> Wall:
+        """Some of the ties (k,), ascending."""
+        ties = {name: values[..., chosen] for name, values in vars(self.bonds).items() if name != "point"}
+        bonds = CutBonds(**ties, point=self.bonds.point[chosen])
+        return replace(self, bonds=bonds, element=self.element[chosen], local=self.local[chosen])
+
     @cached_property
     def elements(self) -> np.ndarray:
         """(e,) the elements that have ties."""

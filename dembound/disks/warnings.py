@@ -263,10 +263,10 @@ def strong_waves(scene: DiskScene) -> dict[str, str]:
     pressure = _confinement(scene)
     if pressure is None:
         return {}
-    driving = {name for waves in scene.case.driving.values() for name in waves.values()}
+    entering = scene.case.entering
     medium = boundary_medium(scene.case, scene.ground, axis=0)
     impedance = medium.density * medium.p_wave_speed
-    stresses = {name: impedance * wave.peak() for name, wave in scene.case.wave.items() if name in driving}
+    stresses = {name: impedance * wave.peak() for name, wave in scene.case.wave.items() if name in entering}
     return {
         name: f"{stress / 1e6:.3g} MPa, above the confining stress of {pressure / 1e6:.3g} MPa"
         for name, stress in stresses.items()

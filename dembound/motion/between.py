@@ -1,5 +1,6 @@
 """The motion of a place that is no node, from that of several nodes."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,21 +8,26 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class Between:
-    """A place whose motion is a sum over nodes.
+    """A place whose motion is a sum over nodes, and maybe of a motion that is known in advance.
 
     Attributes
     ----------
     place : (2,) m.
     node : (k,) int64. share : (k, 3, 3); displacement and velocity of the place are Σ share @ those of the nodes, by
-    components x, y, rotation.
+    components x, y, rotation. known : times (s,) s -> displacement and velocity (s, 6) to be added; None: nothing.
     """
 
     place: np.ndarray
     node: np.ndarray
     share: np.ndarray
+    known: Callable[[np.ndarray], np.ndarray] | None = None
+
+    def at(self, times: np.ndarray, record: np.ndarray) -> np.ndarray:
+        """Displacement and velocity (s, 6) in steps at times (s,) s, from those of its nodes (s, k, 6)."""
+        return self.motion(record) if self.known is None else self.motion(record) + self.known(times)
 
     def motion(self, record: np.ndarray) -> np.ndarray:
-        """Displacement and velocity (s, 6) in s steps, from those of its nodes (s, k, 6).
+        """The sum over its nodes (s, 6) in s steps, from displacement and velocity of these (s, k, 6).
 
         Sums are in the order of the nodes, so that they have the same bits for any number of steps.
         """

@@ -129,10 +129,10 @@ class Scene(ABC):
         """The range of its nodes that are recorded apart, those of a continuum; by default none."""
         return slice(self.count, self.count)
 
-    def motion_beside(self, values: np.ndarray) -> dict[str, np.ndarray]:
+    def motion_beside(self, values: np.ndarray, of: str, time: float) -> dict[str, np.ndarray]:
         """Motion (m, 3) of the nodes that are recorded apart, from that of all nodes (n, 3), by the kind of motion.
 
-        "" is what they move by. By default none.
+        "" is what they move by. of : "displacement" or "velocity"; time : s, of the values. By default none.
         """
         return {}
 
@@ -188,15 +188,18 @@ class Scene(ABC):
         """Components (N, 3) of the nodes of the whole scene in which its symmetry allows no motion and no force."""
         return np.zeros((self.whole.count, 3), dtype=np.bool_)
 
-    def observed(self, record: np.ndarray) -> np.ndarray:
-        """The record (s, m, 6 or 7) of the m monitors of the whole scene, from that of the probes (s, p, 6 or 7)."""
+    def observed(self, record: np.ndarray, times: np.ndarray) -> np.ndarray:
+        """The record (s, m, 6 or 7) of the m monitors of the whole scene, from that of the probes (s, p, 6 or 7).
+
+        times : (s,) s, of the steps.
+        """
         if not self.between:
             return record
         columns, first = [], 0
         for name in self.monitors:
             place = self.between.get(name)
             last = first + (1 if place is None else len(place.node))
-            columns.append(record[:, first] if place is None else place.motion(record[:, first:last]))
+            columns.append(record[:, first] if place is None else place.at(times, record[:, first:last]))
             first = last
         return np.stack(columns, axis=1)
 

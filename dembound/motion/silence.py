@@ -86,7 +86,8 @@ class Silence(Tracker):
 
     def observe(self, run: Run, record: np.ndarray) -> None:
         """Find the last step at which any monitor was loud, and end the run if that is long ago."""
-        speeds = np.abs(run.scene.observed(record)[:, :, 3:5]).max(axis=2)
+        times = (run.state.step - len(record) + np.arange(len(record))) * run.time_step
+        speeds = np.abs(run.scene.observed(record, times)[:, :, 3:5]).max(axis=2)
         peaks = self._peaks if self._peaks.size else np.zeros(speeds.shape[1])
         so_far = np.maximum(np.maximum.accumulate(speeds, axis=0), peaks)
         loud = np.flatnonzero((speeds > self._level * so_far).any(axis=1))

@@ -4,6 +4,7 @@ import numpy as np
 
 from dembound.boundaries.support import Supports
 from dembound.kernels import tables
+from dembound.kernels.sums import add_driven
 from dembound.motion.part import Tie
 from dembound.motion.scene import Scene
 
@@ -48,8 +49,9 @@ class NodeSupports:
 
     def table(self, signals: np.ndarray) -> tables.Supports:
         """The table for steps with these values (steps, q) of all signals."""
-        drive = np.zeros((len(signals), len(self.nodes), 3))
-        drive[:, self._at[0], self._at[1]] = self._rows.driven(signals)
+        rows, drive = self._rows, np.zeros((len(signals), len(self.nodes), 3))
+        column = (3 * self._at[0] + self._at[1])[rows.drive_row]
+        add_driven(signals, rows.drive_signal, rows.drive, column, drive.reshape(len(signals), -1))
         return tables.Supports(
             nodes=self.slots,
             inertia=self.inertia,

@@ -73,7 +73,7 @@ def read_continuum(file: h5py.File) -> Continuum | None:
 
 def is_scattered(file: h5py.File) -> bool:
     """Whether stresses and peaks of the continuum of an open record are those of the scattered motion alone."""
-    return f"{GROUP}/twin" in file
+    return f"{GROUP}/total" in file
 
 
 def draw_continuum(

@@ -137,7 +137,7 @@ class Recorder:
         begun = state.step - len(record)
         rows = np.arange(-begun % self.stride, len(record), self.stride)
         self._times.append((begun + rows) * step)
-        self._samples.append(self.run.scene.observed(record[rows]))
+        self._samples.append(self.run.scene.observed(record[rows], self._times[-1]))
         if self._sides:
             sides = self.run.side_samples
             self._side_times.append(sides.steps * step)
@@ -184,7 +184,8 @@ class Recorder:
         moved = widened("displacement", (state.displacement - state.datum).T), widened("velocity", state.velocity.T)
         for name, values, unit in zip(MOTION, moved, (DISPLACEMENT_UNIT, VELOCITY_UNIT), strict=True):
             write(group, name, values[:count], unit)
-            for kind, motion in self.scene.motion_beside(values).items():
+            at = self.run.time - 0.5 * self.run.time_step * (name == "velocity")  # velocities are half a step behind
+            for kind, motion in self.scene.motion_beside(values, name, at).items():
                 write(group.require_group("continuum"), f"{kind}{name}", motion, unit)
         for name, (values, unit) in self.run.system.snapshot_beside(state.displacement).items():
             write(group["continuum"], name, values, unit)

@@ -90,6 +90,9 @@ def _extended_disks(case: DiskCase, most: int) -> Extended:
     if case.ground.size is not None:
         reason = "its disks fill a box of the ground only, and are not continued beyond"
         raise CaseError([f"ground.size: the scene cannot be extended, as {reason}"], case.name)
+    if case.incident is not None:
+        reason = "its wave comes through the ground beyond all sides"
+        raise CaseError([f"incident: the scene cannot be extended, as {reason}"], case.name)
     moving = _moving(case, set(case.driving))
     scene = build(case)
     front = front_of(scene.ground, case.run.safety)

@@ -156,7 +156,7 @@ class Lab:
             scene = build(with_changes(case, more | changes))
             step = step or choose_step(scene)[0]
             record = Simulation(scene, step, scene.probes).advance(int(duration / step))
-            found.append(scene.observed(record))
+            found.append(scene.observed(record, step * np.arange(len(record))))
             at.append(np.array(list(scene.monitored.values())) - by)
         assert np.abs(at[0] - at[1]).max() < 1e-9  # the same disks, in the continuum or not
         return found[0], found[1]

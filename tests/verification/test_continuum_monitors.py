@@ -77,7 +77,8 @@ def recorded(case, step: float) -> tuple[float, np.ndarray]:
     """The time step (s), and motion (steps, m, 6) of monitors and then of their twins, until the wave has passed."""
     scene = build(case)
     step = step or choose_step(scene)[0]
-    return step, scene.observed(Simulation(scene, step, scene.probes).advance(int(0.25 / step)))
+    record = Simulation(scene, step, scene.probes).advance(int(0.25 / step))
+    return step, scene.observed(record, step * np.arange(len(record)))
 
 
 def test_under_a_wave_from_below_it_has_the_total_motion(window) -> None:

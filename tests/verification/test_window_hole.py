@@ -25,7 +25,8 @@ def motion(case) -> tuple[np.ndarray, np.ndarray]:
     monitors = [{"name": f"m{number}", "position": place} for number, place in enumerate(PLACES)]
     scene = build(case(changes={"hole": [HOLE], "monitor": monitors}))
     assert choose_step(scene)[1] > STEP
-    record = scene.observed(Simulation(scene, STEP, scene.probes).advance(int(DURATION / STEP)))
+    record = Simulation(scene, STEP, scene.probes).advance(int(DURATION / STEP))
+    record = scene.observed(record, STEP * np.arange(len(record)))
     return tuple(np.split(record[..., 3:5], 2, axis=1))
 
 

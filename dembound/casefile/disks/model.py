@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from dembound.casefile.disks.ground import Ground
+from dembound.casefile.disks.incident import IncidentWave
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
@@ -22,7 +23,7 @@ class DiskCase(Case):
     Attributes
     ----------
     ground, packing, material, motion, outside, reduce : the tables of these names.
-    static : the table of this name; None: no static stage.
+    static, incident : the tables of these names; None: no static stage, no wave at an angle.
     hole : in the order of the file.
     """
 
@@ -32,6 +33,7 @@ class DiskCase(Case):
     ground: Ground = field(default_factory=Ground)
     outside: OutsideTable = field(default_factory=OutsideTable)
     reduce: Reduce = field(default_factory=Reduce)
+    incident: IncidentWave | None = None
     static: Static | None = None
     hole: tuple[Hole, ...] = ()
     load: tuple[Load, ...] = ()
@@ -50,6 +52,11 @@ class DiskCase(Case):
     def periodic(self) -> tuple[bool, bool]:
         """Whether the scene is periodic along x and along y."""
         return self.side("left").is_periodic, self.side("bottom").is_periodic
+
+    @property
+    def entering(self) -> set[str]:
+        """Names of the waves that enter through driven sides, or at an angle."""
+        return super().entering | (set() if self.incident is None else {self.incident.wave})
 
     @property
     def free_field_sides(self) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from dembound.casefile.cross_checks import driving_waves, never_silent, repeated
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.ground_problems import ground_problems
 from dembound.casefile.disks.hole_problems import hole_problems
+from dembound.casefile.disks.incident_problems import incident_problems
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
@@ -26,6 +27,9 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     keys that the file has, valid or not.
     """
     named = [(f"{place}.wave", load.wave) for place, load in numbered("load", tables["load"]) if load.wave is not None]
+    if incident := tables["incident"]:
+        named.append(("incident.wave", incident.wave))
+        yield from incident_problems(incident, tables)
     yield from unknown_waves([*driving_waves(tables["boundary"]), *named], tables["wave"])
     for side, table in tables["boundary"].items():
         yield from table.problems(side, tables) if table else ()

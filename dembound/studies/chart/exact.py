@@ -17,7 +17,7 @@ from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.exact.bar import End, bar_stress, bar_velocity, triangle_spall
 from dembound.studies.chart.measure import Gauge, Gauges
-from dembound.studies.half_space import surface_motions
+from dembound.studies.exact import exact_motions, problem_of
 from dembound.waves import Triangle, Wave
 
 
@@ -44,31 +44,37 @@ def exact_of(case: Case) -> Exact:
     found = [problem for problem in (PulseInBar.of(case), PlaneWave.of(case)) if problem]
     if found:
         return found[0]
-    if isinstance(case, DiskCase) and case.load:
-        surface_motions(build(case), samples=2)  # raises the reasons
-        return HalfSpace()
+    if isinstance(case, DiskCase) and (case.load or case.incident):
+        return Continuum.of(case)
     raise CaseError(
         [
             "--reference: there is no exact solution of this case; there are for a pulse on the free left end of a bar "
-            "without attenuation, for a plane wave that leaves through an absorbing side, and for Lamb's problem"
+            "without attenuation, for a plane wave that leaves through an absorbing side, and for the problems of "
+            "dembound exact"
         ],
         case.name,
     )
 
 
-class HalfSpace(Exact):
-    """Lamb's problem."""
+@dataclass(frozen=True)
+class Continuum(Exact):
+    """One of the problems of `studies/exact`, by its name there."""
 
-    sentence = "exact half-space (Lamb)"
+    name: str
+    sentence: str
+    until: float
+
+    @classmethod
+    def of(cls, case: DiskCase) -> "Continuum":
+        """The problem of a case; raises CaseError, with the reasons, if it is none."""
+        problem = problem_of(build(case))
+        return cls(problem.name, problem.sentence, problem.until)
 
     def gauges(self, case: Case, recorded: Gauges) -> dict[str, Gauge]:
-        """The motion of the surface at the monitors' particles; errors as of `surface_motions`."""
+        """The motion at the monitors' places; errors as of `exact_motions`."""
         assert isinstance(case, DiskCase)
-        times, motions = surface_motions(build(case))
-        return {
-            name: Gauge(recorded[name].position, times, moved, np.gradient(moved, times, axis=0))
-            for name, moved in motions.items()
-        }
+        _, times, motions = exact_motions(build(case), self.name)
+        return {name: Gauge(recorded[name].position, times, *motion) for name, motion in motions.items()}
 
 
 @dataclass(frozen=True)

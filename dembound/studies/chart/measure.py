@@ -107,8 +107,9 @@ def _gauges(planned: Plan, records: Records) -> dict[str, Gauge]:
     """The records of the monitors, at the interval of the case's histories."""
     scene, step = planned.scene, planned.time_step
     stride = max(1, round(scene.case.output.history_interval / step))
-    motion = planned.stepped.observed(np.concatenate(records.records)[::stride])
-    times = stride * step * np.arange(len(motion))
+    record = np.concatenate(records.records)[::stride]
+    times = stride * step * np.arange(len(record))
+    motion = planned.stepped.observed(record, times)
     return {
         name: Gauge(
             position=place,

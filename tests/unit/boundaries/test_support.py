@@ -165,8 +165,8 @@ class Powers:
 
     count = 3
 
-    def __call__(self, times: np.ndarray) -> np.ndarray:
-        return times[:, None] ** [1.0, 2.0, 3.0]
+    def __call__(self, times: np.ndarray, half_step: float) -> np.ndarray:
+        return times[:, None] ** [1.0, 2.0, 3.0] + 100.0 * half_step
 
 
 def test_forces_that_are_computed_together_act_on_their_own_rows() -> None:
@@ -180,17 +180,20 @@ def test_forces_that_are_computed_together_act_on_their_own_rows() -> None:
     values = table.sample(times, 0.5)
 
     assert len(table) == 2
-    assert values[:, row(table, 4, 1)].tolist() == [2.0, 3.0]
-    np.testing.assert_allclose(values[:, row(table, 2, 0)], times**2 + 10.0 * ramp(times))
+    assert values[:, row(table, 4, 1)].tolist() == [52.0, 53.0]
+    np.testing.assert_allclose(values[:, row(table, 2, 0)], times**2 + 50.0 + 10.0 * ramp(times))
     assert table.shares.power == {"bottom": 4}
 
 
-def test_velocities_that_ties_see_are_half_a_step_behind() -> None:
+def test_forces_may_be_of_several_sides() -> None:
     builder = SupportBuilder()
-    builder.add_forces(np.array([1, 2, 3]), np.zeros(3, dtype=np.int64), Powers(), behind=True)
-    builder.add(np.array([9]), 0, prescribed=True, drive=1.0, signal=lambda t: t)
-    table = builder.table()
-    values = table.sample(np.array([2.0]), 0.5)[0]
+    sides = {"left": np.array([4]), "top": np.array([2, 7])}
+    builder.add_forces(np.array([4, 2, 7]), np.array([1, 0, 0]), Powers(), sides)
+    shares = builder.table().shares
 
-    np.testing.assert_allclose(values[:3], [1.5, 1.5**2, 1.5**3])
-    assert values[row(table, 9, 0)] == 2.5
+    assert {(shares.sides[side], node) for side, node in zip(shares.side, shares.node, strict=True)} == {
+        ("left", 4),
+        ("top", 2),
+        ("top", 7),
+    }
+    assert dict(zip(shares.node.tolist(), shares.signal.tolist(), strict=True)) == {4: 0, 2: 1, 7: 2}

@@ -210,5 +210,5 @@ def test_monitors_of_the_other_side_are_shown_with_their_signs(scene) -> None:
 
     assert half.monitors["l"] == half.monitors["r"]
     assert half.probes.tolist() == [half.monitors["l"]] * 2
-    assert half.observed(record)[0, 0].tolist() == [1.0] * 6
-    assert half.observed(record)[0, 1].tolist() == [-1.0, 1.0, -1.0] * 2
+    assert half.observed(record, np.zeros(1))[0, 0].tolist() == [1.0] * 6
+    assert half.observed(record, np.zeros(1))[0, 1].tolist() == [-1.0, 1.0, -1.0] * 2

@@ -47,7 +47,7 @@ def scene_of(places: dict[str, tuple[float, float]], changes: dict | None = None
 def moved(scene: DiskScene, motion: np.ndarray) -> dict[str, np.ndarray]:
     """Motion (3,) of the monitors when the nodes have these displacements (n, 3); velocities are −2 times those."""
     each = motion[scene.probes]
-    record = scene.observed(np.hstack([each, -2.0 * each])[None])[0]
+    record = scene.observed(np.hstack([each, -2.0 * each])[None], np.zeros(1))[0]
     np.testing.assert_allclose(record[:, 3:], -2.0 * record[:, :3], rtol=1e-12, atol=1e-14)
     return dict(zip(scene.monitors, record[:, :3], strict=True))
 

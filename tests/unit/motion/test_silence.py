@@ -12,10 +12,10 @@ STEP = 0.5
 """Time step (s) of synthetic runs; exact in binary."""
 
 
-def ended_at(speeds: np.ndarray, rule: Silent, block: int, observed=lambda record: record) -> int | None:
+def ended_at(speeds: np.ndarray, rule: Silent, block: int, observed=lambda record, times: record) -> int | None:
     """Step after which a run with these speeds (k, p) of its probes ends, looked at after blocks of steps."""
     tracker, scene = Silence(rule, STEP), SimpleNamespace(observed=observed)
-    run = SimpleNamespace(state=SimpleNamespace(step=0), stopped=False, scene=scene)
+    run = SimpleNamespace(state=SimpleNamespace(step=0), stopped=False, scene=scene, time_step=STEP)
     record = np.zeros((*speeds.shape, 6))
     record[:, :, 4] = -speeds  # of either sign and component
     for first in range(0, len(speeds), block):
@@ -75,7 +75,7 @@ def test_monitors_have_to_be_silent_not_their_nodes() -> None:
     speeds = np.column_stack([np.full(100, 1.0) + pulse(100, 5, 10), np.full(100, -1.0)])
 
     assert ended_at(speeds, Silent(1e-3, 4.0, 0.0), 1) is None
-    assert ended_at(speeds, Silent(1e-3, 4.0, 0.0), 1, lambda record: record.sum(axis=1, keepdims=True)) == 10 + 9
+    assert ended_at(speeds, Silent(1e-3, 4.0, 0.0), 1, lambda record, _: record.sum(axis=1, keepdims=True)) == 10 + 9
 
 
 def test_what_never_rests_never_ends() -> None:

@@ -8,8 +8,8 @@ from dembound.errors import CaseError
 from dembound.exact import lamb
 from dembound.exact.lamb import surface_displacement
 from dembound.kinds import loads, with_changes
-from dembound.studies import half_space as module
-from dembound.studies.half_space import write_exact
+from dembound.studies.exact import lamb as module
+from dembound.studies.exact import write_exact
 
 CASE = """
 [packing]

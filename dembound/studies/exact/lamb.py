@@ -1,36 +1,28 @@
-"""The exact motion of the half-space of a case of Lamb's problem, at the case's monitors.
-
-It is written as a record with the layout of a run, so that it can be plotted and compared in the same way.
-"""
+"""Lamb's problem: the motion of the surface of a half-space beside a vertical line load."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
+from typing import ClassVar, Self
 
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
-from dembound.casefile.types import LAWS
-from dembound.disks.scene import DiskScene, build
+from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
+from dembound.exact.solid import Solid
 from dembound.motion.silence import monitored
-from dembound.results.committed import new_file
-from dembound.results.datasets import describe, write
-from dembound.results.new_record import header_of_monitor
-from dembound.version import __version__
-
-ISOTROPY = 1e-6
-"""Relative difference of C11 − C12 and 2 C66 up to which a medium is treated as isotropic."""
+from dembound.studies.exact.problem import Motion, Problem, law_problems, places_of, solid_of
+from dembound.waves import Wave
 
 CORNER = 0.25
 """Least distance between the load and a side that does not mirror it, over the distance from load to monitor."""
 
 SAMPLES = 2000
-"""Number of times at which the exact motion is written."""
+"""Number of times between which jumps of a wave are looked for."""
 
 JUMP = 0.01
 """Jump over the largest load above which a load is refused at once.
@@ -53,54 +45,65 @@ class LineLoad:
     wave: str
 
 
-def write_exact(case: DiskCase, path: Path) -> None:
-    """Write the exact histories of a case as a record; its monitors must lie on the surface.
+@dataclass(frozen=True)
+class LambProblem(Problem):
+    """A line load on the surface, and the distances (m, positive to the right) of the monitors from it.
 
-    The load is a line on the surface. With a symmetry side it lies in that plane, and twice the case's force acts. The
-    distance of a monitor is that of its particle, assumed to be on the surface.
-
-    The folder of `path` is created if it does not exist.
-
-    Raises CaseError if the case is not Lamb's problem: one vertical load that follows a continuous wave, on a free top,
-    away from sides that do not mirror it, an isotropic and linear medium, monitors on the top and not under the load.
+    With a symmetry side the load lies in that plane, and twice the case's force acts. Monitors are assumed to be on the
+    surface. wave : the load over its force.
     """
-    scene = build(case)
-    times, motions = surface_motions(scene)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with new_file(path) as file:
-        facts = {"name": case.name, "case": case.text, "version": __version__, "size": scene.size, "complete": True}
-        describe(file, facts)
-        histories = file.create_group("histories", track_order=True)
-        for monitor in case.monitor:
-            moved, group = motions[monitor.name], histories.create_group(monitor.name)
-            describe(group, header_of_monitor(scene, monitor.name))
-            write(group, "time", times, "s")
-            write(group, "displacement", moved, "m, m, rad")
-            write(group, "velocity", np.gradient(moved, times, axis=0), "m/s, m/s, rad/s")
+
+    name: ClassVar[str] = "lamb"
+    sentence: ClassVar[str] = "exact half-space (Lamb)"
+    solid: Solid
+    load: LineLoad
+    wave: Wave
+    away: Mapping[str, float]
+
+    @classmethod
+    def concerns(cls, case: DiskCase) -> bool:
+        """Whether a force acts, or nothing that another problem is about."""
+        return case.incident is None and not any(load.pressure is not None for load in case.load)
+
+    @classmethod
+    def of(cls, scene: DiskScene) -> Self:
+        """The problem of a scene.
+
+        Raises CaseError if it is not Lamb's: one vertical load that follows a continuous wave, on a free top, away from
+        sides that do not mirror it, an isotropic and linear medium, monitors on the top and not under the load.
+        """
+        case, load, solid = scene.case, _line_load(scene), solid_of(scene)
+        if problems := [*law_problems(case), *_covered(case), *_ends_of_the_surface(scene, load)]:
+            raise CaseError(problems)
+        wave = case.wave[load.wave]
+        away = {name: _away(scene, load, name, place) for name, place in places_of(scene).items()}
+        for distance in away.values():
+            when, step = _largest_jump(wave.velocity, case.run.duration - abs(distance) / solid.p_wave_speed)
+            if step > JUMP:
+                raise CaseError([f"wave.{load.wave}: has a jump at {when:.3g} s; {CONTINUOUS}"])
+        return cls(solid, load, wave, away)
+
+    def motions(self, times: np.ndarray) -> dict[str, Motion]:
+        """Motion of the surface at the monitors; the velocity is the slope between the times."""
+        return {name: self._motion(times, distance) for name, distance in self.away.items()}
+
+    def _motion(self, times: np.ndarray, distance: float) -> Motion:
+        """Motion at a distance from the load."""
+        solid = self.solid
+        speeds = solid.p_wave_speed, solid.s_wave_speed
+        try:
+            along, down = surface_displacement(
+                times, abs(distance), lambda t: self.load.force * self.wave.velocity(t), solid.density, *speeds
+            )
+        except RuntimeError:
+            rough = f"wave.{self.load.wave}: is so rough that the solution does not converge; {CONTINUOUS}"
+            raise CaseError([rough]) from None
+        moved = np.column_stack([np.sign(distance) * along, -down, np.zeros(len(times))])
+        return Motion(moved, np.gradient(moved, times, axis=0))
 
 
-def surface_motions(scene: DiskScene, samples: int = SAMPLES) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Exact times (k,) s and displacements (k, 3) m of a scene's monitors by name; errors as `write_exact`."""
-    case = scene.case
-    load, speeds = _line_load(scene), _wave_speeds(scene)
-    if problems := [*_yielding(case), *_ends_of_the_surface(scene, load)]:
-        raise CaseError(problems)
-    times = np.linspace(0.0, case.run.duration, samples)
-    return times, {monitor.name: _motion(scene, load, speeds, monitor.name, times) for monitor in case.monitor}
-
-
-def _wave_speeds(scene: DiskScene) -> tuple[float, float]:
-    """c_p and c_s in m/s of the half-space."""
-    tensor = scene.ground.material_tensor
-    if abs(tensor[0, 0] - tensor[0, 1] - 2.0 * tensor[3, 3]) > ISOTROPY * tensor[0, 0]:
-        raise CaseError(["material: makes an anisotropic medium, which has no such solution; see kratio and fric"])
-    p_speed, s_speed = (float(np.sqrt(tensor[k, k] / scene.ground.density)) for k in (0, 3))
-    return p_speed, s_speed
-
-
-def _motion(scene: DiskScene, load: LineLoad, speeds: tuple[float, float], name: str, times: np.ndarray) -> np.ndarray:
-    """Displacements (k, 3) of a monitor's particle at times (k,) s."""
-    place = scene.monitored[name]
+def _away(scene: DiskScene, load: LineLoad, name: str, place: np.ndarray) -> float:
+    """Distance (m) of a monitor to the right of the load; raises CaseError where there is no solution."""
     if name not in scene.between:
         _must_be_on_top(scene, scene.monitors[name], f"monitor.{name}.position")
     elif place[1] < scene.case.size[1] - scene.ground.brick.mean_diameter:
@@ -108,17 +111,7 @@ def _motion(scene: DiskScene, load: LineLoad, speeds: tuple[float, float], name:
     away = float(place[0]) - load.x
     if away == 0.0:
         raise CaseError([f"monitor.{name}.position: lies under the load, where the solution is infinite"])
-    velocity = scene.case.wave[load.wave].velocity
-    when, step = _largest_jump(velocity, times[-1] - abs(away) / speeds[0])
-    if step > JUMP:
-        raise CaseError([f"wave.{load.wave}: has a jump at {when:.3g} s; {CONTINUOUS}"])
-    try:
-        along, down = surface_displacement(
-            times, abs(away), lambda t: load.force * velocity(t), scene.ground.density, *speeds
-        )
-    except RuntimeError:
-        raise CaseError([f"wave.{load.wave}: is so rough that the solution does not converge; {CONTINUOUS}"]) from None
-    return np.column_stack([np.sign(away) * along, -down, np.zeros(len(times))])
+    return away
 
 
 def _largest_jump(velocity: Callable[[np.ndarray], np.ndarray], end: float) -> tuple[float, float]:
@@ -158,11 +151,8 @@ def _line_load(scene: DiskScene) -> LineLoad:
     return LineLoad(x, -factor * load.force[1], load.wave)
 
 
-def _yielding(case: DiskCase) -> Iterator[str]:
-    """Properties of the case that differ from a linear half-space with a free surface."""
-    if LAWS[case.material.law].has_history:
-        name = case.material.law
-        yield f'material.law: is "{name}", must have no history, as "elastic"; the solution is that of a linear solid'
+def _covered(case: DiskCase) -> Iterator[str]:
+    """That the top of a case is not the free surface of a half-space."""
     top = case.side("top")
     if not top.is_free:
         yield f'boundary.top.type: is "{top.type}", must be "free", the surface of the half-space'

@@ -1,0 +1,177 @@
+"""Plane waves of a medium at any angle, and those that its free surface sends back.
+
+A plane wave u = p g(t − s·x) with slowness s = n/c and polarisation p obeys (eᵀCe − ρ)p = 0, where e(s) p is the strain
+per unit of −ġ. All waves that the surface y = H links have the same s_x. The four s_y of one s_x are the roots of
+
+    det(e(s)ᵀ C e(s) − ρ) = 0,  a polynomial of the fourth degree in s_y (Christoffel's equation),
+
+two of them with energy that runs up, two with energy that runs down, or evanescent waves in place of two of them: then
+the incident wave is beyond the critical angle, and the reflected motion has not the wave's form. Otherwise the surface
+sends back the two that run down, with the amplitudes with which the tractions σ·(0, 1) of all three together are −m ü
+on it, where m is the mass on the surface (kg/m²), 0 for a homogeneous medium.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from dembound.outside.medium import Medium
+
+WaveKind = Literal["p", "sv"]
+
+EVANESCENT = 1e-7
+"""Imaginary part of s_y over the largest size of the four, from which on a wave decays along y; and difference of two,
+below which they coincide, as they do at the critical angle. Rounding makes such roots differ by the root of 1e-16."""
+
+NO_WAVE = 1e-10
+"""Amplitude over that of the incident wave below which a reflected wave is rounding."""
+
+GRAZING = 90.0
+"""Degrees from the vertical at which a wave runs along the surface."""
+
+SEARCHED = 1e-9
+"""Degrees to which critical angles are found."""
+
+
+@dataclass(frozen=True)
+class PlaneWave:
+    """The displacement motion · g(t − delay − slowness·x), with g the displacement of a wave of the case.
+
+    Attributes
+    ----------
+    slowness : s/m, along x and y. motion : along x and y per unit of g. delay : s, at the origin.
+    """
+
+    slowness: tuple[float, float]
+    motion: tuple[float, float]
+    delay: float = 0.0
+
+    def delays(self, places: np.ndarray) -> np.ndarray:
+        """Delays (k,) s at places (k, 2) m."""
+        return self.delay + places @ np.array(self.slowness)
+
+    def shifted(self, by: float) -> PlaneWave:
+        """The same wave, later by a time, s."""
+        return replace(self, delay=self.delay + by)
+
+    def flux(self, medium: Medium) -> np.ndarray:
+        """Energy flux (2,) along x and y, W/m² per unit of ġ²: −σ·v."""
+        xx, yy, xy = medium.matrix @ strain_of(*self.slowness) @ self.motion
+        return np.array([[xx, xy], [xy, yy]]) @ self.motion
+
+
+def strain_of(sx: complex, sy: complex) -> np.ndarray:
+    """Strains (xx, yy, γ) of displacements along x and y of waves with this slowness, e (3, 2) per unit of −ġ."""
+    return np.array([[sx, 0.0], [0.0, sy], [sy, sx]])
+
+
+def traction_of(medium: Medium, sx: float, sy: float) -> np.ndarray:
+    """(2, 2) from displacements along x and y to tractions along x and y on planes y = const, per unit of −ġ."""
+    return (medium.matrix @ strain_of(sx, sy))[[2, 1]]
+
+
+def incident_wave(medium: Medium, kind: WaveKind, angle: float) -> PlaneWave:
+    """The wave of unit amplitude whose normal is at an angle (degrees) from the vertical, to the right if positive.
+
+    "p" moves along its normal, forwards if positive, "sv" across it, to the right where it runs straight up. In media
+    that are not isotropic these are the faster and the slower wave, which move nearly so.
+    """
+    x, y = np.sin(np.radians(angle)), np.cos(np.radians(angle))
+    speeds, polarisations = medium.plane_waves((x, y))
+    number = {"sv": 0, "p": 1}[kind]
+    motion = polarisations[:, number]
+    motion = motion * np.copysign(1.0, motion @ ((x, y) if kind == "p" else (y, -x)))
+    return PlaneWave(_pair(np.array([x, y]) / speeds[number]), _pair(motion))
+
+
+def vertical_slownesses(medium: Medium, sx: float) -> np.ndarray:
+    """The four s_y (4,) of waves with a horizontal slowness, s/m; complex where they are evanescent."""
+    across, up = strain_of(1.0, 0.0), strain_of(0.0, 1.0)
+    c = medium.matrix
+    constant = sx**2 * across.T @ c @ across - medium.density * np.eye(2)
+    linear, square = sx * (across.T @ c @ up + up.T @ c @ across), up.T @ c @ up
+    scale = np.sqrt(medium.density / medium.c66)  # roots of order one
+    entries = np.stack([square * scale**2, linear * scale, constant], axis=-1) / medium.density
+    determinant = np.convolve(entries[0, 0], entries[1, 1]) - np.convolve(entries[0, 1], entries[1, 0])
+    return scale * np.roots(determinant)
+
+
+def downgoing(medium: Medium, sx: float) -> list[PlaneWave] | None:
+    """The two waves with a horizontal slowness (s/m) whose energy runs down, of unit amplitude, the slower one first.
+
+    None if one of them is evanescent.
+    """
+    roots = vertical_slownesses(medium, sx)
+    apart = np.abs(roots[:, None] - roots)[np.triu_indices(4, 1)]
+    least = EVANESCENT * np.abs(roots).max()
+    if np.abs(roots.imag).max() > least or apart.min() < least:
+        return None
+    waves = []
+    for sy in roots.real:
+        strain = strain_of(sx, sy)
+        polarisation = np.linalg.svd(strain.T @ medium.matrix @ strain - medium.density * np.eye(2))[2][-1].real
+        wave = PlaneWave((sx, float(sy)), _pair(polarisation))
+        if wave.flux(medium)[1] < 0.0:
+            waves.append(wave)
+    return sorted(waves, key=lambda wave: -np.hypot(*wave.slowness)) if len(waves) == 2 else None
+
+
+def reflected_waves(medium: Medium, incident: PlaneWave, surface: float, mass: float = 0.0) -> list[PlaneWave] | None:
+    """The waves that a free surface y = `surface` (m) sends back; None beyond the critical angle.
+
+    mass : on the surface, kg/m². In the first order in ω·mass/(ρc) a wave is then A g + A′ ġ, which is the sum of two
+    with A/2 ± A′/ε whose delays differ by ε, the time that waves take through as much of the medium as has that mass.
+    """
+    sx, sy = incident.slowness
+    waves = downgoing(medium, sx)
+    if waves is None:
+        return None
+    motions = np.array([wave.motion for wave in waves]).T
+    tractions = np.column_stack([traction_of(medium, *wave.slowness) @ wave.motion for wave in waves])
+    amplitudes = np.linalg.solve(tractions, -traction_of(medium, sx, sy) @ incident.motion)
+    found = []
+    # Σ tractions·ġ = m Σ motions·g̈ on the surface, so that A′ follows from the motion of that without a mass
+    later = np.linalg.solve(tractions, mass * (np.array(incident.motion) + motions @ amplitudes))
+    apart = mass / medium.density * float(np.hypot(sx, sy))
+    for wave, amplitude, change in zip(waves, amplitudes, later, strict=True):
+        at_once = incident.delay + (sy - wave.slowness[1]) * surface  # the same at the surface as the incident one
+        moved = np.array(wave.motion)
+        if mass == 0.0:
+            pairs = [(float(amplitude), 0.0)]
+        else:
+            pairs = [(0.5 * amplitude + change / apart, -0.5 * apart), (0.5 * amplitude - change / apart, 0.5 * apart)]
+        for factor, shift in pairs:
+            if abs(factor) > NO_WAVE:
+                found.append(PlaneWave(wave.slowness, _pair(factor * moved), at_once + shift))
+    return found
+
+
+def critical_angle(medium: Medium, kind: WaveKind, sign: float = 1.0) -> float:
+    """Smallest angle (degrees) to the right (sign 1) or left (−1) at which a reflected wave is evanescent.
+
+    90 if there is none, as for P waves of isotropic media.
+    """
+
+    def is_critical(angle: float) -> bool:
+        wave = incident_wave(medium, kind, sign * angle)
+        return wave.flux(medium)[1] <= 0.0 or downgoing(medium, wave.slowness[0]) is None
+
+    angles = np.arange(0.0, GRAZING, 0.25)
+    beyond = np.array([is_critical(angle) for angle in angles])
+    if not beyond.any():
+        return GRAZING
+    high = float(angles[np.argmax(beyond)])
+    low = max(high - 0.25, 0.0)
+    while high - low > SEARCHED:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if is_critical(middle) else (middle, high)
+    return high
+
+
+def _pair(vector: np.ndarray) -> tuple[float, float]:
+    """A vector (2,) as a tuple."""
+    x, y = vector.tolist()
+    return x, y
