@@ -9,6 +9,9 @@ from dembound.disks.scene import DiskScene
 ELASTIC_NODE, ABSORBING_NODE, TIE = 8.1, 15.0, 30.0
 """Nanoseconds of a step on one core (benchmarks/continuum_rate.py): nodes of order 4, with and without memories."""
 
+DRIVE = 18.0
+"""Nanoseconds of a force by which a wave at an angle enters (cases/oblique.toml, 772 of them)."""
+
 DISK = {(True, False): 7.0, (False, False): 27.0, (True, True): 20.0, (False, True): 55.0}
 """Nanoseconds of a step of a disk (benchmarks/rates.py), in rows of copies or one by one, with a history or without."""
 
@@ -31,4 +34,5 @@ def of_scene(scene: DiskScene) -> dict[str, float]:
     column = 0 if scene.seam is None else scene.seam.count
     each = of_disk(scene)
     disks = {"free-field column": each * column, "disks": each * (scene.disk_count - column)}
-    return of_continuum(nodes, absorbing, ties) | disks
+    wave = 0.0 if scene.ground_waves is None else DRIVE * len(scene.supports.drive_row)
+    return of_continuum(nodes, absorbing, ties) | disks | {"incident wave": wave}

@@ -127,7 +127,9 @@ def test_twins_are_hollow_marks_without_names(small_run, tmp_path):
     run.write_bytes(small_run.read_bytes())
     with h5py.File(run, "r+") as file:
         file.copy("histories/front", file["histories"], "front.free_field")
-        place = file["histories/front"].attrs["position"]
+        file.copy("histories/back", file["histories"], "back.free_field")  # where its monitor is: not shown
+        place = file["histories/front"].attrs["position"] - [0.5, 0.0]
+        file["histories/front.free_field"].attrs["position"] = place
     panel = plot_scene(run).axes[0]
     assert [text.get_text() for text in panel.texts] == ["front", "back"]
     (twins,) = [each for each in panel.collections if each.get_label() == "its twin in the free field"]
