@@ -77,6 +77,8 @@ def _on_outline(load: Load, hole: Hole, box: Box, body: Assembly, disks: np.ndar
     outline, places = hole.outline, body.positions[disks]
     assert outline is not None
     nearest, parts, forces = outline.nearest(places), outline.within(box), np.zeros((len(disks), 3))
+    if not parts:
+        raise _bare(load, places[0])
     beyond = np.array([outline.beyond(nearest, part) for part in parts])
     for number, part in enumerate(parts):
         own = np.flatnonzero(np.argmin(beyond, axis=0) == number)

@@ -163,6 +163,11 @@ name = "blow"
 force = [1e3, 0.0]
 position = [5.0, 2.5]
 wave = "push"
+[[load]]
+name = "blast"
+pressure = 1e5
+hole = "tunnel"
+wave = "push"
 [[hole]]
 name = "tunnel"
 type = "circle"

@@ -175,6 +175,11 @@ def test_beside_a_free_field_column_the_body_is_pressed() -> None:
             'load.p.hole: "h" cuts no bonds of the body, so there is no wall to press on',
         ),
         (
+            {"type": "polygon", "points": [[5.0, 5.0], [1e30, 5.0], [5.0, 1e30]]},  # lost in rounding
+            {},
+            'load.p.hole: "h" has no wall near (',
+        ),
+        (
             CIRCLE,
             {"hole": [{"name": "h", **CIRCLE}, {"name": "g", **CIRCLE, "centre": [9.0, 5.2]}]},
             'load.p.hole: "h" has no wall near (',
