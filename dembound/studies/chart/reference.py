@@ -52,8 +52,8 @@ def reference_of(
 ) -> Reference:
     """The reference of this name for choices with these outcomes.
 
-    By default the exact solution if the case has one, and no hole. Else, if choices differ in their sides, the extended scene, if it
-    is affordable. Else of bars the finer run, of disks the choice with the most nodes times steps.
+    By default the exact solution if the case has one, and no hole. Else, if choices differ in their sides, the extended
+    scene, if it is affordable. Else of bars the finer run, of disks the choice with the most nodes times steps.
 
     Raises CaseError if a reference that is asked for by name is not possible, RunError if its run fails.
     """
