@@ -391,7 +391,7 @@ def test_a_method_alone_makes_it_the_case_of_a_bar() -> None:
         (
             "[run]",
             '[[load]]\nname = "blow"\nforce = [1.0, 0.0]\nposition = [1.0, 1.0]\nnodes = 1\n[run]',
-            "load[1, blow].nodes: unknown key; allowed: name, force, acceleration, position, region, pressure, hole, on, ",
+            "load[1, blow].nodes: unknown key; allowed: name, force, acceleration, position, region, pressure, hole",
         ),
         ("[run]", "[run]\ncourant = 0.5", "run.courant: unknown key; allowed: duration, time_step, safety"),
         ("position = [50.0, 2.5]", "position = 50.0", "monitor[1, middle].position: is 50.0, must be a list of 2 "),
