@@ -242,7 +242,8 @@ def exact(
 ) -> None:
     """Write the exact motion at the monitors of a case, as long as it is known.
 
-    Problems: Lamb's, a pressure in a circular hole, also below a free surface (Garvin's), a hole under a plane wave.
+    Known are Lamb's and Garvin's problem, and a circular hole under a pressure or under a plane wave.
+
     It is plotted and compared like a run. Its folder is named after the case with "_exact", or by --name.
     """
     from dembound.studies.exact import write_exact

@@ -53,8 +53,8 @@ def reference_of(
 ) -> Reference:
     """The reference of this name for choices with these outcomes.
 
-    By default the exact solution if the case has one. Else, if choices differ in their sides, the extended scene, if it
-    is affordable. Else of bars the finer run, of disks the choice with the most nodes times steps.
+    By default the exact solution if the case has one, and no hole. Else, if choices differ in their sides, the extended
+    scene, if it is affordable. Else of bars the finer run, of disks the choice with the most nodes times steps.
 
     Raises CaseError if a reference that is asked for by name is not possible, RunError if its run fails.
     """
@@ -77,8 +77,9 @@ class _References:
 
     def _default(self) -> Reference:
         """The first that the case allows."""
-        with suppress(CaseError):
-            return self._exact()
+        if not getattr(self._case, "hole", ()):  # beside its wall of disks the errors of sides would not be seen
+            with suppress(CaseError):
+                return self._exact()
         if not any(key.startswith(SIDES) for choice in self._choices for key in choice.changes):
             return self._best()
         try:

@@ -83,7 +83,7 @@ def test_before_the_surface_reflects_it_is_the_incident_wave_scattered(kind, ang
 def test_what_the_surface_sends_back_is_part_of_it_until_the_holes_echo() -> None:
     """A P wave straight up, of 0.05 s: at the surface, far beside the hole, it is there twice."""
     far = {"name": "far", "position": [250.5, 119.5]}
-    changes = {"incident.type": "p", "incident.angle": 0.0, "ground.size": [300.0, 120.0], "monitor": [far]}
+    changes = {"incident.type": "p", "incident.angle": 0.0, "outside.margin": 20, "monitor": [far]}
     case = with_changes(loads(CASE), changes)
     problem, motions = exact_motions(build(case))
     # the wave meets the wall 25 m above the point, and what the hole scatters returns from its image above the surface
