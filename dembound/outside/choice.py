@@ -29,7 +29,7 @@ LEAST_LATTICE, LEAST_RANDOM = 0.31, 0.7
 
 The nodes next to the ends of an element are so much closer and lighter, and with random packings the ties also act on
 the gradients there: steps are 20 to 30 % shorter with such elements than with large ones, with sides half as long by a
-third, and in random packings to a fifth.
+half, and in random packings to a quarter.
 """
 
 NODES = {3: 7.0, 4: 6.0, 5: 6.0, 6: 6.0}
