@@ -29,6 +29,7 @@ from dembound.disks.tie_forces import TieForces, forces_at_rest
 from dembound.disks.wall import CutBonds, Wall
 from dembound.kernels.sums import add_weighted_sums, weighted_sums
 from dembound.outside.gll import Rule
+from dembound.outside.plane_waves import PlaneWave
 
 PLACES = 8
 """Places along a side at which the power of waves is summed."""
@@ -152,12 +153,23 @@ def power_through(side: str, edges: Sequence[float], ground: GroundWaves) -> Cal
     places = np.full((PLACES, 2), edges[number])
     places[:, 1 - axis] = 0.5 * (low + high + (high - low) * rule.points)
 
+    together: dict[tuple[float, float], list[PlaneWave]] = {}
+    for wave in ground.waves:  # what a surface with a mass sends back is several waves of one slowness
+        together.setdefault(wave.slowness, []).append(wave)
+
     def power(times: np.ndarray) -> np.ndarray:
         total = np.zeros(len(times))
-        for wave in ground.waves:
-            if (flux := inwards * wave.flux(ground.medium)[axis]) > 0.0:
-                squares = ground.signal.velocity(times[:, None] - wave.delays(places)) ** 2
-                total += 0.5 * (high - low) * flux * np.sum(squares * rule.weights, axis=1)
+        for slowness, waves in together.items():
+            direction = np.array(waves[0].motion) / np.hypot(*waves[0].motion)
+            x, y = direction.tolist()
+            if (flux := inwards * PlaneWave(slowness, (x, y)).flux(ground.medium)[axis]) > 0.0:
+                parts = [np.dot(wave.motion, direction) * _velocity(ground, wave, times, places) for wave in waves]
+                total += 0.5 * (high - low) * flux * np.sum(np.sum(parts, axis=0) ** 2 * rule.weights, axis=1)
         return total
 
     return power
+
+
+def _velocity(ground: GroundWaves, wave: PlaneWave, times: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """ġ (k, p) m/s of a wave at times (k,) s and places (p, 2) m."""
+    return ground.signal.velocity(times[:, None] - wave.delays(places))

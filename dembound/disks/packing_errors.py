@@ -58,14 +58,14 @@ def lattice_errors(scene: DiskScene, signals: Sequence[Signal]) -> tuple[float, 
     """RMS over the energy of velocities of what ties return, and of the lag of waves over the scene's longer side L.
 
     Half of a lattice's bond has the impedance ρc/cos(kD/2), so that a continuum beyond it returns (kD)²/16; the ties'
-    dashpots, `damping` times ρc_pD, add (kD)²·damping/8. Waves on the lattice lag by the phase kL(kD)²/24. For S waves;
-    of signals the largest.
+    dashpots, `damping` times ρc_pD, add (kD)²·(damping/8) c/c_p. Waves on the lattice lag by the phase kL(kD)²/24. For
+    the slowest waves, of the speed c; of signals the largest.
     """
     outside = scene.outside
     assert outside is not None
     speed = choice.slowest(outside.body.medium)
     diameter, length = scene.ground.brick.mean_diameter, max(scene.case.size)
-    returned = 1.0 / 16.0 + outside.settings.damping / 8.0
+    returned = 1.0 / 16.0 + 0.25 * outside.wall.lag * speed / diameter
     found = []
     for signal in signals:
         frequency, energy = choice.energies(signal)

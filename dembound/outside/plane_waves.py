@@ -122,12 +122,14 @@ def downgoing(medium: Medium, sx: float) -> list[PlaneWave] | None:
 def reflected_waves(medium: Medium, incident: PlaneWave, surface: float, mass: float = 0.0) -> list[PlaneWave] | None:
     """The waves that a free surface y = `surface` (m) sends back; None beyond the critical angle.
 
+    That is also where the energy of the incident wave runs down, as that of flat P waves in anisotropic media may.
+
     mass : on the surface, kg/m². In the first order in ω·mass/(ρc) a wave is then A g + A′ ġ, which is the sum of two
     with A/2 ± A′/ε whose delays differ by ε, the time that waves take through as much of the medium as has that mass.
     """
     sx, sy = incident.slowness
     waves = downgoing(medium, sx)
-    if waves is None:
+    if waves is None or incident.flux(medium)[1] <= 0.0:
         return None
     motions = np.array([wave.motion for wave in waves]).T
     tractions = np.column_stack([traction_of(medium, *wave.slowness) @ wave.motion for wave in waves])
@@ -156,8 +158,7 @@ def critical_angle(medium: Medium, kind: WaveKind, sign: float = 1.0) -> float:
     """
 
     def is_critical(angle: float) -> bool:
-        wave = incident_wave(medium, kind, sign * angle)
-        return wave.flux(medium)[1] <= 0.0 or downgoing(medium, wave.slowness[0]) is None
+        return reflected_waves(medium, incident_wave(medium, kind, sign * angle), 0.0) is None
 
     angles = np.arange(0.0, GRAZING, 0.25)
     beyond = np.array([is_critical(angle) for angle in angles])

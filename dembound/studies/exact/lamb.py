@@ -21,7 +21,9 @@ from dembound.studies.exact.problem import (
     ROUGH,
     Motion,
     Problem,
+    has_pressure,
     law_problems,
+    load_problems,
     must_be_continuous,
     places_of,
     solid_of,
@@ -66,7 +68,7 @@ class LambProblem(Problem):
     @classmethod
     def concerns(cls, case: DiskCase) -> bool:
         """Whether a force acts, or nothing that another problem is about."""
-        return case.incident is None and not any(load.pressure is not None for load in case.load)
+        return case.incident is None and not has_pressure(case)
 
     @classmethod
     def of(cls, scene: DiskScene) -> Self:
@@ -76,7 +78,8 @@ class LambProblem(Problem):
         sides that do not mirror it, an isotropic and linear medium, monitors on the top and not under the load.
         """
         case, load, solid = scene.case, _line_load(scene), solid_of(scene)
-        if problems := [*law_problems(case), *_covered(case), *_ends_of_the_surface(scene, load)]:
+        half_space = [*load_problems(case), *_disturbed(case), *_covered(case)]
+        if problems := [*law_problems(case), *half_space, *_ends_of_the_surface(scene, load)]:
             raise CaseError(problems)
         wave = case.wave[load.wave]
         away = {name: _away(scene, load, name, place) for name, place in places_of(scene).items()}
@@ -137,6 +140,16 @@ def _covered(case: DiskCase) -> Iterator[str]:
     top = case.side("top")
     if not top.is_free:
         yield f'boundary.top.type: is "{top.type}", must be "free", the surface of the half-space'
+
+
+def _disturbed(case: DiskCase) -> Iterator[str]:
+    """What a half-space does not have: holes, motions that are held, and waves other than that of the load."""
+    if case.hole:
+        yield "hole: Lamb's half-space has none"
+    if case.motion.held:
+        yield f"motion.held: is {list(case.motion.held)}, must be empty"
+    for name in sorted(case.entering):
+        yield f"wave.{name}: enters through a side; the solution is that of the load alone"
 
 
 def _ends_of_the_surface(scene: DiskScene, load: LineLoad) -> Iterator[str]:

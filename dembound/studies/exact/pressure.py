@@ -22,6 +22,7 @@ from dembound.studies.exact.problem import (
     Motion,
     Problem,
     echoes,
+    has_pressure,
     hole_of,
     must_be_continuous,
     places_of,
@@ -75,11 +76,6 @@ class Blast:
     def rough(self) -> CaseError:
         """What is raised where the solution does not converge."""
         return CaseError([f"wave.{self.wave_name}: {ROUGH}"])
-
-
-def has_pressure(case: DiskCase) -> bool:
-    """Whether a pressure that follows a wave acts in a hole of the case."""
-    return any(load.pressure is not None and load.wave is not None for load in case.load)
 
 
 @dataclass(frozen=True)

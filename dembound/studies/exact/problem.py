@@ -8,12 +8,15 @@ from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
+from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.messages import numbered
 from dembound.casefile.types import LAWS
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.exact.solid import Solid
 from dembound.holes import Circle
+from dembound.table import Box
 
 ISOTROPY = 1e-6
 """Relative difference of C11 − C12 and 2 C66 up to which a medium is treated as isotropic."""
@@ -95,6 +98,18 @@ def law_problems(case: DiskCase) -> Iterator[str]:
         yield f'material.law: is "{name}", must have no history, as "elastic"; the solution is that of a linear solid'
 
 
+def has_pressure(case: DiskCase) -> bool:
+    """Whether a pressure that follows a wave acts in a hole of the case."""
+    return any(load.pressure is not None and load.wave is not None for load in case.load)
+
+
+def load_problems(case: DiskCase) -> Iterator[str]:
+    """Steady loads that no static stage has balanced, which move the body as well."""
+    for place, load in numbered("load", case.load):
+        if load.wave is None and case.static is None:
+            yield f"{place}: is steady, and begins with the run; the solution is that of waves alone, add [static]"
+
+
 def places_of(scene: DiskScene) -> dict[str, np.ndarray]:
     """Places (2,) m of the case's monitors, without those of a free-field column."""
     return {monitor.name: scene.monitored[monitor.name] for monitor in scene.case.monitor}
@@ -112,21 +127,31 @@ def surface_of(scene: DiskScene) -> float | None:
 def hole_of(scene: DiskScene) -> Circle:
     """The one hole of a scene; raises CaseError unless it is one circle, in linear rock that goes on around it."""
     case = scene.case
-    problems = [*law_problems(case)]
+    problems = [*law_problems(case), *load_problems(case)]
     if len(case.hole) != 1 or not isinstance(case.hole[0], Circle):
         problems.append("hole: the solution is that of one circle")
     if case.motion.held:
         problems.append(f"motion.held: is {list(case.motion.held)}, must be empty")
-    for side in ("left", "right", "bottom", "top"):
+    for side in SIDES:
         table = case.side(side)
         surface = side == "top" and surface_of(scene) is not None
         if not (table.is_artificial or table.is_outside or surface):
             problems.append(f'boundary.{side}.type: is "{table.type}", must be a side beyond which the rock goes on')
+    for place, each in numbered("hole", case.hole):
+        reached = [
+            side for side, is_beyond in zip(SIDES, _beyond(each.box, case.packing.box), strict=True) if is_beyond
+        ]
+        problems += [f"{place}: reaches boundary.{side}; the solution is that of a closed circle" for side in reached]
     if problems:
         raise CaseError(problems)
     hole = case.hole[0]
     assert isinstance(hole, Circle)
     return hole
+
+
+def _beyond(inner: Box, outer: Box) -> tuple[bool, bool, bool, bool]:
+    """Whether a rectangle reaches the left, right, bottom and top of another one."""
+    return inner[0] <= outer[0], inner[2] >= outer[2], inner[1] <= outer[1], inner[3] >= outer[3]
 
 
 def echoes(

@@ -84,13 +84,13 @@ def test_the_dispersion_of_the_disks_is_said_where_it_is_more_than_asked_for(cas
 
 
 def test_ties_return_what_a_half_bond_does(case) -> None:
-    """Of one frequency: a burst of 40 cycles of 8.84 Hz, λ_S = 80 D; (kD)²(1/16 + 0.1/8), and 40 k (kD)²/24."""
+    """Of one frequency: a burst of 40 cycles of 8.84 Hz, λ_S = 80 D; (kD)²(1/16 + 0.1/8√2), and 40 k (kD)²/24."""
     burst = {"pulse": {"type": "sine_burst", "amplitude": 1.0, "frequency": 8.838835, "cycles": 40}}
     scene = build(with_changes(case, {"wave": burst}))
     k = 2.0 * np.pi / 80.0
 
     ties, across = lattice_errors(scene, signals_of(scene.case))
-    assert ties == pytest.approx(0.075 * k**2, rel=0.03)
+    assert ties == pytest.approx((1.0 / 16.0 + 0.1 / 8.0 / np.sqrt(2.0)) * k**2, rel=0.03)
     assert across == pytest.approx(40.0 * k**3 / 24.0, rel=0.03)
 
 

@@ -27,9 +27,9 @@ def sine(frequency: float) -> SimpleNamespace:
     return SimpleNamespace(velocity=lambda t: np.sin(omega * t), displacement=lambda t: -np.cos(omega * t) / omega)
 
 
-def ground(signal, grain: float = 0.1) -> GroundWaves:
+def ground(signal, grain: float = 0.1, mass: float = 0.0) -> GroundWaves:
     incident = incident_wave(GENERAL, "sv", 25.0)
-    return GroundWaves(GENERAL, (incident, *reflected_waves(GENERAL, incident, 30.0)), signal, grain)
+    return GroundWaves(GENERAL, (incident, *reflected_waves(GENERAL, incident, 30.0, mass)), signal, grain)
 
 
 def test_near_places_the_motion_is_that_of_the_waves() -> None:
@@ -122,6 +122,11 @@ def test_the_power_through_a_side_is_that_of_the_waves_that_run_inwards() -> Non
     up = waves.waves[0].flux(GENERAL)[1]
     assert power_through("bottom", edges, waves)(times).mean() == pytest.approx(0.5 * 8.0 * up, rel=1e-6)
     assert power_through("top", edges, waves)(times).mean() == pytest.approx(0.5 * 8.0 * up, rel=1e-6)
+
+    # a mass on the surface sends back as much; its delay is of the first order in ωm/ρc = 0.006, energies of the second
+    heavy = ground(sine(20.0), mass=0.05 * GENERAL.density)
+    for side, expected in (("left", 10.0 * along), ("top", 8.0 * up)):
+        assert power_through(side, edges, heavy)(times).mean() == pytest.approx(0.5 * expected, rel=1e-3)
 
 
 @pytest.mark.parametrize(

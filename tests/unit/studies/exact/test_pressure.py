@@ -56,6 +56,7 @@ duration = 0.15
 """
 
 SOLID = Solid(2500.0, 300.0, 300.0 / math.sqrt(2.0))
+BLAST = {"name": "blast", "hole": "hole", "pressure": 1e6, "wave": "pulse"}
 OPEN = {"boundary.top": {"type": "free"}}
 
 
@@ -131,6 +132,17 @@ def test_mirror_image_below_the_surface_moves_alike(monkeypatch) -> None:
             None,
             "solution is that of one circle",
         ),
+        (
+            {"hole": [{"name": "hole", "type": "circle", "centre": [10.0, 18.5], "radius": 2.0}]},
+            None,
+            r"hole\[1, hole\]: reaches boundary\.top; the solution is that of a closed circle",
+        ),
+        (
+            {"load": [BLAST, {"name": "gas", "hole": "hole", "pressure": 1e5}]},
+            None,
+            r"load\[2, gas\]: is steady, and begins with the run",
+        ),
+        ({"load": [{"name": "gas", "hole": "hole", "pressure": 1e5}]}, None, "Lamb's problem has one vertical force"),
         (
             {"boundary.left": {"type": "viscous_input", "wave_p": "pulse"}},
             None,
