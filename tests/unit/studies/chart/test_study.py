@@ -12,8 +12,9 @@ from dembound.errors import CaseError, RunError
 from dembound.motion.kind import Finding
 from dembound.running import Progress
 from dembound.studies.chart import reference, study
-from dembound.studies.chart.choices import choices_of, combinations
-from dembound.studies.chart.errors import Wanted
+from dembound.studies.chart.choices import Choice, choices_of, combinations
+from dembound.studies.chart.errors import Reference, Wanted
+from dembound.studies.chart.measure import Outcome
 from dembound.studies.chart.study import Options, chart
 from dembound.studies.chart.tables import COLUMNS, write_results, write_table
 
@@ -86,6 +87,14 @@ def test_a_choice_that_fails_is_kept_with_its_reason(charted, spalling) -> None:
     assert (good.outcome.failure, bad.errors) == ("", ())
     assert bad.outcome.failure.startswith("run.courant: is 3, must not be above")
     assert found.front == [0]
+
+
+def test_reasons_against_a_comparison_are_one_line(bar) -> None:
+    def gauges(*_):
+        raise CaseError(["hole: is no circle", "motion.held: must be empty"])
+
+    line = study._line(Choice("odd", {}, bar()), Outcome(), Reference("exact", "exact", gauges), Options())
+    assert (line.outcome.failure, line.errors) == ("hole: is no circle; motion.held: must be empty", ())
 
 
 def test_nothing_but_failures_is_a_failure(charted, spalling) -> None:
