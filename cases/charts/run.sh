@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The charts of docs/charts.md: error against cost of the long bar under P and S pulses, of the external source, of Lamb's
-# problem, of the tunnel, of L's bar, and of the laws.
+# problem, of a blast, of a hole under plane waves, of Garvin's problem, of the tunnel, of L's bar, and of the laws.
 #
 #   cases/charts/run.sh [RESULTS]      (default: results/charts)
 #
@@ -24,6 +24,11 @@ tunnel() { # PATTERN P_WAVE_SPEED PACKING LEFT RIGHT BOTTOM: in another pattern,
 
 chart rock_bar
 chart lamb --quantity displacement
+chart blast
+chart cavity
+chart cavity --name cavity_p --set 'title="A hole under a P wave at 30°: boxes, disks and elements"' \
+    --set 'incident.type="p"'
+chart garvin
 chart long_bar
 chart shear_bar
 chart external_source --quantity displacement

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from dembound.bar.kind import SPALL_PLACE, SPALL_TIME
-from dembound.boundaries import OPPOSITE, Motion, axis_of_motion, normal_axis
+from dembound.boundaries import OPPOSITE, SIDES, Motion, axis_of_motion, normal_axis
+from dembound.boundaries.boundary import Boundary
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
@@ -16,6 +17,7 @@ from dembound.casefile.types import LAWS
 from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.exact.bar import End, bar_stress, bar_velocity, triangle_spall
+from dembound.kinds import with_changes
 from dembound.studies.chart.measure import Gauge, Gauges
 from dembound.studies.exact import exact_motions, problem_of
 from dembound.waves import Triangle, Wave
@@ -58,8 +60,13 @@ def exact_of(case: Case) -> Exact:
 
 @dataclass(frozen=True)
 class Continuum(Exact):
-    """One of the problems of `studies/exact`, by its name there."""
+    """One of the problems of `studies/exact`, by its name there.
 
+    base : the case whose problem it is. Where rock goes on beyond a side of it, it does so for all choices: what a free
+    or fixed side there returns is an error of the choice.
+    """
+
+    base: DiskCase
     name: str
     sentence: str
     until: float
@@ -68,13 +75,31 @@ class Continuum(Exact):
     def of(cls, case: DiskCase) -> "Continuum":
         """The problem of a case; raises CaseError, with the reasons, if it is none."""
         problem = problem_of(build(case))
-        return cls(problem.name, problem.sentence, min(problem.until.values(), default=math.inf))
+        return cls(case, problem.name, problem.sentence, min(problem.until.values(), default=math.inf))
 
     def gauges(self, case: Case, recorded: Gauges) -> dict[str, Gauge]:
         """The motion at the monitors' places; errors as of `exact_motions`."""
         assert isinstance(case, DiskCase)
-        _, motions = exact_motions(build(case), self.name)
+        _, motions = exact_motions(build(self._without_ends(case)), self.name)
         return {name: Gauge(recorded[name].position, *motion) for name, motion in motions.items()}
+
+    def _without_ends(self, case: DiskCase) -> DiskCase:
+        """The case of a choice, with the sides of the base if it ends where the rock of the base goes on."""
+        if not any(_goes_on(self.base.side(side)) and _ends(case.side(side)) for side in SIDES):
+            return case
+        endless = with_changes(case, {"boundary": {side: table.given() for side, table in self.base.boundary.items()}})
+        assert isinstance(endless, DiskCase)
+        return endless
+
+
+def _goes_on(side: Boundary) -> bool:
+    """Whether the rock goes on beyond a side."""
+    return side.is_artificial or side.is_outside
+
+
+def _ends(side: Boundary) -> bool:
+    """Whether the rock ends at a side, instead of going on or being repeated beyond."""
+    return not (_goes_on(side) or side.is_mirror or side.is_periodic)
 
 
 @dataclass(frozen=True)

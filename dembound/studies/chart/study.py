@@ -192,7 +192,7 @@ def _line(choice: Choice, outcome: Outcome, reference: Reference, options: Optio
     try:
         return Line(choice, outcome, errors(choice, outcome, reference, options.wanted))
     except CaseError as error:
-        return Line(choice, replace(outcome, failure=str(error)))
+        return Line(choice, replace(outcome, failure="; ".join(error.problems)))
 
 
 def _point(line: Line) -> Point:

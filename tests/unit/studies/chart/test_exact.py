@@ -1,13 +1,22 @@
 """Which exact solutions cases have, and for how long they are valid."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from dembound.disks.scene import build
 from dembound.errors import CaseError
+from dembound.kinds import load, with_changes
+from dembound.shipped import folder
+from dembound.studies.chart.choices import choices_of
 from dembound.studies.chart.exact import Continuum, PlaneWave, PulseInBar, exact_of
 from dembound.studies.chart.measure import Gauge
+
+ECHO = (75.0 * (1.0 + 3**0.5) - 20.0) / (1000.0 / 2**0.5) + (math.hypot(0.5, 150.5) - 20.0) / 1000.0
+"""When (s) the SV wave of `cases/oblique.toml` has met the wall of the hole, and the P wave that leaves there has come
+back from the surface at the monitor below it, on the disk's place half a metre beside the axis."""
 
 EVEN = {"boundary.left": {"type": "viscous_input", "wave_p": "pulse"}}
 
@@ -80,11 +89,78 @@ def test_s_waves_have_one_between_periodic_sides(bar) -> None:
     assert exact_of(bar({**wave, **sides})).motion == "s"
 
 
-def test_lambs_problem_has_one() -> None:
-    from dembound.kinds import load
-    from dembound.shipped import folder
-
-    case = load(folder() / "zhou2018" / "lamb_viscous.toml")
-    found = exact_of(case)
+@pytest.mark.parametrize(
+    ("name", "problem", "until"),
+    [
+        ("zhou2018/lamb_viscous", "lamb", math.inf),
+        ("charts/blast", "cavity", math.inf),
+        ("charts/cavity", "scattering", math.inf),
+        ("charts/garvin", "garvin", math.inf),
+        ("oblique", "scattering", pytest.approx(ECHO)),
+    ],
+)
+def test_problems_of_a_continuum_have_one(name, problem, until) -> None:
+    found = exact_of(load(folder() / f"{name}.toml"))
     assert isinstance(found, Continuum)
-    assert found.name == "lamb"
+    assert (found.name, found.until) == (problem, until)
+
+
+def test_its_motion_is_that_of_each_choice_at_the_monitors_of_the_choice() -> None:
+    """The same hole and monitors in a larger box, and a monitor elsewhere."""
+    case = load(folder() / "charts" / "blast.toml")
+    larger, other = (
+        with_changes(case, next(each.set for each in case.chart.choice if each.name == name))
+        for name in ("outside, 80 m, disks of 0.5 m", "outside, 40 m, disks of 1 m")
+    )
+    solution = exact_of(case)
+    still = Gauge(np.zeros(2), np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))
+    here, there, elsewhere = (
+        solution.gauges(each, {name: replace(still, position=place) for name, place in build(each).monitored.items()})
+        for each in (case, larger, other)
+    )
+    np.testing.assert_allclose(there["side"].position - here["side"].position, [20.0, 20.0])
+    size = np.abs(here["side"].velocity).max()
+    np.testing.assert_allclose(there["side"].velocity, here["side"].velocity, atol=1e-6 * size)
+    # 12.25 m and 12.5 m from the axis: the crest decays with the root of the distance, as a cylindrical wave
+    radii = [float(np.hypot(*(gauges["side"].position - 20.0))) for gauges in (here, elsewhere)]
+    crests = [np.hypot(*gauges["side"].velocity[:, :2].T).max() for gauges in (here, elsewhere)]
+    assert radii[1] > radii[0]
+    assert crests[1] < crests[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "reason"),
+    [
+        ("cavity", {"boundary.left": {"type": "viscous"}}, 'boundary.left.type: is "viscous", but the wave of'),
+        ("cavity", {"boundary.top": {"type": "viscoelastic", "distance": 20.0}}, "boundary.top.type: is"),
+        ("cavity", {"incident.type": "s"}, "incident.type: "),
+        ("blast", {"load.blast.hole": "shaft"}, "load[1, blast].hole: "),
+    ],
+)
+def test_choices_that_do_not_apply_are_left_out_by_name(name, changes, reason) -> None:
+    case = load(folder() / "charts" / f"{name}.toml")
+    choices, left_out = choices_of(case, {"as it is": {}, "of another kind": changes})
+    assert [choice.name for choice in choices] == ["as it is"]
+    (line,) = left_out
+    assert line.startswith(f"of another kind: left out, {reason}")
+
+
+def test_sides_of_a_choice_that_end_the_rock_are_its_error() -> None:
+    """The exact motion beside free and fixed sides, whose top is no free surface either, is that of endless rock."""
+    case = load(folder() / "charts" / "blast.toml")
+    ended = {f"boundary.{side}": {"type": "fixed"} for side in ("left", "right", "bottom")}
+    still = Gauge(np.zeros(2), np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))
+    beside, alone = (
+        exact_of(case).gauges(each, dict.fromkeys(("side", "between", "diagonal"), still))
+        for each in (with_changes(case, ended | {"boundary.top": {"type": "free"}}), case)
+    )
+    for name, gauge in alone.items():
+        np.testing.assert_array_equal(beside[name].velocity, gauge.velocity)
+
+
+def test_a_choice_of_another_problem_has_none() -> None:
+    """A quarter beside mirror planes: the solution is that of a hole with rock on all sides."""
+    case = load(folder() / "charts" / "blast.toml")
+    quarter = with_changes(case, {"boundary.left": {"type": "symmetry"}})
+    with pytest.raises(CaseError, match=r'boundary\.left\.type: is "symmetry", must be a side beyond'):
+        exact_of(case).gauges(quarter, {})

@@ -12,8 +12,9 @@ from dembound.errors import CaseError, RunError
 from dembound.motion.kind import Finding
 from dembound.running import Progress
 from dembound.studies.chart import reference, study
-from dembound.studies.chart.choices import choices_of, combinations
-from dembound.studies.chart.errors import Wanted
+from dembound.studies.chart.choices import Choice, choices_of, combinations
+from dembound.studies.chart.errors import Reference, Wanted
+from dembound.studies.chart.measure import Outcome
 from dembound.studies.chart.study import Options, chart
 from dembound.studies.chart.tables import COLUMNS, write_results, write_table
 
@@ -88,6 +89,14 @@ def test_a_choice_that_fails_is_kept_with_its_reason(charted, spalling) -> None:
     assert found.front == [0]
 
 
+def test_reasons_against_a_comparison_are_one_line(bar) -> None:
+    def gauges(*_):
+        raise CaseError(["hole: is no circle", "motion.held: must be empty"])
+
+    line = study._line(Choice("odd", {}, bar()), Outcome(), Reference("exact", "exact", gauges), Options())
+    assert (line.outcome.failure, line.errors) == ("hole: is no circle; motion.held: must be empty", ())
+
+
 def test_nothing_but_failures_is_a_failure(charted, spalling) -> None:
     with pytest.raises(RunError, match=r"courant 3: run\.courant"):
         charted(spalling(), {"run.courant": [3.0]})
@@ -111,13 +120,24 @@ def test_a_choice_that_is_the_reference_run_again_is_not_its_cheapest(charted, b
     assert found.cheapest(1.0) in (2, 3)
 
 
-def test_of_equally_accurate_choices_the_first_is_named(charted, bar) -> None:
+@pytest.mark.parametrize(
+    ("costs", "named"),
+    [
+        ((1.0, 1.0), "boundary.right viscous (10 %, 1 s)"),
+        ((1.0, 0.8), "boundary.right viscous (10 %, 1 s)"),  # within the noise of CPU times the works decide: equal
+        ((1.0, 0.4), "boundary.right free (10 %, 0.4 s)"),
+    ],
+)
+def test_of_equally_accurate_choices_the_cheaper_or_else_the_first_is_named(charted, bar, costs, named) -> None:
     sides = {"boundary.right": [{"type": "viscous"}, {"type": "free"}]}
     found, _ = charted(bar({"run.duration": 0.01}), sides, repeats=1, reference="exact")
-    errors = [[replace(line.errors[0], rms=rms)] for line, rms in zip(found.lines, (0.1001, 0.1), strict=True)]
-    lines = [replace(line, errors=each) for line, each in zip(found.lines, errors, strict=True)]
-    equal = replace(found, lines=lines, front=[1, 0])  # the second by a thousandth, at the same cost
-    assert "most accurate: boundary.right viscous (10 %" in equal.sentence
+    assert found.lines[0].outcome.work == found.lines[1].outcome.work
+    lines = [
+        replace(line, outcome=replace(line.outcome, cpu=[cost]), errors=[replace(line.errors[0], rms=rms)])
+        for line, cost, rms in zip(found.lines, costs, (0.1001, 0.1), strict=True)
+    ]
+    equal = replace(found, lines=lines, front=[1, 0])  # the second is more accurate by a thousandth
+    assert equal.sentence.endswith(f"most accurate: {named}")
 
 
 FADING = {"bar.attenuation": 0.1, "bar.strength": 1e9, "method": {"type": "finite_difference"}, "load.1.nodes": 1}
