@@ -1,6 +1,6 @@
 """Errors of the motion of a tunnel's wall under P and SV waves beside the exact series: the table of docs/exact.md.
 
-    python cases/exact/scattering.py      (five minutes of CPU time)
+    python cases/exact/scattering.py      (two minutes of CPU time)
 
 Places are the disks nearest to 72 points of the wall; the exact motion is that at their own centres.
 """

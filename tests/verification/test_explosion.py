@@ -18,7 +18,7 @@ CONTINUUM = 1e-3
 
 
 def test_the_surface_moves_as_exactly() -> None:
-    """Disks of 1 m, 21 to the shortest S wave, lag, Rayleigh waves most, as the slowest; those of half the size a quarter.
+    """Disks of 1 m, 21 to the shortest S wave, lag, Rayleigh waves most of all; disks of half the size a quarter of it.
 
     A moment that was wrong by a factor of two or c_p²/c_s², or a pair of forces without the other, would be an error of
     some 100 %, the width of the source left out 1 %.
