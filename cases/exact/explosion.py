@@ -150,8 +150,24 @@ class Motion:
 
     def errors(self) -> np.ndarray:
         """RMS (2, p) over time of the difference over that of the exact vector, of displacement and velocity, %."""
-        square = [np.sum(values**2, axis=(2, 3)).T for values in (self.found - self.exact, self.exact)]
-        return 100.0 * np.sqrt(square[0] / square[1])
+        return errors(self.found, self.exact)
+
+    def errors_of_means(self) -> np.ndarray:
+        """The same (2, p/2) of the means of both sides, of which the second half of the places are the left ones."""
+        return errors(*(0.5 * sum(np.split(values * self._outwards, 2)) for values in (self.found, self.exact)))
+
+    @property
+    def _outwards(self) -> np.ndarray:
+        """Signs (p, 1, 1, 2) that mirror the motion of places left of the source."""
+        signs = np.ones((len(self.found), 1, 1, 2))
+        signs[len(signs) // 2 :, ..., 0] = -1.0
+        return signs
+
+
+def errors(found: np.ndarray, expected: np.ndarray) -> np.ndarray:
+    """RMS (2, p) over time of the difference of vectors (p, 2, k, 2) over that of the expected ones, %."""
+    square = [np.sum(values**2, axis=(2, 3)).T for values in (found - expected, expected)]
+    return 100.0 * np.sqrt(square[0] / square[1])
 
 
 def exact(times: np.ndarray, places: np.ndarray, width: float, case: DiskCase, solid: Solid) -> np.ndarray:
@@ -175,14 +191,15 @@ def of_lattices() -> Iterator[str]:
     """Errors for several diameters, and with a finer continuum."""
     for diameter, accuracy in product((1.0, 0.5, 0.25), (1e-3, 1e-4)):
         case = dembound.change(lattice(diameter), {"outside": {"accuracy": accuracy}})
-        yield f"A, D = {diameter:g} m, continuum for {accuracy:g}: {line(beside_exact(case, 1.5 * diameter))}"
+        yield f"A, D = {diameter:g} m, continuum for {accuracy:g}: {line(beside_exact(case, 1.5 * diameter).errors())}"
 
 
 def of_random_packings() -> Iterator[str]:
-    """Errors of pattern B, right and left of the source, for two diameters of disks in bricks of 20 diameters."""
-    for diameter, seed in product((0.5, 0.25), (1, 2, 3)):
-        motion = beside_exact(random(diameter, seed), 8.0 * diameter, ways=(1.0, -1.0), disks=12)
-        yield f"B, seed {seed}, D = {diameter:g} m: {line(motion)}"
+    """Errors of pattern B right and left of the source, and of their means; sources of two widths, in diameters."""
+    for (diameter, widths), seed in product(((0.5, 8.0), (0.25, 8.0), (0.5, 3.0)), (1, 2, 3)):
+        motion = beside_exact(random(diameter, seed), widths * diameter, ways=(1.0, -1.0), disks=12)
+        name = f"B, seed {seed}, D = {diameter:g} m, width {widths:g} D"
+        yield f"{name}: {line(motion.errors())}; means of both sides {line(motion.errors_of_means())}"
 
 
 def beside_exact(case: DiskCase, width: float, ways: tuple[float, ...] = (1.0,), disks: int = 1) -> Motion:
@@ -192,9 +209,9 @@ def beside_exact(case: DiskCase, width: float, ways: tuple[float, ...] = (1.0,),
     return Motion(exploding(case, width), width, places, disks)
 
 
-def line(motion: Motion) -> str:
-    """Errors at all places."""
-    u, v = (", ".join(f"{value:.2f}" for value in row) for row in motion.errors())
+def line(found: np.ndarray) -> str:
+    """Errors (2, p) at all places."""
+    u, v = (", ".join(f"{value:.2f}" for value in row) for row in found)
     return f"u {u}; v {v} %"
 
 
