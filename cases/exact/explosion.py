@@ -1,6 +1,6 @@
 """Errors of an explosion below a free surface beside Garvin's exact solution: the tables of docs/exact.md.
 
-    python cases/exact/explosion.py [lattice] [random]      (four minutes of CPU time)
+    python cases/exact/explosion.py [lattice] [random]      (five minutes of CPU time)
 
 Half of the ground, right of a mirror plane through the source, is stepped; random packings as a whole. The source has
 no hole: each bond pushes its disks as under a pressure M g in the whole packing, where g is a Gaussian of unit integral
