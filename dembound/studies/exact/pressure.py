@@ -123,7 +123,9 @@ class GarvinProblem(Problem):
     """A pressure in a hole that is small beside its depth, as a line source below a free surface."""
 
     name: ClassVar[str] = "garvin"
-    sentence: ClassVar[str] = "exact line explosion below a free surface (Garvin)"
+    sentence: ClassVar[str] = (
+        "line explosion below a free surface (Garvin), exact but for what the hole scatters of echoes"
+    )
     blast: Blast
 
     @property
