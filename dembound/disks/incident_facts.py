@@ -26,12 +26,12 @@ def incident_facts(scene: DiskScene) -> dict[str, str]:
     x, y = reference_point(scene.case)
     facts = {
         "incident wave": f"{NAMES[table.type]}, {_way(table.angle)}, with the velocity of wave {table.wave} at "
-        f"({x:.10g}, {y:.10g}) m{_along(waves.waves[0])}; reaches the disks at {_arrival(scene, waves):.4g} s",
+        f"({x:.10g}, {y:.10g}) m{_along(waves.waves[0])}; reaches the disks at {arrival(scene, waves):.4g} s",
     }
     if outside.free_surface is None:
         return facts | {"reflected waves": "none, as the ground has no surface"}
     critical = critical_angle(waves.medium, table.type, math.copysign(1.0, table.angle))
-    below = "none" if critical == GRAZING else f"critical from {critical:.4g}° on"
+    below = "no critical angle" if critical == GRAZING else f"critical from {critical:.4g}° on"
     facts["reflected waves"] = f"{'; '.join(_reflected(waves))}; {below}"
     if corners := _corners(scene):
         facts["less exact monitors"] = f"near the corners where layers begin: {', '.join(corners)} m"
@@ -51,7 +51,7 @@ def _along(wave: PlaneWave) -> str:
     return f", at {1.0 / slowness:.5g} m/s along the surface" if slowness > STRAIGHT * abs(wave.slowness[1]) else ""
 
 
-def _arrival(scene: DiskScene, waves: GroundWaves) -> float:
+def arrival(scene: DiskScene, waves: GroundWaves) -> float:
     """Time (s) at which the wave reaches the first of the disks."""
     assert scene.case.incident is not None
     first = float(waves.waves[0].delays(scene.assembly.positions).min())

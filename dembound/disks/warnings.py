@@ -11,6 +11,7 @@ from dembound.boundaries import SIDES, Motion, axis_of_motion
 from dembound.casefile.disks.load import Load
 from dembound.casefile.magnitudes import grip_stress, is_quasi_static, stress_in_words, stress_warnings, time_warnings
 from dembound.disks.continuum_facts import continuum_warnings
+from dembound.disks.incident_facts import arrival
 from dembound.disks.matching import homogenised_beta, reflected
 from dembound.disks.near_ties import near_tie_warnings
 from dembound.disks.scene import DiskScene, boundary_medium
@@ -47,6 +48,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *_settles_in_tension(scene),
         *_tension(scene),
         *_too_few_per_wavelength(scene),
+        *_never_arrives(scene),
         *time_warnings(scene.case, time_step, _travel_time(scene)),
         *_stress_beside_strength(scene),
         *_default_factors(scene),
@@ -62,6 +64,13 @@ def _steady_without_static(scene: DiskScene) -> Iterator[str]:
     for load in scene.case.load:
         if load.wave is None:
             yield f"load.{load.name}: is steady, and without [static] acts suddenly at t = 0{_gives_way(scene, load)}"
+
+
+def _never_arrives(scene: DiskScene) -> Iterator[str]:
+    """A wave at an angle that is not in the body before the run ends."""
+    duration = scene.case.run.duration
+    if scene.ground_waves is not None and (begin := arrival(scene, scene.ground_waves)) >= duration:
+        yield f"incident: its wave reaches the disks at {begin:.4g} s only, after the end of the run at {duration:g} s"
 
 
 def _gives_way(scene: DiskScene, load: Load) -> str:

@@ -112,7 +112,7 @@ def of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
 
 def of_disk_case(case: DiskCase, *, full: bool) -> tuple[list[Trial], list[str]]:
     """A body of disks under the linear law, and under the case's own if that has a history."""
-    plain = replace(_at_rest(case), static=None, monitor=())
+    plain = replace(_at_rest(case), static=None, monitor=(), incident=None)
     whole = build(case)
     if whole.outside is not None:  # whose settings were chosen from the waves
         plain = replace(plain, outside=case.outside.model_copy(update=whole.outside.settings.given))

@@ -6,6 +6,7 @@ from small_cases import SURROUNDED, small
 
 from dembound.disks.incident_facts import incident_facts
 from dembound.disks.scene import build
+from dembound.disks.warnings import disk_warnings
 
 BESIDE = {"name": "beside", "position": [-1.5, 3.5]}
 CASE = SURROUNDED | {
@@ -33,7 +34,7 @@ def test_the_waves_are_told() -> None:
         ({"incident.angle": -20.0}, "incident wave", " at (12, 0) m, "),
         ({"incident.angle": 0.0}, "incident wave", "SV, straight up, with the velocity of wave pulse at (0, 0) m; "),
         ({"incident.angle": 0.0}, "reflected waves", "SV at 0° with 1 of the amplitude; critical from 45° on"),
-        ({"incident.type": "p"}, "reflected waves", "; none"),
+        ({"incident.type": "p"}, "reflected waves", "; no critical angle"),
         ({"boundary.top": {"type": "outside"}}, "reflected waves", "none, as the ground has no surface"),
         ({"incident.point": [1.0, -2.0]}, "incident wave", "at (1, -2) m"),
     ],
@@ -70,3 +71,9 @@ def test_snapshots_of_the_continuum_have_the_total_motion_and_the_scattered_one(
     np.testing.assert_allclose(ground, expected, atol=1e-12)
     assert np.abs(ground).max() > 0.01
     assert scene.beside["total"][0].all()
+
+
+def test_a_wave_that_does_not_arrive_has_a_warning() -> None:
+    for y, late in ((-50.0, True), (-1.0, False)):
+        scene = build(small(CASE, changes={"incident.point": [0.0, y], "run.duration": 0.05}))
+        assert any("reaches the disks at" in line for line in disk_warnings(scene, 1e-5)) == late
