@@ -42,8 +42,8 @@ def pressure_on(load: Load, scene: DiskBody) -> tuple[np.ndarray, np.ndarray]:
 
     There are none while the hole still has its disks, before it is excavated.
 
-    Raises CaseError for holes that cut no bonds, and for those without disks along some part of their outline, as
-    beside another hole.
+    Raises CaseError for holes that cut no bonds, for those that cut bonds across periodic sides, and for those without
+    disks along some part of their outline, as beside another hole.
     """
     hole = scene.case.hole_of(load)
     first = 0 if scene.seam is None else scene.seam.count
@@ -51,6 +51,8 @@ def pressure_on(load: Load, scene: DiskBody) -> tuple[np.ndarray, np.ndarray]:
     if hole.contains(body.positions).any():
         return np.zeros(0, dtype=np.int64), np.zeros((0, 3))
     cut = contacts_into(scene.ground.brick, body, hole)
+    if _is_beside_its_image(scene, body, hole):
+        raise _error(load, "is so near a periodic side that it cuts bonds across it; move it, or make the body larger")
     if len(cut.node) == 0:
         raise _error(load, "cuts no bonds of the body, so there is no wall to press on")
     assert load.pressure is not None
@@ -61,6 +63,13 @@ def pressure_on(load: Load, scene: DiskBody) -> tuple[np.ndarray, np.ndarray]:
     else:
         forces = _on_outline(load, hole, _edges_of(scene, body), body, disks)
     return first + disks, load.pressure * forces
+
+
+def _is_beside_its_image(scene: DiskBody, body: Assembly, hole: Hole) -> bool:
+    """Whether a hole is nearer to a periodic side than bonds are long."""
+    reach = np.abs(scene.ground.brick.vectors).max(axis=0)
+    low, high = np.array(hole.box).reshape(2, 2) - np.array(box_of(body)).reshape(2, 2)
+    return bool(np.any(scene.case.periodic & ((low < reach) | (-high < reach))))
 
 
 def _edges_of(scene: DiskBody, body: Assembly) -> Box:

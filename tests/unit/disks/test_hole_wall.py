@@ -209,3 +209,16 @@ def test_facts_name_pressure_wall_and_disks() -> None:
     fact = disk_facts(pressed(LATTICE, CIRCLE))["load p"]
     assert fact.startswith("2 MPa on 14.")
     assert fact.endswith("m of wall of hole h, on 28 particles, steady")
+
+
+@pytest.mark.parametrize(("x", "is_near"), [(2.7, True), (2.9, False), (9.3, True)])
+def test_a_hole_that_cuts_bonds_across_a_periodic_side_is_refused(x: float, is_near: bool) -> None:
+    """Of radius 2.3, disks of 0.5 m: less than a bond from the side, where forces would not be in balance."""
+    sides = {"boundary.left": {"type": "periodic"}, "boundary.right": {"type": "periodic"}}
+    scene = pressed(LATTICE, CIRCLE | {"centre": (x, 5.2)}, sides, on="bonds")
+    if is_near:
+        with pytest.raises(CaseError, match=r'load\.p\.hole: "h" is so near a periodic side that it cuts bonds'):
+            forces_of(scene.case.load[0], scene)
+    else:
+        total, moment = resultants(scene)
+        np.testing.assert_allclose([*total, moment], 0.0, atol=1e-6)  # of forces of 1e6 N
