@@ -77,13 +77,11 @@ def scattered_motion(
     radius: float,
     solid: Solid,
     tolerance: float = 1e-5,
-    more_orders: int = 0,
 ) -> ScatteredMotion:
     """Motion of places (m, 2), in m from the cavity's axis and not inside the cavity, at times (k,) s.
 
     The wave is at the axis at t = 0, so it meets the wall before, at t = −a/c; times may be negative. tolerance : of
     displacements, velocities and stresses over their largest value among all places, or that of the wave alone.
-    more_orders : beyond those whose terms are larger than rounding errors.
 
     Raises ValueError for a radius that is not positive and places in the cavity; RuntimeError if the tolerance is not
     reached, as with a wave that jumps.
@@ -93,7 +91,7 @@ def scattered_motion(
     distance, angle = np.hypot(*places.T), np.arctan2(places[:, 1], places[:, 0])
     if distance.min() < radius * (1.0 - 1e-12):
         raise ValueError(f"places must be outside the cavity of {radius} m, one is {distance.min()} m from its axis")
-    cavity = _Cavity(wave.kind, radius, solid, more_orders)
+    cavity = _Cavity(wave.kind, radius, solid)
     distance = radius * np.maximum(np.round(distance / radius, 12), 1.0)  # places on one circle are computed at once
     turned = angle - wave.angle
 
@@ -134,7 +132,6 @@ class _Cavity:
     kind: WaveKind
     radius: float
     solid: Solid
-    more_orders: int
 
     def incident(self, s: np.ndarray, distance: np.ndarray, angle: np.ndarray) -> np.ndarray:
         """Fields (m, 5, n) of the incident wave at m places and frequencies (n,)."""
@@ -176,7 +173,7 @@ class _Cavity:
     def _orders(self, s: np.ndarray) -> int:
         """Number of orders: I_n(z) is below 1e-16 from n = z + 11.4 z^⅓ on, and for small z from n = 16 on."""
         most = float(np.abs(s).max()) * self.radius / self.solid.s_wave_speed
-        return int(most + 12.0 * most ** (1.0 / 3.0)) + 16 + self.more_orders
+        return int(most + 12.0 * most ** (1.0 / 3.0)) + 16
 
     def _amplitudes(self, s: np.ndarray, at_wall: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """A_n and B_n (N, n); at_wall : ratios of outgoing functions there."""

@@ -40,21 +40,19 @@ def respond(
     tolerance: float,
     sizes: Sequence[float],
     known: Sequence[np.ndarray] | None = None,
-    window: float = WINDOW,
     most: int = MOST,
 ) -> list[np.ndarray]:
     """Responses (…, k) of all kinds to a signal at times (k,) s, which may be negative.
 
     The samples in the window are doubled until the last doubling has changed each kind by less than `tolerance` times
     its largest value, or times its usual size, in `sizes`, if that is larger: a response may not have arrived yet.
-    known : parts of the responses that are not in the transforms, and are added. window : its length over the latest
-    time; most : largest number of samples.
+    known : parts of the responses that are not in the transforms, and are added. most : largest number of samples.
 
     Raises RuntimeError if the tolerance is not reached: the smoother the response, the fewer doublings are needed; a
     response that jumps never converges.
     """
     times = np.asarray(times, dtype=float)
-    frequencies = _Frequencies(response, window * float(np.abs(times).max(initial=1e-300)), NEGLIGIBLE * tolerance)
+    frequencies = _Frequencies(response, WINDOW * float(np.abs(times).max(initial=1e-300)), NEGLIGIBLE * tolerance)
     samples, change = FEWEST, math.inf
     coarser: list[np.ndarray] | None = None
     while change > tolerance:

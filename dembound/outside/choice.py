@@ -28,8 +28,8 @@ LEAST_LATTICE, LEAST_RANDOM = 0.31, 0.7
 """Smallest side of elements over their order squared, in diameters, of a lattice and of random packings.
 
 The nodes next to the ends of an element are so much closer and lighter, and with random packings the ties also act on
-the gradients there: steps are 20 to 30 % shorter with such elements than with large ones, with sides half as long by a
-half, and in random packings to a quarter.
+the gradients there: steps are 15 to 45 % shorter with such elements than with large ones, with sides 0.6 times as long
+by a half, and in random packings to a quarter.
 """
 
 NODES = {3: 7.0, 4: 6.0, 5: 6.0, 6: 6.0}

@@ -96,24 +96,28 @@ def test_a_continued_run_has_the_same_bits(lab) -> None:
 
 @pytest.mark.parametrize("pattern", ["A", "B"])
 def test_noise_decays(lab, pattern) -> None:
-    """At the automatic step, with dashpots of ties that lag and the layer's delay in its limit."""
+    """At the automatic step, with dashpots of ties that lag and the layer's delay in its limit.
+
+    Only the dashpots take out what the elements cannot carry away: without them 7 times (A) and 200 times (B) as much
+    of the noise is left after 12,000 steps as with them.
+    """
     packing = {"pattern": "A", "size": [40.0, 20.0], "radius": 0.5}
     if pattern == "B":
         packing |= {"pattern": "B", "radius_ratio": 1.5, "brick": [10.0, 10.0], "seed": 1}
-    scene = build(with_changes(surrounded(lab), {"packing": packing}))
-    simulation = Simulation(scene, choose_step(scene)[0])
-    rng = np.random.default_rng(7)
-    noise = rng.normal(size=(3, scene.count))
-    noise[:, scene.recorded :] = 0.0
-    simulation.state.velocity = noise
-    energy = []
-    for steps in (10, 3000, 6000, 12000):
-        simulation.run(steps)
-        energy.append(float(np.sum(scene.mass * simulation.state.velocity[:2] ** 2)))
-    assert all(later < earlier for earlier, later in pairwise(energy))
-    # what is trapped leaves slowly: 0.30 measured on the lattice, with dashpots three times as large 0.14
-    assert energy[-1] < 0.4 * energy[1]
-    assert energy[-1] > 0.0
+    energies = []
+    for changes in ({}, {"outside.damping": 0.0}):
+        scene = build(with_changes(surrounded(lab), {"packing": packing} | changes))
+        simulation = Simulation(scene, choose_step(scene)[0])
+        noise = np.random.default_rng(7).normal(size=(3, scene.count))
+        noise[:, scene.recorded :] = 0.0
+        simulation.state.velocity = noise
+        energies.append([])
+        for steps in (10, 3000, 6000, 12000):
+            simulation.run(steps)
+            energies[-1].append(float(np.sum(scene.mass * simulation.state.velocity[:2] ** 2)))
+    with_dashpots, without = energies
+    assert all(later < 0.75 * earlier for earlier, later in pairwise(with_dashpots))
+    assert 0.0 < with_dashpots[-1] < 0.25 * without[-1]
 
 
 def test_noise_in_the_continuum_alone_decays(lab) -> None:

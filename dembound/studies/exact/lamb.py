@@ -23,7 +23,7 @@ from dembound.studies.exact.problem import (
     Problem,
     has_pressure,
     law_problems,
-    load_problems,
+    motion_problems,
     must_be_continuous,
     places_of,
     solid_of,
@@ -78,7 +78,7 @@ class LambProblem(Problem):
         sides that do not mirror it, an isotropic and linear medium, monitors on the top and not under the load.
         """
         case, load, solid = scene.case, _line_load(scene), solid_of(scene)
-        half_space = [*load_problems(case), *_disturbed(case), *_covered(case)]
+        half_space = [*motion_problems(case), *_disturbed(case), *_covered(case)]
         if problems := [*law_problems(case), *half_space, *_ends_of_the_surface(scene, load)]:
             raise CaseError(problems)
         wave = case.wave[load.wave]
@@ -143,11 +143,9 @@ def _covered(case: DiskCase) -> Iterator[str]:
 
 
 def _disturbed(case: DiskCase) -> Iterator[str]:
-    """What a half-space does not have: holes, motions that are held, and waves other than that of the load."""
+    """What Lamb's half-space does not have: holes, and waves other than that of the load."""
     if case.hole:
         yield "hole: Lamb's half-space has none"
-    if case.motion.held:
-        yield f"motion.held: is {list(case.motion.held)}, must be empty"
     for name in sorted(case.entering):
         yield f"wave.{name}: enters through a side; the solution is that of the load alone"
 

@@ -103,8 +103,10 @@ def has_pressure(case: DiskCase) -> bool:
     return any(load.pressure is not None and load.wave is not None for load in case.load)
 
 
-def load_problems(case: DiskCase) -> Iterator[str]:
-    """Steady loads that no static stage has balanced, which move the body as well."""
+def motion_problems(case: DiskCase) -> Iterator[str]:
+    """Held motions, and steady loads that no static stage has balanced, which move the body as well."""
+    if case.motion.held:
+        yield f"motion.held: is {list(case.motion.held)}, must be empty"
     for place, load in numbered("load", case.load):
         if load.wave is None and case.static is None:
             yield f"{place}: is steady, and begins with the run; the solution is that of waves alone, add [static]"
@@ -127,11 +129,9 @@ def surface_of(scene: DiskScene) -> float | None:
 def hole_of(scene: DiskScene) -> Circle:
     """The one hole of a scene; raises CaseError unless it is one circle, in linear rock that goes on around it."""
     case = scene.case
-    problems = [*law_problems(case), *load_problems(case)]
+    problems = [*law_problems(case), *motion_problems(case)]
     if len(case.hole) != 1 or not isinstance(case.hole[0], Circle):
         problems.append("hole: the solution is that of one circle")
-    if case.motion.held:
-        problems.append(f"motion.held: is {list(case.motion.held)}, must be empty")
     for side in SIDES:
         table = case.side(side)
         surface = side == "top" and surface_of(scene) is not None

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from small_cases import GRAINS, PUSHED, small
 
 from dembound.disks.facts import disk_facts
 from dembound.disks.hole_wall import shares_of
@@ -10,7 +11,6 @@ from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.holes.outline import EllipseOutline, PolygonOutline
 from dembound.kinds import with_changes
-from tests.small_cases import GRAINS, PUSHED, small
 
 P = 2e6
 CENTRE = (6.1, 5.2)

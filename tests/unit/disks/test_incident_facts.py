@@ -16,7 +16,7 @@ CASE = SURROUNDED | {
 }
 
 
-def test_the_waves_are_told() -> None:
+def test_facts_of_the_waves() -> None:
     """s_x = sin 30°/c_s = 1/1414 s/m, |A| as in test_plane_waves.py; at the first disk, (0.5, 0.5) m, 0.97 ms later."""
     facts = incident_facts(build(small(CASE)))
 

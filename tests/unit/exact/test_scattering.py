@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from dembound.exact import PlaneWave, ScatteredMotion, Solid, scattered_motion
+from dembound.exact import scattering as module
 from dembound.exact.scattering import WaveKind
 
 RADIUS, PERIOD = 10.0, 0.06
@@ -23,9 +24,9 @@ def pulse(t: np.ndarray) -> np.ndarray:
 
 
 def motion(
-    times: np.ndarray, places: np.ndarray, kind: WaveKind, angle: float = 0.0, tolerance: float = 1e-6, more: int = 0
+    times: np.ndarray, places: np.ndarray, kind: WaveKind, angle: float = 0.0, tolerance: float = 1e-6
 ) -> ScatteredMotion:
-    return scattered_motion(times, places, PlaneWave(kind, angle, pulse), RADIUS, SOLID, tolerance, more)
+    return scattered_motion(times, places, PlaneWave(kind, angle, pulse), RADIUS, SOLID, tolerance)
 
 
 def circle(radius: float, number: int) -> np.ndarray:
@@ -34,9 +35,11 @@ def circle(radius: float, number: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_wall_is_free_of_tractions_and_orders_are_enough(kind: WaveKind) -> None:
+def test_wall_is_free_of_tractions_and_orders_are_enough(kind: WaveKind, monkeypatch) -> None:
     times, wall = np.linspace(-0.02, 0.2, 45), circle(RADIUS, 7)
-    few, many = (motion(times, wall, kind, 0.4, more=more) for more in (0, 20))
+    few, orders = motion(times, wall, kind, 0.4), module._Cavity._orders
+    monkeypatch.setattr(module._Cavity, "_orders", lambda cavity, s: orders(cavity, s) + 20)
+    many = motion(times, wall, kind, 0.4)
     # the equations of orders far above k_s a lose digits as their two waves become alike; 1e-9 leaves some
     for free in (few.stress[:, 0], few.stress[:, 2]):
         assert np.abs(free).max() < 1e-9 * np.abs(few.stress[:, 1]).max()
