@@ -4,6 +4,7 @@ Each command imports what it calls when it is called, so that help and completio
 """
 
 from dembound.cli import (  # each registers its commands with the application
+    boundary,
     calibration,
     cases,
     chart,
@@ -15,4 +16,16 @@ from dembound.cli import (  # each registers its commands with the application
 )
 from dembound.cli.app import app, main
 
-__all__ = ["app", "calibration", "cases", "chart", "dispersion", "gauge", "main", "results", "stability", "starting"]
+__all__ = [
+    "app",
+    "boundary",
+    "calibration",
+    "cases",
+    "chart",
+    "dispersion",
+    "gauge",
+    "main",
+    "results",
+    "stability",
+    "starting",
+]

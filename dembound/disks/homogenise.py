@@ -40,10 +40,7 @@ class Network(NamedTuple):
     def of_assembly(cls, brick: Brick, stiffness: Stiffness, assembly: Assembly) -> Network:
         """Copies of a brick."""
         of = assembly.contact_type
-        constants = (stiffness.normal, stiffness.shear, stiffness.bending, stiffness.arm_i, stiffness.arm_j)
-        return cls(
-            len(assembly.radii), assembly.pairs, brick.vectors[of], Stiffness(*(values[of] for values in constants))
-        )
+        return cls(len(assembly.radii), assembly.pairs, brick.vectors[of], stiffness.of(of))
 
     @property
     def springs(self) -> np.ndarray:

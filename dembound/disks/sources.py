@@ -51,7 +51,7 @@ def _loads(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
     """Loads, by their places."""
     slowest = slowest_speed(ground)
     for load in case.load:
-        place = _place_of(case, load)
+        place = place_of(case, load)
         if load.wave is not None:
             wave = case.wave[load.wave]
             yield Source(place, wave.start, wave.duration(), slowest, is_local=place != FULL)
@@ -59,7 +59,7 @@ def _loads(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
             yield Source(place, 0.0, np.inf, slowest, is_local=place != FULL)
 
 
-def _place_of(case: DiskCase, load: Load) -> Box:
+def place_of(case: DiskCase, load: Load) -> Box:
     """The rectangle that a load acts on, of a pressure that around its hole."""
     if load.pressure is not None:
         return case.hole_of(load).box

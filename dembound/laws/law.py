@@ -1,7 +1,7 @@
 """The base of all bond laws of disks: stiffnesses and constants of pairs, from the springs of their contacts."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import ClassVar
 
 import numpy as np
@@ -41,6 +41,14 @@ class Stiffness:
     bending: np.ndarray
     arm_i: np.ndarray
     arm_j: np.ndarray
+
+    def of(self, contacts: np.ndarray) -> "Stiffness":
+        """The constants of some of the contacts, by number or as a mask."""
+        return Stiffness(*(getattr(self, each.name)[contacts] for each in fields(self)))
+
+    def times(self, factor: np.ndarray) -> "Stiffness":
+        """The same contacts with their stiffness multiplied by factors (b,)."""
+        return Stiffness(factor * self.normal, factor * self.shear, factor * self.bending, self.arm_i, self.arm_j)
 
 
 class Law(ABC):

@@ -1,0 +1,165 @@
+"""The command boundary."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.table import Table
+
+from dembound.cli.app import PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing, writable
+from dembound.cli.calibration import OneCase
+from dembound.cli.console import compact_table, err, out
+from dembound.cli.progress import INTERVAL
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from dembound.plot.reflection import Curves
+    from dembound.studies.reflection import Measured, Reflections
+
+PRINTED = 15.0
+"""Multiple of the angles (degrees) that are printed; the table of ``--table`` has all."""
+
+LEAST = 1e-8
+"""Share of energy below which numbers are rounding errors."""
+
+
+@app.command("boundary", rich_help_panel="Cases")
+def boundary(
+    case: OneCase,
+    sides: Annotated[
+        list[Side] | None,
+        typer.Option("--side", "-s", help="Side to measure; by default all that absorb. May be repeated."),
+    ] = None,
+    angles: Annotated[
+        list[float] | None,
+        typer.Option("--angle", help="Degrees from the side's normal; by default 0, 5 … 85. May be repeated."),
+    ] = None,
+    frequencies: Annotated[
+        list[float] | None,
+        typer.Option("--frequency", help="Hz; by default 12 of the case's own waves. May be repeated."),
+    ] = None,
+    output: Annotated[Path, PICTURE] = Path("boundary.png"),
+    title: PictureTitle = None,
+    table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
+    changes: Settings = None,
+) -> None:
+    """Measure how much energy the sides of a case send back, by angle and frequency, for P and S waves.
+
+    Computed for the side on the packing at the case's time step, without a run. With several sides the pictures and
+    tables have their names.
+    """
+    from dembound.plot.reflection import plot_reflection
+    from dembound.plot.style import save
+    from dembound.plot.table import write_lines
+    from dembound.studies.reflection import ANGLES, FREQUENCIES, measure_side, measured_sides
+
+    prepare_computing(None)
+    loaded = load_disks(case, changes)
+    chosen = [side.value for side in sides] if sides else measured_sides(loaded)
+    for side in chosen:
+        found = measure_side(
+            loaded,
+            side,
+            sorted(set(angles)) if angles else ANGLES,
+            sorted(set(frequencies)) if frequencies else FREQUENCIES,
+            report=_report(side),
+        )
+        out.print(_overview(found, f"{loaded.name}: {side}, {found.type}"))
+        for line in _sentences(found):
+            out.print(line)
+        words = f"Energy that the {side} side ({found.type}) of {loaded.name} sends back"
+        figure = plot_reflection(found.found.angles, found.found.frequencies, _curves(found), words)
+        picture = output if len(chosen) == 1 else output.with_stem(f"{output.stem}_{side}")
+        save(figure, picture, title)
+        out.print(f"wrote {picture}")
+        if table is not None:
+            lines = table if len(chosen) == 1 else table.with_stem(f"{table.stem}_{side}")
+            write_lines(figure, lines)
+            out.print(f"wrote {lines}")
+
+
+def _report(side: str) -> Callable[[float], None]:
+    """Prints the frequency that is being computed, at most every `INTERVAL` seconds."""
+    said = time.monotonic()
+
+    def report(frequency: float) -> None:
+        nonlocal said
+        if time.monotonic() - said > INTERVAL:
+            said = time.monotonic()
+            err.print(f"{side}: {frequency:.3g} Hz")
+
+    return report
+
+
+def _overview(found: Measured, title: str) -> Table:
+    """Shares of energy by angle, means over the frequencies."""
+    import numpy as np
+
+    values = found.found
+    heads = [
+        f"{kind.upper()} → {other.upper()}" for kind in values.kinds for other in (kind, "s" if kind == "p" else "p")
+    ]
+    low, high = values.frequencies.min(), values.frequencies.max()
+    overview = compact_table("angle", *heads, title=f"{title}: energy sent back, means of {low:.3g} to {high:.3g} Hz")
+    for index, angle in enumerate(values.angles):
+        if len(values.angles) > 7 and not math.isclose(angle % PRINTED, 0.0):
+            continue
+        row = [of[kind][:, index] for kind in values.kinds for of in (values.same, values.converted)]
+        overview.add_row(
+            f"{angle:g}°", *(_percent(float(np.nanmean(each))) if np.isfinite(each).any() else "–" for each in row)
+        )
+    return overview
+
+
+def _percent(share: float) -> str:
+    """A share in per cent with three digits."""
+    return f"{100.0 * share:.3g} %" if share > LEAST else "0 %"
+
+
+def _sentences(found: Measured) -> list[str]:
+    """What is sent back of each arrival, beside calibrated factors and a continuum."""
+    lines = []
+    beside: dict[str, Reflections] = {}
+    if found.calibrated is not None:
+        factors = ", ".join(f"{key} = {value:.4g}" for key, value in found.factors.items())
+        beside[f"calibrated ({factors})"] = found.calibrated
+    if found.continuum is not None:
+        nodes, values = found.continuum
+        beside[f'type "outside" with {nodes:,} nodes, by formula,'] = values
+    for arrival in found.arrivals:
+        share = arrival.sent_back(found.found)
+        if not math.isfinite(share):
+            continue
+        line = f"{arrival.name}: returns {_percent(share)} of the energy, {_percent(math.sqrt(share))} of the amplitude"
+        lines.append(
+            "; ".join([line, *(f"{name} {_percent(arrival.sent_back(each))}" for name, each in beside.items())])
+        )
+    if found.by_formula:
+        lines.append("by the formula of the layer that absorbs and the error of its elements, not measured")
+    return lines
+
+
+def _curves(found: Measured) -> list[Curves]:
+    """The curves of each type of waves."""
+    from dembound.plot.reflection import Curves
+
+    beside: dict[str, Reflections] = {}
+    if found.calibrated is not None:
+        beside["in all, calibrated"] = found.calibrated
+    if found.continuum is not None:
+        beside['in all, type "outside"'] = found.continuum[1]
+    return [
+        Curves(kind.upper(), found.found.same[kind], found.found.converted[kind], _totals(beside, kind))
+        for kind in found.found.kinds
+    ]
+
+
+def _totals(beside: dict[str, Reflections], kind: str) -> dict[str, np.ndarray]:
+    """Those of a type that has some."""
+    return {name: each.total(kind) for name, each in beside.items() if kind in each.kinds}  # type: ignore[arg-type]

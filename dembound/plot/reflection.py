@@ -1,0 +1,96 @@
+"""What a side sends back of P and S waves, against angle and against frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from dembound.plot.style import COLOURS, line_style, new_figure, outside_legend, styled
+
+LEAST = 1e-6
+"""Smallest share of energy drawn: 0.1 % of the amplitude."""
+
+SHOWN = (0.0, 30.0, 60.0)
+"""Angles (degrees) for which shares are drawn against frequency, or the nearest ones that were computed."""
+
+
+class Curves(NamedTuple):
+    """Shares of energy sent back of one type of waves.
+
+    name : of the waves. same, converted : (f, a) as the same and as the other type. beside : name -> (f, a) in all, of
+    other sides in place of this one.
+    """
+
+    name: str
+    same: np.ndarray
+    converted: np.ndarray
+    beside: Mapping[str, np.ndarray]
+
+
+@styled
+def plot_reflection(angles: np.ndarray, frequencies: np.ndarray, waves: Sequence[Curves], title: str) -> Figure:
+    """Means over frequencies, and their range, against angle (above); against frequency at some angles (below).
+
+    Parameters
+    ----------
+    angles, frequencies
+        (a,) degrees from the normal of the side, (f,) Hz.
+    waves
+        the types of waves, a column of panels for each.
+    title
+        of the figure.
+    """
+    figure = new_figure(5.2 * len(waves), 7.6)
+    panels = figure.subplots(2, len(waves), squeeze=False, sharey=True)
+    for (upper, lower), each in zip(panels.T, waves, strict=True):
+        _against_angle(upper, angles, each)
+        _against_frequency(lower, angles, frequencies, each)
+        upper.set_title(f"incident {each.name} waves")
+    for panel in panels[:, 0]:
+        panel.set_ylabel("energy sent back / incident (–)")
+    figure.suptitle(title, fontsize=11)
+    outside_legend(figure, list(panels.ravel()), columns=3)
+    return figure
+
+
+def _against_angle(panel: Axes, angles: np.ndarray, each: Curves) -> None:
+    """Means and range over frequencies."""
+    total = each.same + each.converted
+    low, high = np.nanmin(total, axis=0), np.nanmax(total, axis=0)
+    panel.fill_between(
+        angles, _drawn(low), _drawn(high), color=COLOURS[0], alpha=0.2, linewidth=0.0, label="range over frequencies"
+    )
+    for number, (name, values) in enumerate(
+        {"in all": total, "as the same type": each.same, "as the other type": each.converted, **each.beside}.items()
+    ):
+        look: dict[str, Any] = dict(line_style(number))
+        panel.plot(angles, _drawn(np.nanmean(values, axis=0)), label=name, gid=f"{each.name}, {name}", **look)
+    panel.set_xlabel("angle from the normal (°)")
+    _log(panel)
+    panel.set_xlim(angles.min(), max(angles.max(), angles.min() + 1.0))
+
+
+def _against_frequency(panel: Axes, angles: np.ndarray, frequencies: np.ndarray, each: Curves) -> None:
+    """In all, at some angles."""
+    near = dict.fromkeys(int(np.argmin(np.abs(angles - angle))) for angle in SHOWN)
+    for number, index in enumerate(near, start=4):
+        values, name = (each.same + each.converted)[:, index], f"in all at {angles[index]:g}°"
+        look: dict[str, Any] = {**line_style(number), "marker": "o", "markersize": 3.0}
+        panel.plot(frequencies, _drawn(values), label=name, gid=f"{each.name}, {name}", **look)
+    panel.set_xlabel("frequency (Hz)")
+    _log(panel)
+
+
+def _log(panel: Axes) -> None:
+    """Shares on a logarithmic axis."""
+    panel.set_yscale("log")
+    panel.set_ylim(LEAST, 1.3)
+
+
+def _drawn(values: np.ndarray) -> np.ndarray:
+    """Shares within the axis."""
+    return np.maximum(values, LEAST)

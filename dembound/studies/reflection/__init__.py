@@ -1,0 +1,116 @@
+"""What a side sends back of the waves that reach it, on the packing of a case: measured without a run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.model import as_kind
+from dembound.disks.matching import homogenised_beta
+from dembound.disks.scene import DiskScene, build, with_boundaries
+from dembound.disks.stability import choose_step
+from dembound.errors import CaseError
+from dembound.studies.reflection.arrivals import Arrival, arrivals_of, frequencies_of
+from dembound.studies.reflection.beyond import by_continuum
+from dembound.studies.reflection.bricks import end_scene
+from dembound.studies.reflection.meter import Meter, Reflections
+
+__all__ = ["Arrival", "Measured", "Reflections", "measure_side", "measured_sides"]
+
+Report = Callable[[float], None]
+
+ANGLES = tuple(float(angle) for angle in range(0, 90, 5))
+"""Angles (degrees) at which reflections are computed by default."""
+
+FREQUENCIES = 12
+"""Number of frequencies by default."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Reflections of a side of a case.
+
+    side, type : of the side. found : the reflections; by_formula : whether they are those of the continuum's layer by
+    formula, as the side is one. calibrated : the same with calibrated factors, given by key; None for other sides.
+    continuum : the same, with the number of nodes, if the side were of type "outside"; None where it cannot be.
+    arrivals : what reaches the side.
+    """
+
+    side: str
+    type: str
+    found: Reflections
+    by_formula: bool
+    factors: dict[str, float]
+    calibrated: Reflections | None
+    continuum: tuple[int, Reflections] | None
+    arrivals: list[Arrival]
+
+
+def measured_sides(case: DiskCase) -> list[str]:
+    """The sides that represent the medium beyond; raises CaseError if there are none."""
+    sides = [side for side, table in case.boundary.items() if table.is_artificial or table.is_outside]
+    if not sides:
+        raise CaseError(["boundary: has no side that absorbs; choose another one with --side"])
+    return sides
+
+
+def measure_side(
+    case: DiskCase,
+    side: str,
+    angles: Sequence[float] = ANGLES,
+    frequencies: int | Sequence[float] = FREQUENCIES,
+    report: Report | None = None,
+) -> Measured:
+    """Measure what a side of a case sends back.
+
+    angles : degrees from the normal, below 90. frequencies : Hz, or how many of those of the case. report : receives
+    every frequency (Hz) before it is computed.
+
+    Raises CaseError for a periodic side, and for angles and frequencies that are none.
+    """
+    problems = [f"--angle: is {a:g}, must be at least 0 and below 90 (degrees)" for a in angles if not 0.0 <= a < 90.0]
+    if not isinstance(frequencies, int):
+        problems += [f"--frequency: is {f:g}, must be above 0 (Hz)" for f in frequencies if not 0.0 < f < np.inf]
+    if problems:
+        raise CaseError(problems)
+    whole = build(case)
+    ground, table = whole.ground, case.side(side)
+    chosen = frequencies_of(case, ground, frequencies) if isinstance(frequencies, int) else np.array(frequencies)
+    arrivals = arrivals_of(case, side, ground)
+    if table.is_outside:
+        _, found = by_continuum(whole, side, chosen, angles)
+        return Measured(side, table.type, found, True, {}, None, None, arrivals)
+    if table.is_periodic:
+        raise CaseError([f"--side: is {side}, which is periodic; must be a side at which the body ends"])
+    step, _ = choose_step(whole)
+    scene = end_scene(case, side)
+    best = {f"beta_{motion}": homogenised_beta(scene, side, motion) for motion in table.factors}
+    factors = {key: float(value) for key, value in best.items() if np.isfinite(value)}
+    scenes = [scene, *([_with_factors(scene, side, factors)] if factors else [])]
+    found, *others = Meter(side, step, *scenes).measure(chosen, angles, report=report)
+    continuum = _as_continuum(case, side, chosen, angles)
+    return Measured(side, table.type, found, False, factors, others[0] if others else None, continuum, arrivals)
+
+
+def _with_factors(scene: DiskScene, side: str, factors: Mapping[str, float]) -> DiskScene:
+    """The same scene with other factors of the dashpots of a side."""
+    table = scene.case.side(side).model_copy(update=factors)
+    return with_boundaries(scene, replace(scene.case, boundary={**scene.case.boundary, side: table}))
+
+
+def _as_continuum(
+    case: DiskCase, side: str, frequencies: np.ndarray, angles: Sequence[float]
+) -> tuple[int, Reflections] | None:
+    """Nodes of a continuum beyond all sides that absorb and what it would send back; None where there can be none."""
+    from dembound.kinds import with_changes
+
+    absorbing = {side, *(name for name, table in case.boundary.items() if table.is_artificial)}
+    changes = {f"boundary.{name}": {"type": "outside"} for name in absorbing}
+    try:
+        other = as_kind(with_changes(case, changes), DiskCase, "is no case of disks")
+        return by_continuum(build(other), side, frequencies, angles)
+    except CaseError:
+        return None

@@ -1,0 +1,152 @@
+"""Networks of disks in steady oscillation, condensed to some of their degrees of freedom.
+
+A motion u e^{iωt} at the steps of central differences needs the forces D u e^{iωt}, with the dynamic stiffness
+
+    D = K − ((2/Δt) sin(ωΔt/2))² M + i (sin(ωΔt)/Δt) C,
+
+exactly that of the scheme with centred dashpots C. If no forces act on all but some kept degrees of freedom k, those on
+these are S u_k with S = D_kk − D_ki D_ii⁻¹ D_ik. With the kept ones last, S is the product of the last blocks of the
+factors of D, L_kk U_kk, which takes one factorisation and no solve.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from dembound.disks.homogenise import Network
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_matrix
+
+SYMMETRIC = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+"""Options of SuperLU for matrices with a symmetric pattern: pivots on the diagonal, which keeps their order."""
+
+
+class Oscillation(NamedTuple):
+    """A frequency at the steps of central differences.
+
+    omega : ω, rad/s; time_step : s, 0 for continuous time.
+    """
+
+    omega: float
+    time_step: float
+
+    @property
+    def square(self) -> float:
+        """What takes the place of ω², 1/s²."""
+        if self.time_step == 0.0:
+            return self.omega**2
+        return (2.0 / self.time_step * math.sin(0.5 * self.omega * self.time_step)) ** 2
+
+    @property
+    def rate(self) -> complex:
+        """What takes the place of iω, 1/s, at dashpots."""
+        if self.time_step == 0.0:
+            return 1j * self.omega
+        return 1j * math.sin(self.omega * self.time_step) / self.time_step
+
+
+class Body(NamedTuple):
+    """Disks, their degrees of freedom numbered as all x, all y, all rotations.
+
+    within : contacts, and beyond : those across the sides that are periodic, by how many periods (b,) the second disk
+    lies beyond; mass, damping, stiffness (3n,) of disks, of dashpots and of springs to what is fixed; moves (3n,) bool.
+    """
+
+    within: Network
+    beyond: Network
+    periods: np.ndarray
+    mass: np.ndarray
+    damping: np.ndarray
+    stiffness: np.ndarray
+    moves: np.ndarray
+
+    def numbers(self, disks: np.ndarray) -> np.ndarray:
+        """Those degrees of freedom of some disks that move."""
+        every = (np.arange(3)[:, None] * self.within.disks + disks).ravel()
+        return every[self.moves[every]]
+
+
+class Condensed:
+    """The dynamic stiffness of a body on the disks at its interface, beside copies of itself along the interface.
+
+    Parameters
+    ----------
+    body : the disks. interface : numbers (k,) of the degrees of freedom at the interface.
+
+    First it is condensed to the interface and the disks at the periodic sides, then, for every wave along the
+    interface, to the interface.
+    """
+
+    def __init__(self, body: Body, interface: np.ndarray) -> None:
+        from scipy.sparse import diags
+
+        self._body, self._count = body, len(interface)
+        aside = np.setdiff1d(body.numbers(np.unique(body.beyond.pairs)), interface)
+        self._kept = np.concatenate([interface, aside])
+        others = np.setdiff1d(np.flatnonzero(body.moves), self._kept)
+        matrix = _stiffness(body.within) + diags(body.stiffness)
+        self._order = np.concatenate([_in_order(matrix, others), self._kept])
+        self._inner = len(others)
+        self._matrix = matrix[self._order][:, self._order].tocsc()
+        self._fixed: np.ndarray | None = None
+
+    def at(self, oscillation: Oscillation) -> None:
+        """Condense at a frequency."""
+        from scipy.sparse import diags
+
+        body = self._body
+        added = -oscillation.square * body.mass[self._order]
+        if body.damping.any():
+            added = added + oscillation.rate * body.damping[self._order]
+        self._fixed = _last_block(self._matrix + diags(added, format="csc"), self._inner)
+
+    def stiffness(self, phase: complex) -> np.ndarray:
+        """Dynamic stiffness (k, k) of the interface if the motion of the next copy is this one's times the phase."""
+        assert self._fixed is not None
+        matrix, kept = self._fixed.astype(complex), self._count
+        beyond = self._body.beyond
+        if len(beyond.pairs):
+            ways = beyond.motion_matrix(phase**self._body.periods)[:, self._kept]
+            matrix += (ways.conj().T @ ways.multiply(beyond.springs[:, None])).toarray()
+        if len(matrix) == kept:
+            return matrix
+        return matrix[:kept, :kept] - matrix[:kept, kept:] @ np.linalg.solve(matrix[kept:, kept:], matrix[kept:, :kept])
+
+
+def _stiffness(network: Network) -> csc_matrix:
+    """The stiffness matrix (3n, 3n) of contacts, N/m."""
+    ways = network.motion_matrix()
+    return (ways.T @ ways.multiply(network.springs[:, None])).tocsc()
+
+
+def _in_order(matrix: csc_matrix, chosen: np.ndarray) -> np.ndarray:
+    """Some rows of a symmetric matrix, in an order in which its factors remain sparse."""
+    from scipy.sparse import eye
+    from scipy.sparse.linalg import splu
+
+    if len(chosen) == 0:
+        return chosen
+    part = abs(matrix[chosen][:, chosen])
+    dominant = (part + float(part.sum(axis=0).max()) * eye(len(chosen))).tocsc()
+    return chosen[np.argsort(splu(dominant, permc_spec="MMD_AT_PLUS_A", **SYMMETRIC).perm_c)]
+
+
+def _last_block(matrix: csc_matrix, first: int) -> np.ndarray:
+    """The symmetric matrix condensed to its rows from `first` on."""
+    from scipy.sparse.linalg import splu
+
+    if first == 0:
+        return matrix.toarray()
+    factors = splu(matrix, permc_spec="NATURAL", **SYMMETRIC)
+    last = factors.perm_c[first:] - first
+    if last.min() >= 0 and np.array_equal(factors.perm_c, factors.perm_r):
+        product = factors.L[first:, first:].toarray() @ factors.U[first:, first:].toarray()
+        return product[np.ix_(last, last)]
+    inner = splu(
+        matrix[:first, :first].tocsc(), permc_spec="MMD_AT_PLUS_A"
+    )  # rows that are not connected change places
+    return matrix[first:, first:].toarray() - matrix[first:, :first] @ inner.solve(matrix[:first, first:].toarray())

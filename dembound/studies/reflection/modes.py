@@ -1,0 +1,84 @@
+"""Waves in a row of equal bricks, and what its end sends back.
+
+S₁₂ = U Vᴴ has a low rank r: motions that die out within a brick do not reach its next interface. In the coordinates
+x = Vᴴp and y = Uᴴp of the interface, the waves p_c = λᶜp of the row are, with ŷ = y/λ and A = S₁₁ + S₂₂, those of
+
+    [1  VᴴA⁻¹V; 0  UᴴA⁻¹V] [x; ŷ] = −λ [VᴴA⁻¹U  0; UᴴA⁻¹U  1] [x; ŷ],
+
+2r of them, of which those with |λ| = 1 propagate. They carry the power ½ω Im(x̄·ŷ) inwards, without interference.
+The end answers with x₀ = R y_{−1}, R = −Vᴴ(S₂₂ + S_e)⁻¹V, which the incident wave and those that run or die out
+inwards fulfil together.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+RANK = 1e-11
+"""Singular values of S₁₂ over the largest one that count as rank."""
+
+PROPAGATES = 1e-6
+"""Difference of |λ| from 1 below which a wave propagates; of others a side reflects nothing that gets far."""
+
+
+class Modes(NamedTuple):
+    """Waves of a row, m of them.
+
+    factor : λ (m,). x, y : (r, m) x and ŷ. motion : (k, m) of the interface. power : (m,) that they carry inwards, 0
+    unless they propagate. v : V (k, r).
+    """
+
+    factor: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    motion: np.ndarray
+    power: np.ndarray
+    v: np.ndarray
+
+    @property
+    def outgoing(self) -> np.ndarray:
+        """Which (m,) carry power outwards, to the side."""
+        return self.power < 0.0
+
+    @property
+    def returning(self) -> np.ndarray:
+        """Which (m,) carry power inwards or die out inwards."""
+        return (self.power > 0.0) | ((self.power == 0.0) & (np.abs(self.factor) > 1.0))
+
+
+def modes_of(stiffness: np.ndarray) -> Modes:
+    """The waves of bricks with the dynamic stiffness (2k, 2k) of both interfaces."""
+    from scipy.linalg import eig
+
+    k = len(stiffness) // 2
+    u, sizes, vh = np.linalg.svd(stiffness[:k, k:])
+    rank = int(np.count_nonzero(sizes > RANK * sizes[0]))
+    root = np.sqrt(sizes[:rank])
+    u, v = u[:, :rank] * root, vh[:rank].conj().T * root
+    by_u, by_v = np.split(np.linalg.solve(stiffness[:k, :k] + stiffness[k:, k:], np.hstack([u, v])), 2, axis=1)
+    one, none = np.eye(rank), np.zeros((rank, rank))
+    left = np.block([[one, v.conj().T @ by_v], [none, u.conj().T @ by_v]])
+    right = np.block([[v.conj().T @ by_u, none], [u.conj().T @ by_u, one]])
+    factor, shapes = eig(left, -right)
+    finite = np.isfinite(factor) & (np.abs(factor) > 0.0)
+    factor, (x, y) = factor[finite], np.split(shapes[:, finite], 2)
+    motion = -(by_u @ (x * factor) + by_v @ y)
+    power = np.where(np.abs(np.abs(factor) - 1.0) < PROPAGATES, np.imag(np.sum(x.conj() * y, axis=0)), 0.0)
+    return Modes(factor, x, y, motion, power, v)
+
+
+def sent_back(modes: Modes, incident: int, stiffness: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Power (m,) that an end sends back in each of the waves, over that of the incident one.
+
+    stiffness : (2k, 2k) as for `modes_of`; end : S_e (k, k).
+    """
+    k = len(end)
+    answer = -modes.v.conj().T @ np.linalg.solve(stiffness[k:, k:] + end, modes.v)
+    back = np.flatnonzero(modes.returning)
+    own = answer @ modes.y[:, incident] - modes.x[:, incident]
+    amplitude = np.linalg.lstsq(modes.x[:, back] - answer @ modes.y[:, back], own, rcond=None)[0]
+    power = np.zeros(len(modes.factor))
+    power[back] = modes.power[back] * np.abs(amplitude) ** 2 / -modes.power[incident]
+    return power
