@@ -106,7 +106,8 @@ def _overview(found: Measured, title: str) -> Table:
         f"{kind.upper()} → {other.upper()}" for kind in values.kinds for other in (kind, "s" if kind == "p" else "p")
     ]
     low, high = values.frequencies.min(), values.frequencies.max()
-    overview = compact_table("angle", *heads, title=f"{title}: energy sent back, means of {low:.3g} to {high:.3g} Hz")
+    range_in_words = f"at {low:.3g} Hz" if low == high else f"means of {low:.3g} to {high:.3g} Hz"
+    overview = compact_table("angle", *heads, title=f"{title}: energy sent back, {range_in_words}")
     for index, angle in enumerate(values.angles):
         if len(values.angles) > 7 and not math.isclose(angle % PRINTED, 0.0):
             continue

@@ -722,6 +722,24 @@ def test_dispersion_is_told_drawn_and_written(dembound, tmp_path) -> None:
     assert files(tmp_path) == {"dispersion.png", "table.csv"}
 
 
+def test_what_sides_send_back_is_printed_drawn_and_written(dembound, written, tmp_path) -> None:
+    path = written("small.toml")
+    sides = ["--set", 'boundary.top={type="viscous",beta_s=0.5}', "--side", "right", "--side", "top"]
+    answer = dembound("boundary", path, *sides, "--angle", 0, "--angle", 30, "--frequency", 5, "--table", "table.csv")
+
+    assert answer.code == 0
+    assert [line for line in answer.out.splitlines() if line.startswith("wrote")] == [
+        "wrote boundary_right.png",
+        "wrote table_right.csv",
+        "wrote boundary_top.png",
+        "wrote table_top.csv",
+    ]
+    # S: (1 − β)/(1 + β) = 1/3 of the amplitude for β = 0.5; tan(qa/4) = 1 % for a whole last mass
+    assert "returns 11.1 % of the energy, 33.4 % of the amplitude; calibrated (beta_s = 1) 0.00992 %" in answer.out
+    assert "30°" not in answer.out  # as y is held
+    assert dembound("boundary", path, "--side", "left", "--set", 'boundary.left={type="periodic"}').code == 2
+
+
 def test_stability_is_told_drawn_and_written(dembound, written, tmp_path) -> None:
     answer = dembound("stability", written(), "--steps", 500, "--table", "table.csv", "-o", "noise.png")
 
