@@ -34,7 +34,12 @@ def boundary(
     case: OneCase,
     sides: Annotated[
         list[Side] | None,
-        typer.Option("--side", "-s", help="Side to measure; by default all that absorb. May be repeated."),
+        typer.Option(
+            "--side",
+            "-s",
+            metavar="SIDE",
+            help="left, right, bottom or top; by default all that absorb. May be repeated.",
+        ),
     ] = None,
     angles: Annotated[
         list[float] | None,
