@@ -56,8 +56,7 @@ def boundary(
 ) -> None:
     """Measure how much energy the sides of a case send back, by angle and frequency, for P and S waves.
 
-    Computed for the side on the packing at the case's time step, without a run. With several sides the pictures and
-    tables have their names.
+    Nothing is run. With several sides, pictures and tables have their names.
     """
     from dembound.plot.reflection import plot_reflection
     from dembound.plot.style import save
