@@ -11,7 +11,8 @@ from dembound.bar.banded import is_stable, largest_stable_step
 from dembound.bar.memory import run_bytes
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.bar import BarCase
-from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.bonds import Bonds
+from dembound.methods.rod import Rod
 from dembound.motion.scene import Scene
 
 
@@ -53,7 +54,7 @@ class BarBody(Scene):
         bar = self.case.bar
         return {
             "density": bar.density,
-            "section": self.rod.section,
+            "section": self.rod.ranges[0].section,
             "wave_speed": bar.speed,
             "attenuation": bar.attenuation,
             "loaded": self.case.loaded,
@@ -83,12 +84,12 @@ class BarBody(Scene):
     @cached_property
     def mass(self) -> np.ndarray:
         """(n,) kg; half at the ends."""
-        return self.case.bar.density * self.rod.volumes
+        return self.rod.mass
 
     @cached_property
     def inertia(self) -> np.ndarray:
         """(n,) kg·m² of thin slices as long as the spacing; they do not turn."""
-        return self.mass * self.rod.spacing**2 / 12.0
+        return self.rod.summed(lambda part: part.density * part.volumes * part.spacing**2 / 12.0)
 
     @property
     def free(self) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dembound.bar.lattice import carrying_lattice
+from dembound.bar.lattice import carrying_lattices
 from dembound.bar.scene import BarScene
 from dembound.bar.summary import describe_bar, describe_end
 from dembound.boundaries.words import side_in_words
@@ -26,7 +26,7 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
     facts = {
         "nodes": f"{scene.count:,}, {bar['spacing']:g} m apart",
         "method": method_in_words(case),
-        "Courant number": f"{_courant(case, time_step):.4g}",
+        "Courant number": f"{_courant(scene, time_step):.4g}",
         "bar": f"{bar['length']:g} m long, section {bar['section']:.4g} m², density {bar['density']:g} kg/m³",
         "stiffness": f"E = {case.bar.modulus / 1e9:.4g} GPa, c = {case.bar.speed:.4g} m/s",
         "strength": _strength_in_words(case.bar),
@@ -72,18 +72,22 @@ def _strength_in_words(bar: Bar) -> str:
 def cells_of_waves(scene: BarScene, time_step: float) -> dict[str, tuple[float, float]]:
     """For every wave in use: cells in its shortest wavelength, and cells needed for a speed error below ERROR.
 
-    The shortest wavelength is that of the wave's highest frequency.
+    The shortest wavelength is that of the wave's highest frequency. Of the ranges it is the one where cells are fewest
+    for what is needed.
     """
-    row = carrying_lattice(scene, time_step)
-    courant = min(row.courant, row.courant_limit)
-    needed = cells_per_wavelength(row.horizon, courant, ERROR, shares=row.shares)
-    spacing = row.spacing
-    case = scene.case
+    rows = carrying_lattices(scene, time_step)
+    needed = [
+        cells_per_wavelength(row.horizon, min(row.courant, row.courant_limit), ERROR, shares=row.shares) for row in rows
+    ]
+    coarse = min(range(len(rows)), key=lambda r: rows[r].wave_speed / (rows[r].spacing * needed[r]))
+    row, case = rows[coarse], scene.case
     used = waves_used(case)
     fading = {name: wave.highest_frequency() for name, wave in case.wave.items() if name in used}
-    return {name: (case.bar.speed / (f * spacing) if f > 0.0 else np.inf, needed) for name, f in fading.items()}
+    return {
+        name: (row.wave_speed / (f * row.spacing) if f > 0.0 else np.inf, needed[coarse]) for name, f in fading.items()
+    }
 
 
-def _courant(case: BarCase, time_step: float) -> float:
-    """Courant number ν = cΔt/Δx."""
-    return time_step * case.bar.speed * case.bar.cells / case.bar.length
+def _courant(scene: BarScene, time_step: float) -> float:
+    """Largest Courant number ν = cΔt/Δx of all ranges."""
+    return max(time_step * part.speed / part.spacing for part in scene.rod.ranges)

@@ -10,7 +10,8 @@ from dembound.bar.memory import must_fit_here
 from dembound.bar.part import BarPart
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.bar import BarCase
-from dembound.methods.bonds import Rod
+from dembound.casefile.bar.bar import Bar
+from dembound.methods.rod import Range, Rod
 from dembound.motion.part import System
 
 HELD = (1, 2)
@@ -30,12 +31,17 @@ def build_bar(case: BarCase) -> BarScene:
     """Place a bar's nodes and support them; raises CaseError when a run needs more memory than there is."""
     must_fit_here(case)
     bar = case.bar
-    rod = Rod(bar.cells + 1, bar.length / bar.cells, bar.area, bar.modulus, bar.breaking_stretch)
-    positions = np.zeros((rod.count, 2))
-    positions[:, 0] = np.arange(rod.count) * rod.spacing
+    rod = _rod(bar)
+    positions = np.stack([rod.positions, np.zeros(rod.count)], axis=1)
     edges = {side: _edge(case, side) for side in ("left", "right")}
-    monitors = {monitor.name: round(monitor.position / rod.spacing) for monitor in case.monitor}
+    monitors = {monitor.name: rod.nearest(monitor.position) for monitor in case.monitor}
     return BarScene(case, rod, positions, edges, _supports(case, rod, edges), monitors)
+
+
+def _rod(bar: Bar) -> Rod:
+    """The nodes of a bar."""
+    material = bar.modulus, bar.density, bar.breaking_stretch, bar.drag_rate
+    return Rod((Range(0, bar.cells, 0.0, bar.length / bar.cells, bar.area, *material),))
 
 
 def end_supports(case: BarCase, side: str) -> Supports:
@@ -69,8 +75,9 @@ def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge]) -> Supports:
         nodes = np.arange(load.nodes) if load.side == "left" else np.arange(rod.count - load.nodes, rod.count)
         share = rod.volumes[nodes] / rod.volumes[nodes].sum()
         inwards = 1.0 if load.side == "left" else -1.0
-        force = inwards * load.pressure * rod.section * share
+        force = inwards * load.pressure * rod.end(load.side).section * share
         builder.add(nodes, 0, drive=force, signal=case.wave[load.wave].velocity)
     supported = np.unique(builder.table().node)
-    builder.add(supported, 0, damping=case.bar.drag_rate * case.bar.density * rod.volumes[supported])
+    drag = rod.summed(lambda part: part.drag_rate * part.density * part.volumes)
+    builder.add(supported, 0, damping=drag[supported])
     return builder.table()

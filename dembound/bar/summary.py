@@ -28,7 +28,7 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
         "nodes": scene.count,
         "method": scene.case.method.model_dump(),
         "bond_updates": bar.bond_updates,
-        "courant": run.time_step * scene.case.bar.speed / scene.rod.spacing,
+        "courant": max(run.time_step * part.speed / part.spacing for part in scene.rod.ranges),
         "spalls": [spall.describe() for spall in found],
         "breaks_at_ends": {side: spall.describe() for side, spall in at_ends.items()},
         "spalls_note": LATER_SPALLS if len(found) > 1 else None,
@@ -58,7 +58,7 @@ def describe_bar(scene: BarScene) -> dict[str, float | None]:
     breaks = np.isfinite(bar.breaking_stretch)
     return {
         "length": bar.length,
-        "spacing": scene.rod.spacing,
+        "spacing": scene.rod.ranges[0].spacing,
         "section": bar.area,
         "density": bar.density,
         "youngs_modulus": bar.modulus,

@@ -11,7 +11,7 @@ import numpy as np
 from dembound.bar.banded import ROUNDING
 from dembound.bar.entering import MOMENTS, entering_pressure, moments
 from dembound.bar.facts import PERCENT, cells_of_waves
-from dembound.bar.lattice import carrying_lattice
+from dembound.bar.lattice import carrying_lattices
 from dembound.bar.scene import BarScene, end_supports
 from dembound.boundaries import OPPOSITE, normal_axis
 from dembound.casefile.bar import BarCase
@@ -47,7 +47,7 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
 def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:
     """Waves that are too short for the spacing of the nodes, except for those of a slow grip."""
     travel = scene.case.bar.length / scene.case.bar.speed
-    finer = "" if carrying_lattice(scene, time_step).horizon == 1 else " or method.horizon"
+    finer = "" if all(row.horizon == 1 for row in carrying_lattices(scene, time_step)) else " or method.horizon"
     for name, (cells, needed) in cells_of_waves(scene, time_step).items():
         if cells < needed and not is_quasi_static(scene.case, name, travel):
             few = f"{cells:.3g} cells" if cells >= 1.0 else "less than one cell"
