@@ -77,7 +77,7 @@ class Bars(Kind[BarCase, BarScene]):
 
     def has_coda(self, scene: BarScene) -> bool:
         """Whether it may break."""
-        return bool(np.isfinite(scene.case.bar.breaking_stretch))
+        return bool(np.isfinite(scene.case.bar.least_strength))
 
     def storage(self, scene: BarScene) -> Storage:
         """From its nodes and the lengths of its bonds."""

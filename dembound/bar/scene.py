@@ -39,29 +39,34 @@ def build_bar(case: BarCase) -> BarScene:
 
 
 def _rod(bar: Bar) -> Rod:
-    """The nodes of a bar."""
-    material = bar.modulus, bar.density, bar.breaking_stretch, bar.drag_rate
-    return Rod((Range(0, bar.cells, 0.0, bar.length / bar.cells, bar.area, *material),))
+    """The nodes of a bar; those at a bonded interface are shared, at a contact each range has its own."""
+    ranges: list[Range] = []
+    gaps = [given.gap for given in bar.range] or [0.0]
+    for part, start, touches, gap in zip(bar.parts, bar.starts, bar.contacts, gaps, strict=True):
+        first = ranges[-1].last + touches if ranges else 0
+        material = part.modulus, part.density, part.breaking_stretch, part.drag_rate
+        ranges.append(Range(first, first + part.cells, start, part.length / part.cells, part.area, *material, gap))
+    return Rod(tuple(ranges))
 
 
 def end_supports(case: BarCase, side: str) -> Supports:
     """Support table of the boundary of one end, without loads and attenuation; empty for a free end."""
     builder = SupportBuilder(held=HELD)
-    case.side(side).support(_edge(case, side), bar_medium(case), case.wave, builder)
+    case.side(side).support(_edge(case, side), bar_medium(case, side), case.wave, builder)
     return builder.table()
 
 
 def _edge(case: BarCase, side: str) -> Edge:
     """An end, which consists of one node."""
-    bar = case.bar
-    node, place = (0, 0.0) if side == "left" else (bar.cells, bar.length)
-    return Edge(side, np.array([node]), np.array([[place, 0.0]]), np.array([bar.area]), bar.area)
+    bar, area = case.bar, case.bar.end(side).area
+    node, place = (0, 0.0) if side == "left" else (bar.nodes - 1, bar.length)
+    return Edge(side, np.array([node]), np.array([[place, 0.0]]), np.array([area]), area)
 
 
-def bar_medium(case: BarCase) -> BoundaryMedium:
+def bar_medium(case: BarCase, side: str) -> BoundaryMedium:
     """The medium that an absorbing end represents: the same bar, continued."""
-    none = np.zeros(1)
-    return BoundaryMedium(case.bar.density, case.bar.speed, 0.0, lambda diameters: (none, none))
+    none, end = np.zeros(1), case.bar.end(side)
+    return BoundaryMedium(end.density, end.speed, 0.0, lambda diameters: (none, none))
 
 
 def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge]) -> Supports:
@@ -69,7 +74,7 @@ def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge]) -> Supports:
     builder = SupportBuilder(held=HELD)
     for side, table in case.boundary.items():
         builder.side = side
-        table.support(edges[side], bar_medium(case), case.wave, builder)
+        table.support(edges[side], bar_medium(case, side), case.wave, builder)
     builder.side = ""
     for load in case.load:
         nodes = np.arange(load.nodes) if load.side == "left" else np.arange(rod.count - load.nodes, rod.count)

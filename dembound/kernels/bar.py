@@ -12,6 +12,7 @@ loop reads contiguous numbers, without lists of families. Runs of nodes that hav
 import numpy as np
 from numba import njit
 
+from dembound.kernels.bar_contacts import close_contacts, note_approach, note_impacts
 from dembound.kernels.common import DONE, FAST, FASTMATH, REST, TRIGGERED, U
 from dembound.kernels.law import is_law
 from dembound.kernels.tables import BarBonds
@@ -287,12 +288,16 @@ def move(bonds, u, u_next, v, body, nodes):
     w, before = v[0], bonds.before
     for s in range(nodes.size):
         before[s] = w[nodes[s]]
+    note_approach(w, bonds.contacts)
     _move_unsupported(u[0], w, bonds, body.step, u_next[0], nodes)
+    close_contacts(u_next[0], w, bonds.mobility, bonds.mean, body.step, bonds.contacts)
 
 
 @njit(**FAST)
 def finish(bonds, v, body, nodes, work):
-    """Add the energy taken by attenuation to the ledger."""
+    """Add the energy taken by attenuation and by impacts to the ledger."""
+    if bonds.contacts.left.size > 0:
+        note_impacts(v[0], body.step, bonds.contacts, work)
     if bonds.drag.size > 0:
         _note_drag(v[0], bonds.mean, bonds.before, nodes, bonds.drag, body.step, work)
 

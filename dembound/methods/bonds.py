@@ -119,8 +119,11 @@ class Bonds:
         return tuple(np.trim_zeros(shares, "b").tolist())
 
     def soften_ends(self) -> None:
-        """Halve the springs at both ends, as half volumes do in peridynamics with m = 1."""
-        self.spring[[0, -1]] *= 0.5
+        """Halve the springs at all ends that are not bonded, as half volumes do in peridynamics with m = 1."""
+        bonded = {left.last for left, _ in self.rod.bonded}
+        for part in self.rod.ranges:
+            for node, plane in ((part.first, part.first), (part.last, part.last - 1)):
+                self.spring[plane] *= 1.0 if node in bonded else 0.5
 
     def triggered(self, u: np.ndarray) -> np.ndarray:
         """Springs (a,) that trigger the method at displacements u (n,) m."""
@@ -192,7 +195,7 @@ class Bonds:
 
     def arrays(self, supported: np.ndarray, step: float) -> BarBonds:
         """All arrays for the kernels; supported (k,) are nodes that the support table moves; step Δt in s."""
-        from dembound.kernels.tables import BarBonds
+        from dembound.kernels.tables import BarBonds, BarContacts
 
         rod = self.rod
         plain, mixed = self._runs(supported)
@@ -204,6 +207,13 @@ class Bonds:
         push = step / np.array([part.density * part.section * part.spacing for part in parts])
         mobility = step / rod.mass
         mobility[supported] = 0.0
+        touching = rod.touching
+        contacts = BarContacts(
+            left=np.array([left.last for left, _ in touching], dtype=np.int64),
+            gap=np.array([right.gap for _, right in touching], dtype=np.float64),
+            before=np.zeros(len(touching)),
+            push=np.zeros(len(touching)),
+        )
         return BarBonds(
             spring=self.spring,
             spring_limit=self.spring_limit,
@@ -222,6 +232,7 @@ class Bonds:
             sections=rod.sections,
             mobility=(0.5 * (1.0 + keep)) * mobility,
             drag=rod.drag_rate * rod.mass if rod.drag_rate.any() else np.zeros(0),
+            contacts=contacts,
             space=np.zeros(rod.count + self.horizon + 1),
             mean=np.zeros(rod.count),
             before=np.empty(len(supported)),

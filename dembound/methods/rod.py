@@ -23,6 +23,7 @@ class Range:
     start : m, place of its first node; spacing : m, of its nodes.
     section : m²; modulus : Pa, Young's; density : kg/m³; critical_stretch : 1, at which bonds break.
     drag_rate : 1/s, of dashpots that attenuate, as parts of the masses.
+    gap : m, opening at rest of its contact with the range on its left, if it touches it.
     """
 
     first: int
@@ -34,6 +35,7 @@ class Range:
     density: float
     critical_stretch: float = math.inf
     drag_rate: float = 0.0
+    gap: float = 0.0
 
     @property
     def cells(self) -> int:
@@ -118,7 +120,7 @@ class Rod:
     """The n nodes of a bar: its ranges from left to right.
 
     Where a range begins with the last node of the one before, both are bonded; where it begins with the node after
-    that, no spring joins them.
+    that, both only touch.
     """
 
     ranges: tuple[Range, ...]
@@ -151,9 +153,13 @@ class Rod:
         return positions
 
     def nearest(self, place: float) -> int:
-        """The node nearest to a place (m)."""
+        """The node nearest to a place (m); in the gap of a contact the one on its right."""
         part = next((part for part in self.ranges if place <= part.end), self.ranges[-1])
-        return part.first + round((place - part.start) / part.spacing)
+        return part.first + max(0, round((place - part.start) / part.spacing))
+
+    def range_of(self, plane: int) -> Range:
+        """The range of a plane, which must not be that of a contact."""
+        return next(part for part in self.ranges if part.first <= plane < part.last)
 
     def end(self, side: str) -> Range:
         """The range at the "left" or the "right" end."""
@@ -200,6 +206,12 @@ class Rod:
         """The ranges on both sides of every bonded interface."""
         sides = zip(self.ranges[:-1], self.ranges[1:], strict=True)
         return [(left, right) for left, right in sides if left.last == right.first]
+
+    @property
+    def touching(self) -> list[tuple[Range, Range]]:
+        """The ranges on both sides of every contact."""
+        sides = zip(self.ranges[:-1], self.ranges[1:], strict=True)
+        return [(left, right) for left, right in sides if left.last < right.first]
 
     def summed(self, of: Callable[[Range], np.ndarray]) -> np.ndarray:
         """Values (n,) of all nodes from those of the nodes of each range, which shared nodes add up."""

@@ -74,6 +74,19 @@ class LaneBonded(NamedTuple):
     also_lost: np.ndarray
 
 
+class BarContacts(NamedTuple):
+    """Contacts between ranges of a bar, see kernels.bar_contacts.
+
+    left : (c,) nodes, each touches the next one; gap : (c,) m between them at rest. before (c,) m/s, push (c,) N : work
+    space, the speed of approach before a step and the force in it.
+    """
+
+    left: np.ndarray
+    gap: np.ndarray
+    before: np.ndarray
+    push: np.ndarray
+
+
 class BarBonds(NamedTuple):
     """Springs and bonds of a bar of n nodes; horizon m, 0 if there is no peridynamic bond.
 
@@ -86,7 +99,8 @@ class BarBonds(NamedTuple):
     in a step, plain_limit (r,) m : where all trigger. mixed : (q, 3) the runs of all other nodes, with whether they
     have springs, and mixed_keep (q,) as plain_keep. sections : (n − 1,) m², between neighbours, 0 where nothing joins
     them. mobility : (n,) Δt/m, less what attenuation takes, 0 for supported nodes; drag : (n,) N·s/m of dashpots that
-    attenuate, or (0,) for none. space (n + m + 1,), mean (n,), before (k,), reached (1,) : work space.
+    attenuate, or (0,) for none. contacts : between ranges. space (n + m + 1,), mean (n,), before (k,), reached (1,) :
+    work space.
     """
 
     spring: np.ndarray
@@ -106,6 +120,7 @@ class BarBonds(NamedTuple):
     sections: np.ndarray
     mobility: np.ndarray
     drag: np.ndarray
+    contacts: BarContacts
     space: np.ndarray
     mean: np.ndarray
     before: np.ndarray

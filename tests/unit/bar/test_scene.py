@@ -57,6 +57,7 @@ def test_a_record_is_told_of_the_bar_and_its_ends(spalling) -> None:
     assert told == {
         "density": 2500.0,
         "section": 1.0,
+        "youngs_modulus": 2.5e9,
         "wave_speed": 1000.0,
         "attenuation": 0.3,
         "loaded": "left",
