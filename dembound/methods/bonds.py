@@ -161,7 +161,7 @@ class Bonds:
         """
         last = np.iinfo(np.int64).max if step is None else step
         first, second = self._family.pairs.T
-        row = self._family.offset[:, 0] - 1
+        row = self._family.apart - 1
         whole = (self.spring_broken < 0) | (self.spring_broken > last)
         intact = np.column_stack([whole[first], whole[second - 1]])
         if self.horizon > 0:
@@ -265,7 +265,7 @@ class Bonds:
     @cached_property
     def _family(self) -> Family:
         """The nodes' families, of one spacing without a horizon."""
-        return families((self.rod.count,), max(self.horizon, 1))
+        return families(self.rod.count, max(self.horizon, 1))
 
     def _carried_share(self, rows: np.ndarray) -> np.ndarray:
         """Share (n − 1,) of the stress under uniform strain that bonds of stiffness rows (m, n) carry across planes."""

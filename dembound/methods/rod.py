@@ -89,9 +89,9 @@ class Range:
         """
         rows = np.zeros((horizon, self.cells + 1))
         if horizon > 0:
-            family = families((self.cells + 1,), horizon)
-            (first, second), apart = family.pairs.T, family.offset[:, 0]
-            c_m = micromodulus(self.modulus, horizon * self.spacing, 1, self.section)
+            family = families(self.cells + 1, horizon)
+            (first, second), apart = family.pairs.T, family.apart
+            c_m = micromodulus(self.modulus, horizon * self.spacing, self.section)
             volumes = self.volumes
             rows[apart - 1, first] = c_m * (volumes[first] * volumes[second]) * family.factor / (apart * self.spacing)
         if influence is not None:

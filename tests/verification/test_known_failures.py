@@ -21,7 +21,7 @@ def stiffness(pairs: np.ndarray, horizon: int) -> float:
     """E_eff/E in the middle of a bar with these bonds (b, 2), each with its volume factor."""
     first, second = np.sort(pairs, axis=1).T
     across = (first < NODES // 2) & (second >= NODES // 2)
-    factor = volume_factor((second - first).astype(float), 1.0, float(horizon))
+    factor = volume_factor(second - first, horizon)
     return 2.0 / horizon**2 * factor[across].sum()
 
 
@@ -47,7 +47,7 @@ def test_whole_outermost_neighbours_are_too_stiff(horizon):
 @pytest.mark.parametrize("horizon", HORIZONS)
 def test_families_by_distance_lose_pairs(horizon):
     """Differences of rounded places are above mΔx as often as not; by index offset none is missed."""
-    whole = families((NODES,), horizon).pairs
+    whole = families(NODES, horizon).pairs
     assert len(whole) == sum(NODES - p for p in range(1, horizon + 1))
     assert stiffness(whole, horizon) == pytest.approx(1.0, rel=1e-12)
     spacing = 1e-3
