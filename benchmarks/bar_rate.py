@@ -163,7 +163,7 @@ def main() -> None:
     stream = fastest_copy()
     print(f"a copy in the first cache moves {stream / 1e9:.0f} GB/s")
     print(
-        "method                 |     nodes | ns per step  | G nodes/s      | G bonds/s      | GB/s   | share  | by loop"
+        "method                 |     nodes | ns per step  | G nodes/s      | G bonds/s      | GB/s   | share  | ratio"
     )
     for nodes in options.nodes:
         for name in METHODS:

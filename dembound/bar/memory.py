@@ -23,8 +23,8 @@ def run_bytes(case: BarCase) -> float:
 
 
 def scene_bytes(nodes: float) -> float:
-    """Of a scene: places, volumes, masses, inertia, slots (48 n)."""
-    return 48 * nodes
+    """Of a scene: places, volumes, masses, inertia, slots (48 n), springs, sections, limits and drag by node (32 n)."""
+    return 80 * nodes
 
 
 def bonds_bytes(nodes: float, lengths: int) -> float:
