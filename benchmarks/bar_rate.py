@@ -4,17 +4,19 @@
 
 Sets bars of several lengths in motion under finite differences and peridynamics, compiled first, and takes the CPU time
 of blocks of steps on one core, everything a run does at every step included: ends, one gauge, the watch for breaking
-bonds. A bar of a thousand nodes lives in the processor's first caches, so the same run times the fastest plain array
-copy there; the share of it is what a step reads and writes over what the copy does in the same time. Medians are
-quoted, of the copy the best. The last lines compare the time from the blow to just after the first spall of a bar by
-all methods.
+bonds. In turn with it two bare loops over two arrays are timed, v += k·Δ²u and u += Δt·v, which are no bar but show
+what one could cost; the last column is the time over theirs. A bar of a thousand nodes lives in the processor's first
+caches, so the same run times the fastest plain array copy there; the share of it is what a step reads and writes over
+what the copy does in the same time. Medians are quoted, of the copy the best. The last lines compare the time from the
+blow to just after the first spall of a bar by all methods.
 """
 
 import argparse
+from collections.abc import Callable
 
 import numba
 import numpy as np
-from timing import median_time
+from timing import median_time, timed
 
 from dembound.bar.fracture import spalls
 from dembound.bar.scene import build_bar
@@ -72,6 +74,22 @@ def copy(source, target, times):
             target[i] = source[i] + number  # differs each time, or all but one would be left out
 
 
+@numba.njit(fastmath={"contract"})
+def two_loops(u, v, k, step, times):
+    for _ in range(times):
+        for i in range(1, u.size - 1):
+            v[i] += k * ((u[i + 1] - u[i]) - (u[i] - u[i - 1]))
+        for i in range(u.size):
+            u[i] += step * v[i]
+
+
+def bare(nodes: int, steps: int) -> Callable[[], None]:
+    """Those loops on as many nodes for as many steps, compiled."""
+    u, v = np.sin(np.linspace(0.0, 20.0, nodes)), np.zeros(nodes)
+    two_loops(u, v, 0.25, 1.0, 2)
+    return lambda: two_loops(u, v, 0.25, 1.0, steps)
+
+
 def bytes_per_node(horizon: int) -> float:
     """Reads and writes of one node's step in bytes, each array as often as a loop passes it.
 
@@ -104,13 +122,15 @@ def stepping(name: str, nodes: int, repeats: int, stream: float) -> None:
     simulation = Simulation(scene, choose_step(scene)[0], np.array(list(scene.monitors.values())))
     steps = max(256, STEPS * 1000 // nodes)
     simulation.advance(steps)
-    step = median_time(lambda: simulation.advance(steps), repeats) / steps
+    loops = bare(nodes, steps)
+    pairs = [(timed(lambda: simulation.advance(steps)).cpu, timed(loops).cpu) for _ in range(repeats)]  # in turn
+    step, plain = (float(np.median(times)) / steps for times in zip(*pairs, strict=True))
     horizon = 0 if name == "finite_difference" else case.method.largest_horizon
     moved = bytes_per_node(horizon) * nodes / step
     bonds = f"{max(horizon, 1) * nodes / step / 1e9:.2f}"
     print(
         f"{name:22s} | {nodes:9,} | {step * 1e9:12.0f} | {nodes / step / 1e9:14.2f} | {bonds:>14s} | "
-        f"{moved / 1e9:6.0f} | {moved / stream:6.0%}"
+        f"{moved / 1e9:6.0f} | {moved / stream:6.0%} | {step / plain:8.2f}"
     )
 
 
@@ -142,7 +162,9 @@ def main() -> None:
     numba.set_num_threads(1)
     stream = fastest_copy()
     print(f"a copy in the first cache moves {stream / 1e9:.0f} GB/s")
-    print("method                 |     nodes | ns per step  | G nodes/s      | G bonds/s      | GB/s   | share")
+    print(
+        "method                 |     nodes | ns per step  | G nodes/s      | G bonds/s      | GB/s   | share  | ratio"
+    )
     for nodes in options.nodes:
         for name in METHODS:
             stepping(name, nodes, options.repeats, stream)

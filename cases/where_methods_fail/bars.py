@@ -6,13 +6,14 @@ import numpy as np
 from scenes import ROCK_DENSITY, ROCK_SPEED, STRENGTH, bar, triangle
 
 from dembound.bar.fracture import spalls
-from dembound.bar.lattice import carrying_lattice
+from dembound.bar.lattice import carrying_lattices
 from dembound.bar.part import BarPart
 from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step
 from dembound.errors import RunError
 from dembound.exact.dispersion import cells_per_wavelength
-from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.bonds import Bonds
+from dembound.methods.rod import Rod
 from dembound.motion.part import System
 from dembound.motion.simulation import Simulation
 from dembound.studies.dispersion import measure
@@ -32,7 +33,7 @@ def cells_for_one_per_cent(horizon: int) -> tuple[float, float]:
     method = {"type": "peridynamics", "horizon": horizon}
     case = bar(method, run={"duration": 1e-3, "safety": 0.9})
     scene = build_bar(case)
-    lattice = carrying_lattice(scene, choose_step(scene)[0])
+    lattice = carrying_lattices(scene, choose_step(scene)[0])[0]
     cells = cells_per_wavelength(horizon, lattice.courant)
     wavenumber = np.array([2.0 * np.pi / (cells * lattice.spacing)])
     speed = float(measure(lattice, wavenumber)[0] / wavenumber[0])
@@ -156,9 +157,9 @@ def families_by_distance(horizon: int, nodes: int = 60, spacing: float = 1e-3) -
 
 def too_stiff(horizon: int) -> float:
     """E_eff/E of a bar without the half volume of the outermost neighbours, from its bonds."""
-    rod = Rod(60, 0.01, 1.0, 20e9, np.inf)
+    rod = Rod.uniform(60, spacing=0.01, section=1.0, modulus=20e9)
     bonds = Bonds(rod, horizon)
     bonds.add_zone(0, 60)
     bonds.bond[-1] *= 2.0
     lengths = np.arange(1, horizon + 1)
-    return float((bonds.bond[:, 30] * lengths**2).sum() * rod.spacing / (rod.modulus * rod.section))
+    return float((bonds.bond[:, 30] * lengths**2).sum() / rod.springs[30])

@@ -11,8 +11,10 @@ from dembound.bar.banded import is_stable, largest_stable_step
 from dembound.bar.memory import run_bytes
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.bar import BarCase
-from dembound.methods.bonds import Bonds, Rod
-from dembound.motion.scene import Scene
+from dembound.casefile.bar.bar import Bar
+from dembound.methods.bonds import Bonds
+from dembound.methods.rod import Rod
+from dembound.motion.scene import FASTEST, Scene
 
 
 @dataclass(frozen=True)
@@ -47,18 +49,24 @@ class BarBody(Scene):
     def attributes(self) -> dict[str, Any]:
         """The attributes of a record's header in addition to those of every run.
 
-        Density in kg/m³, section in m², wave speed in m/s, attenuation in 1/m, which end is loaded, and the types of
-        the left and the right end.
+        Which end is loaded, and the types of the left and the right end. Of a bar without ranges also its material, as
+        in `attributes_of_monitor`.
         """
-        bar = self.case.bar
-        return {
-            "density": bar.density,
-            "section": self.rod.section,
-            "wave_speed": bar.speed,
-            "attenuation": bar.attenuation,
+        uniform = {} if self.case.bar.range else _attributes_of(self.case.bar)
+        return uniform | {
             "loaded": self.case.loaded,
             "ends": [self.case.boundary[side].type if side in self.case.boundary else "free" for side in self.edges],
         }
+
+    def attributes_of_monitor(self, name: str) -> dict[str, Any]:
+        """Of the range of its node: density kg/m³, section m², Young's modulus Pa, wave speed m/s, attenuation 1/m.
+
+        At an interface it is the range on the left; with ranges also their name.
+        """
+        bar, node = self.case.bar, self.monitors[name]
+        number = next(k for k, part in enumerate(self.rod.ranges) if node <= part.last)
+        named = {"range": bar.range[number].name} if bar.range else {}
+        return named | _attributes_of(bar.parts[number])
 
     @property
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
@@ -83,12 +91,12 @@ class BarBody(Scene):
     @cached_property
     def mass(self) -> np.ndarray:
         """(n,) kg; half at the ends."""
-        return self.case.bar.density * self.rod.volumes
+        return self.rod.mass
 
     @cached_property
     def inertia(self) -> np.ndarray:
         """(n,) kg·m² of thin slices as long as the spacing; they do not turn."""
-        return self.mass * self.rod.spacing**2 / 12.0
+        return self.rod.summed(lambda part: part.density * part.volumes * part.spacing**2 / 12.0)
 
     @property
     def free(self) -> np.ndarray:
@@ -115,6 +123,23 @@ class BarBody(Scene):
         """One: a step of a bar takes less time than the synchronisation of threads."""
         return 1
 
+    @property
+    def first_velocity(self) -> np.ndarray | None:
+        """(3, n) m/s at the start, None without moving ranges; a node that two share has the momentum of both."""
+        if not any(given.velocity for given in self.case.bar.range):
+            return None
+        momentum = np.zeros(self.count)
+        for given, part in zip(self.case.bar.range, self.rod.ranges, strict=False):
+            momentum[part.nodes] += given.velocity * part.density * part.volumes
+        velocity = np.zeros((3, self.count))
+        velocity[0] = momentum / self.mass
+        return velocity
+
+    @property
+    def fastest(self) -> float:
+        """Speed (m/s) that no node can reach, see `Scene.fastest`; with moving ranges the limit of the number range."""
+        return FASTEST if any(given.velocity for given in self.case.bar.range) else super().fastest
+
     def step_limit(self) -> float:
         """Largest time step (s) that is stable at every stage of the case's method."""
         return min(self.stable_step(bonds) for bonds in self.case.method.stages(self.rod))
@@ -136,3 +161,14 @@ class BarBody(Scene):
     def largest_memory(self) -> float:
         """Largest memory (bytes) of a run."""
         return run_bytes(self.case)
+
+
+def _attributes_of(part: Bar) -> dict[str, Any]:
+    """The material of a uniform bar, SI units."""
+    return {
+        "density": part.density,
+        "section": part.area,
+        "youngs_modulus": part.modulus,
+        "wave_speed": part.speed,
+        "attenuation": part.attenuation,
+    }

@@ -15,7 +15,7 @@ def entering_pressure(case: BarCase, side: str, time: np.ndarray, *, loads: bool
     The forces F at the end are balanced by ρcA·v of the bar and C·v of the dashpots, so that the pressure ρcv is
     F·ρc/(ρcA + C). An end whose motion is prescribed has the prescribed v. The forces of springs are neglected.
     """
-    bar = case.bar
+    bar = case.bar.end(side)
     inwards = 1.0 if side == "left" else -1.0
     supports = end_supports(case, side)
     driven = supports.sample(np.ravel(time), 0.0).sum(axis=1).reshape(np.shape(time))

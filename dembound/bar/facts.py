@@ -2,12 +2,13 @@
 
 import numpy as np
 
-from dembound.bar.lattice import carrying_lattice
+from dembound.bar.lattice import carrying_lattices
 from dembound.bar.scene import BarScene
 from dembound.bar.summary import describe_bar, describe_end
 from dembound.boundaries.words import side_in_words
 from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import Bar
+from dembound.casefile.bar.range import BarRange
 from dembound.casefile.magnitudes import stress_in_words, waves_used
 from dembound.casefile.messages import counted, show
 from dembound.exact.dispersion import cells_per_wavelength
@@ -23,16 +24,22 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
     """Facts about a bar and its method, ready to print."""
     bar = describe_bar(scene)
     case = scene.case
+    apart = " and ".join(f"{size:g}" for size in dict.fromkeys(part.spacing for part in case.bar.parts))
     facts = {
-        "nodes": f"{scene.count:,}, {bar['spacing']:g} m apart",
+        "nodes": f"{scene.count:,}, {apart} m apart",
         "method": method_in_words(case),
-        "Courant number": f"{_courant(case, time_step):.4g}",
-        "bar": f"{bar['length']:g} m long, section {bar['section']:.4g} m², density {bar['density']:g} kg/m³",
-        "stiffness": f"E = {case.bar.modulus / 1e9:.4g} GPa, c = {case.bar.speed:.4g} m/s",
-        "strength": _strength_in_words(case.bar),
+        "Courant number": f"{_courant(scene, time_step):.4g}",
+        "bar": f"{case.bar.length:g} m long",
     }
-    if case.bar.attenuation > 0.0:
-        facts["attenuation"] = f"α = {case.bar.attenuation:g} 1/m"
+    if case.bar.range:
+        parts = zip(case.bar.range, case.bar.starts, case.bar.parts, strict=True)
+        facts |= {f"range {given.name}": _range_in_words(given, start, part) for given, start, part in parts}
+    else:
+        facts["bar"] += f", section {bar['section']:.4g} m², density {bar['density']:g} kg/m³"
+        facts["stiffness"] = f"E = {case.bar.modulus / 1e9:.4g} GPa, c = {case.bar.speed:.4g} m/s"
+        facts["strength"] = _strength_in_words(case.bar)
+        if case.bar.attenuation > 0.0:
+            facts["attenuation"] = f"α = {case.bar.attenuation:g} 1/m"
     for side in scene.edges:
         facts[f"{side} end"] = side_in_words(describe_end(scene, side))
     for load in case.load:
@@ -61,6 +68,20 @@ def method_in_words(case: BarCase) -> str:
     return f"{case.method.type}" + "".join(f", {key} = {show(value)}" for key, value in keys.items())
 
 
+def _range_in_words(given: BarRange, start: float, part: Bar) -> str:
+    """Place, material, motion and left interface of a range."""
+    words = [
+        f"{start:.4g} to {start + part.length:.4g} m, section {part.area:.4g} m²",
+        f"ρ = {part.density:g} kg/m³, c = {part.speed:.4g} m/s, ρcA = {part.density * part.speed * part.area:.4g} kg/s",
+        _strength_in_words(part),
+    ]
+    words += [f"α = {part.attenuation:g} 1/m"] * (part.attenuation > 0.0)
+    words += [f"starts at {given.velocity:g} m/s"] * (given.velocity != 0.0)
+    if given.interface == "contact":
+        words.append("touches the range on its left" + f" once a gap of {given.gap:g} m is closed" * (given.gap > 0.0))
+    return "; ".join(words)
+
+
 def _strength_in_words(bar: Bar) -> str:
     """Stress and stretch at which the bar breaks."""
     stretch = bar.breaking_stretch
@@ -72,18 +93,22 @@ def _strength_in_words(bar: Bar) -> str:
 def cells_of_waves(scene: BarScene, time_step: float) -> dict[str, tuple[float, float]]:
     """For every wave in use: cells in its shortest wavelength, and cells needed for a speed error below ERROR.
 
-    The shortest wavelength is that of the wave's highest frequency.
+    The shortest wavelength is that of the wave's highest frequency. Of the ranges it is the one where cells are fewest
+    for what is needed.
     """
-    row = carrying_lattice(scene, time_step)
-    courant = min(row.courant, row.courant_limit)
-    needed = cells_per_wavelength(row.horizon, courant, ERROR, shares=row.shares)
-    spacing = row.spacing
-    case = scene.case
+    rows = carrying_lattices(scene, time_step)
+    needed = [
+        cells_per_wavelength(row.horizon, min(row.courant, row.courant_limit), ERROR, shares=row.shares) for row in rows
+    ]
+    coarse = min(range(len(rows)), key=lambda r: rows[r].wave_speed / (rows[r].spacing * needed[r]))
+    row, case = rows[coarse], scene.case
     used = waves_used(case)
     fading = {name: wave.highest_frequency() for name, wave in case.wave.items() if name in used}
-    return {name: (case.bar.speed / (f * spacing) if f > 0.0 else np.inf, needed) for name, f in fading.items()}
+    return {
+        name: (row.wave_speed / (f * row.spacing) if f > 0.0 else np.inf, needed[coarse]) for name, f in fading.items()
+    }
 
 
-def _courant(case: BarCase, time_step: float) -> float:
-    """Courant number ν = cΔt/Δx."""
-    return time_step * case.bar.speed * case.bar.cells / case.bar.length
+def _courant(scene: BarScene, time_step: float) -> float:
+    """Largest Courant number ν = cΔt/Δx of all ranges."""
+    return max(time_step * part.speed / part.spacing for part in scene.rod.ranges)

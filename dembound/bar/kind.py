@@ -77,7 +77,7 @@ class Bars(Kind[BarCase, BarScene]):
 
     def has_coda(self, scene: BarScene) -> bool:
         """Whether it may break."""
-        return bool(np.isfinite(scene.case.bar.breaking_stretch))
+        return bool(np.isfinite(scene.case.bar.least_strength))
 
     def storage(self, scene: BarScene) -> Storage:
         """From its nodes and the lengths of its bonds."""
@@ -85,7 +85,8 @@ class Bars(Kind[BarCase, BarScene]):
 
     def unit(self, scene: BarScene) -> tuple[float, float]:
         """The spacing of its nodes."""
-        return scene.rod.spacing, scene.rod.spacing
+        finest = min(part.spacing for part in scene.rod.ranges)
+        return finest, finest
 
     def facts(self, scene: BarScene, time_step: float) -> dict[str, str]:
         """The bar, its method and what acts on it."""

@@ -3,19 +3,21 @@
 from dembound.bar.scene import BarScene
 from dembound.exact.dispersion import Lattice, usual_shares
 from dembound.methods.bonds import Bonds
+from dembound.methods.rod import Range
 
 DIGITS = 12
 """Digits of the share of stress that bonds of one length carry; further digits are rounding errors."""
 
 
-def lattice_of(bonds: Bonds, time_step: float, wave_speed: float) -> Lattice:
-    """The infinite row of nodes with the bonds of the middle of a bar; time_step s, wave_speed m/s."""
-    shares = tuple(round(share, DIGITS) for share in bonds.shares)
+def lattice_of(bonds: Bonds, part: Range, time_step: float) -> Lattice:
+    """The infinite row of nodes with the bonds of the middle of a range; time_step s."""
+    shares = tuple(round(share, DIGITS) for share in bonds.shares(part))
     horizon = len(shares)
     usual = shares == tuple(round(share, DIGITS) for share in usual_shares(horizon))
-    return Lattice(horizon, bonds.rod.spacing, time_step, wave_speed, None if usual else shares)
+    return Lattice(horizon, part.spacing, time_step, part.speed, None if usual else shares)
 
 
-def carrying_lattice(scene: BarScene, time_step: float) -> Lattice:
-    """The infinite row of nodes in which waves run before the method reacts to large stretches; time_step s."""
-    return lattice_of(scene.case.method.begin(scene.rod), time_step, scene.case.bar.speed)
+def carrying_lattices(scene: BarScene, time_step: float) -> list[Lattice]:
+    """For every range the infinite row of nodes in which waves run before the method reacts; time_step s."""
+    bonds = scene.case.method.begin(scene.rod)
+    return [lattice_of(bonds, part, time_step) for part in scene.rod.ranges]

@@ -8,12 +8,12 @@ def must_fit_here(case: BarCase) -> None:
     """Raise CaseError if a run of a case needs more memory than is free here; nothing is built for this."""
     lengths = case.method.largest_horizon
     horizon = f" with a horizon of {lengths:,} spacings" if lengths > 1 else ""
-    must_fit(run_bytes(case), "bar.spacing", f"{case.bar.cells + 1:,} nodes{horizon}")
+    must_fit(run_bytes(case), "bar.spacing", f"{case.bar.nodes:,} nodes{horizon}")
 
 
 def run_bytes(case: BarCase) -> float:
     """Largest memory (bytes) of a run; temporary arrays are those of the largest moment of a stage."""
-    nodes, lengths = case.bar.cells + 1.0, max(case.method.largest_horizon, 1)
+    nodes, lengths = float(case.bar.nodes), max(case.method.largest_horizon, 1)
     run = scene_bytes(nodes) + bonds_bytes(nodes, lengths) + motion_bytes(nodes) + ledger_bytes(nodes)
     run += record_bytes(len(case.monitor), 2048, 7, sum(load.nodes for load in case.load) + 2.0)
     if case.output.snapshots:
@@ -23,8 +23,8 @@ def run_bytes(case: BarCase) -> float:
 
 
 def scene_bytes(nodes: float) -> float:
-    """Of a scene: places, volumes, masses, inertia, slots (48 n)."""
-    return 48 * nodes
+    """Of a scene: places, volumes, masses, inertia, slots (48 n), springs, sections, limits and drag by node (32 n)."""
+    return 80 * nodes
 
 
 def bonds_bytes(nodes: float, lengths: int) -> float:

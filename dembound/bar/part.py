@@ -47,8 +47,7 @@ class BarPart(Part):
 
     def _lay(self) -> BarBonds:
         """The bonds for the kernels."""
-        bar = self.scene.case.bar
-        return self.bonds.arrays(self._supported, bar.density, self._step, bar.drag_rate)
+        return self.bonds.arrays(self._supported, self._step)
 
     def law(self) -> BarBonds:
         """The bonds as they are now."""

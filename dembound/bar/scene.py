@@ -10,7 +10,8 @@ from dembound.bar.memory import must_fit_here
 from dembound.bar.part import BarPart
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.bar import BarCase
-from dembound.methods.bonds import Rod
+from dembound.casefile.bar.bar import Bar
+from dembound.methods.rod import Range, Rod
 from dembound.motion.part import System
 
 HELD = (1, 2)
@@ -30,32 +31,42 @@ def build_bar(case: BarCase) -> BarScene:
     """Place a bar's nodes and support them; raises CaseError when a run needs more memory than there is."""
     must_fit_here(case)
     bar = case.bar
-    rod = Rod(bar.cells + 1, bar.length / bar.cells, bar.area, bar.modulus, bar.breaking_stretch)
-    positions = np.zeros((rod.count, 2))
-    positions[:, 0] = np.arange(rod.count) * rod.spacing
+    rod = _rod(bar)
+    positions = np.stack([rod.positions, np.zeros(rod.count)], axis=1)
     edges = {side: _edge(case, side) for side in ("left", "right")}
-    monitors = {monitor.name: round(monitor.position / rod.spacing) for monitor in case.monitor}
+    monitors = {monitor.name: rod.nearest(monitor.position) for monitor in case.monitor}
     return BarScene(case, rod, positions, edges, _supports(case, rod, edges), monitors)
+
+
+def _rod(bar: Bar) -> Rod:
+    """The nodes of a bar; those at a bonded interface are shared, at a contact each range has its own."""
+    ranges: list[Range] = []
+    gaps = [given.gap for given in bar.range] or [0.0]
+    for part, start, touches, gap in zip(bar.parts, bar.starts, bar.contacts, gaps, strict=True):
+        first = ranges[-1].last + touches if ranges else 0
+        material = part.modulus, part.density, part.breaking_stretch, part.drag_rate
+        ranges.append(Range(first, first + part.cells, start, part.length / part.cells, part.area, *material, gap))
+    return Rod(tuple(ranges))
 
 
 def end_supports(case: BarCase, side: str) -> Supports:
     """Support table of the boundary of one end, without loads and attenuation; empty for a free end."""
     builder = SupportBuilder(held=HELD)
-    case.side(side).support(_edge(case, side), bar_medium(case), case.wave, builder)
+    case.side(side).support(_edge(case, side), bar_medium(case, side), case.wave, builder)
     return builder.table()
 
 
 def _edge(case: BarCase, side: str) -> Edge:
     """An end, which consists of one node."""
-    bar = case.bar
-    node, place = (0, 0.0) if side == "left" else (bar.cells, bar.length)
-    return Edge(side, np.array([node]), np.array([[place, 0.0]]), np.array([bar.area]), bar.area)
+    bar, area = case.bar, case.bar.end(side).area
+    node, place = (0, 0.0) if side == "left" else (bar.nodes - 1, bar.length)
+    return Edge(side, np.array([node]), np.array([[place, 0.0]]), np.array([area]), area)
 
 
-def bar_medium(case: BarCase) -> BoundaryMedium:
+def bar_medium(case: BarCase, side: str) -> BoundaryMedium:
     """The medium that an absorbing end represents: the same bar, continued."""
-    none = np.zeros(1)
-    return BoundaryMedium(case.bar.density, case.bar.speed, 0.0, lambda diameters: (none, none))
+    none, end = np.zeros(1), case.bar.end(side)
+    return BoundaryMedium(end.density, end.speed, 0.0, lambda diameters: (none, none))
 
 
 def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge]) -> Supports:
@@ -63,14 +74,15 @@ def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge]) -> Supports:
     builder = SupportBuilder(held=HELD)
     for side, table in case.boundary.items():
         builder.side = side
-        table.support(edges[side], bar_medium(case), case.wave, builder)
+        table.support(edges[side], bar_medium(case, side), case.wave, builder)
     builder.side = ""
     for load in case.load:
         nodes = np.arange(load.nodes) if load.side == "left" else np.arange(rod.count - load.nodes, rod.count)
         share = rod.volumes[nodes] / rod.volumes[nodes].sum()
         inwards = 1.0 if load.side == "left" else -1.0
-        force = inwards * load.pressure * rod.section * share
+        force = inwards * load.pressure * rod.end(load.side).section * share
         builder.add(nodes, 0, drive=force, signal=case.wave[load.wave].velocity)
     supported = np.unique(builder.table().node)
-    builder.add(supported, 0, damping=case.bar.drag_rate * case.bar.density * rod.volumes[supported])
+    drag = rod.summed(lambda part: part.drag_rate * part.density * part.volumes)
+    builder.add(supported, 0, damping=drag[supported])
     return builder.table()

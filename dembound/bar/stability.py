@@ -30,5 +30,5 @@ def choose_step(scene: BarScene) -> tuple[float, float]:
 
 
 def _unit(scene: BarScene) -> float:
-    """The time step (s) at a Courant number of 1."""
-    return scene.rod.spacing / scene.case.bar.speed
+    """The time step (s) at a Courant number of 1, in the range where this is shortest."""
+    return min(part.spacing / part.speed for part in scene.rod.ranges)

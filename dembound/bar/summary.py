@@ -8,7 +8,9 @@ import numpy as np
 from dembound.bar.fracture import Spall, breaks_at_ends, spalls
 from dembound.bar.part import BarPart
 from dembound.bar.scene import BarScene, bar_medium
+from dembound.casefile.bar.bar import Bar
 from dembound.gauge.estimates import pull_back_strength
+from dembound.methods.rod import Range
 from dembound.motion.trackers import Run
 from dembound.results.reader import open_record
 
@@ -28,7 +30,7 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
         "nodes": scene.count,
         "method": scene.case.method.model_dump(),
         "bond_updates": bar.bond_updates,
-        "courant": run.time_step * scene.case.bar.speed / scene.rod.spacing,
+        "courant": max(run.time_step * part.speed / part.spacing for part in scene.rod.ranges),
         "spalls": [spall.describe() for spall in found],
         "breaks_at_ends": {side: spall.describe() for side, spall in at_ends.items()},
         "spalls_note": LATER_SPALLS if len(found) > 1 else None,
@@ -52,13 +54,29 @@ def part_of(run: Run) -> BarPart:
     return cast(BarPart, bar)
 
 
-def describe_bar(scene: BarScene) -> dict[str, float | None]:
-    """The bar in numbers: lengths m, area m², moduli Pa, speed m/s; strength and stretch null where nothing breaks."""
-    bar = scene.case.bar
+def describe_bar(scene: BarScene) -> dict[str, Any]:
+    """The bar in numbers: lengths m, area m², moduli Pa, speed m/s; strength and stretch null where nothing breaks.
+
+    Of a bar with ranges, these numbers for each of them, its length, and its smallest strength.
+    """
+    bar, ranges = scene.case.bar, scene.rod.ranges
+    if not bar.range:
+        return _describe_part(bar, ranges[0])
+    each = [
+        {"name": given.name, "start": start, "interface": given.interface, "velocity": given.velocity}
+        | _describe_part(part, numbers)
+        for given, start, part, numbers in zip(bar.range, bar.starts, bar.parts, ranges, strict=True)
+    ]
+    strength = bar.least_strength if np.isfinite(bar.least_strength) else None
+    return {"length": bar.length, "strength": strength, "ranges": each}
+
+
+def _describe_part(bar: Bar, numbers: Range) -> dict[str, float | None]:
+    """A uniform bar in numbers, see `describe_bar`."""
     breaks = np.isfinite(bar.breaking_stretch)
     return {
         "length": bar.length,
-        "spacing": scene.rod.spacing,
+        "spacing": numbers.spacing,
         "section": bar.area,
         "density": bar.density,
         "youngs_modulus": bar.modulus,
@@ -73,7 +91,7 @@ def describe_bar(scene: BarScene) -> dict[str, float | None]:
 def describe_end(scene: BarScene, side: str) -> dict[str, Any]:
     """One end in numbers: its type, and the numbers of its table that apply to bars."""
     table = scene.case.side(side)
-    numbers = table.describe(scene.edges[side], bar_medium(scene.case))
+    numbers = table.describe(scene.edges[side], bar_medium(scene.case, side))
     return {"type": table.type} | {key: value for key, value in numbers.items() if key not in OF_DISKS}
 
 
@@ -105,7 +123,9 @@ def _pull_backs(scene: BarScene, record: Path) -> dict[str, float]:
     free = [side for side in scene.edges if describe_end(scene, side)["type"] == "free" and side not in loaded]
     outwards = {int(scene.edges[side].nodes[0]): -1.0 if side == "left" else 1.0 for side in free}
     ends = {name: outwards[node] for name, node in scene.monitors.items() if node in outwards}
-    bar = scene.case.bar
+    bar = scene.case.bar.parts[0]
+    if scene.case.bar.range:
+        return {}  # waves between interfaces overlap at the end
     with open_record(record) as file:
         moved = {
             name: (file[f"histories/{name}/time"][:], sign * file[f"histories/{name}/velocity"][:, 0])

@@ -11,7 +11,7 @@ import numpy as np
 from dembound.bar.banded import ROUNDING
 from dembound.bar.entering import MOMENTS, entering_pressure, moments
 from dembound.bar.facts import PERCENT, cells_of_waves
-from dembound.bar.lattice import carrying_lattice
+from dembound.bar.lattice import carrying_lattices
 from dembound.bar.scene import BarScene, end_supports
 from dembound.boundaries import OPPOSITE, normal_axis
 from dembound.casefile.bar import BarCase
@@ -35,7 +35,7 @@ NOTHING = 0.05
 def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
     """All of them, one line each; time_step in s."""
     case = scene.case
-    times = list(time_warnings(case, time_step, case.bar.length / case.bar.speed))
+    times = list(time_warnings(case, time_step, case.bar.travel_time))
     return [
         *_too_few_cells(scene, time_step),
         *(times or ends_too_soon(case)),  # with doubtful times of waves the second check means nothing
@@ -46,8 +46,8 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
 
 def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:
     """Waves that are too short for the spacing of the nodes, except for those of a slow grip."""
-    travel = scene.case.bar.length / scene.case.bar.speed
-    finer = "" if carrying_lattice(scene, time_step).horizon == 1 else " or method.horizon"
+    travel = scene.case.bar.travel_time
+    finer = "" if all(row.horizon == 1 for row in carrying_lattices(scene, time_step)) else " or method.horizon"
     for name, (cells, needed) in cells_of_waves(scene, time_step).items():
         if cells < needed and not is_quasi_static(scene.case, name, travel):
             few = f"{cells:.3g} cells" if cells >= 1.0 else "less than one cell"
@@ -70,7 +70,7 @@ def _dashpots_at_soft_ends(case: BarCase) -> Iterator[str]:
 def stress_beside_strength(case: BarCase) -> Iterator[str]:
     """Loads and waves whose stress is a very small part, or a large multiple, of the strength."""
     bar = case.bar
-    strength = bar.breaking_stretch * bar.modulus
+    strength = bar.least_strength
     if np.isinf(strength):
         return
     stresses = {
@@ -79,20 +79,22 @@ def stress_beside_strength(case: BarCase) -> Iterator[str]:
     for side, waves in case.driving.items():
         wave = case.wave[waves["p"]]
         if 0 in case.side(side).prescribed(normal_axis(side)):
-            found = grip_stress(wave, bar.density, bar.speed, bar.length, case.run.duration, strength)
+            end = bar.end(side)
+            found = grip_stress(wave, end.density, end.speed, bar.length, case.run.duration, strength)
         else:
             pressure = entering_pressure(case, side, moments(case, side), loads=False)
             found = "its stress ρcv", float(np.abs(pressure).max())
         stresses[f"wave.{waves['p']}"] = found
     key = "bar.strength" if bar.critical_stretch is None else "bar.critical_stretch"
+    key = "bar.range" if bar.range else key
     yield from stress_warnings(stresses, strength, key)
 
 
 def ends_too_soon(case: BarCase) -> Iterator[str]:
     """A run that is over before the wave is back from the free end, where the bar could spall."""
     far = OPPOSITE.get(case.loaded)
-    if far is None or not case.side(far).is_free:
-        return
+    if far is None or not case.side(far).is_free or case.bar.range:
+        return  # with ranges an interface may return tension earlier
     if np.isinf(case.bar.breaking_stretch):
         return
     duration, there = case.run.duration, case.bar.length / case.bar.speed
@@ -149,10 +151,11 @@ def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str
     if not summary["spalls"]:
         return
     first, bar = summary["spalls"][0], case.bar
-    near = case.method.largest_horizon * bar.length / bar.cells * (1.0 + ROUNDING)
     for key, what, side, wave, cure in _pushing(case):
+        end = bar.end(side)
+        near = case.method.largest_horizon * end.length / end.cells * (1.0 + ROUNDING)
         distance = first["start"][0] if side == "left" else bar.length - first["start"][1]
-        if distance <= near and first["time"] < case.wave[wave].start + 2.0 * bar.length / bar.speed:
+        if distance <= near and first["time"] < case.wave[wave].start + 2.0 * end.length / end.speed:
             yield (
                 f"{key}: the {what} itself broke the bar, at {first['time']:.4g} s and {distance:g} m from "
                 f"the {side} end, before any reflected wave had returned there; {cure}"
@@ -175,7 +178,7 @@ def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
 
     No warning where one before the run has already reported it.
     """
-    strength = case.bar.breaking_stretch * case.bar.modulus
+    strength = case.bar.least_strength
     foreseen = [*stress_beside_strength(case), *ends_too_soon(case)]
     if np.isinf(strength) or len(file["cracks/time"]) > 0 or foreseen:
         return

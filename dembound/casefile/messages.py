@@ -2,7 +2,7 @@
 
 import difflib
 import json
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError
@@ -37,24 +37,63 @@ def describe(error: ValidationError, path: str, raw: object, schema: Mapping[str
     schema
         JSON schema of the expected value: a table, tables distinguished by a key, or a plain value.
     """
-    details = error.errors(include_url=False)
+    return list(_described(error.errors(include_url=False), path, raw, schema, schema.get("$defs", {})))
+
+
+def _described(
+    details: Sequence[ErrorDetails], path: str, raw: object, schema: Mapping[str, Any], shared: Mapping[str, Any]
+) -> Iterator[str]:
+    """The mistakes in one table, see `describe`; shared : the schemas that others refer to."""
     if not isinstance(raw, Mapping) or not {"properties", "discriminator"} & schema.keys():
         own = details[0]["ctx"]["error"] if details[0]["type"] == "value_error" else None
-        return [f"{path}: {own or f'is {show(raw)}, must be {allowed(schema)}'}"]
+        yield f"{path}: {own or f'is {show(raw)}, must be {allowed(schema)}'}"
+        return
     keys, others = schema.get("properties", {}), {}
     if "discriminator" in schema:
         selector, variants = schema["discriminator"]["propertyName"], schema["discriminator"]["mapping"]
         if details[0]["type"].startswith("union_tag"):
             found = f"is {show(raw[selector])}" if selector in raw else "is missing"
-            return [f"{path}.{selector}: {found}, must be {_one_of(variants)}"]
-        others = {name: schema["$defs"][place.rsplit("/", 1)[-1]]["properties"] for name, place in variants.items()}
+            yield f"{path}.{selector}: {found}, must be {_one_of(variants)}"
+            return
+        others = {name: shared[place.rsplit("/", 1)[-1]]["properties"] for name, place in variants.items()}
         keys = others.pop(raw[selector])
         for detail in details:
             detail["loc"] = detail["loc"][1:]  # without the variant
     by_key: dict[str, list[ErrorDetails]] = {}
     for detail in details:
         by_key.setdefault(str(detail["loc"][0]) if detail["loc"] else "", []).append(detail)
-    return [line for key, found in by_key.items() for line in _lines(path, key, found, raw, keys, others)]
+    for key, about in by_key.items():
+        row = shared.get(keys.get(key, {}).get("items", {}).get("$ref", "").rsplit("/", 1)[-1])
+        if row and isinstance(raw.get(key), list) and all(len(detail["loc"]) > 1 for detail in about):
+            yield from _in_rows(f"{path}.{key}", about, raw[key], row, shared)
+        else:
+            yield from _lines(path, key, about, raw, keys, others)
+
+
+def _in_rows(
+    path: str,
+    details: Sequence[ErrorDetails],
+    rows: Sequence[object],
+    row: Mapping[str, Any],
+    shared: Mapping[str, Any],
+) -> Iterator[str]:
+    """The mistakes in a list of tables within a table; row : the schema of one of them."""
+    by_row: dict[str | int, list[ErrorDetails]] = {}
+    for detail in details:
+        by_row.setdefault(detail["loc"][1], []).append(detail)
+        detail["loc"] = detail["loc"][2:]
+    for index, (place, raw) in enumerate(zip(places(path, rows), rows, strict=True)):
+        if index in by_row:
+            yield from _described(by_row[index], place, raw, row, shared)
+
+
+def places(key: str, tables: Iterable[object]) -> list[str]:
+    """The places of the tables of a list as they were read, such as ``monitor[1, top]``, counted from 1."""
+    found = []
+    for number, table in enumerate(tables, start=1):
+        name = table.get("name") if isinstance(table, Mapping) else None
+        found.append(f"{key}[{number}, {name}]" if isinstance(name, str) else f"{key}[{number}]")
+    return found
 
 
 def _lines(
@@ -97,7 +136,7 @@ def _stray(key: str, keys: Collection[str], others: Mapping[str, Collection[str]
 def _join(path: str, key: str, message: str, keys: Iterable[str]) -> str:
     """Put the place before a table's own message, which may start with the key concerned: ``key: …``."""
     about, colon, rest = message.partition(": ")
-    if not key and colon and about in keys:
+    if not key and colon and about.partition("[")[0] in keys:
         return f"{path}.{about}: {rest}"
     return f"{path}.{key}: {message}" if key else f"{path}: {message}"
 

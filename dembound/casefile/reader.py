@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, TypeAdapter, ValidationError
 from pydantic_core import to_json
 
-from dembound.casefile.messages import describe, show, unknown
+from dembound.casefile.messages import describe, places, show, unknown
 from dembound.casefile.model import Case
 from dembound.casefile.schema import WAVE, Schema
 from dembound.casefile.toml import parsed
@@ -167,8 +167,4 @@ class _Reader:
         if not isinstance(raw, list):
             self.problems.append(f"{key}: is {show(raw)}, must be made of tables [[{key}]]")
             return ()
-        paths = []
-        for number, table in enumerate(raw, start=1):
-            named = isinstance(table, Mapping) and isinstance(table.get("name"), str)
-            paths.append(f"{key}[{number}, {table['name']}]" if named else f"{key}[{number}]")
-        return tuple(self._valid(path, table, kind) for path, table in zip(paths, raw, strict=True))
+        return tuple(self._valid(path, table, kind) for path, table in zip(places(key, raw), raw, strict=True))

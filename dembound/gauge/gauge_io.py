@@ -163,7 +163,7 @@ def _recorded(path: Path, name: str | None) -> tuple[np.ndarray, np.ndarray, Gau
         group = _gauge(file, name)
         time, stress = history_of(group, "stress")
         _enough(time, path)
-        density = file.attrs.get("density")
+        density = group.attrs.get("density", file.attrs.get("density"))
         known = GaugeMetadata(
             position=_from_loaded_end(file, group),
             length=_length(file),

@@ -5,13 +5,14 @@ The force on node i of a bar is (L eq. 8 and its finite difference counterpart, 
     Σ_p k_{i,p} (u_{i+p} − u_i) − k_{i−p,p} (u_i − u_{i−p}),  p = 0 … m
 
 where p = 0 means the local springs between neighbours. Springs and bonds are stored in rows by index offset, so every
-loop reads contiguous numbers, without lists of families. Ranges of the bar that have only unbroken local springs are
+loop reads contiguous numbers, without lists of families. Runs of nodes that have only unbroken, equal local springs are
 `plain`: they are moved by one stencil with constants. A bar is the only part of its scene: its kernels take all nodes.
 """
 
 import numpy as np
 from numba import njit
 
+from dembound.kernels.bar_contacts import close_contacts, note_approach, note_impacts
 from dembound.kernels.common import DONE, FAST, FASTMATH, REST, TRIGGERED, U
 from dembound.kernels.law import is_law
 from dembound.kernels.tables import BarBonds
@@ -86,27 +87,31 @@ def _add_bond_forces(u, a, b, p, bond, limit, space, force):
 
 
 @njit(**FAST)
-def forces(u, mixed, spring, spring_limit, bond, bond_limit, space, force):
+def forces(u, bonds, force):
     """Fill force (n,) N for the nodes that are not plain; returns the number of springs and bonds at their limit."""
+    mixed, zones, space = bonds.mixed, bonds.zones, bonds.space
     reached = 0
     for r in range(mixed.shape[0]):
         a, b = mixed[r, 0], mixed[r, 1]
-        if mixed[r, 3]:
-            reached += _spring_forces(u, a, b, spring, spring_limit, space, force)
+        if mixed[r, 2]:
+            reached += _spring_forces(u, a, b, bonds.spring, bonds.spring_limit, space, force)
         else:
             for i in range(U(a), U(b)):
                 force[i] = 0.0
-        for p in range(1, min(mixed[r, 2], b - a - 1) + 1):
-            reached += _add_bond_forces(u, a, b, p, bond, bond_limit[p - 1], space, force)
+    for z in range(zones.shape[0]):
+        a, b = zones[z, 0], zones[z, 1]
+        for p in range(1, min(bonds.bond.shape[0], b - a - 1) + 1):
+            reached += _add_bond_forces(u, a, b, p, bonds.bond, bonds.bond_limit[z, p - 1], space, force)
     return reached
 
 
 @njit(**FAST)
 def _plain_triggers(u, plain, limit):
-    """Whether a spring at a plain node has reached its limit (m)."""
+    """Whether a spring at a plain node has reached its limit, (r,) m."""
     reached = 0
     for r in range(plain.shape[0]):
-        reached += _plain_reached(u, plain[r, 0], plain[r, 1], limit)
+        if limit[r] < np.inf:
+            reached += _plain_reached(u, plain[r, 0], plain[r, 1], limit[r])
     return reached > 0
 
 
@@ -134,12 +139,13 @@ def break_at_limit(number, u, v, step, bonds):
             bonds.spring[k] = 0.0
             bonds.spring_broken[k] = number
     for row in range(bonds.bond.shape[0]):
-        for i in range(bonds.bond.shape[1] - row - 1):
-            e = u[i + row + 1] - u[i]
-            if bonds.bond[row, i] > 0.0 and e >= bonds.bond_limit[row]:
-                lost += 0.5 * bonds.bond[row, i] * e * (e - step * (v[i + row + 1] - v[i]))
-                bonds.bond[row, i] = 0.0
-                bonds.bond_broken[row, i] = number
+        for z in range(bonds.zones.shape[0]):
+            for i in range(bonds.zones[z, 0], bonds.zones[z, 1] - row - 1):
+                e = u[i + row + 1] - u[i]
+                if bonds.bond[row, i] > 0.0 and e >= bonds.bond_limit[z, row]:
+                    lost += 0.5 * bonds.bond[row, i] * e * (e - step * (v[i + row + 1] - v[i]))
+                    bonds.bond[row, i] = 0.0
+                    bonds.bond_broken[row, i] = number
     return lost
 
 
@@ -155,24 +161,27 @@ def plane_force(k, u, spring, bond):
 
 
 @njit(**FAST)
-def node_stress(i, u, spring, bond, section):
-    """Stress (Pa, tension positive) at node i: the mean of both adjacent planes, at an end of the one plane."""
+def node_stress(i, u, spring, bond, sections):
+    """Stress (Pa, tension positive) at node i: the mean of both adjacent planes, at an end of the one plane.
+
+    Between planes of different sections it is the mean force over the mean section.
+    """
     total = 0.0
-    planes = 0
+    section = 0.0
     if i > 0:
         total += plane_force(i - 1, u, spring, bond)
-        planes += 1
+        section += sections[i - 1]
     if i < u.size - 1:
         total += plane_force(i, u, spring, bond)
-        planes += 1
-    return total / (planes * section)
+        section += sections[i]
+    return total / section
 
 
 @njit(**FAST)
 def stresses(u, bonds, stress):
     """Fill stress (n,) Pa of all nodes, see `node_stress`."""
     for i in range(u.size):
-        stress[i] = node_stress(i, u, bonds.spring, bonds.bond, bonds.section)
+        stress[i] = node_stress(i, u, bonds.spring, bonds.bond, bonds.sections)
 
 
 @njit(**FAST)
@@ -200,16 +209,17 @@ def _move_mixed(u, v, a, b, mobility, keep, step, u_next, mean):
 
 
 @njit(**FAST)
-def _move_unsupported(u, v, plain, stiffness, mixed, mobility, keep, step, u_next, mean, nodes, dragged):
+def _move_unsupported(u, v, bonds, step, u_next, nodes):
     """One step of all nodes except the supported ones (k,)."""
+    plain, mixed, mobility, mean = bonds.plain, bonds.mixed, bonds.mobility, bonds.mean
     for r in range(plain.shape[0]):
-        a, b = plain[r, 0], plain[r, 1]
-        if dragged:
-            _move_plain_dragged(u, v, a, b, stiffness, keep, step, u_next, mean)
+        a, b, push, keep = plain[r, 0], plain[r, 1], bonds.plain_push[r], bonds.plain_keep[r]
+        if bonds.drag.size > 0:
+            _move_plain_dragged(u, v, a, b, push, keep, step, u_next, mean)
         else:
-            _move_plain(u, v, a, b, stiffness, step, u_next)
+            _move_plain(u, v, a, b, push, step, u_next)
     for r in range(mixed.shape[0]):
-        first, b = mixed[r, 0], mixed[r, 1]
+        first, b, keep = mixed[r, 0], mixed[r, 1], bonds.mixed_keep[r]
         for s in range(nodes.size):
             if first <= nodes[s] < b:
                 _move_mixed(u, v, first, nodes[s], mobility, keep, step, u_next, mean)
@@ -249,10 +259,8 @@ def check(bonds, u, u_next, v):
     bonds : see tables.BarBonds; of u, u_next and v, which have three rows, a bar uses the first.
     """
     x = u[0]
-    bonds.reached[0] = forces(
-        x, bonds.mixed, bonds.spring, bonds.spring_limit, bonds.bond, bonds.bond_limit, bonds.space, u_next[0]
-    )
-    if bonds.plain_limit < np.inf and _plain_triggers(x, bonds.plain, bonds.plain_limit):
+    bonds.reached[0] = forces(x, bonds, u_next[0])
+    if _plain_triggers(x, bonds.plain, bonds.plain_limit):
         return TRIGGERED
     return TRIGGERED if bonds.reached[0] > 0 and _triggers(x, bonds) else DONE
 
@@ -263,9 +271,7 @@ def push(bonds, u, u_next, v, number, step, work):
     if bonds.reached[0] > 0:
         work[0, 3] += break_at_limit(number, u[0], v[0], step, bonds)
         work[1, 3] = work[0, 3]
-        forces(
-            u[0], bonds.mixed, bonds.spring, bonds.spring_limit, bonds.bond, bonds.bond_limit, bonds.space, u_next[0]
-        )
+        forces(u[0], bonds, u_next[0])
     return 0
 
 
@@ -273,7 +279,7 @@ def push(bonds, u, u_next, v, number, step, work):
 def note(bonds, index, u, log):
     """Record the stress (Pa) at the probes, in the seventh column."""
     for q in range(log.probes.size):
-        log.record[index, q, 6] = node_stress(log.probes[q], u[0], bonds.spring, bonds.bond, bonds.section)
+        log.record[index, q, 6] = node_stress(log.probes[q], u[0], bonds.spring, bonds.bond, bonds.sections)
 
 
 @njit(**FAST)
@@ -282,16 +288,16 @@ def move(bonds, u, u_next, v, body, nodes):
     w, before = v[0], bonds.before
     for s in range(nodes.size):
         before[s] = w[nodes[s]]
-    dragged = bonds.drag.size > 0
-    _move_unsupported(
-        u[0], w, bonds.plain, bonds.plain_push, bonds.mixed, bonds.mobility, bonds.keep, body.step, u_next[0],
-        bonds.mean, nodes, dragged,
-    )  # fmt: skip
+    note_approach(w, bonds.contacts)
+    _move_unsupported(u[0], w, bonds, body.step, u_next[0], nodes)
+    close_contacts(u_next[0], w, bonds.mobility, bonds.mean, body.step, bonds.contacts)
 
 
 @njit(**FAST)
 def finish(bonds, v, body, nodes, work):
-    """Add the energy taken by attenuation to the ledger."""
+    """Add the energy taken by attenuation and by impacts to the ledger."""
+    if bonds.contacts.left.size > 0:
+        note_impacts(v[0], body.step, bonds.contacts, work)
     if bonds.drag.size > 0:
         _note_drag(v[0], bonds.mean, bonds.before, nodes, bonds.drag, body.step, work)
 

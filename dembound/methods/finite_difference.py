@@ -4,8 +4,9 @@ from typing import Literal
 
 import numpy as np
 
-from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.bonds import Bonds
 from dembound.methods.method import Method
+from dembound.methods.rod import Rod
 
 
 class FiniteDifference(Method):

@@ -4,7 +4,8 @@ from typing import Literal
 
 import numpy as np
 
-from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.bonds import Bonds
+from dembound.methods.rod import Rod
 from dembound.methods.triggered import Triggered
 from dembound.table import quantity
 
@@ -30,20 +31,27 @@ class Patch(Triggered):
         return Bonds(rod, self.horizon, complement=True, trigger_ratio=self.trigger)
 
     def stages(self, rod: Rod) -> list[Bonds]:
-        """No zone, one in the middle, one at each end, and one over the whole bar."""
-        width = min(rod.count, 2 * self.reach * self.horizon + 2)
-        middle = (rod.count - width) // 2
+        """No zone; then, in every range alike, one in the middle, one at each end, and one over the whole of it."""
         stages = [self.begin(rod)]
-        for first, last in ((middle, middle + width), (0, width), (rod.count - width, rod.count), (0, rod.count)):
+        for place in range(4):
             stages.append(self.begin(rod))
-            stages[-1].add_zone(first, last)
+            for part in rod.ranges:
+                first, last, nodes = part.first, part.last + 1, part.cells + 1
+                width = min(nodes, 2 * self.reach * self.horizon + 2)
+                middle = first + (nodes - width) // 2
+                zones = (middle, middle + width), (first, first + width), (last - width, last), (first, last)
+                stages[-1].add_zone(*zones[place])
         return stages
 
     def on_trigger(self, bonds: Bonds, u: np.ndarray) -> str:
-        """Create a zone around every triggered spring; a zone grows by half its length, so that it seldom grows."""
+        """Create a zone around every triggered spring; a zone grows by half its length, so that it seldom grows.
+
+        It ends where the range of the spring does.
+        """
         zones = bonds.zones  # those before any grows: the zone of one spring does not depend on the others
         for k in bonds.triggered(u):
             grown = max((last - first for first, last in zones if first <= k + 1 and k < last), default=0)
             beyond = max(self.reach * self.horizon, grown // 2)
-            bonds.add_zone(int(k) - beyond, int(k) + 2 + beyond)
+            part = bonds.rod.range_of(int(k))
+            bonds.add_zone(max(part.first, int(k) - beyond), min(part.last + 1, int(k) + 2 + beyond))
         return f"finite differences and peridynamics, m = {self.horizon}"

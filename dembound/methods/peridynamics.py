@@ -4,8 +4,9 @@ from typing import Literal
 
 import numpy as np
 
-from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.bonds import Bonds
 from dembound.methods.method import WIDEST, Method
+from dembound.methods.rod import Rod
 from dembound.table import quantity
 
 

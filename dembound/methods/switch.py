@@ -4,7 +4,8 @@ from typing import Literal
 
 import numpy as np
 
-from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.bonds import Bonds
+from dembound.methods.rod import Rod
 from dembound.methods.triggered import Triggered
 from dembound.table import quantity
 

@@ -27,10 +27,10 @@ class Entry:
 
     kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
     of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
-    and driven loads; loads, the part of it that is of the loads; damping, friction, crack, dissipated by them;
-    law_switch, added by a change of method or law; supplied, the kinetic energy at the start plus the largest values so
-    far of outside, at any step, and of load, at any entry; error, stored and dissipated energy minus what came in. In J
-    for a bar.
+    and driven loads; loads, the part of it that is of the loads; damping, friction, crack, dissipated by them, friction
+    of a bar by impacts of its ranges; law_switch, added by a change of method or law; supplied, the kinetic energy at
+    the start plus the largest values so far of outside, at any step, and of load, at any entry; error, stored and
+    dissipated energy minus what came in and what the motion at the start had. In J for a bar.
     """
 
     time: float
@@ -99,7 +99,7 @@ class Ledger(Tracker):
         self._unit, self._weight = run.scene.energy_unit, run.scene.weight
         self._mass, self._inertia = (run.scene.layout.spread(of) for of in (run.scene.mass, run.scene.inertia))
         self._first = run.system.stored(run.state.u)
-        self._came = 0.0  # kinetic energy at the start
+        self._came = 0.0  # energy of the motion at the start, which impacts may take part of at once
         self._most = 0.0, 0.0  # supplied by boundaries and loads, largest values so far
         self._begun: _Begun | None = None
         self._space: list[np.ndarray] = []
@@ -149,7 +149,10 @@ class Ledger(Tracker):
         if run.sides is not None and run.sides.has_loads:
             loads = outside - float(np.sum(sides @ (1.0, -1.0, -1.0))) / self._weight
         error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - law_switch
-        supplied = self._supplied(kinetic, max(outside, float(state.supplied[0])), load)
+        if not self.entries:
+            self._came = error
+        error -= self._came
+        supplied = self._supplied(max(outside, float(state.supplied[0])), load)
         stored = kinetic, contact, bond, load, balance, outside, loads
         energies = *stored, damping, friction, crack, law_switch, supplied, error
         time = (state.step - 1) * run.time_step
@@ -157,10 +160,8 @@ class Ledger(Tracker):
         self.sides.append(sides)
         self._watch()
 
-    def _supplied(self, kinetic: float, outside: float, load: float) -> float:
-        """The most energy (J) supplied until an entry, from its kinetic energy, the largest work outside, and load."""
-        if not self.entries:
-            self._came = kinetic
+    def _supplied(self, outside: float, load: float) -> float:
+        """The most energy (J) supplied until an entry, from the largest work outside, and load."""
         self._most = max(self._most[0], outside), max(self._most[1], load)
         return self._came + sum(self._most)
 

@@ -119,6 +119,10 @@ class Scene(ABC):
     def attributes(self) -> dict[str, Any]:
         """The attributes of a record's header in addition to those of every run."""
 
+    def attributes_of_monitor(self, name: str) -> dict[str, Any]:
+        """The attributes of a monitor's history in addition to its places; by default none."""
+        return {}
+
     @property
     @abstractmethod
     def columns(self) -> dict[str, tuple[np.ndarray, str]]:
@@ -206,6 +210,11 @@ class Scene(ABC):
     @property
     def twin(self) -> np.ndarray | None:
         """(n,) node to whose velocity the dashpots of each node are relative, itself for none; None: all for none."""
+        return None
+
+    @property
+    def first_velocity(self) -> np.ndarray | None:
+        """(3, n) m/s and rad/s at the start of a run; None, the default, at rest."""
         return None
 
     @property

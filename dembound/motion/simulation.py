@@ -65,6 +65,8 @@ class Simulation:
             peaks=np.zeros((len(scene.tracked), 3, 2)),
             top=np.zeros(layout.count if scene.case.output.peaks else 0),
         )
+        if (velocity := scene.first_velocity) is not None:
+            self.state.velocity = velocity
         self.state.owners["system"] = self.system
         self.trackers: list[Tracker] = []
         self.track(Watch(scene.block))

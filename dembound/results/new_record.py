@@ -3,9 +3,10 @@
 Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit``)::
 
     /                       attributes: name, title, case (its text), keys (all, as JSON), kind ("disks", "bar"),
-                            version, size, time_step, step_limit, steps, complete; of disks seed, of a bar density,
-                            section, wave_speed, attenuation, loaded, which of its ends is, and ends, their types; of
-                            a run that was continued to another time regular_steps, those of the run as it was begun
+                            version, size, time_step, step_limit, steps, complete; of disks seed, of a bar loaded,
+                            which of its ends is, and ends, their types, without ranges also density, section,
+                            youngs_modulus, wave_speed, attenuation; of a run that was continued to another time
+                            regular_steps, those of the run as it was begun
     inputs/<number>         bytes of a file that the case refers to; attribute path
     particles/              position (n, 2); of disks radius (n,), brick_particle (n,), bonds (n,) of each at the start,
                             column (n,), whether it belongs to a free-field column, of a bar's nodes volume (n,); if the
@@ -16,7 +17,8 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
                             surface (s, 4), ends of the element sides at its free surface; tie (t, 2), where ties to
                             disks act; if the case asks for it peak_velocity (m,)
     histories/<monitor>/    time (k,), displacement (k, 3), velocity (k, 3), on a bar stress (k,); attributes particle
-                            (−1 in a continuum), position, wanted
+                            (−1 in a continuum), position, wanted; on a bar density, section, youngs_modulus,
+                            wave_speed, attenuation there, and with ranges the name of its range
     boundaries/<side>/      particle, position, diameter (of a bar's end its section), peak_velocity (q, 3, 2); of the
                             side as a whole, without a free-field column, time (k,), displacement (k, 3), force (k, 2)
     snapshots/<number>/     displacement (n, 3), velocity (n, 3), the latter half a step earlier; coordination (n,)
@@ -141,7 +143,8 @@ def header_of_monitor(scene: Scene, name: str) -> dict[str, Any]:
     place = scene.monitored[name]
     wanted = scene.places.get(name, place)  # a twin has no given position
     particle = NO_PARTICLE if name in scene.between else scene.monitors[name]
-    return {"particle": particle, "position": place, "wanted": wanted, "unit": "m"}
+    places = {"particle": particle, "position": place, "wanted": wanted, "unit": "m"}
+    return places | scene.attributes_of_monitor(name)
 
 
 def _make_energy(file: h5py.File, scene: Scene, ledger: Ledger) -> None:

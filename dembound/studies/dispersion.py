@@ -20,8 +20,9 @@ from dembound.casefile.reader import loads
 from dembound.errors import CaseError
 from dembound.exact.dispersion import Lattice, usual_shares
 from dembound.methods import Peridynamics
-from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.bonds import Bonds
 from dembound.methods.method import WIDEST
+from dembound.methods.rod import Rod
 from dembound.motion.simulation import Simulation
 from dembound.results.reader import replacing
 
@@ -85,7 +86,8 @@ def lattices_of(case: Case) -> list[Lattice]:
     bar = as_kind(case, BarCase, "is the case of disks, this command is for bars")
     scene = build_bar(bar)
     time_step, _ = choose_step(scene)
-    found = {lattice_of(bonds, time_step, bar.bar.speed) for bonds in bar.method.stages(scene.rod)}
+    stages = bar.method.stages(scene.rod)
+    found = {lattice_of(bonds, part, time_step) for bonds, part in product(stages, scene.rod.ranges)}
     return sorted(found, key=lambda lattice: (lattice.horizon, lattice.shares or ()))
 
 

@@ -22,7 +22,7 @@ from dembound.bar.wave_front import front_of_bar
 from dembound.boundaries import SIDES, normal_axis
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
-from dembound.casefile.bar.bar import MOST_CELLS
+from dembound.casefile.bar.bar import MOST_CELLS, Bar
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
 from dembound.casefile.run import Run
@@ -263,29 +263,40 @@ def _extended_bar(case: BarCase, most: int) -> Extended:
     scene = build_bar(case)
     bar, step = case.bar, choose_bar_step(scene)[0]
     moving = _moving(case, {*case.driving, *(load.side for load in case.load)})
-    front, spacing = front_of_bar(scene, step), bar.length / bar.cells
+    front = front_of_bar(scene, step)
+    spacing = {side: bar.end(side).length / bar.end(side).cells for side in ("left", "right")}
     targets = monitored(scene) if case.monitor else scene.positions[[0, -1]]
     cells = {"left": 0, "right": 0}
     for side in moving:
         plane = bar.length if side == "right" else 0.0
         needed = plane_needed(side, sources_of_bar(case), targets, front, case.run.duration)
         beyond = needed - plane if side == "right" else plane - needed
-        cells[side] = max(0, int(np.ceil(beyond / spacing - 1e-9))) if np.isfinite(beyond) else 0
-    count = bar.cells + sum(cells.values())
-    length = count * spacing
+        cells[side] = max(0, int(np.ceil(beyond / spacing[side] - 1e-9))) if np.isfinite(beyond) else 0
+    count = bar.nodes - 1 + sum(cells.values())
+    longer = {side: cells[side] * spacing[side] for side in cells}
+    length = bar.length + sum(longer.values()) if bar.range else count * spacing["left"]
     _must_not_exceed(count + 1, min(most, MOST_CELLS), f"{length:g} m", case)
     sentence = _sentence(case, f"the same bar {length:g} m long, {count + 1:,} nodes", moving)
     if not any(cells.values()):
         return Extended(case, sentence, (0.0, 0.0, bar.length, 0.0))
-    shift = cells["left"] * spacing
+    shift = longer["left"]
     monitors = tuple(
         monitor.model_copy(update={"position": min(monitor.position + shift, length)}) for monitor in case.monitor
     )
     larger = replace(
         case,
-        bar=bar.model_copy(update={"length": length}),
+        bar=_lengthened(bar, longer, length),
         monitor=monitors,
         run=_same_step(case.run, step),
         name=f"{case.name}_extended",
     )
     return Extended(larger, sentence, (shift, 0.0, shift + bar.length, 0.0))
+
+
+def _lengthened(bar: Bar, longer: Mapping[str, float], length: float) -> Bar:
+    """A bar of another length (m), its end ranges longer by `longer` (m) if it has ranges."""
+    ranges = list(bar.range)
+    for side, index in (("left", 0), ("right", -1)):
+        if ranges:
+            ranges[index] = ranges[index].model_copy(update={"length": ranges[index].length + longer[side]})
+    return bar.model_copy(update={"length": length, "range": tuple(ranges)} if ranges else {"length": length})

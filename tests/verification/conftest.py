@@ -276,7 +276,7 @@ class Rock:
 
     def step(self, scene: BarScene, courant: float) -> float:
         """The time step (s) of a Courant number cΔt/Δx."""
-        return courant * scene.rod.spacing / scene.case.bar.speed
+        return courant * scene.rod.ranges[0].spacing / scene.case.bar.speed
 
 
 @pytest.fixture(scope="session")

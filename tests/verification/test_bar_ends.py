@@ -101,7 +101,7 @@ def test_soft_end_echoes(rock, echo, horizon):
 def softness(rock, horizon: int, corrected: bool = False, cells: int = 100) -> float:
     """By how many cells of a whole bar each end stretches more than it should under a pull at both."""
     scene = rock.scene(peridynamics(horizon, corrected), spacing=rock.length / cells)
-    bands = scene.case.method.begin(scene.rod).stiffness() / scene.rod.spring
+    bands = scene.case.method.begin(scene.rod).stiffness() / scene.rod.springs[0]
     bands[:, 0], bands[0, 0] = 0.0, 1.0  # the first node is held
     pull = np.zeros(scene.count)
     pull[-1] = 1.0

@@ -122,7 +122,7 @@ def test_a_matched_bar_lets_in_the_wave_and_absorbs_it(rock):
     steps = 2 * int(1.0 / rock.speed / step)
     ledger = ledger_of(scene, steps=steps, time_step=step)
     wave = scene.case.wave["pulse"].velocity(step * np.arange(steps))
-    energy = rock.density * rock.speed * scene.rod.section * step * np.sum(wave**2)
+    energy = rock.density * rock.speed * scene.rod.ranges[0].section * step * np.sum(wave**2)
     (came_left, out_left, _), (came_right, out_right, _) = ledger.side_columns[-1]
     assert came_left == pytest.approx(energy, rel=1e-12)
     assert came_right == 0.0

@@ -9,7 +9,8 @@ import pytest
 
 from dembound.kernels.bar import plane_force
 from dembound.laws.peridynamic import families, volume_factor
-from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.bonds import Bonds
+from dembound.methods.rod import Rod
 from dembound.motion.simulation import Simulation
 
 HORIZONS = [1, 2, 3, 5, 8]
@@ -20,7 +21,7 @@ def stiffness(pairs: np.ndarray, horizon: int) -> float:
     """E_eff/E in the middle of a bar with these bonds (b, 2), each with its volume factor."""
     first, second = np.sort(pairs, axis=1).T
     across = (first < NODES // 2) & (second >= NODES // 2)
-    factor = volume_factor((second - first).astype(float), 1.0, float(horizon))
+    factor = volume_factor(second - first, horizon)
     return 2.0 / horizon**2 * factor[across].sum()
 
 
@@ -32,12 +33,12 @@ def within(places: np.ndarray, reach: float) -> np.ndarray:
 @pytest.mark.parametrize("horizon", HORIZONS)
 def test_whole_outermost_neighbours_are_too_stiff(horizon):
     """Without their half factor Σ p w_p is m(m + 1)/2, and E_eff/E is 1 + 1/m."""
-    rod = Rod(NODES, 0.01, 1.0, 20e9, np.inf)
+    rod = Rod.uniform(NODES, spacing=0.01, section=1.0, modulus=20e9)
     bonds = Bonds(rod, horizon)
     bonds.add_zone(0, NODES)
     strain = 1e-4
-    u = strain * rod.spacing * np.arange(NODES)
-    stress = rod.modulus * strain * rod.section
+    u = strain * rod.positions
+    stress = 20e9 * strain
     assert plane_force(NODES // 2, u, bonds.spring, bonds.bond) == pytest.approx(stress, rel=1e-12)
     bonds.bond[-1] *= 2.0
     assert plane_force(NODES // 2, u, bonds.spring, bonds.bond) == pytest.approx(stress * (1 + 1 / horizon), rel=1e-12)
@@ -46,7 +47,7 @@ def test_whole_outermost_neighbours_are_too_stiff(horizon):
 @pytest.mark.parametrize("horizon", HORIZONS)
 def test_families_by_distance_lose_pairs(horizon):
     """Differences of rounded places are above mΔx as often as not; by index offset none is missed."""
-    whole = families((NODES,), horizon).pairs
+    whole = families(NODES, horizon).pairs
     assert len(whole) == sum(NODES - p for p in range(1, horizon + 1))
     assert stiffness(whole, horizon) == pytest.approx(1.0, rel=1e-12)
     spacing = 1e-3

@@ -22,6 +22,13 @@ BRITTLE = MATERIAL | {"law": "linearpbond", "pb_ten": 3e5, "pb_coh": 6e5, "fric"
 FREE_FIELD = {side: {"type": "free_field"} for side in ("left", "right")}
 DISKS = GRAINS | {"output": GRAINS["output"] | {"peaks": True, "contacts": True}}
 BAR = PULLED | {"boundary": {"right": {"type": "viscous", "beta_p": 0.2}}}
+RANGES = {key: value for key, value in PULLED["bar"].items() if key != "length"} | {
+    "range": [
+        {"name": "pulled", "length": 0.7, "velocity": 1.0},
+        {"name": "stiff", "length": 0.2, "spacing": 0.005, "wave_speed": 4000.0, "attenuation": 0.5},
+        {"name": "struck", "length": 0.5, "interface": "contact", "gap": 0.0005},
+    ]
+}
 CASES = {
     "elastic": DISKS,
     "rows and symmetry": DISKS
@@ -64,6 +71,7 @@ CASES = {
     "finite differences": BAR | {"method": {"type": "finite_difference"}},
     "switch": BAR | {"method": {"type": "switch", "horizon": 3}},
     "patch": BAR | {"method": {"type": "patch", "horizon": 3}},
+    "ranges": BAR | {"bar": RANGES, "method": {"type": "patch", "horizon": 3}},
 }
 
 

@@ -2,13 +2,18 @@
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
-from pydantic import model_validator
+from pydantic import ValidationError, model_validator
 
+from dembound.casefile.bar.range import BarRange
 from dembound.table import LARGEST, SMALLEST, Table, quantity
 
 PAIRS = (("section", "diameter"), ("wave_speed", "youngs_modulus"), ("strength", "critical_stretch"))
 """Pairs of keys of which a bar may have only one."""
+
+OF_RANGES = {"name", "velocity", "interface", "gap"}
+"""Keys of a range that a uniform bar does not have."""
 
 MOST_CELLS = 2_000_000
 """Largest number of cells: more is a mistake, and computing the stability limit alone would take minutes."""
@@ -20,9 +25,12 @@ class Bar(Table):
     Nodes are at x = 0, Δx, … L; the two at the ends have half a volume. The section is given by its area or by the
     diameter of a round bar, the stiffness by wave speed c = √(E/ρ) or Young's modulus E, the strength by the stress or
     the stretch at which a bond breaks, s₀ = σ_t/E. Without a strength nothing breaks.
+
+    A bar with ranges is a row of uniform bars. Its own keys are those of all ranges that do not give others, its length
+    is that of them and of their gaps together.
     """
 
-    length: float = quantity(..., unit="m", help="length L of the bar", gt=0.0)
+    length: float = quantity(None, unit="m", help="length L of the bar; of one with ranges that of all", gt=0.0)
     spacing: float = quantity(..., unit="m", help="distance Δx from node to node; a whole number of them is L", gt=0.0)
     section: float | None = quantity(None, unit="m²", help="area of the cross-section; 1 m² if not given", gt=0.0)
     diameter: float | None = quantity(None, unit="m", help="diameter of a round bar", gt=0.0)
@@ -34,6 +42,7 @@ class Bar(Table):
     attenuation: float = quantity(
         0.0, unit="1/m", help="α: high frequencies fade by exp(−αx) over a distance x (L eq. 19)", ge=0.0
     )
+    range: tuple[BarRange, ...] = quantity((), unit="1", help="ranges of the bar, from left to right")
 
     @model_validator(mode="after")
     def _consistent(self) -> "Bar":
@@ -42,9 +51,12 @@ class Bar(Table):
             for first, second in PAIRS
             if getattr(self, first) is not None and getattr(self, second) is not None
         ]
-        problems += [*self._problems_with_stiffness(), *self._problems_with_spacing()]
+        problems += self._problems_with_stiffness()
+        problems += self._problems_with_ranges() if self.range else self._problems_with_spacing()
         if problems:
             raise ValueError("\n".join(problems))
+        if self.range and "length" not in self.model_fields_set:
+            self.__dict__["length"] = self._whole_length
         return self
 
     def _problems_with_stiffness(self) -> Iterator[str]:
@@ -57,18 +69,89 @@ class Bar(Table):
 
     def _problems_with_spacing(self) -> Iterator[str]:
         """Spacings that do not fit into the length, or too many of them."""
+        if self.length is None:
+            return  # which bar_problems reports, also beside other mistakes
         cells = self.length / self.spacing
         if cells > MOST_CELLS:
-            yield f"spacing: is {self.spacing:g}, must cut bar.length, {self.length:g} m, into {MOST_CELLS:,} or less"
+            yield f"spacing: is {self.spacing:g}, must cut the length, {self.length:g} m, into {MOST_CELLS:,} or less"
         elif cells < 1.5 or abs(cells - round(cells)) > 1e-6 * cells:
             yield (
-                f"spacing: is {self.spacing:g}, must divide bar.length, {self.length:g} m, into two or more equal parts"
+                f"spacing: is {self.spacing:g}, must divide the length, {self.length:g} m, into two or more equal parts"
             )
+
+    def _problems_with_ranges(self) -> Iterator[str]:
+        """Mistakes of single ranges, and those between them and the bar's own keys."""
+        first: dict[str, int] = {}
+        for number, given in enumerate(self.range, start=1):
+            place = f"range[{number}, {given.name}]"
+            if first.setdefault(given.name, number) != number:
+                yield f"{place}.name: is taken by range[{first[given.name]}]"
+            if number == 1 and given.interface == "contact":
+                yield f'{place}.interface: is "contact", but no range is on its left'
+            try:
+                Bar(**self._keys_of(given))
+            except ValidationError as error:
+                for line in str(error.errors()[0]["ctx"]["error"]).splitlines():
+                    yield f"{place}.{line}"
+        whole = self._whole_length
+        if "length" in self.model_fields_set and abs(self.length - whole) > 1e-9 * whole:
+            yield f"length: is {self.length:g}, must be that of all ranges and gaps, {whole:.12g} m, or left out"
+        if (cells := sum(each.length / (each.spacing or self.spacing) for each in self.range)) > MOST_CELLS:
+            yield f"range: makes {cells:,.0f} spacings, must be {MOST_CELLS:,} or less"
+
+    def _keys_of(self, given: BarRange) -> dict[str, Any]:
+        """The keys of the uniform bar that a range is."""
+        own = {key: value for key, value in given.given().items() if key not in OF_RANGES}
+        other = {twin for pair in PAIRS for twin in pair if not own.keys().isdisjoint(pair)}
+        shared = {key: value for key, value in self.given().items() if key not in {"range", "length", *other}}
+        return shared | own
+
+    @property
+    def _whole_length(self) -> float:
+        """Length of all ranges and gaps, m."""
+        return math.fsum(each.length + each.gap for each in self.range)
+
+    @property
+    def parts(self) -> tuple["Bar", ...]:
+        """The uniform bars it consists of, from left to right: its ranges, or itself."""
+        return tuple(Bar(**self._keys_of(given)) for given in self.range) or (self,)
+
+    @property
+    def starts(self) -> tuple[float, ...]:
+        """Place (m) of the left end of each part."""
+        if not self.range:
+            return (0.0,)
+        widths = [each.length + each.gap for each in self.range]
+        return tuple(math.fsum(widths[:k]) + each.gap for k, each in enumerate(self.range))
+
+    @property
+    def contacts(self) -> tuple[bool, ...]:
+        """Whether each part only touches the one on its left; the first has none."""
+        return tuple(each.interface == "contact" for each in self.range) or (False,)
+
+    @property
+    def least_strength(self) -> float:
+        """Smallest tensile strength σ_t (Pa) of its parts; infinite for an unbreakable bar."""
+        return min(part.breaking_stretch * part.modulus for part in self.parts)
+
+    def end(self, side: str) -> "Bar":
+        """The part at the "left" or the "right" end."""
+        return self.parts[0 if side == "left" else -1]
+
+    @property
+    def travel_time(self) -> float:
+        """Time (s) a wave takes from end to end, L/c of a uniform bar."""
+        return sum(part.length / part.speed for part in self.parts)
 
     @property
     def cells(self) -> int:
-        """Number of spacings in the length; the number of nodes is larger by one."""
+        """Number of spacings of a bar without ranges; the number of nodes is larger by one."""
         return round(self.length / self.spacing)
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes; one at a bonded interface, two at a contact."""
+        return sum(part.cells for part in self.parts) + 1 + sum(self.contacts)
 
     @property
     def area(self) -> float:

@@ -29,7 +29,12 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
     yield from _loaded_but_held(tables["boundary"], tables["load"])
     for key in ("load", "monitor"):
         yield from repeated_names(key, tables[key])
-    if bar := tables["bar"]:
+    bar = tables["bar"]
+    written = given.get("bar", {})
+    if isinstance(written, Mapping) and written.keys().isdisjoint({"length", "range"}):
+        yield "bar.length: is missing, must be a number greater than 0 (m)"
+        bar = None
+    if bar:
         yield from _beyond_the_bar(bar, tables)
         if tables["method"]:
             yield from _horizon_too_long(bar, tables["method"])
@@ -42,7 +47,8 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
 
 def _courant_too_large(bar: Bar, run: BarRun) -> Iterator[str]:
     """A step, given by its Courant number, that is longer than the run."""
-    if run.courant is not None and (step := run.courant * bar.spacing / bar.speed) > run.duration:
+    unit = min(part.spacing / part.speed for part in bar.parts)
+    if run.courant is not None and (step := run.courant * unit) > run.duration:
         yield f"run.courant: makes a step of {step:g} s, must be at most run.duration, {run.duration:g} (s)"
 
 
@@ -75,13 +81,17 @@ def _beyond_the_bar(bar: Bar, tables: Mapping[str, Any]) -> Iterator[str]:
             yield f"{place}.position: is {monitor.position:g}, must be at most bar.length, {bar.length:g} (m)"
     loads: Sequence[tuple[str, BarLoad]] = list(numbered("load", tables["load"]))
     for place, load in loads:
-        if load.nodes > bar.cells + 1:
+        if bar.range and load.nodes > (most := bar.end(load.side).cells):
+            yield f"{place}.nodes: is {load.nodes}, must be at most {most}, the nodes of the {load.side} range alone"
+        elif not bar.range and load.nodes > bar.cells + 1:
             yield f"{place}.nodes: is {load.nodes}, must be at most {bar.cells + 1}, the nodes of the bar"
 
 
 def _horizon_too_long(bar: Bar, method: Method) -> Iterator[str]:
-    """Horizons too long for the bar."""
-    if 2 * method.largest_horizon > bar.cells:
-        yield f"method.horizon: is {method.largest_horizon}, must be at most {bar.cells // 2}, half the bar's spacings"
-    elif method.soft_ends and bar.cells < FEWEST_CELLS:
-        yield f"bar.spacing: makes {bar.cells} of them, a bar with soft ends must have {FEWEST_CELLS} or more"
+    """Horizons too long for the bar, or for one of its ranges."""
+    cells = min(part.cells for part in bar.parts)
+    where = "the shortest range" if bar.range else "the bar"
+    if 2 * method.largest_horizon > cells:
+        yield f"method.horizon: is {method.largest_horizon}, must be at most {cells // 2}, half of {where}'s spacings"
+    elif method.soft_ends and cells < FEWEST_CELLS:
+        yield f"bar.spacing: makes {cells} of them in {where}, with soft ends it must be {FEWEST_CELLS} or more"

@@ -2,7 +2,7 @@
 
 from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
 from dembound.kernels.tables.grid import ALONG, Absorber, Blocks, Elements, Grid, Shape
-from dembound.kernels.tables.laws import BarBonds, Bonded, LaneBonded, Links, WatchedLinks
+from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, LaneBonded, Links, WatchedLinks
 from dembound.kernels.tables.motion import Body, Followers, Log, Supports
 from dembound.kernels.tables.sides import NO_SIDES, Sides
 from dembound.kernels.tables.ties import Repeats, Seam, SeamEnds, WallTies
@@ -12,6 +12,7 @@ __all__ = [
     "NO_SIDES",
     "Absorber",
     "BarBonds",
+    "BarContacts",
     "Blocks",
     "Body",
     "Bonded",

@@ -74,18 +74,33 @@ class LaneBonded(NamedTuple):
     also_lost: np.ndarray
 
 
+class BarContacts(NamedTuple):
+    """Contacts between ranges of a bar, see kernels.bar_contacts.
+
+    left : (c,) nodes, each touches the next one; gap : (c,) m between them at rest. before (c,) m/s, push (c,) N : work
+    space, the speed of approach before a step and the force in it.
+    """
+
+    left: np.ndarray
+    gap: np.ndarray
+    before: np.ndarray
+    push: np.ndarray
+
+
 class BarBonds(NamedTuple):
     """Springs and bonds of a bar of n nodes; horizon m, 0 if there is no peridynamic bond.
 
     spring : (n − 1,) N/m of the local springs between neighbours, 0 where there is none; spring_limit : (n − 1,) m, the
     elongation at which each breaks, or where it triggers (n − 1,) the method; bond : (m, n) N/m, row p − 1
-    those between nodes i and i + p; bond_limit : (m,) m, the elongation at which they break. spring_broken (n − 1,),
-    bond_broken (m, n) : step in which each broke, −1 for not. plain : (r, 2) ranges of nodes between equal springs that
-    all trigger at plain_limit m; plain_push 1/s : Δt k/m of them, less what attenuation takes; mixed : (q, 4) the
-    ranges of all others, with the number of bond lengths there, 0 or m, and whether they have springs. section : m².
-    mobility : (n,) Δt/m, less what attenuation takes, 0 for supported nodes; keep : part of the velocity of a node that
-    remains after attenuation in a step; drag : (n,) N·s/m of its dashpots, or (0,) for none. space (n + m + 1,), mean
-    (n,), before (k,), reached (1,) : work space.
+    those between nodes i and i + p. spring_broken (n − 1,), bond_broken (m, n) : step in which each broke, −1 for not.
+    zones : (z, 2) nodes among which there are bonds, zones share at most one node; bond_limit : (z, m) m, the
+    elongation at which they break, by length. plain : (r, 2) runs of nodes between equal springs; of each plain_push
+    (r,) 1/s : Δt k/m, less what attenuation takes, plain_keep (r,) : part of a velocity that remains after attenuation
+    in a step, plain_limit (r,) m : where all trigger. mixed : (q, 3) the runs of all other nodes, with whether they
+    have springs, and mixed_keep (q,) as plain_keep. sections : (n − 1,) m², between neighbours, 0 where nothing joins
+    them. mobility : (n,) Δt/m, less what attenuation takes, 0 for supported nodes; drag : (n,) N·s/m of dashpots that
+    attenuate, or (0,) for none. contacts : between ranges. space (n + m + 1,), mean (n,), before (k,), reached (1,) :
+    work space.
     """
 
     spring: np.ndarray
@@ -95,14 +110,17 @@ class BarBonds(NamedTuple):
     bond_limit: np.ndarray
     spring_broken: np.ndarray
     bond_broken: np.ndarray
+    zones: np.ndarray
     plain: np.ndarray
-    plain_push: float
-    plain_limit: float
+    plain_push: np.ndarray
+    plain_keep: np.ndarray
+    plain_limit: np.ndarray
     mixed: np.ndarray
-    section: float
+    mixed_keep: np.ndarray
+    sections: np.ndarray
     mobility: np.ndarray
-    keep: float
     drag: np.ndarray
+    contacts: BarContacts
     space: np.ndarray
     mean: np.ndarray
     before: np.ndarray

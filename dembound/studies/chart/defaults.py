@@ -163,7 +163,7 @@ def _of_bar(case: BarCase) -> Named:
 def _methods(case: BarCase) -> Iterator[dict[str, Any]]:
     """The methods, the case's own first if it is another package's; those that wait for a break if it can break."""
     kinds: list[type[Method]] = [FiniteDifference, Peridynamics]
-    if case.bar.breaking_stretch < math.inf:
+    if case.bar.least_strength < math.inf:
         kinds += [Switch, Patch]
     if type(case.method) not in kinds:
         yield case.method.given()

@@ -124,6 +124,8 @@ class PulseInBar(Exact):
         """The solution of a case; None if it is another problem."""
         if not isinstance(case, BarCase) or case.bar.attenuation > 0.0 or len(case.load) != 1 or case.driving:
             return None
+        if case.bar.range:
+            return None
         load, far = case.load[0], case.side("right")
         end: End | None = "absorbing" if far.factors else "free" if far.is_free else None
         end = "fixed" if 0 in far.prescribed(0) else end

@@ -18,6 +18,7 @@ import numpy as np
 
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
+from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.studies.chart.choices import Choice
 from dembound.studies.chart.measure import Gauge, Outcome
@@ -49,8 +50,10 @@ class Finer:
 def finer(case: BarCase, choices: Sequence[Choice], outcomes: Sequence[Outcome]) -> Finer:
     """The reference for choices with these outcomes; case : of the bar, loads and ends.
 
-    Raises CaseError if the bar would have too many nodes.
+    Raises CaseError if the bar would have too many nodes, and for a bar with ranges, whose Courant numbers differ.
     """
+    if case.bar.range:
+        raise CaseError(["reference: finer is not available for a bar with ranges"], case.name)
     bars = [choice.case.bar for choice in choices if isinstance(choice.case, BarCase)]
     cells = _cells({bar.cells for bar in bars if bar.length == case.bar.length})
     spacing = case.bar.length / cells

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from dembound.bar.fracture import Spall, breaks_at_ends, cracked_since, spalls
-from dembound.methods.bonds import Bonds, Rod
+from dembound.methods.bonds import Bonds
+from dembound.methods.rod import Rod
 
 COUNT, SPACING, STEP = 41, 0.25, 1e-3
-ROD = Rod(COUNT, SPACING, section=1.0, modulus=1e9, critical_stretch=1e-3)
+ROD = Rod.uniform(COUNT, SPACING, section=1.0, modulus=1e9, critical_stretch=1e-3)
 PLACES = SPACING * np.arange(COUNT)
 
 
@@ -46,7 +47,7 @@ def test_a_cut_cracks_the_nodes_that_lose_three_tenths(bonds) -> None:
 
 @pytest.mark.parametrize("section", [1.0, 0.1, 0.7])
 def test_three_tenths_count_however_they_are_rounded(section: float) -> None:
-    rod = Rod(COUNT, SPACING, section, modulus=1e9, critical_stretch=1e-3)
+    rod = Rod.uniform(COUNT, SPACING, section, modulus=1e9, critical_stretch=1e-3)
     bonds = Bonds(rod, 3, complement=False)
     bonds.add_zone(0, COUNT)
     cut(bonds, 20, step=7)

@@ -27,8 +27,8 @@ def test_nodes_stand_from_end_to_end(spalling) -> None:
     np.testing.assert_allclose(scene.positions[:, 0], np.linspace(0.0, 1.0, 41), rtol=2 * EPS)
     assert not scene.positions[:, 1].any()
     assert scene.size.tolist() == [1.0, 0.0]
-    assert scene.rod.section == pytest.approx(SECTION, rel=2 * EPS)
-    assert (scene.rod.modulus, scene.rod.critical_stretch) == (2.5e9, 8e6 / 2.5e9)
+    assert scene.rod.ranges[0].section == pytest.approx(SECTION, rel=2 * EPS)
+    assert (scene.rod.ranges[0].modulus, scene.rod.ranges[0].critical_stretch) == (2.5e9, 8e6 / 2.5e9)
 
 
 def test_end_nodes_have_half_a_mass(spalling) -> None:
@@ -57,6 +57,7 @@ def test_a_record_is_told_of_the_bar_and_its_ends(spalling) -> None:
     assert told == {
         "density": 2500.0,
         "section": 1.0,
+        "youngs_modulus": 2.5e9,
         "wave_speed": 1000.0,
         "attenuation": 0.3,
         "loaded": "left",

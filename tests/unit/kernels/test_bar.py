@@ -1,6 +1,6 @@
 """The compiled step of a bar against the same equations written down plainly, with a dense stiffness matrix."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -8,18 +8,19 @@ import pytest
 from dembound.kernels import bar, tables
 from dembound.kernels.common import DONE, TRIGGERED
 from dembound.kernels.loop import advance
-from dembound.laws.peridynamic import bond_forces, families, micromodulus
-from dembound.methods.bonds import Bonds, Rod
+from dembound.laws.peridynamic import families, micromodulus
+from dembound.methods.bonds import Bonds
+from dembound.methods.rod import Rod
 
 EPS = np.finfo(float).eps
 COUNT, STEPS = 60, 41
 STEP = 0.1
 SUPPORTED = np.array([0, 1, 7, 30, 59])
-ROD = Rod(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=np.inf)
-DENSITY = 1.0 / ROD.volumes.max()
-MASS = DENSITY * ROD.volumes
+ROD = Rod.uniform(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=np.inf)
+(PART,) = ROD.ranges
+MASS = ROD.mass
 """Of 1 inside, so that the fastest waves stay far below the limit of the step."""
-WEAK = Rod(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=0.55)
+WEAK = Rod.uniform(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=0.55)
 """Bonds that reach their limit here and there while random motion stretches them by some tenths."""
 
 ROUNDING = 8.0 * EPS * STEPS**2
@@ -122,7 +123,8 @@ class Run:
     def __init__(self, bonds: Bonds, u: np.ndarray, v: np.ndarray, outside: Outside = NOTHING, a: float = 0.0) -> None:
         self.bonds, self.u, self.v, self.outside = bonds, u, v, outside
         self.drag = 2.0 * a / STEP * MASS
-        self.arrays = bonds.arrays(outside.nodes, DENSITY, STEP, 2.0 * a / STEP)
+        bonds.rod = Rod(tuple(replace(part, drag_rate=2.0 * a / STEP) for part in bonds.rod.ranges))
+        self.arrays = bonds.arrays(outside.nodes, STEP)
         self.work, self.top_speed = np.zeros((2, 6)), np.zeros(COUNT)
         self.record = np.zeros((STEPS, COUNT, 7))
 
@@ -166,11 +168,9 @@ def plain_run(bonds: Bonds, u: np.ndarray, v: np.ndarray, outside: Outside = NOT
 def test_forces_are_those_of_the_stiffness_matrix(layout) -> None:
     bonds = damaged(layout(ROD))
     u = shaken()[0][0]
-    arrays = bonds.arrays(SUPPORTED, DENSITY, STEP)
+    arrays = bonds.arrays(SUPPORTED, STEP)
     of_ranges = np.full(COUNT, np.nan)
-    reached = bar.forces(
-        u, arrays.mixed, arrays.spring, arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.space, of_ranges
-    )
+    reached = bar.forces(u, arrays, of_ranges)
 
     expected = -matrix(bonds) @ u
     # up to twelve terms of springs of 4 N/m and elongations below 0.2 m
@@ -183,26 +183,22 @@ def test_forces_are_those_of_the_stiffness_matrix(layout) -> None:
 
 @pytest.mark.parametrize("horizon", [1, 2, 3, 5, 8])
 def test_forces_of_a_peridynamic_bar_are_those_of_the_law(horizon: int) -> None:
-    family = families((COUNT,), horizon)
+    family = families(COUNT, horizon)
     first, second = family.pairs.T
     u = shaken()[0][0]
-    apart, moved = ROD.spacing * family.offset, (u[second] - u[first])[:, None]
+    stretch = (u[second] - u[first]) / (PART.spacing * family.apart)
     volumes = ROD.volumes[first] * ROD.volumes[second] * family.factor
-    c_m = micromodulus(ROD.modulus, horizon * ROD.spacing, 1, ROD.section)
-    pull = bond_forces(apart, moved, c_m, volumes, np.ones(len(apart), dtype=bool))[:, 0]
+    pull = micromodulus(PART.modulus, horizon * PART.spacing, PART.section) * stretch * volumes
     expected = np.bincount(first, pull, COUNT) - np.bincount(second, pull, COUNT)
 
     bonds = laid(ROD, horizon, (0, COUNT), complement=False)
-    arrays = bonds.arrays(np.zeros(0, dtype=np.int64), DENSITY, STEP)
+    arrays = bonds.arrays(np.zeros(0, dtype=np.int64), STEP)
     force = np.empty(COUNT)
-    limits = arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.space
-    bar.forces(u, arrays.mixed, arrays.spring, *limits, force)
+    bar.forces(u, arrays, force)
 
-    # along a line stretch goes with displacements exactly, as no node moves by half a spacing and passes another: what
-    # differs is rounding. The law takes lengths ξ + η < 2ξ from each other, within 2εξ; a bond pulls by c_m V² w/ξ of
-    # that, and the 2m bonds of a node together by 2E·A (2m − 1)/m² ≤ 2EA. Each force, below c_m V² w, is rounded by
-    # some ε in its factors, and by one in every sum of 2m of them
-    tolerance = (2.0 + 8.0 + 2.0 * horizon) * EPS * 2.0 * ROD.modulus * ROD.section
+    # each bond's force, below c_m V² w, is rounded by some ε in its factors, and by one in every sum of 2m of them,
+    # which together are below 2E·A (2m − 1)/m² ≤ 2EA
+    tolerance = (8.0 + 2.0 * horizon) * EPS * 2.0 * PART.modulus * PART.section
     np.testing.assert_allclose(force, expected, rtol=0.0, atol=tolerance)
     assert np.abs(expected).max() > 0.01
 
@@ -210,14 +206,13 @@ def test_forces_of_a_peridynamic_bar_are_those_of_the_law(horizon: int) -> None:
 def test_what_is_at_its_limit_is_counted(layout) -> None:
     bonds = layout(WEAK)
     u = 0.5 * 0.55 * (1.0 + 1e-9) * np.arange(COUNT)
-    arrays = bonds.arrays(np.arange(COUNT) if bonds.horizon == 0 else np.zeros(0, dtype=np.int64), DENSITY, STEP)
-    limits = arrays.spring_limit, arrays.bond, arrays.bond_limit, arrays.space
-    reached = bar.forces(u, arrays.mixed, arrays.spring, *limits, np.empty(COUNT))
+    arrays = bonds.arrays(np.arange(COUNT) if bonds.horizon == 0 else np.zeros(0, dtype=np.int64), STEP)
+    reached = bar.forces(u, arrays, np.empty(COUNT))
 
     # every bond, and every spring beside a node that is not plain, once for each range beside it
     mixed = [k for a, b, *_ in arrays.mixed for k in range(max(a - 1, 0), min(b, COUNT - 1))]
     assert reached == np.count_nonzero(bonds.bond) + np.count_nonzero(bonds.spring[mixed])
-    assert bar.forces(0.999 * u, arrays.mixed, arrays.spring, *limits, np.empty(COUNT)) == 0
+    assert bar.forces(0.999 * u, arrays, np.empty(COUNT)) == 0
 
 
 @pytest.mark.parametrize("a", [0.0, 0.02], ids=["", "attenuated"])
@@ -245,7 +240,7 @@ def test_books_close_while_bonds_break(layout, outside: Outside, a: float) -> No
     u, v = shaken()
     run = Run(layout(WEAK), u, 15.0 * v, outside, a)
     run.arrays.triggers[:] = False
-    run.arrays = run.arrays._replace(plain_limit=np.inf, plain=run.arrays.plain[:0], mixed=all_mixed(run.arrays))
+    run.arrays = all_mixed(run.arrays)
     before = energy(run.bonds, u[0], u[0] - STEP * run.v[0], run.v[0])
     run.advance()
     gained = energy(run.bonds, run.u[0], run.u[0] - STEP * run.v[0], run.v[0]) - before
@@ -262,10 +257,10 @@ def test_books_close_while_bonds_break(layout, outside: Outside, a: float) -> No
     assert gained == pytest.approx(outside_work - damping - crack, abs=STEPS * COUNT * EPS * scale)
 
 
-def all_mixed(arrays: tables.BarBonds) -> np.ndarray:
-    """The same ranges, none of them plain."""
-    plain = [[a, b, 0, 1] for a, b in arrays.plain]
-    return np.array(sorted([*arrays.mixed.tolist(), *plain]))
+def all_mixed(arrays: tables.BarBonds) -> tables.BarBonds:
+    """The same arrays with no node that is plain."""
+    runs = np.array(sorted([*arrays.mixed.tolist(), *([a, b, 1] for a, b in arrays.plain)]))
+    return arrays._replace(plain=arrays.plain[:0], mixed=runs, mixed_keep=np.full(len(runs), arrays.mixed_keep[0]))
 
 
 def flying(bonds: Bonds, plane: int) -> Run:
@@ -275,13 +270,12 @@ def flying(bonds: Bonds, plane: int) -> Run:
     v = np.zeros((3, COUNT))
     v[0, plane + 1 :] = 1.0
     run = Run(bonds, np.zeros((3, COUNT)), v)
-    mixed = all_mixed(run.arrays)
-    run.arrays = run.arrays._replace(plain_limit=np.inf, plain=run.arrays.plain[:0], mixed=mixed)
+    run.arrays = all_mixed(run.arrays)
     return run
 
 
 def test_bonds_break_in_the_step_that_reaches_their_limit() -> None:
-    rod = Rod(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=2.69)
+    rod = Rod.uniform(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=2.69)
     run = flying(laid(rod, 3, (0, COUNT), complement=False), 20)
     whole = run.bonds.bond.copy()
     for number, steps in ((0, 20), (20, 21)):
@@ -299,7 +293,7 @@ def test_bonds_break_in_the_step_that_reaches_their_limit() -> None:
 
 
 def test_what_is_broken_does_not_heal() -> None:
-    rod = Rod(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=0.5)
+    rod = Rod.uniform(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=0.5)
     run = flying(laid(rod, 3, (0, COUNT), complement=False), 20)
     whole = run.bonds.bond > 0.0
     run.advance(20)
@@ -314,12 +308,12 @@ def test_what_is_broken_does_not_heal() -> None:
 
 @pytest.mark.parametrize("plain", [True, False])
 def test_springs_that_ask_stop_the_kernel_before_the_step(plain: bool) -> None:
-    rod = Rod(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=0.5)
+    rod = Rod.uniform(COUNT, spacing=0.5, section=2.0, modulus=1.0, critical_stretch=0.5)
     u, v = np.zeros((2, 3, COUNT))
     v[0] = 0.02 * np.arange(COUNT)
     run = Run(Bonds(rod, 3, trigger_ratio=0.1), u, v)
     if not plain:
-        run.arrays = run.arrays._replace(plain=run.arrays.plain[:0], mixed=all_mixed(run.arrays))
+        run.arrays = all_mixed(run.arrays)
     done, why = run.advance()
 
     # 0.002 m a step against 0.1 · 0.5 · 0.5 m, but where the ends' waves have come
@@ -339,7 +333,7 @@ def test_an_unbreakable_bar_never_asks(layout) -> None:
 def test_force_through_a_plane_is_what_pulls_at_either_side(layout) -> None:
     bonds = damaged(layout(ROD))
     u = shaken()[0][0]
-    arrays = bonds.arrays(SUPPORTED, DENSITY, STEP)
+    arrays = bonds.arrays(SUPPORTED, STEP)
     force, stress = -matrix(bonds) @ u, np.empty(COUNT)
     bar.stresses(u, arrays, stress)
 
@@ -366,7 +360,7 @@ def test_stress_on_record_is_that_of_the_step(layout) -> None:
 def test_energy_stored_is_half_of_the_form(layout) -> None:
     bonds = damaged(layout(ROD))
     u = shaken()[0][0]
-    springs, peridynamic = bar.stored(u, bonds.arrays(SUPPORTED, DENSITY, STEP))
+    springs, peridynamic = bar.stored(u, bonds.arrays(SUPPORTED, STEP))
 
     assert springs == pytest.approx(0.5 * np.sum(bonds.spring * np.diff(u) ** 2), rel=COUNT * EPS)
     # terms of either sign may be larger than their sum

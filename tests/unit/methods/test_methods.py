@@ -5,9 +5,9 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 
 from dembound.casefile.types import MethodTable
-from dembound.methods.bonds import Rod
+from dembound.methods.rod import Rod
 
-ROD = Rod(61, spacing=0.25, section=0.5, modulus=2e9, critical_stretch=1e-3)
+ROD = Rod.uniform(61, spacing=0.25, section=0.5, modulus=2e9, critical_stretch=1e-3)
 LIMIT = 0.25e-3
 """Elongation of a spring at the critical stretch, m."""
 
@@ -40,7 +40,7 @@ def pulled(*planes: int, elongation: float = LIMIT) -> np.ndarray:
 def test_what_a_method_does_at_first(keys: dict, name: str, largest: int, carrying: int) -> None:
     found = method(**keys)
 
-    assert (found.name, found.largest_horizon, len(found.begin(ROD).shares)) == (name, largest, carrying)
+    assert (found.name, found.largest_horizon, len(found.begin(ROD).shares(ROD.ranges[0]))) == (name, largest, carrying)
     # the first stage is what it begins with
     assert np.array_equal(found.stages(ROD)[0].stiffness(), found.begin(ROD).stiffness())
 
@@ -74,7 +74,7 @@ def test_finite_differences_ask_until_the_first_break() -> None:
     assert name == "finite differences"
     assert not bonds.triggers.any()
     # they are left whole: the kernel breaks them
-    assert np.all(bonds.spring == ROD.spring)
+    assert np.all(bonds.spring == ROD.springs)
     assert np.all(bonds.spring_broken == -1)
     assert len(found.stages(ROD)) == 1
 
@@ -95,7 +95,8 @@ def test_a_switch_turns_into_peridynamics_all_over(before: str, corrected: bool)
     found = method("switch", horizon=3, before=before, trigger=0.8, corrected_ends=corrected)
     bonds = found.begin(ROD)
     soft = before == "peridynamics" and not corrected
-    assert bonds.spring[[0, 1, -1]].tolist() == [ROD.spring * (0.5 if soft else 1.0), ROD.spring, bonds.spring[0]]
+    whole = ROD.springs[0]
+    assert bonds.spring[[0, 1, -1]].tolist() == [whole * (0.5 if soft else 1.0), whole, bonds.spring[0]]
     assert bonds.triggered(pulled(30, elongation=0.81 * LIMIT)).tolist() == [30]
     name = found.on_trigger(bonds, pulled(30, elongation=0.81 * LIMIT))
 

@@ -154,11 +154,11 @@ def test_a_spacing_need_not_divide_the_length_to_the_last_bit(length: float, spa
         (
             "spacing = 0.01",
             "spacing = 0.03",
-            "spacing: is 0.03, must divide bar.length, 1 m, into two or more equal parts",
+            "spacing: is 0.03, must divide the length, 1 m, into two or more equal parts",
         ),
-        ("spacing = 0.01", "spacing = 1", "spacing: is 1, must divide bar.length, 1 m, into two or more equal parts"),
-        ("spacing = 0.01", "spacing = 3", "spacing: is 3, must divide bar.length, 1 m, into two or more equal parts"),
-        ("spacing = 0.01", "spacing = 4e-7", "spacing: is 4e-07, must cut bar.length, 1 m, into 2,000,000 or less"),
+        ("spacing = 0.01", "spacing = 1", "spacing: is 1, must divide the length, 1 m, into two or more equal parts"),
+        ("spacing = 0.01", "spacing = 3", "spacing: is 3, must divide the length, 1 m, into two or more equal parts"),
+        ("spacing = 0.01", "spacing = 4e-7", "spacing: is 4e-07, must cut the length, 1 m, into 2,000,000 or less"),
         ("spacing = 0.01", "spacing = 1e-320", "spacing: is 9.99989e-321, must be 0 or of a size "),
         ("spacing = 0.01", "spacing = 0.01\nsection = 1\ndiameter = 1", "diameter: is not allowed together with "),
         (
@@ -230,8 +230,8 @@ def names(types: Iterable[type], key: str = "type") -> str:
             'type = "peridynamics"\nhorizon = 2.5',
             "horizon: is 2.5, must be a whole number no less than 1 and no more than 1000",
         ),
-        ('type = "peridynamics"\nhorizon = 51', "horizon: is 51, must be at most 50, half the bar's spacings"),
-        ('type = "switch"\nhorizon = 51', "horizon: is 51, must be at most 50, half the bar's spacings"),
+        ('type = "peridynamics"\nhorizon = 51', "horizon: is 51, must be at most 50, half of the bar's spacings"),
+        ('type = "switch"\nhorizon = 51', "horizon: is 51, must be at most 50, half of the bar's spacings"),
         (
             'type = "peridynamics"\nhorizon = 3\ntrigger = 0.9',
             f"trigger: is for {names(METHODS, 'trigger')}; allowed here: type, horizon, corrected_ends",
@@ -422,5 +422,5 @@ def test_all_mistakes_of_all_tables_are_listed_at_once() -> None:
 def test_two_spacings_are_too_few_with_soft_ends() -> None:
     two = changed("spacing = 0.01", "spacing = 0.5")
     assert problems(changed("horizon = 3", "horizon = 1", two)) == [
-        "bar.spacing: makes 2 of them, a bar with soft ends must have 3 or more"
+        "bar.spacing: makes 2 of them in the bar, with soft ends it must be 3 or more"
     ]

@@ -1,0 +1,38 @@
+"""The ``[[bar.range]]`` tables: uniform parts of a bar."""
+
+from typing import Literal
+
+from pydantic import model_validator
+
+from dembound.table import FileName, Table, quantity
+
+
+class BarRange(Table):
+    """A part of a bar with its own length and, where they differ from those of ``[bar]``, spacing and material.
+
+    At an interface the range is bonded to the one on its left, or both only touch: a contact pushes, and opens where it
+    would have to pull.
+    """
+
+    name: FileName = quantity(..., unit="1", help="name of the range in messages and results")
+    length: float = quantity(..., unit="m", help="its length", gt=0.0)
+    spacing: float | None = quantity(None, unit="m", help="distance of its nodes; a whole number is its length", gt=0.0)
+    section: float | None = quantity(None, unit="m²", help="area of its cross-section", gt=0.0)
+    diameter: float | None = quantity(None, unit="m", help="diameter of a round range", gt=0.0)
+    density: float | None = quantity(None, unit="kg/m³", help="its density ρ", gt=0.0)
+    wave_speed: float | None = quantity(None, unit="m/s", help="its speed c of waves", gt=0.0)
+    youngs_modulus: float | None = quantity(None, unit="Pa", help="its Young's modulus E", gt=0.0)
+    strength: float | None = quantity(None, unit="Pa", help="its tensile strength σ_t", gt=0.0)
+    critical_stretch: float | None = quantity(None, unit="1", help="its stretch s₀ at which a bond breaks", gt=0.0)
+    attenuation: float | None = quantity(None, unit="1/m", help="its α, see that of the bar", ge=0.0)
+    velocity: float = quantity(0.0, unit="m/s", help="velocity at the start, positive to the right")
+    interface: Literal["bonded", "contact"] = quantity(
+        "bonded", unit="1", help="how it meets the range on its left; a contact bears no tension"
+    )
+    gap: float = quantity(0.0, unit="m", help="opening of the contact on its left at the start", ge=0.0)
+
+    @model_validator(mode="after")
+    def _gap_of_contact(self) -> "BarRange":
+        if self.gap > 0.0 and self.interface != "contact":
+            raise ValueError('gap: is only allowed with interface = "contact"')
+        return self

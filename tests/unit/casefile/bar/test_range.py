@@ -1,0 +1,151 @@
+"""Bars of ranges: what ``[[bar.range]]`` tables become, and the line every mistake in them gets."""
+
+import pytest
+
+from dembound.casefile.bar import BarCase
+from dembound.errors import CaseError
+from dembound.kinds import loads, with_changes
+
+GOOD = """
+[bar]
+spacing = 0.01
+density = 8000
+wave_speed = 5000
+diameter = 0.02
+strength = 1e9
+[[bar.range]]
+name = "striker"
+length = 0.2
+velocity = 10
+[[bar.range]]
+name = "specimen"
+length = 0.05
+spacing = 0.0025
+youngs_modulus = 2e9
+density = 2000.0
+section = 1e-4
+critical_stretch = 1e-3
+interface = "contact"
+gap = 0.001
+[[bar.range]]
+name = "bar"
+length = 1
+[[load]]
+name = "push"
+pressure = 1e6
+wave = "pulse"
+nodes = 2
+[wave.pulse]
+type = "constant"
+amplitude = 1.0
+[method]
+type = "peridynamics"
+horizon = 3
+[run]
+duration = 1e-3
+"""
+
+
+def problems(text: str) -> list[str]:
+    with pytest.raises(CaseError) as caught:
+        loads(text)
+    return caught.value.problems
+
+
+def test_a_range_has_what_it_does_not_give_from_the_bar() -> None:
+    case = loads(GOOD)
+    assert isinstance(case, BarCase)
+    striker, specimen, bar = case.bar.parts
+
+    assert [(part.length, part.spacing, part.speed) for part in (striker, bar)] == [
+        (0.2, 0.01, 5000.0),
+        (1.0, 0.01, 5000.0),
+    ]
+    assert (specimen.modulus, specimen.speed, specimen.area, specimen.cells) == (2e9, 1000.0, 1e-4, 20)
+    assert (specimen.breaking_stretch, striker.breaking_stretch) == (1e-3, 1e9 / 2e11)
+    assert case.bar.least_strength == 2e6
+    assert case.bar.length == pytest.approx(1.251, rel=1e-15)
+    assert case.bar.starts == pytest.approx((0.0, 0.201, 0.251), rel=1e-15)
+    # 21 + 21 at the contact, 21 − 1 + 101 at the bonded interface
+    assert (case.bar.nodes, case.bar.contacts) == (21 + 21 + 100, (False, True, False))
+    assert case.bar.travel_time == pytest.approx(0.2 / 5000 + 0.05 / 1000 + 1.0 / 5000, rel=1e-12)
+    assert "length" not in case.bar.given()
+
+
+def test_changes_name_a_range() -> None:
+    case = with_changes(loads(GOOD), {"bar.range.specimen.length": 0.1, "bar.range.1.velocity": 5.0})
+    assert isinstance(case, BarCase)
+    assert case.bar.length == pytest.approx(1.301, rel=1e-15)
+    assert case.bar.range[0].velocity == 5.0
+
+
+STRIKER, SPECIMEN = "bar.range[1, striker]", "bar.range[2, specimen]"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        (
+            "length = 0.2",
+            "lengh = 0.2",
+            STRIKER + ".length: is missing, must be a number greater than 0 (m)",
+        ),
+        ("length = 0.2", "length = -1", STRIKER + ".length: is -1, must be greater than 0"),
+        (
+            "length = 0.2",
+            "length = 0.205",
+            STRIKER + ".spacing: is 0.01, must divide the length, 0.205 m, into two or more equal parts",
+        ),
+        (
+            "velocity = 10",
+            'interface = "contact"',
+            STRIKER + '.interface: is "contact", but no range is on its left',
+        ),
+        ('interface = "contact"', "", SPECIMEN + '.gap: is only allowed with interface = "contact"'),
+        (
+            'interface = "contact"',
+            'interface = "glue"',
+            SPECIMEN + '.interface: is "glue", must be one of "bonded", "contact"',
+        ),
+        ('name = "bar"', 'name = "striker"', "bar.range[3, striker].name: is taken by range[1]"),
+        (
+            "section = 1e-4",
+            "section = 1e-4\ndiameter = 1.0",
+            SPECIMEN + ".diameter: is not allowed together with section",
+        ),
+        (
+            "youngs_modulus = 2e9",
+            "youngs_modulus = 1e-29",
+            SPECIMEN + ".youngs_modulus: is 1e-29, with density 2000 beyond any material",
+        ),
+        (
+            "diameter = 0.02",
+            "length = 2",
+            "bar.length: is 2, must be that of all ranges and gaps, 1.251 m, or left out",
+        ),
+        (
+            "nodes = 2",
+            "nodes = 21",
+            "load[1, push].nodes: is 21, must be at most 20, the nodes of the left range alone",
+        ),
+        (
+            "horizon = 3",
+            "horizon = 11",
+            "method.horizon: is 11, must be at most 10, half of the shortest range's spacings",
+        ),
+        (
+            "duration = 1e-3",
+            "duration = 1e-6\ncourant = 1.0",
+            "run.courant: makes a step of 2e-06 s, must be at most run.duration, 1e-06 (s)",
+        ),
+    ],
+)
+def test_every_mistake_has_its_line(old: str, new: str, line: str) -> None:
+    assert line in problems(GOOD.replace(old, new, 1))
+
+
+def test_a_bar_without_ranges_needs_its_length() -> None:
+    bare = GOOD[: GOOD.index("[[bar.range]]")] + GOOD[GOOD.index("[[load]]") :]
+
+    assert problems(bare) == ["bar.length: is missing, must be a number greater than 0 (m)"]
+    assert "bar.length: is missing, must be a number greater than 0 (m)" in problems(bare.replace("spacing = 0.01", ""))

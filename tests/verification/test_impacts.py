@@ -1,0 +1,166 @@
+"""Ranges of a bar that only touch: impacts, what passes a contact, and what does not.
+
+At ν = 1 finite differences are d'Alembert's solution, so fronts are steps from one node to the next. An impact of two
+nodes of masses m/2 at the relative speed v, half cells of equal bars, takes mv²/8: 1/(4N) of the energy of a striker of
+N cells.
+"""
+
+import numpy as np
+import pytest
+
+from dembound.bar.scene import build_bar
+from dembound.bar.stability import choose_step
+from dembound.kinds import loads
+from dembound.motion.energy import Ledger
+from dembound.motion.simulation import Simulation
+
+DENSITY, SPEED, SPACING, STRIKER, VELOCITY = 8000.0, 5000.0, 0.005, 50, 10.0
+
+CASE = """
+[bar]
+spacing = 0.005
+density = 8000.0
+wave_speed = 5000.0
+[[bar.range]]
+name = "striker"
+length = 0.25
+velocity = {velocity}
+[[bar.range]]
+name = "bar"
+length = {length}
+interface = "{interface}"
+gap = {gap}
+[method]
+{method}
+[[load]]
+name = "push"
+pressure = {pressure}
+wave = "pulse"
+[wave.pulse]
+type = "triangle"
+amplitude = 1.0
+rise = 2e-5
+fall = 1e-5
+[[monitor]]
+name = "striker"
+position = 0.125
+[[monitor]]
+name = "bar"
+position = {gauge}
+[run]
+duration = 1.0
+courant = {courant}
+"""
+
+DIFFERENCES = 'type = "finite_difference"'
+
+
+class Impact:
+    """A run of two bars: simulation, its record at both gauges, its ledger."""
+
+    def __init__(self, duration: float, **words) -> None:
+        given = {
+            "velocity": VELOCITY,
+            "length": 1.0,
+            "interface": "contact",
+            "gap": 0.0,
+            "method": DIFFERENCES,
+            "pressure": 1e-6,
+            "courant": 1.0,
+            "gauge": 0.75,
+        }
+        self.scene = build_bar(loads(CASE.format(**(given | words))))
+        self.step = choose_step(self.scene)[0]
+        self.simulation = Simulation(self.scene, self.step, self.scene.probes)
+        self.ledger = Ledger(self.simulation, 11)
+        self.simulation.track(self.ledger)
+        self.record = self.simulation.advance(round(duration / self.step))
+
+    @property
+    def velocities(self) -> list[float]:
+        """Of both bars, m/s, means by mass."""
+        v, left = self.simulation.state.v[0], STRIKER + 1
+        mass = self.scene.mass
+        return [float(np.average(v[part], weights=mass[part])) for part in (slice(0, left), slice(left, None))]
+
+
+def test_a_striker_makes_a_pulse_of_half_its_velocity_and_twice_its_length() -> None:
+    run = Impact(3.4e-4)
+    stress = run.record[:, 1, 6]
+    amplitude = 0.5 * DENSITY * SPEED * VELOCITY
+
+    back = round(1.5 / SPEED / run.step)
+    # half a metre from the contact; nodes carry the front as a step, with one mean value on either side of it
+    arrival, over = round(0.5 / SPEED / run.step), round((0.5 + 2.0 * 0.25) / SPEED / run.step)
+    np.testing.assert_allclose(stress[arrival + 2 : over - 1], -amplitude, rtol=1e-11)
+    # the tail of the pulse and, after its reflection at the far end, its tension, of the same shape
+    assert np.abs(stress[: arrival - 1]).max() < 1e-11 * amplitude
+    assert np.abs(stress[over + 2 : back - 1]).max() < 1e-11 * amplitude
+    np.testing.assert_allclose(stress[back + 2 : back + 98], amplitude, rtol=1e-11)
+    # equal impedances leave the striker at rest
+    assert np.abs(run.simulation.state.v[0, : STRIKER + 1]).max() < 1e-11 * VELOCITY
+
+
+@pytest.mark.parametrize("method", [DIFFERENCES, 'type = "peridynamics"\nhorizon = 3'], ids=["fd", "pd"])
+def test_an_impact_keeps_momentum_and_its_ledger_closes(method: str) -> None:
+    run = Impact(3.4e-4, method=method, courant=0.5)
+    entries = run.ledger.columns
+    mass, energy = DENSITY * 0.25, 0.5 * DENSITY * 0.25 * VELOCITY**2
+
+    momentum = float(np.sum(run.scene.mass * run.simulation.state.v[0]))
+    assert momentum == pytest.approx(mass * VELOCITY, rel=1e-12)
+    # column 12 is what was supplied, 13 the error, 9 what impacts took
+    assert entries[-1, 12] == pytest.approx(energy, rel=1e-9)
+    assert np.abs(entries[:, 13]).max() < 1e-12 * energy
+    # the first impact, and less than a fifth of it where both come apart
+    assert 1.0 <= entries[-1, 9] / (energy / (4.0 * STRIKER)) < 1.2
+
+
+def test_equal_bars_exchange_their_velocities() -> None:
+    run = Impact(2.0e-4, length=0.25, gauge=0.3, courant=0.5)
+    touching = np.flatnonzero(run.record[:, 1, 6] < -0.25 * DENSITY * SPEED * VELOCITY)
+    # 0.05 m from the contact, where the wave passes from 1e-5 s on until it is back from the far end
+    assert touching[0] * run.step == pytest.approx(0.05 / SPEED, abs=2.0 * SPACING / SPEED)
+    assert touching[-1] * run.step == pytest.approx((0.05 + 2.0 * 0.2) / SPEED, abs=3.0 * SPACING / SPEED)
+    # the contact begins and ends within a step, in which it moves up to half a cell's momentum
+    assert run.velocities == pytest.approx([0.0, VELOCITY], abs=VELOCITY / STRIKER)
+    moved = run.simulation.state.u[0]
+    assert moved[STRIKER + 1] - moved[STRIKER] > 0.5 * VELOCITY * (2.0e-4 - 2.0 * 0.25 / SPEED)
+
+
+def test_a_gap_delays_the_impact() -> None:
+    touching, apart = Impact(2.4e-4), Impact(2.9e-4, gap=0.0005)
+    first, later = (
+        int(np.argmax(run.record[:, 0, 6] < -0.4 * DENSITY * SPEED * VELOCITY)) for run in (touching, apart)
+    )
+
+    # 0.5 mm at 10 m/s take 50 steps, and rounding may close the gap a step later
+    assert 0 <= later - first - round(0.0005 / VELOCITY / apart.step) <= 1
+    assert np.abs(apart.record[:50, :, 6]).max() < 1e-4  # Pa, of the load
+    assert apart.scene.positions[STRIKER + 1, 0] - apart.scene.positions[STRIKER, 0] == pytest.approx(0.0005, rel=1e-9)
+
+
+@pytest.mark.parametrize("courant", [0.5, 1.0])
+def test_pressure_passes_a_contact_as_a_bonded_interface(courant: float) -> None:
+    runs = [
+        Impact(1.5e-4, velocity=0.0, pressure=1e7, interface=interface, courant=courant)
+        for interface in ("contact", "bonded")
+    ]
+    touching, bonded = (run.record[..., 6] for run in runs)
+
+    # before the pulse has passed, a contact opens where dispersion makes tension; at ν = 1 there is none
+    passed = round((0.25 / SPEED + 1.5e-5) / runs[0].step) if courant < 1.0 else None
+    np.testing.assert_allclose(touching[:passed], bonded[:passed], rtol=0.0, atol=1e-12 * 1e7)
+    assert runs[0].ledger.columns[-1, 9] < 1e-9 * runs[0].ledger.columns[-1, 12] if courant == 1.0 else True
+
+
+def test_tension_does_not_pass_a_contact() -> None:
+    run = Impact(1.5e-4, velocity=0.0, pressure=-1e7)
+    striker, beyond = run.record[:, 0, 6], run.record[:, 1, 6]
+
+    assert not beyond.any()
+    # the pull is back from the open contact as pressure of the same shape
+    there, back = (round(way / SPEED / run.step) for way in (0.125, 0.375))
+    shape = striker[there : there + 30]
+    assert shape.max() == pytest.approx(1e7, rel=0.05)
+    np.testing.assert_allclose(striker[back : back + 30], -shape, atol=1e-9 * 1e7)
