@@ -64,6 +64,12 @@ CASES = {
     "finite differences": BAR | {"method": {"type": "finite_difference"}},
     "switch": BAR | {"method": {"type": "switch", "horizon": 3}},
     "patch": BAR | {"method": {"type": "patch", "horizon": 3}},
+    "matched layers": BAR
+    | {
+        "bar": PULLED["bar"] | {"attenuation": 0.5, "strength": 1e9},
+        "boundary": {side: {"type": "matched_layer", "nodes": nodes} for side, nodes in (("left", 12), ("right", 8))},
+        "method": {"type": "peridynamics", "horizon": 3},
+    },
 }
 
 
