@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from dembound.cli.app import Name, Output, Settings, Threads, app, load_disks, prepare_computing
 from dembound.cli.console import out
+
+if TYPE_CHECKING:
+    from dembound.studies.library import LoadFactor
 
 
 @app.command("library", rich_help_panel="Cases")
@@ -36,7 +39,7 @@ def library(
         folder = build_library(case, spacing, output, duration, progress)
     made = Library(folder)
     step = f"time step {made.case.run.time_step:.10g} s"
-    out.print(f"{case.name}: library of {', '.join(made.inputs)}, {made.duration:g} s, {step}, in {folder}")
+    out.print(f"{case.name}: library of {', '.join(made.inputs)}, {made.clock.duration:g} s, {step}, in {folder}")
 
 
 @app.command("respond", rich_help_panel="Cases")
@@ -50,18 +53,40 @@ def respond(
         ),
     ],
     output: Output = Path("results"),
+    contacts: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--load-factor",
+            metavar="MONITOR,MONITOR",
+            help="Print the load factor of each record at the contact between the disks of two monitors. May be "
+            "repeated.",
+        ),
+    ] = None,
 ) -> None:
     """Write the histories of all monitors under records, from a library, without a run.
 
     They are those of a direct run with the record as a file wave, to rounding, and are plotted and compared like it.
     """
     from dembound.results.folder import Folder
-    from dembound.studies.library import Library, read_records, write_response
+    from dembound.studies.library import Library, load_factor, read_records, watched_contacts, write_response
 
     made = Library(folder)
-    given = read_records(records, made.inputs, made.spacing, made.duration)
+    given = read_records(records, made.inputs, made.clock)
     for record in given:
         Folder(output, record.name).check()
+    watched = watched_contacts(made, contacts) if contacts else []
     for record in given:
-        write_response(made, record, output / record.name / "run.h5")
+        motion = write_response(made, record, output / record.name / "run.h5")
         out.print(f"{record.name}: histories in {output / record.name}")
+        if watched:
+            _print_load_factor(record.name, load_factor(made, watched, motion), len(watched))
+
+
+def _print_load_factor(name: str, found: LoadFactor, count: int) -> None:
+    """Print the load factor of a record, and of how many contacts it is."""
+    of = f"of {count} contact{'s' * (count > 1)} between monitors alone, not of all contacts"
+    if found.factor == float("inf"):
+        out.print(f"{name}: no limit at any multiple of the record; {of}")
+        return
+    where = f"{found.contact} {found.limit} at t = {found.time:.4g} s"
+    out.print(f"{name}: load factor {found.factor:.6g}, where {where}; {of}")

@@ -105,7 +105,7 @@ class LoadFactor(Every):
         way = pairs.constants[pairs.contact_type[pair], :2]
         return {
             "factor": self.factor,
-            "limit": "closes" if limit == 0 and _is_open(pairs.constants[pairs.contact_type[pair]]) else LIMITS[limit],
+            "limit": limit_in_words(limit, pairs.constants[pairs.contact_type[pair]]),
             "time": step * run.time_step,
             "position": (run.scene.positions[particles[0]] + 0.5 * way).tolist(),
             "particles": particles,
@@ -121,9 +121,10 @@ class LoadFactor(Every):
         self.factor, self._found = float(memory["factor"]), memory["found"].copy()
 
 
-def _is_open(constants: np.ndarray) -> bool:
-    """Whether a pair with these constants (12,) has a gap at the start."""
-    return bool(constants[3] < constants[2])
+def limit_in_words(limit: int, constants: np.ndarray) -> str:
+    """What a pair with these constants (12,) does at a limit of `limit_lines`."""
+    has_gap = constants[3] < constants[2]
+    return "closes" if limit == 0 and has_gap else LIMITS[limit]
 
 
 def load_factor_in_words(found: Mapping[str, Any]) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 import tomli_w
 
 from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.material import STRENGTH_KEYS
 from dembound.casefile.model import as_kind
 from dembound.casefile.toml import parsed
 from dembound.casefile.types import LAWS
@@ -66,7 +67,7 @@ def build_library(
 ) -> Path:
     """Run the inputs of a case one by one, and write ``results/<case name>_library/``; returns that folder.
 
-    Each input is a triangle of 1 m/s (of a load's factor: 1) that rises from 0 over the spacing and falls over it. All
+    Each input is a triangle of 1 m/s (of a load's factor: 1) that rises over the spacing and falls over it. All
     else is that of the case, the settings of a continuum as chosen for its own waves; the time step is the largest
     whole fraction of the spacing that is not above the case's own.
 
@@ -83,17 +84,23 @@ def build_library(
     planned = plan(case)
     for warning in warnings_before(planned):
         progress.warned(warning)
+    planned = _with_settings(planned)
     base = _base(planned, spacing, case.run.duration if duration is None else duration)
+    lead = _lead(planned, spacing)
     folder = results / f"{case.name}_library"
     (folder / FILE).unlink(missing_ok=True)
     names = inputs_of(case)
-    cases = [] if is_at_rest(case) else [under(base, {}, REST)]
-    cases += [under(_settled(base, folder), {name: _triangle(spacing, 0.0)}, f"{HAT}{name}") for name in names]
+    plain = _of_runs(base, lead * spacing)
+    cases = [] if is_at_rest(case) else [under(plain, {}, REST)]
+    cases += [
+        under(_settled(plain, folder), {name: _triangle(spacing, lead * spacing)}, f"{HAT}{name}") for name in names
+    ]
     for each in cases:
         Folder(folder, each.name).check()
     for each in cases:
         run_case(each, folder, _WithoutWarnings(progress))
-    facts = {"version": __version__, "name": case.name, "spacing": spacing, "inputs": names, "case": base.text}
+    facts: dict[str, Any] = {"version": __version__, "name": case.name, "spacing": spacing, "lead": lead}
+    facts |= {"inputs": names, "case": base.text}
     with replacing(folder / FILE) as part:
         part.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
     return folder
@@ -111,23 +118,55 @@ def under(
     return as_kind(loads(tomli_w.dumps(data), base.folder, name, files), DiskCase, "is the case of a bar")
 
 
+def _with_settings(planned: Plan) -> Plan:
+    """The plan of the case with the settings of its continuum as keys, so that they do not depend on the waves."""
+    assert isinstance(planned.scene, DiskScene)
+    if planned.scene.outside is None:
+        return planned
+    given = planned.scene.outside.settings.given
+    return plan(with_changes(planned.scene.case, {f"outside.{key}": value for key, value in given.items()}))
+
+
 def _base(planned: Plan, spacing: float, duration: float) -> DiskCase:
     """The case with silent inputs, with the step, the duration and the output of a library."""
     case = planned.scene.case
     assert isinstance(case, DiskCase)
-    assert isinstance(planned.scene, DiskScene)
     time_step = _time_step(case, planned.time_step, spacing)
     steps = round(spacing / time_step)
     stride = _largest_divisor(steps, max(1, round(case.output.history_interval / time_step)))
     run = {key: value for key, value in case.run.given().items() if key not in SILENT_RUN}
     changes: dict[str, Any] = {
         "run": run | {"time_step": time_step, "duration": duration},
-        "output": {"history_interval": stride * time_step, "snapshots": 0, "pictures": False},
+        "output": {
+            "history_interval": stride * time_step,
+            "snapshots": 0,
+            "pictures": False,
+            "load_factor": case.output.load_factor,
+        },
         "wave": {name: _triangle(spacing, 2.0 * duration) for name in inputs_of(case)},
     }
-    if planned.scene.outside is not None:
-        changes |= {f"outside.{key}": value for key, value in planned.scene.outside.settings.given.items()}
     return as_kind(with_changes(case, changes), DiskCase, "is the case of a bar")
+
+
+def _lead(planned: Plan, spacing: float) -> int:
+    """Spacings that triangles begin after the run, and that records are zero after their first value.
+
+    A wave of ``[incident]`` that passes the first disks before it passes its point would else begin within a run.
+    """
+    assert isinstance(planned.scene, DiskScene)
+    if (waves := planned.scene.ground_waves) is None:
+        return 0
+    return math.ceil(waves.grain * math.hypot(*waves.waves[0].slowness) / spacing)
+
+
+def _of_runs(base: DiskCase, longer: float) -> DiskCase:
+    """The case of the runs: longer by a time (s), and without load factor and strengths, which it does not need."""
+    data = parsed(base.text)
+    data["run"]["duration"] += longer
+    data["output"].pop("load_factor")
+    for key in (*STRENGTH_KEYS, "pb_fa"):
+        data["material"].pop(key, None)
+    return as_kind(loads(tomli_w.dumps(data), base.folder, base.name, base.files), DiskCase, "is the case of a bar")
 
 
 def _settled(base: DiskCase, folder: Path) -> DiskCase:

@@ -14,6 +14,7 @@ from dembound.errors import CaseError, RecordError
 from dembound.kinds import loads
 from dembound.results.reader import open_record
 from dembound.studies.library.build import FILE, HAT, REST, is_at_rest
+from dembound.studies.library.record import Clock
 from dembound.version import __version__
 
 WIDTH = 6
@@ -26,8 +27,9 @@ class Library:
     Attributes
     ----------
     folder : with the runs. name : of the case it was made from. case : the case with silent inputs. inputs : names of
-    the waves in whose place records are put. spacing : of records, s. monitors : their names. time : (k,) s, of the
-    samples of histories. attributes : of the runs' record; places : of each monitor those of its history.
+    the waves in whose place records are put. spacing : of records, s; lead : number of spacings after their first value
+    during which they are zero. monitors : their names. time : (k,) s, of the samples of histories. attributes : of the
+    runs' record; places : of each monitor those of its history.
 
     Raises CaseError where there is no library, or one of another version.
     """
@@ -39,6 +41,7 @@ class Library:
         try:
             facts: dict[str, Any] = json.loads((folder / FILE).read_text(encoding="utf-8"))
             self.name, self.spacing, self.inputs = str(facts["name"]), float(facts["spacing"]), list(facts["inputs"])
+            self.lead = int(facts["lead"])
             text, version = str(facts["case"]), facts["version"]
         except (ValueError, KeyError, TypeError):
             raise RecordError([f"{folder / FILE}: is damaged"]) from None
@@ -48,33 +51,39 @@ class Library:
         with open_record(self._record(f"{HAT}{self.inputs[0]}")) as file:
             groups = file["histories"]
             self.monitors = list(groups)
-            self.time = groups[self.monitors[0]]["time"][:]
+            times = groups[self.monitors[0]]["time"][:]
             self.attributes = dict(file.attrs)
             self.places = {name: dict(group.attrs) for name, group in groups.items()}
 
-    @property
-    def duration(self) -> float:
-        """Length of the longest record, s."""
-        return self.case.run.duration
+        self._per_spacing = max(1, round(self.spacing / (times[1] - times[0]))) if len(times) > 1 else 1
+        self.time = times[: len(times) - self.lead * self._per_spacing]
 
-    @cached_property
-    def _per_spacing(self) -> int:
-        """Samples of histories in a spacing of records."""
-        return max(1, round(self.spacing / (self.time[1] - self.time[0]))) if len(self.time) > 1 else 1
+    @property
+    def clock(self) -> Clock:
+        """Times that records have to keep."""
+        return Clock(self.spacing, self.case.run.duration, self.lead)
 
     @cached_property
     def rest(self) -> np.ndarray:
         """Motion (k, monitors, 6) without waves, see `WIDTH`."""
-        if is_at_rest(self.case):
-            return np.zeros((len(self.time), len(self.monitors), WIDTH))
-        return self._motion(REST)
+        return self._rest_of_runs[: len(self.time)]
+
+    @cached_property
+    def _rest_of_runs(self) -> np.ndarray:
+        """The same for as long as the runs."""
+        if not is_at_rest(self.case):
+            return self._motion(REST)
+        return np.zeros((len(self.time) + self.lead * self._per_spacing, len(self.monitors), WIDTH))
 
     def response(self, name: str) -> np.ndarray:
         """Motion (k, monitors, 6) that one triangle of unit height of an input adds, which rises from time 0."""
-        return self._motion(f"{HAT}{name}") - self.rest
+        added = self._motion(f"{HAT}{name}") - self._rest_of_runs
+        return added[self.lead * self._per_spacing :]
 
     def motion(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Motion (k, monitors, 6) under records; values : input -> velocities at the times 0, Δ, 2Δ … with 0 first.
+        """Motion (k, monitors, 6) under records.
+
+        values : input -> velocities at the times 0, Δ, 2Δ …, the first `lead` + 1 of which are 0.
 
         Samples j of histories and times of records are on common places, so every `_per_spacing`-th sample is a
         discrete convolution of the record with as many of the response, which is computed by Fourier transforms.
@@ -115,6 +124,11 @@ class Library:
             padded[: len(response)] = response
             found[name] = np.asarray(rfft(padded.reshape(self._rows, -1), self._length, axis=0))
         return found
+
+    @property
+    def record_at_rest(self) -> Path:
+        """The record of the run without waves."""
+        return self._record(REST)
 
     def _motion(self, run: str) -> np.ndarray:
         """Motion (k, monitors, 6) in one of its runs."""

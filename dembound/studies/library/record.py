@@ -25,21 +25,29 @@ class Record(NamedTuple):
     files: dict[str, tuple[Path, str]]
 
 
-def read_records(arguments: Sequence[str], inputs: Sequence[str], spacing: float, duration: float) -> list[Record]:
+class Clock(NamedTuple):
+    """Times that records have to keep: spacing and duration, s; lead : zeros after the first one, see `Library`."""
+
+    spacing: float
+    duration: float
+    lead: int = 0
+
+
+def read_records(arguments: Sequence[str], inputs: Sequence[str], clock: Clock) -> list[Record]:
     """The records of a command line.
 
     Parameters
     ----------
     arguments : of a library with one input the path of a text file; else, or also, ``INPUT=PATH``, of several inputs
         separated by commas; inputs without a file remain silent.
-    inputs : those of the library. spacing, duration : its own, s.
+    inputs, clock : those of the library.
 
     Raises CaseError with a line for each mistake, see `on_spacing`, and for two records of one name.
     """
     records, problems = [], []
     for argument in arguments:
         try:
-            records.append(_record(argument, inputs, spacing, duration))
+            records.append(_record(argument, inputs, clock))
         except CaseError as error:
             problems += error.problems
     names = [record.name for record in records]
@@ -49,15 +57,16 @@ def read_records(arguments: Sequence[str], inputs: Sequence[str], spacing: float
     return records
 
 
-def on_spacing(samples: np.ndarray, spacing: float, duration: float) -> np.ndarray:
-    """The values of a record at the times 0, Δ, 2Δ …, Δ being the spacing (s), as far as it goes.
+def on_spacing(samples: np.ndarray, clock: Clock) -> np.ndarray:
+    """The values of a record at the times 0, Δ, 2Δ …, Δ being the spacing, as far as it goes.
 
     samples (k, 2), times and values, are joined by straight lines; their times must be whole multiples of the spacing,
-    so that nothing changes. Before and after the record is zero, so that it begins and ends with zero; one that lasts
-    the whole duration (s) may end with another value.
+    so that nothing changes. Before and after it a record is zero, so it begins and ends with zero; one that lasts the
+    whole duration may end with another value.
 
     Raises ValueError, with what is wrong.
     """
+    spacing, duration, lead = clock
     times, values = samples.T
     places = np.round(times / spacing)
     if times[0] < 0.0:
@@ -75,17 +84,24 @@ def on_spacing(samples: np.ndarray, spacing: float, duration: float) -> np.ndarr
         raise ValueError(
             f"ends with {values[-1]:g} before the library does, must end with 0; put a line with 0 after it"
         )
-    return np.interp(np.arange(places[-1] + 1.0), places, values, left=0.0)
+    found = np.interp(np.arange(places[-1] + 1.0), places, values, left=0.0)
+    if found[: lead + 1].any():
+        first = spacing * (np.flatnonzero(found)[0] - 1)
+        needed = (
+            f"the wave of [incident] passes the first disks before its point; it must be 0 up to {lead * spacing:g} s"
+        )
+        raise ValueError(f"begins at {first:g} s, but {needed}")
+    return found
 
 
-def _record(argument: str, inputs: Sequence[str], spacing: float, duration: float) -> Record:
+def _record(argument: str, inputs: Sequence[str], clock: Clock) -> Record:
     """The record of one argument; raises CaseError for its mistakes."""
     paths = _paths(argument, inputs)
     values, files, problems = {}, {}, []
     for name, path in paths.items():
         try:
             text = read_text(path)
-            values[name] = on_spacing(samples_of(text, path), spacing, duration)
+            values[name] = on_spacing(samples_of(text, path), clock)
             files[name] = path, text
         except ValueError as error:
             told = str(error).removeprefix("path: ")
