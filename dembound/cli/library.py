@@ -35,8 +35,7 @@ def library(
 
     case = load_disks(path, changes, name)
     prepare_computing(threads)
-    with progress_of(case.name) as progress:
-        folder = build_library(case, spacing, output, duration, progress)
+    folder = build_library(case, spacing, output, duration, progress_of)
     made = Library(folder)
     step = f"time step {made.case.run.time_step:.10g} s"
     out.print(f"{case.name}: library of {', '.join(made.inputs)}, {made.clock.duration:g} s, {step}, in {folder}")

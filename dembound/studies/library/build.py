@@ -2,12 +2,14 @@
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any
 
 import tomli_w
 
+from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.material import STRENGTH_KEYS
 from dembound.casefile.model import as_kind
@@ -34,7 +36,7 @@ HAT = "hat_"
 WHOLE = 1e-9
 """Part of a time step by which a time may differ from a whole number of them."""
 
-SILENT_RUN = ("until", "silent_level", "silent_for", "time_step", "duration")
+CHOSEN = ("until", "silent_level", "silent_for", "time_step", "duration")
 """Keys of ``[run]`` that a library chooses."""
 
 
@@ -62,8 +64,18 @@ def is_at_rest(case: DiskCase) -> bool:
     return case.static is None and all(load.wave is not None for load in case.load)
 
 
+@contextmanager
+def unwatched(name: str) -> Iterator[Progress]:
+    """Ignores the progress of a run of a name."""
+    yield Progress()
+
+
 def build_library(
-    case: DiskCase, spacing: float, results: Path, duration: float | None = None, progress: Progress | None = None
+    case: DiskCase,
+    spacing: float,
+    results: Path,
+    duration: float | None = None,
+    progress_of: Callable[[str], AbstractContextManager[Progress]] = unwatched,
 ) -> Path:
     """Run the inputs of a case one by one, and write ``results/<case name>_library/``; returns that folder.
 
@@ -74,19 +86,20 @@ def build_library(
     Parameters
     ----------
     spacing : time between two values of the records, s. duration : of the longest record, s; None: that of the case.
+    progress_of : gives the progress of a run of a name, which is informed.
 
     Raises CaseError for a case that is not linear, and a given step of which the spacing is no multiple; else errors as
     of `run_case`.
     """
-    progress = progress or Progress()
     if problems := list(problems_of(case)):
         raise CaseError(problems, case.name)
     planned = plan(case)
-    for warning in warnings_before(planned):
-        progress.warned(warning)
+    with progress_of(case.name) as progress:
+        for warning in warnings_before(planned):
+            progress.warned(warning)
     planned = _with_settings(planned)
-    base = _base(planned, spacing, case.run.duration if duration is None else duration)
     lead = _lead(planned, spacing)
+    base = _base(planned, spacing, case.run.duration if duration is None else duration, lead)
     folder = results / f"{case.name}_library"
     (folder / FILE).unlink(missing_ok=True)
     names = inputs_of(case)
@@ -98,7 +111,8 @@ def build_library(
     for each in cases:
         Folder(folder, each.name).check()
     for each in cases:
-        run_case(each, folder, _WithoutWarnings(progress))
+        with progress_of(each.name) as progress:
+            run_case(each, folder, _WithoutWarnings(progress))
     facts: dict[str, Any] = {"version": __version__, "name": case.name, "spacing": spacing, "lead": lead}
     facts |= {"inputs": names, "case": base.text}
     with replacing(folder / FILE) as part:
@@ -115,7 +129,12 @@ def under(
     """
     data = parsed(base.text)
     data["wave"] |= {key: dict(table) for key, table in waves.items()}
-    return as_kind(loads(tomli_w.dumps(data), base.folder, name, files), DiskCase, "is the case of a bar")
+    return _of_disks(loads(tomli_w.dumps(data), base.folder, name, files))
+
+
+def _of_disks(case: Case) -> DiskCase:
+    """The case, which is one of disks as that from which it was made."""
+    return as_kind(case, DiskCase, "is the case of a bar")
 
 
 def _with_settings(planned: Plan) -> Plan:
@@ -127,14 +146,14 @@ def _with_settings(planned: Plan) -> Plan:
     return plan(with_changes(planned.scene.case, {f"outside.{key}": value for key, value in given.items()}))
 
 
-def _base(planned: Plan, spacing: float, duration: float) -> DiskCase:
-    """The case with silent inputs, with the step, the duration and the output of a library."""
+def _base(planned: Plan, spacing: float, duration: float, lead: int) -> DiskCase:
+    """The case with the step, the duration and the output of a library, and inputs that begin after all its runs."""
     case = planned.scene.case
     assert isinstance(case, DiskCase)
     time_step = _time_step(case, planned.time_step, spacing)
     steps = round(spacing / time_step)
     stride = _largest_divisor(steps, max(1, round(case.output.history_interval / time_step)))
-    run = {key: value for key, value in case.run.given().items() if key not in SILENT_RUN}
+    run = {key: value for key, value in case.run.given().items() if key not in CHOSEN}
     changes: dict[str, Any] = {
         "run": run | {"time_step": time_step, "duration": duration},
         "output": {
@@ -143,9 +162,9 @@ def _base(planned: Plan, spacing: float, duration: float) -> DiskCase:
             "pictures": False,
             "load_factor": case.output.load_factor,
         },
-        "wave": {name: _triangle(spacing, 2.0 * duration) for name in inputs_of(case)},
+        "wave": {name: _triangle(spacing, 2.0 * (duration + lead * spacing)) for name in inputs_of(case)},
     }
-    return as_kind(with_changes(case, changes), DiskCase, "is the case of a bar")
+    return _of_disks(with_changes(case, changes))
 
 
 def _lead(planned: Plan, spacing: float) -> int:
@@ -166,14 +185,14 @@ def _of_runs(base: DiskCase, longer: float) -> DiskCase:
     data["output"].pop("load_factor")
     for key in (*STRENGTH_KEYS, "pb_fa"):
         data["material"].pop(key, None)
-    return as_kind(loads(tomli_w.dumps(data), base.folder, base.name, base.files), DiskCase, "is the case of a bar")
+    return _of_disks(loads(tomli_w.dumps(data), base.folder, base.name, base.files))
 
 
 def _settled(base: DiskCase, folder: Path) -> DiskCase:
     """The case with the settled state of the run without waves, if it has a static stage that is kept."""
     if base.static is None or base.static.from_ is not None or base.run.checkpoint == 0.0:
         return base
-    return as_kind(with_changes(base, {"static.from": str(folder / REST)}), DiskCase, "is the case of a bar")
+    return _of_disks(with_changes(base, {"static.from": str(folder / REST)}))
 
 
 def _triangle(spacing: float, start: float) -> dict[str, Any]:

@@ -2,10 +2,12 @@
 
 import json
 
+import h5py
 import numpy as np
 import pytest
-from small_cases import PUSHED, small
+from small_cases import PUSHED, SPALLING, small
 
+from dembound.disks.kind import Disks
 from dembound.disks.load_factor import LIMITS, limit_in_words, limit_lines, load_factor_in_words
 from dembound.errors import CaseError
 from dembound.kernels.tables import Limits
@@ -69,8 +71,6 @@ def test_the_factor_is_that_of_recorded_forces(tmp_path):
     case = small(STATIC | {"material": STATIC["material"] | {"pb_ten": 1e9, "pb_coh": 1e9}}, "forces")
     folder = run_case(case, tmp_path)
     found = json.loads((folder / "summary.json").read_text())["load_factor"]
-    import h5py
-
     with h5py.File(folder / "run.h5") as file:
         snapshots = [file["snapshots"][name] for name in sorted(file["snapshots"])]
         assert len(snapshots) == file.attrs["steps"]  # one after every step
@@ -131,3 +131,15 @@ def test_without_limits_there_is_no_factor(tmp_path):
 def test_where_there_is_no_factor_it_is_refused(changes, problem):
     with pytest.raises(CaseError, match=problem):
         small(PUSHED, "refused", changes)
+
+
+def test_bars_have_no_load_factor():
+    with pytest.raises(CaseError, match="load_factor: is for disks, not for bars"):
+        small(SPALLING, "bar", {"output.load_factor": True})
+
+
+def test_rows_that_move_identically_are_all_compared():
+    tables = PUSHED | {"boundary": {"left": {"type": "velocity", "wave_p": "push"}, "right": {"type": "viscous"}}}
+    one, whole = (small(tables, "rows", {"output.load_factor": asked}) for asked in (False, True))
+    assert Disks().reduced(Disks().build(one)).scene.disk_count < 100
+    assert Disks().reduced(Disks().build(whole)).scene.disk_count == 100
