@@ -24,4 +24,7 @@ class Output(Table):
     stress: bool = quantity(False, unit="1", help="whether snapshots hold the stress of every particle")
     contacts: bool = quantity(False, unit="1", help="whether snapshots hold the forces of every contact and bond")
     peaks: bool = quantity(False, unit="1", help="whether the largest speed of every particle in the run is kept")
+    load_factor: bool = quantity(
+        False, unit="1", help="whether the factor of the waves is found up to which the elastic law of disks holds"
+    )
     pictures: bool = quantity(True, unit="1", help="whether pictures are drawn when the run is over")

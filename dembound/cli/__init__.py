@@ -10,7 +10,9 @@ from dembound.cli import (  # each registers its commands with the application
     chart,
     dispersion,
     gauge,
+    library,
     results,
+    signals,
     stability,
     starting,
 )
@@ -24,8 +26,10 @@ __all__ = [
     "chart",
     "dispersion",
     "gauge",
+    "library",
     "main",
     "results",
+    "signals",
     "stability",
     "starting",
 ]

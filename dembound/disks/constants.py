@@ -9,16 +9,23 @@ from dembound.kernels.contacts import BONDED, REFERENCE, UPDATED
 from dembound.kernels.tables import Limits
 
 
-def limits_of(material: Material) -> Limits:
-    """Strengths and friction of a material; without limits for a law without history."""
-    unbreakable = not LAWS[material.law].has_history
+def strength_of(material: Material) -> Limits:
+    """Strengths and friction of a material in the geometry of the start, whatever its law."""
     return Limits(
         friction=float(material.fric),
-        tension=np.inf if unbreakable or material.pb_ten is None else material.pb_ten,
-        cohesion=np.inf if unbreakable or material.pb_coh is None else material.pb_coh,
+        tension=np.inf if material.pb_ten is None else material.pb_ten,
+        cohesion=np.inf if material.pb_coh is None else material.pb_coh,
         tan_fa=float(np.tan(np.radians(material.pb_fa))) if material.pb_coh is not None else 0.0,
-        geometry=REFERENCE if unbreakable else {"updated": UPDATED, "reference": BONDED}[material.geometry],
+        geometry=REFERENCE,
     )
+
+
+def limits_of(material: Material) -> Limits:
+    """The same as its law has them; bonds without limits for a law without history."""
+    strength = strength_of(material)
+    if not LAWS[material.law].has_history:
+        return strength._replace(tension=np.inf, cohesion=np.inf)
+    return strength._replace(geometry={"updated": UPDATED, "reference": BONDED}[material.geometry])
 
 
 def brick_constants(ground: PackedMaterial, *, gaps_close: bool, locked_in: float) -> np.ndarray:

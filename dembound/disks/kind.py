@@ -12,6 +12,7 @@ from dembound.disks.breaks import first_break
 from dembound.disks.contact_mesh import contact_mesh
 from dembound.disks.continuum_mesh import continuum_mesh
 from dembound.disks.facts import disk_facts
+from dembound.disks.load_factor import LoadFactor
 from dembound.disks.memory import expected_bytes
 from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
 from dembound.disks.outcome import disk_outcome
@@ -31,7 +32,7 @@ from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.motion.storage import Storage
-from dembound.motion.trackers import Run
+from dembound.motion.trackers import Run, Tracker
 from dembound.table import Box
 
 if TYPE_CHECKING:
@@ -79,6 +80,15 @@ class Disks(Kind[DiskCase, DiskScene]):
             stages=tuple(_stages(scene, settled)),
             summary=describe_static(settled, asked_stress(scene)),
         )
+
+    def trackers(self, run: Run) -> list[Tracker]:
+        """The load factor, if the case asks for it."""
+        case, system = run.scene.case, run.system
+        if not case.output.load_factor:
+            return []
+        assert isinstance(case, DiskCase)
+        assert isinstance(system, DiskSystem)
+        return [LoadFactor(case, system)]
 
     def sources(self, scene: DiskScene) -> list[Source]:
         """Driven sides, loads, and holes."""

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from dembound.disks.load_factor import load_factor_in_words
 from dembound.results.reader import laws_in_words
 
 
@@ -18,6 +19,8 @@ def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
         facts += _broken(summary["cracks"], static)
         if error := summary["energy"]["relative_error"]:  # zero if no energy was supplied
             facts.append(f"energy closes to {100.0 * error:.2g} %")
+    if (found := summary["load_factor"]) is not None:
+        facts.append(load_factor_in_words(found))
     return facts
 
 

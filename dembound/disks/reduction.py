@@ -89,6 +89,8 @@ def _never_smaller(scene: DiskScene) -> str:
     """Why a scene has to be stepped as a whole whatever its symmetry; empty if it may be reduced."""
     if scene.has_history:
         return f'under material.law = "{scene.case.material.law}" contacts may open, slide and break anywhere'
+    if scene.case.output.load_factor:
+        return "the load factor is the least of all contacts"
     if scene.case.static is not None:
         return "a static stage is computed for the whole scene"
     if scene.outside is not None:

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from dembound.disks.load_factor import LoadFactor
 from dembound.disks.near_ties import OPENED
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.disks.settled import Settled
@@ -19,8 +20,17 @@ def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
         "contacts": len(scene.assembly.pairs),
         "loose_disks_left_out": scene.assembly.loose,
         "packing": describe_packing(scene),
+        "load_factor": _describe_load_factor(run),
         "boundaries": {side: _describe_edge(scene, run, side) for side in scene.edges},
     }
+
+
+def _describe_load_factor(run: Run) -> dict[str, Any] | None:
+    """The load factor and where it is reached, see `LoadFactor.describe`; None if it has not been asked for."""
+    found = run.state.owners.get(LoadFactor.name)
+    if not isinstance(found, LoadFactor):
+        return None
+    return found.describe(run) or {"factor": None}
 
 
 def asked_stress(scene: DiskScene) -> list[float] | None:

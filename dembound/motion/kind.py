@@ -20,7 +20,7 @@ from dembound.motion.scene import Scene
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
 from dembound.motion.storage import Storage
-from dembound.motion.trackers import Run
+from dembound.motion.trackers import Run, Tracker
 from dembound.table import Box
 
 if TYPE_CHECKING:
@@ -159,6 +159,10 @@ class Kind(ABC, Generic[C, S]):
 
         Raises StalledError when a stage before does not come to rest.
         """
+
+    def trackers(self, run: Run) -> list[Tracker]:
+        """Trackers of a run that its case asks for, in addition to those of every run; by default none."""
+        return []
 
     @abstractmethod
     def sources(self, scene: S) -> list[Source]:

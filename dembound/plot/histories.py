@@ -61,14 +61,14 @@ def plot_histories(
     if quantity == "stress" and component is not None:
         raise CaseError(["component: is of motions; the stress of a bar is that along it"])
     histories = [read_histories(path, quantity) for path in runs]
-    shown = _choose(runs, histories, monitors)
-    drawn = [{name: run[name] for name in (*shown, *map(_twin, shown)) if name in run} for run in histories]
-    columns = _columns(drawn, component)
+    shown = chosen_monitors(runs, histories, monitors)
+    drawn = [{name: run[name] for name in (*shown, *map(twin_of, shown)) if name in run} for run in histories]
+    columns = shown_columns(drawn, component)
     unit = time_unit(max(history.time.max(initial=0.0) for run in drawn for history in run.values()))
     height = 1.6 + len(shown) * np.clip(9.0 / len(shown), 0.6, 1.6)
     figure = new_figure(9.0 if len(columns) == 1 else 12.0, height)
     panels = figure.subplots(len(shown), len(columns), sharex=True, sharey=True, squeeze=False)
-    twins = any(_twin(name) in run for run in drawn for name in shown)
+    twins = any(twin_of(name) in run for run in drawn for name in shown)
     for index, (label, run) in enumerate(zip(record_names(runs), drawn, strict=True)):
         style = line_style(index) | ({"linestyle": BESIDE_TWINS[index % len(BESIDE_TWINS)]} if twins else {})
         for row, monitor in zip(panels, shown, strict=True):
@@ -76,7 +76,7 @@ def plot_histories(
                 _draw(panel, run, monitor, column, unit.seconds, label, style)
     for row, monitor in zip(panels, shown, strict=True):
         row[0].set_title(
-            _title(monitor, [run[monitor] for run in drawn if monitor in run]), loc="left", fontsize=9, pad=3
+            monitor_title(monitor, [run[monitor] for run in drawn if monitor in run]), loc="left", fontsize=9, pad=3
         )
     for panel in panels[-1]:
         panel.set_xlabel(unit.label)
@@ -91,7 +91,7 @@ def _draw(
 ) -> None:
     """A monitor's history in one run, if it has it, and that of its twin, dashed; times in units of `seconds`."""
     twin: dict[str, Any] = {"color": style["color"], **BEHIND}
-    for name, words, looks in ((monitor, label, style), (_twin(monitor), f"{label}, free field", twin)):
+    for name, words, looks in ((monitor, label, style), (twin_of(monitor), f"{label}, free field", twin)):
         if name in run:
             history = run[name]
             panel.plot(history.time / seconds, history.values[:, column], label=words, gid=name, **looks)
@@ -100,21 +100,21 @@ def _draw(
 def _name_axes(figure: Figure, panels: np.ndarray, quantity: Quantity, columns: Sequence[int]) -> None:
     """Write quantity, component and unit on the axes of the panels (rows, columns)."""
     sense, unit = SENSES.get(quantity, ""), UNITS[quantity][columns[0]]
-    shown = f"{quantity} {' and '.join(map(_direction, columns))}"
+    shown = f"{quantity} {' and '.join(map(direction, columns))}"
     if len(columns) > 1:
         for row in panels:
             for panel, column in zip(row, columns, strict=True):
-                panel.set_ylabel(_direction(column), fontsize=9)
+                panel.set_ylabel(direction(column), fontsize=9)
     figure.supylabel(f"{shown if len(columns) == 1 else quantity}{sense} ({unit})", fontsize=10)
     figure.suptitle(f"{shown.capitalize()} at the monitors", fontsize=11)
 
 
-def _twin(monitor: str) -> str:
+def twin_of(monitor: str) -> str:
     """Name of a monitor's twin in the free-field column in records."""
     return f"{monitor}{FREE_FIELD}"
 
 
-def _title(monitor: str, histories: Sequence[History]) -> str:
+def monitor_title(monitor: str, histories: Sequence[History]) -> str:
     """Name of the monitor, position of its particle in each run, and the given position if it differs."""
     places, wanted = (list(dict.fromkeys(getattr(each, what) for each in histories)) for what in ("place", "wanted"))
     asked = "" if places == wanted else f", wanted {_in_words(wanted)}"
@@ -128,7 +128,7 @@ def _in_words(places: Sequence[str]) -> str:
     return f"{places[0]} and {len(places) - 1} other places"
 
 
-def _choose(runs: Sequence[Path], histories: Sequence[Histories], wanted: Sequence[str] | None) -> list[str]:
+def chosen_monitors(runs: Sequence[Path], histories: Sequence[Histories], wanted: Sequence[str] | None) -> list[str]:
     """Names of the monitors that have a panel, each once; errors as in `plot_histories`."""
     known = list(dict.fromkeys(name for run in histories for name in run))
     if not known:
@@ -140,7 +140,7 @@ def _choose(runs: Sequence[Path], histories: Sequence[Histories], wanted: Sequen
     return list(dict.fromkeys(wanted))
 
 
-def _columns(histories: Sequence[Histories], component: Component | None) -> list[int]:
+def shown_columns(histories: Sequence[Histories], component: Component | None) -> list[int]:
     """The columns of the histories that are shown, one, or those of x and y."""
     if component == "both":
         return [0, 1]
@@ -153,5 +153,6 @@ def _largest(histories: Sequence[Histories]) -> int:
     return int(np.argmax(np.max(largest, axis=0)))
 
 
-def _direction(column: int) -> str:
+def direction(column: int) -> str:
+    """Column of a motion in words."""
     return "of rotation" if COMPONENTS[column] == "rotation" else f"along {COMPONENTS[column]}"

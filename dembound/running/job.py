@@ -180,7 +180,8 @@ class _Job:
                     recorder.note({"regular_steps": planned.regular_steps})
                 checkpoints = self._checkpoints(planned, partial, interrupts, None, recorder)
                 snapshots = Snapshots(recorder, case.output.snapshots, planned.regular_steps)
-                simulation.track(Histories(recorder), ledger, snapshots, Reports(self.progress, steps), checkpoints)
+                simulation.track(Histories(recorder), ledger, snapshots, Reports(self.progress, steps))
+                simulation.track(*planned.kind.trackers(simulation), checkpoints)
                 if found is not None and counts is not None:
                     simulation.state.take(found.arrays())
                 simulation.run(steps)

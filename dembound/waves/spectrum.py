@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+from dembound.spectra.fourier import PADDING, fourier_spectrum
+
 FADED = 0.01
 """Share of its largest value below which an amplitude spectrum is treated as faded."""
 
@@ -14,14 +16,11 @@ The spectrum is T/2 · sin(πx)/[πx(1 − x²)], x = fT. Its envelope has faded
 Cardano's formula solves.
 """
 
-PADDING = 8
-"""Zero padding of sampled waves: bins eight times finer than 1/length resolve every lobe."""
-
 
 def amplitude_spectrum(velocities: np.ndarray, time_step: float) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (m,), Hz, and amplitudes (m,), m, of velocities (n,), m/s, sampled every `time_step` s."""
-    length = PADDING * len(velocities)
-    return np.fft.rfftfreq(length, time_step), time_step * np.abs(np.fft.rfft(velocities, length))
+    frequencies, spectrum = fourier_spectrum(velocities, time_step, PADDING * len(velocities))
+    return frequencies, np.abs(spectrum)
 
 
 def faded_frequency(frequencies: np.ndarray, amplitudes: np.ndarray) -> float:

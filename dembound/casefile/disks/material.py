@@ -10,8 +10,13 @@ from dembound.table import Table, quantity
 WAVE_SPEED_KEYS = ("match", "contact_share")
 MODULI_KEYS = ("emod", "pb_emod")
 STRENGTH_KEYS = ("pb_ten", "pb_coh")
-HISTORY_KEYS = (*STRENGTH_KEYS, "pb_fa", "locked_in", "geometry", "elastic_start")
+HISTORY_KEYS = ("locked_in", "geometry", "elastic_start")
 """Keys of history-dependent laws."""
+
+
+def with_history() -> str:
+    """The laws with a history, for messages."""
+    return " or ".join(f'"{name}"' for name, law in LAWS.items() if law.has_history)
 
 
 class Material(Table):
@@ -69,7 +74,9 @@ class Material(Table):
     @model_validator(mode="after")
     def _consistent(self) -> "Material":
         problems = self._problems_with_moduli() if self.p_wave_speed is None else self._problems_with_speed()
-        problems += self._problems_with_strength() if LAWS[self.law].has_history else self._problems_without_history()
+        problems += self._problems_with_strength()
+        if not LAWS[self.law].has_history:
+            problems += self._problems_without_history()
         if problems:
             raise ValueError("\n".join(problems))
         return self
@@ -98,8 +105,11 @@ class Material(Table):
 
     def _problems_without_history(self) -> list[str]:
         """Keys that have no effect under a law without history."""
-        needed = " or ".join(f'"{name}"' for name, law in LAWS.items() if law.has_history)
-        return [f"{key}: is only allowed with law = {needed}" for key in HISTORY_KEYS if key in self.model_fields_set]
+        return [
+            f"{key}: is only allowed with law = {with_history()}"
+            for key in HISTORY_KEYS
+            if key in self.model_fields_set
+        ]
 
     def _problems_with_strength(self) -> list[str]:
         """Mistakes in the strength of the bonds."""

@@ -11,6 +11,7 @@ from dembound.casefile.disks.ground_problems import ground_problems
 from dembound.casefile.disks.hole_problems import hole_problems
 from dembound.casefile.disks.incident_problems import incident_problems
 from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.load_factor_problems import load_factor_problems
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.monitor import Monitor
 from dembound.casefile.disks.motion import Motion
@@ -50,6 +51,8 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     yield from hole_problems(tables, "static" in given)
     if tables["material"] and tables["material"].locked_in and "static" not in given:
         yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
+    if tables["output"] and tables["material"]:
+        yield from load_factor_problems(tables["output"], tables["material"], tables["load"], "static" in given)
     if tables["static"]:
         yield from static_problems(*(tables[key] for key in ("static", "boundary", "load", "material", "motion")))
     if tables["run"]:

@@ -1,0 +1,232 @@
+"""Spectra of the monitors: Fourier amplitudes, transfer functions, response spectra."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from dembound.errors import CaseError
+from dembound.plot.histories import (
+    BEHIND,
+    Component,
+    Histories,
+    chosen_monitors,
+    direction,
+    monitor_title,
+    shown_columns,
+    twin_of,
+)
+from dembound.plot.style import line_style, new_figure, outside_legend, styled
+from dembound.results.histories import UNITS, History, Quantity, read_histories
+from dembound.results.reader import record_names
+from dembound.spectra.fourier import fourier_spectrum, shown_frequencies, smoothed
+from dembound.spectra.response import response_spectrum, usual_periods
+from dembound.spectra.transfer import transfer_function
+
+DECADES = 1e-4
+"""Smallest amplitude shown, over the largest."""
+
+FEW_DECADES = 300.0
+"""Largest over smallest amplitude below which also twice and five times the powers of ten have numbers."""
+
+FEWEST = 16
+"""Samples that a spectrum needs at least."""
+
+FAINT: dict[str, Any] = {"linewidth": 0.5, "alpha": 0.3, "zorder": 1.8}
+"""Line style of spectra that are not smoothed."""
+
+
+class Curve(NamedTuple):
+    """A line: places (k,) along the axis, and values (k,); faint : those before they were smoothed, or None."""
+
+    along: np.ndarray
+    values: np.ndarray
+    faint: tuple[np.ndarray, np.ndarray] | None = None
+
+
+CurveOf = Callable[[Histories, str, int], Curve | None]
+"""The line of a run's histories for a monitor and a column; None if the run has none."""
+
+
+@styled
+def plot_fourier(
+    runs: Sequence[Path],
+    component: Component | None = None,
+    quantity: Quantity = "velocity",
+    monitors: Sequence[str] | None = None,
+) -> Figure:
+    """Fourier amplitude spectra of the monitors, a panel each, smoothed, over what they were before.
+
+    Twins in a free-field column are dashed. Parameters and errors as of `plot_histories`.
+    """
+
+    def curve(run: Histories, name: str, column: int) -> Curve | None:
+        if name not in run:
+            return None
+        history = run[name]
+        frequency, spectrum = fourier_spectrum(history.values[:, column], _time_step(name, history))
+        centre = shown_frequencies(len(history.time), _time_step(name, history))
+        power = np.abs(spectrum) ** 2
+        return Curve(centre, np.sqrt(smoothed(frequency, power, centre)), (frequency[1:], np.sqrt(power[1:])))
+
+    return _figure(
+        runs, quantity, monitors, component, curve, "frequency (Hz)",
+        lambda column: f"Fourier amplitude of the {quantity}{_along(quantity, column)} ({UNITS[quantity][column]}·s)",
+    )  # fmt: skip
+
+
+@styled
+def plot_transfer(
+    runs: Sequence[Path],
+    component: Component | None = None,
+    quantity: Quantity = "velocity",
+    monitors: Sequence[str] | None = None,
+    reference: str | None = None,
+) -> Figure:
+    """Amplitudes of transfer functions to the monitors, a panel each, from another one or from their free-field twins.
+
+    They are blank at frequencies at which the input has no energy (`Transfer`).
+
+    Parameters
+    ----------
+    reference
+        monitor that is the input; None: each monitor's twin in the free-field column.
+
+    Other parameters and errors as of `plot_histories`. Raises CaseError also when no run has the input.
+    """
+    histories = [read_histories(path, quantity) for path in runs]
+    known = sorted({name for run in histories for name in run})
+    if reference is not None and reference not in known:
+        raise CaseError([f"--reference: is {reference}, must be one of {', '.join(known)}"])
+    if reference is None and not any(twin_of(name) in known for name in known):
+        raise CaseError(["--reference: is missing; these runs have no free-field twins to take instead"])
+    shown = [name for name in chosen_monitors(runs, histories, monitors) if name != reference]
+    shown = [name for name in shown if reference is not None or twin_of(name) in known]
+    if not shown:
+        raise CaseError(["--monitor: names only the monitor that is the input"])
+
+    def curve(run: Histories, name: str, column: int) -> Curve | None:
+        source = twin_of(name) if reference is None else reference
+        if name not in run or source not in run:
+            return None
+        output, given = run[name], run[source]
+        found = transfer_function(output.values[:, column], given.values[:, column], _time_step(name, output))
+        return Curve(found.centre, found.amplitude, (found.frequency, np.abs(found.ratio)))
+
+    below = "their free-field twins" if reference is None else reference
+    return _figure(
+        runs, quantity, shown, component, curve, "frequency (Hz)",
+        lambda column: f"amplitude over that of {below}, {quantity}{_along(quantity, column)}",
+    )  # fmt: skip
+
+
+@styled
+def plot_response(
+    runs: Sequence[Path], component: Component | None = None, monitors: Sequence[str] | None = None
+) -> Figure:
+    """Response spectra of the monitors' accelerations for 5 % damping, a panel each; twins are dashed.
+
+    Parameters and errors as of `plot_histories`.
+    """
+
+    def curve(run: Histories, name: str, column: int) -> Curve | None:
+        if name not in run:
+            return None
+        history, step = run[name], _time_step(name, run[name])
+        found = response_spectrum(history.values[:, column], step, usual_periods(len(history.time), step))
+        return Curve(found.period, found.pseudo_acceleration)
+
+    return _figure(
+        runs, "acceleration", monitors, component, curve, "period (s)",
+        lambda column: f"pseudo-acceleration {direction(column)}, 5 % damping (m/s²)",
+    )  # fmt: skip
+
+
+def _figure(
+    runs: Sequence[Path],
+    quantity: Quantity,
+    monitors: Sequence[str] | None,
+    component: Component | None,
+    curve: CurveOf,
+    along: str,
+    label: Callable[[int], str],
+) -> Figure:
+    """A panel for each monitor and component with the lines of all runs, on logarithmic axes."""
+    if component == "rotation" and quantity == "acceleration":
+        raise CaseError(["--component: is rotation; a response spectrum is of x or y"])
+    histories = [read_histories(path, quantity) for path in runs]
+    shown = chosen_monitors(runs, histories, monitors)
+    columns = [0] if quantity == "stress" else shown_columns(_those(histories, shown), component)
+    figure = new_figure(7.5 if len(columns) == 1 else 12.0, 1.2 + 2.4 * len(shown))
+    panels = figure.subplots(len(shown), len(columns), sharex=True, sharey=True, squeeze=False)
+    for index, (run_name, run) in enumerate(zip(record_names(runs), histories, strict=True)):
+        for row, name in zip(panels, shown, strict=True):
+            for panel, column in zip(row, columns, strict=True):
+                _draw(panel, curve, run, name, column, run_name, line_style(index))
+    _on_logarithmic_axes(panels)
+    for row, name in zip(panels, shown, strict=True):
+        title = monitor_title(name, [run[name] for run in histories if name in run])
+        row[0].set_title(title, loc="left", fontsize=9, pad=3)
+    for panel, column in zip(panels[-1], columns, strict=True):
+        panel.set_xlabel(along)
+        if len(columns) > 1:
+            panel.set_title(label(column), loc="right", fontsize=8)
+    if len(columns) == 1:
+        figure.supylabel(label(columns[0]), fontsize=10)
+    outside_legend(figure, panels.flat, columns=3)
+    return figure
+
+
+def _draw(
+    panel: Axes, curve: CurveOf, run: Histories, name: str, column: int, label: str, style: dict[str, Any]
+) -> None:
+    """The line of a monitor in one run, if it has it, over that before smoothing, and that of its twin, dashed."""
+    if (twin := curve(run, twin_of(name), column)) is not None:
+        behind = {"color": style["color"], **BEHIND}
+        panel.plot(twin.along, twin.values, label=f"{label}, free field", gid=twin_of(name), **behind)
+    if (line := curve(run, name, column)) is not None:
+        if line.faint is not None:
+            panel.plot(*line.faint, color=style["color"], **FAINT)
+        panel.plot(line.along, line.values, label=label, gid=name, **style)
+
+
+def _on_logarithmic_axes(panels: np.ndarray) -> None:
+    """Make all axes logarithmic, from the lowest to the highest value of named lines, or down to `DECADES` of it.
+
+    Raises CaseError if all lines are zero or blank.
+    """
+    lines = [line.get_ydata() for panel in panels.flat for line in panel.lines if line.get_gid()]
+    values = np.concatenate([np.zeros(0), *lines])
+    values = values[values > 0.0]  # False for nan
+    if len(values) == 0:
+        raise CaseError(["RESULTS: nothing moves at these monitors, or the input has no energy: there is no spectrum"])
+    for panel in panels.flat:
+        panel.set_xscale("log")
+        panel.set_yscale("log")
+        for axis in (panel.xaxis, panel.yaxis):
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
+        if values.max() < FEW_DECADES * values.min():
+            panel.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        panel.set_ylim(0.7 * max(values.min(), DECADES * values.max()), 1.4 * values.max())
+
+
+def _those(histories: Sequence[Histories], names: Sequence[str]) -> list[Histories]:
+    """Of each run the histories of some monitors, as far as it has them."""
+    return [{name: run[name] for name in names if name in run} for run in histories]
+
+
+def _along(quantity: Quantity, column: int) -> str:
+    """The direction of a component, with a blank before it; empty for a stress, which is along the bar."""
+    return "" if quantity == "stress" else f" {direction(column)}"
+
+
+def _time_step(name: str, history: History) -> float:
+    """Time (s) between two samples of a history; raises CaseError for too few of them."""
+    if len(history.time) < FEWEST:
+        raise CaseError([f"monitor {name}: has {len(history.time)} samples, a spectrum needs at least {FEWEST}"])
+    return float((history.time[-1] - history.time[0]) / (len(history.time) - 1))

@@ -1,0 +1,1 @@
+"""Spectra of histories, as functions of arrays: Fourier amplitudes, transfer functions, response spectra."""

@@ -1,0 +1,225 @@
+"""The runs of a library: one for each input, and one without waves where something else acts."""
+
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from dembound.casefile import Case
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.material import STRENGTH_KEYS
+from dembound.casefile.model import as_kind
+from dembound.casefile.toml import parsed
+from dembound.casefile.types import LAWS
+from dembound.disks.scene import DiskScene
+from dembound.errors import CaseError
+from dembound.kinds import loads, with_changes
+from dembound.motion.kind import Plan
+from dembound.results.folder import Folder
+from dembound.results.reader import replacing
+from dembound.running import Progress, plan, run_case, warnings_before
+from dembound.version import __version__
+
+FILE = "library.json"
+"""Describes a library in its folder; written last, so that a library with it is complete."""
+
+REST = "rest"
+"""Name of the run without waves."""
+
+HAT = "hat_"
+"""Beginning of the name of the run under one triangle of an input, before the input's name."""
+
+WHOLE = 1e-9
+"""Part of a time step by which a time may differ from a whole number of them."""
+
+CHOSEN = ("until", "silent_level", "silent_for", "time_step", "duration")
+"""Keys of ``[run]`` that a library chooses."""
+
+
+def inputs_of(case: DiskCase) -> list[str]:
+    """The waves that act on a case, in the order of their names: each is an input."""
+    return sorted(case.entering | {load.wave for load in case.load if load.wave is not None})
+
+
+def problems_of(case: DiskCase) -> Iterator[str]:
+    """Why a case has no library, a line each: it is not linear, has no input, or nothing is recorded."""
+    law, damp = case.material.law, case.material.damp
+    linear = " or ".join(f'"{name}"' for name, each in LAWS.items() if not each.has_history)
+    if LAWS[law].has_history:
+        yield f'material.law: is "{law}", whose contacts open, slide and break; a library adds up motion, so {linear}'
+    if damp > 0.0:
+        yield f"material.damp: is {damp:g}, must be 0 in a library, as local damping is not linear"
+    if not inputs_of(case):
+        yield "wave: none acts on this case; a library needs one, in whose place records are put"
+    if not case.monitor:
+        yield "monitor: there is none; a library has the histories of monitors"
+
+
+def is_at_rest(case: DiskCase) -> bool:
+    """Whether a scene does not move without waves, as it has neither steady loads nor a static stage."""
+    return case.static is None and all(load.wave is not None for load in case.load)
+
+
+@contextmanager
+def unwatched(name: str) -> Iterator[Progress]:
+    """Ignores the progress of a run of a name."""
+    yield Progress()
+
+
+def build_library(
+    case: DiskCase,
+    spacing: float,
+    results: Path,
+    duration: float | None = None,
+    progress_of: Callable[[str], AbstractContextManager[Progress]] = unwatched,
+) -> Path:
+    """Run the inputs of a case one by one, and write ``results/<case name>_library/``; returns that folder.
+
+    Each input is a triangle of 1 m/s (of a load's factor: 1) that rises over the spacing and falls over it. All
+    else is that of the case, the settings of a continuum as chosen for its own waves; the time step is the largest
+    whole fraction of the spacing that is not above the case's own.
+
+    Parameters
+    ----------
+    spacing : time between two values of the records, s. duration : of the longest record, s; None: that of the case.
+    progress_of : gives the progress of a run of a name, which is informed.
+
+    Raises CaseError for a case that is not linear, and a given step of which the spacing is no multiple; else errors as
+    of `run_case`.
+    """
+    if problems := list(problems_of(case)):
+        raise CaseError(problems, case.name)
+    planned = plan(case)
+    with progress_of(case.name) as progress:
+        for warning in warnings_before(planned):
+            progress.warned(warning)
+    planned = _with_settings(planned)
+    lead = _lead(planned, spacing)
+    base = _base(planned, spacing, case.run.duration if duration is None else duration, lead)
+    folder = results / f"{case.name}_library"
+    (folder / FILE).unlink(missing_ok=True)
+    names = inputs_of(case)
+    plain = _of_runs(base, lead * spacing)
+    cases = [] if is_at_rest(case) else [under(plain, {}, REST)]
+    cases += [
+        under(_settled(plain, folder), {name: _triangle(spacing, lead * spacing)}, f"{HAT}{name}") for name in names
+    ]
+    for each in cases:
+        Folder(folder, each.name).check()
+    for each in cases:
+        with progress_of(each.name) as progress:
+            run_case(each, folder, _WithoutWarnings(progress))
+    facts: dict[str, Any] = {"version": __version__, "name": case.name, "spacing": spacing, "lead": lead}
+    facts |= {"inputs": names, "case": base.text}
+    with replacing(folder / FILE) as part:
+        part.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
+    return folder
+
+
+def under(
+    base: DiskCase, waves: Mapping[str, Mapping[str, Any]], name: str, files: Mapping[str, str] | None = None
+) -> DiskCase:
+    """The case of a library under other waves, which have tables; inputs without one remain silent.
+
+    name : of the case. files : texts of the files that the tables refer to.
+    """
+    data = parsed(base.text)
+    data["wave"] |= {key: dict(table) for key, table in waves.items()}
+    return _of_disks(loads(tomli_w.dumps(data), base.folder, name, files))
+
+
+def _of_disks(case: Case) -> DiskCase:
+    """The case, which is one of disks as that from which it was made."""
+    return as_kind(case, DiskCase, "is the case of a bar")
+
+
+def _with_settings(planned: Plan) -> Plan:
+    """The plan of the case with the settings of its continuum as keys, so that they do not depend on the waves."""
+    assert isinstance(planned.scene, DiskScene)
+    if planned.scene.outside is None:
+        return planned
+    given = planned.scene.outside.settings.given
+    return plan(with_changes(planned.scene.case, {f"outside.{key}": value for key, value in given.items()}))
+
+
+def _base(planned: Plan, spacing: float, duration: float, lead: int) -> DiskCase:
+    """The case with the step, the duration and the output of a library, and inputs that begin after all its runs."""
+    case = planned.scene.case
+    assert isinstance(case, DiskCase)
+    time_step = _time_step(case, planned.time_step, spacing)
+    steps = round(spacing / time_step)
+    stride = _largest_divisor(steps, max(1, round(case.output.history_interval / time_step)))
+    run = {key: value for key, value in case.run.given().items() if key not in CHOSEN}
+    changes: dict[str, Any] = {
+        "run": run | {"time_step": time_step, "duration": duration},
+        "output": {
+            "history_interval": stride * time_step,
+            "snapshots": 0,
+            "pictures": False,
+            "load_factor": case.output.load_factor,
+        },
+        "wave": {name: _triangle(spacing, 2.0 * (duration + lead * spacing)) for name in inputs_of(case)},
+    }
+    return _of_disks(with_changes(case, changes))
+
+
+def _lead(planned: Plan, spacing: float) -> int:
+    """Spacings that triangles begin after the run, and that records are zero after their first value.
+
+    A wave of ``[incident]`` that passes the first disks before it passes its point would else begin within a run.
+    """
+    assert isinstance(planned.scene, DiskScene)
+    if (waves := planned.scene.ground_waves) is None:
+        return 0
+    return math.ceil(waves.grain * math.hypot(*waves.waves[0].slowness) / spacing)
+
+
+def _of_runs(base: DiskCase, longer: float) -> DiskCase:
+    """The case of the runs: longer by a time (s), and without load factor and strengths, which it does not need."""
+    data = parsed(base.text)
+    data["run"]["duration"] += longer
+    data["output"].pop("load_factor")
+    for key in (*STRENGTH_KEYS, "pb_fa"):
+        data["material"].pop(key, None)
+    return _of_disks(loads(tomli_w.dumps(data), base.folder, base.name, base.files))
+
+
+def _settled(base: DiskCase, folder: Path) -> DiskCase:
+    """The case with the settled state of the run without waves, if it has a static stage that is kept."""
+    if base.static is None or base.static.from_ is not None or base.run.checkpoint == 0.0:
+        return base
+    return _of_disks(with_changes(base, {"static.from": str(folder / REST)}))
+
+
+def _triangle(spacing: float, start: float) -> dict[str, Any]:
+    """The table of a triangle of unit height, twice as long as the spacing (s)."""
+    return {"type": "triangle", "amplitude": 1.0, "rise": spacing, "fall": spacing, "start": start}
+
+
+def _time_step(case: DiskCase, usual: float, spacing: float) -> float:
+    """The time step (s), a whole fraction of the spacing; usual : that of the case."""
+    steps = spacing / usual
+    if case.run.time_step == "auto":
+        return spacing / math.ceil(steps - WHOLE)
+    if abs(steps - round(steps)) > WHOLE * steps or round(steps) < 1:
+        nearest = spacing / max(1, math.ceil(steps))
+        raise CaseError(
+            [f'run.time_step: is {usual:g} s, must be a whole fraction of the spacing, {nearest:.10g} s, or "auto"']
+        )
+    return usual
+
+
+def _largest_divisor(number: int, most: int) -> int:
+    """The largest divisor of a whole number that is not above another one."""
+    return next(divisor for divisor in range(min(most, number), 0, -1) if number % divisor == 0)
+
+
+class _WithoutWarnings(Progress):
+    """Passes on progress, but no warnings: those of triangles and silence are not about the case."""
+
+    def __init__(self, progress: Progress) -> None:
+        self.settling, self.running = progress.settling, progress.running  # type: ignore[method-assign]

@@ -1,0 +1,141 @@
+"""A library: the responses of a scene to its inputs, and histories under any record as sums of them."""
+
+import json
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.model import as_kind
+from dembound.errors import CaseError, RecordError
+from dembound.kinds import loads
+from dembound.results.reader import open_record
+from dembound.studies.library.build import FILE, HAT, REST, is_at_rest
+from dembound.studies.library.record import Clock
+from dembound.version import __version__
+
+WIDTH = 6
+"""Columns of a monitor: displacement x, y, rotation (m, rad), velocity x, y, rotation (m/s, rad/s)."""
+
+
+class Library:
+    """A library in a folder.
+
+    Attributes
+    ----------
+    folder : with the runs. name : of the case it was made from. case : the case with silent inputs. inputs : names of
+    the waves in whose place records are put. spacing : of records, s; lead : number of spacings after their first value
+    during which they are zero. monitors : their names. time : (k,) s, of the samples of histories. attributes : of the
+    runs' record; places : of each monitor those of its history.
+
+    Raises CaseError where there is no library, or one of another version.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        if not (folder / FILE).is_file():
+            raise CaseError([f"{folder}: contains no library, must be a folder written by `dembound library`"])
+        try:
+            facts: dict[str, Any] = json.loads((folder / FILE).read_text(encoding="utf-8"))
+            self.name, self.spacing, self.inputs = str(facts["name"]), float(facts["spacing"]), list(facts["inputs"])
+            self.lead = int(facts["lead"])
+            text, version = str(facts["case"]), facts["version"]
+        except (ValueError, KeyError, TypeError):
+            raise RecordError([f"{folder / FILE}: is damaged"]) from None
+        if version != __version__:
+            raise CaseError([f"{folder}: is a library of dembound {version}, this is {__version__}; make it anew"])
+        self.case = as_kind(loads(text, folder, self.name), DiskCase, "is the case of a bar")
+        with open_record(self._record(f"{HAT}{self.inputs[0]}")) as file:
+            groups = file["histories"]
+            self.monitors = list(groups)
+            times = groups[self.monitors[0]]["time"][:]
+            self.attributes = dict(file.attrs)
+            self.places = {name: dict(group.attrs) for name, group in groups.items()}
+
+        self._per_spacing = max(1, round(self.spacing / (times[1] - times[0]))) if len(times) > 1 else 1
+        self.time = times[: len(times) - self.lead * self._per_spacing]
+
+    @property
+    def clock(self) -> Clock:
+        """Times that records have to keep."""
+        return Clock(self.spacing, self.case.run.duration, self.lead)
+
+    @cached_property
+    def rest(self) -> np.ndarray:
+        """Motion (k, monitors, 6) without waves, see `WIDTH`."""
+        return self._rest_of_runs[: len(self.time)]
+
+    @cached_property
+    def _rest_of_runs(self) -> np.ndarray:
+        """The same for as long as the runs."""
+        if not is_at_rest(self.case):
+            return self._motion(REST)
+        return np.zeros((len(self.time) + self.lead * self._per_spacing, len(self.monitors), WIDTH))
+
+    def response(self, name: str) -> np.ndarray:
+        """Motion (k, monitors, 6) that one triangle of unit height of an input adds, which rises from time 0."""
+        added = self._motion(f"{HAT}{name}") - self._rest_of_runs
+        return added[self.lead * self._per_spacing :]
+
+    def motion(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Motion (k, monitors, 6) under records.
+
+        values : input -> velocities at the times 0, Δ, 2Δ …, the first `lead` + 1 of which are 0.
+
+        Samples j of histories and times of records are on common places, so every `_per_spacing`-th sample is a
+        discrete convolution of the record with as many of the response, which is computed by Fourier transforms.
+        """
+        from scipy.fft import irfft, rfft
+
+        summed: np.ndarray | float = 0.0
+        for name, record in values.items():
+            crests = record[1 : self._rows + 1]  # the first triangle has its crest at Δ
+            spectrum = rfft(crests, self._length)
+            summed = summed + spectrum[:, None] * self._spectra[name]
+        rows = np.asarray(irfft(np.atleast_2d(summed), self._length, axis=0))[: self._rows]
+        samples = rows.reshape(-1, len(self.monitors), WIDTH)[: len(self.time)]
+        moved: np.ndarray = samples + self.rest
+        return moved
+
+    @property
+    def _rows(self) -> int:
+        """Spacings in the histories."""
+        return -(-len(self.time) // self._per_spacing)
+
+    @cached_property
+    def _length(self) -> int:
+        """Length of the transforms, in spacings, with as many zeros as a convolution needs."""
+        from scipy.fft import next_fast_len
+
+        return int(next_fast_len(2 * self._rows, real=True))
+
+    @cached_property
+    def _spectra(self) -> dict[str, np.ndarray]:
+        """Transforms (length/2 + 1, samples in a spacing · columns) of each input's response, along its spacings."""
+        from scipy.fft import rfft
+
+        found = {}
+        for name in self.inputs:
+            response = self.response(name).reshape(len(self.time), -1)
+            padded = np.zeros((self._rows * self._per_spacing, response.shape[1]))
+            padded[: len(response)] = response
+            found[name] = np.asarray(rfft(padded.reshape(self._rows, -1), self._length, axis=0))
+        return found
+
+    @property
+    def record_at_rest(self) -> Path:
+        """The record of the run without waves."""
+        return self._record(REST)
+
+    def _motion(self, run: str) -> np.ndarray:
+        """Motion (k, monitors, 6) in one of its runs."""
+        with open_record(self._record(run)) as file:
+            each = [np.hstack([group["displacement"][:], group["velocity"][:]]) for group in file["histories"].values()]
+        return np.stack(each, axis=1)
+
+    def _record(self, run: str) -> Path:
+        """The record of one of its runs."""
+        return self.folder / run / "run.h5"

@@ -1,0 +1,49 @@
+"""Record sections and hodographs."""
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.errors import CaseError
+from dembound.plot.hodograph import plot_hodograph
+from dembound.plot.section import plot_section
+
+
+def test_a_section_has_each_history_at_its_distance(small_run):
+    (panel,) = plot_section([small_run], monitors=["back", "front"]).axes
+    with h5py.File(small_run) as file:
+        groups = [file["histories/back"], file["histories/front"]]
+        distance = np.hypot(*(groups[1].attrs["position"] - groups[0].attrs["position"]))
+        largest = max(np.abs(group["velocity"][:, 0]).max() for group in groups)
+        for line, group, begin in zip(panel.lines, groups, (0.0, distance), strict=True):
+            # the largest value is as high as 0.9 of the mean distance between neighbours
+            expected = begin + 0.9 * distance / largest * group["velocity"][:, 0]
+            np.testing.assert_allclose(line.get_ydata(), expected)
+            np.testing.assert_allclose(line.get_xdata(), group["time"][:] / 1e-3)
+    assert panel.get_ylabel() == "distance from back (m), velocity along x upwards"
+    assert panel.get_title("left") == f"{distance:.3g} m upwards is {largest / 0.9:.3g} m/s"
+
+
+def test_a_section_needs_two_monitors_and_one_component(small_run):
+    with pytest.raises(CaseError, match="needs two monitors that all runs have, here are 1"):
+        plot_section([small_run], monitors=["back"])
+    with pytest.raises(CaseError, match="a section shows one"):
+        plot_section([small_run], component="both")
+
+
+def test_a_hodograph_has_the_motion_along_y_against_that_along_x(small_run, other_run):
+    panels = plot_hodograph([small_run, other_run], "displacement", ["front"]).axes
+    panel, rest = panels[0], panels[1:]
+    assert not any(each.get_visible() for each in rest)
+    with h5py.File(small_run) as file:
+        moved = file["histories/front/displacement"][:]
+    np.testing.assert_array_equal(panel.lines[0].get_xdata(), moved[:, 0])
+    np.testing.assert_array_equal(panel.lines[0].get_ydata(), moved[:, 1])
+    np.testing.assert_array_equal(panel.lines[1].get_xydata(), moved[-1:, :2])
+    assert (panel.get_xlabel(), panel.get_ylabel()) == ("displacement along x (m)", "displacement along y (m)")
+    assert panel.get_aspect() == 1.0
+
+
+def test_a_stress_has_no_hodograph(spalled_run):
+    with pytest.raises(CaseError, match="a hodograph is of a motion"):
+        plot_hodograph([spalled_run], "stress")

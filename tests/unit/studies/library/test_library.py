@@ -1,0 +1,135 @@
+"""Libraries: their runs, the sums of responses, and what is written of them."""
+
+import h5py
+import numpy as np
+import pytest
+from small_cases import GRAINS, PUSHED, small
+
+from dembound.errors import CaseError, RecordError
+from dembound.results.compare import compare
+from dembound.running import run_case
+from dembound.running.recorded import recorded_case
+from dembound.studies.library import Library, build_library, read_records, write_response
+
+SPACING = 1e-3
+
+HEAVY = GRAINS | {
+    "boundary": {"bottom": {"type": "viscous_input", "wave_p": "up", "wave_s": "shake"}},
+    "wave": {name: GRAINS["wave"]["pulse"] for name in ("up", "shake", "push")},
+    "load": [
+        {"name": "weight", "acceleration": [0.0, -9.81]},
+        {"name": "push", "force": [2e5, 1e5], "position": [5.0, 3.0], "wave": "push"},
+    ],
+    "static": {"boundary": {"bottom": {"type": "fixed"}}},
+}
+"""Random disks under their weight, with waves of two directions from below and a load."""
+
+
+@pytest.fixture(scope="module")
+def heavy(tmp_path_factory):
+    """A library of these disks."""
+    return Library(build_library(small(HEAVY, "heavy"), SPACING, tmp_path_factory.mktemp("heavy"), duration=0.03))
+
+
+def records(library, folder, seed=4):
+    """A record of noise for each input, as an argument."""
+    rng, parts = np.random.default_rng(seed), []
+    for name in library.inputs:
+        values = rng.standard_normal(20)
+        values[[0, -1]] = 0.0
+        path = folder / f"{name}.txt"
+        np.savetxt(path, np.column_stack([SPACING * np.arange(20), values]))
+        parts.append(f"{name}={path}")
+    return parts
+
+
+def test_histories_are_those_of_a_direct_run(heavy, tmp_path):
+    assert heavy.inputs == ["push", "shake", "up"]
+    (record,) = read_records([",".join(records(heavy, tmp_path))], heavy.inputs, heavy.clock)
+    path = tmp_path / record.name / "run.h5"
+    motion = write_response(heavy, record, path)
+    direct = run_case(recorded_case(path), tmp_path / "direct") / "run.h5"
+    with h5py.File(direct) as run:
+        for number, name in enumerate(heavy.monitors):
+            history = run["histories"][name]
+            np.testing.assert_array_equal(history["time"][:], heavy.time)
+            for columns, quantity in ((slice(0, 3), "displacement"), (slice(3, 6), "velocity")):
+                values = history[quantity][:]
+                # rounding of sums of some hundred terms, each as large as the peak: 1e-13 of it at most
+                atol = 1e-12 * np.abs(values).max(axis=0)
+                assert (np.abs(motion[:, number, columns] - values) <= atol).all()
+    for quantity in ("velocity", "displacement"):
+        assert all(found.peak < 1e-12 for found in compare(direct, [path], quantity))
+
+
+def test_inputs_without_a_record_are_silent(heavy, tmp_path):
+    argument = records(heavy, tmp_path)[1]
+    (record,) = read_records([argument], heavy.inputs, heavy.clock)
+    each = heavy.motion(record.values)
+    silent = heavy.motion({name: np.zeros(3) for name in heavy.inputs} | record.values)
+    np.testing.assert_array_equal(each, silent)
+    write_response(heavy, record, tmp_path / "run.h5")
+    case = recorded_case(tmp_path / "run.h5")
+    assert case.wave["shake"].type == "file"
+    assert case.wave["up"].start > case.run.duration
+
+
+def test_responses_begin_with_their_triangle(heavy):
+    """Nothing moves before its triangle; the response is that of the crest at the spacing."""
+    for name in heavy.inputs:
+        response = heavy.response(name)
+        assert not response[0].any()
+        assert np.abs(response).max() > 0.0
+        np.testing.assert_allclose(
+            heavy.motion({name: np.array([0.0, 2.0, 0.0])}) - heavy.rest, 2.0 * response, atol=1e-15
+        )
+        shifted = heavy.motion({name: np.array([0.0, 0.0, 0.0, 1.0])}) - heavy.rest
+        steps = round(2 * SPACING / (heavy.time[1] - heavy.time[0]))
+        np.testing.assert_allclose(shifted[steps:], response[:-steps], atol=1e-14 * np.abs(response).max() * 100)
+
+
+def test_the_step_is_a_fraction_of_the_spacing_and_of_the_histories(heavy):
+    step = heavy.case.run.time_step
+    whole = SPACING / step
+    assert whole == pytest.approx(round(whole))
+    apart = heavy.time[1] - heavy.time[0]  # history_interval, 0.4 ms, in whole steps of 0.25 ms, as in runs
+    assert apart == pytest.approx(2 * step)
+    assert SPACING / apart == pytest.approx(round(SPACING / apart))
+
+
+def test_a_scene_without_steady_forces_needs_one_run(tmp_path):
+    tables = PUSHED | {"boundary": PUSHED["boundary"] | {"left": {"type": "velocity", "wave_p": "push"}}}
+    folder = build_library(small(tables, "one"), SPACING, tmp_path)
+    assert sorted(each.name for each in folder.iterdir()) == ["hat_push", "library.json"]
+    library = Library(folder)
+    assert library.clock.duration == 0.01
+    assert not library.rest.any()
+
+
+@pytest.mark.parametrize(
+    ("changes", "problem"),
+    [
+        ({"material.law": "linearpbond"}, 'material.law: is "linearpbond", .* so "elastic"'),
+        ({"material.damp": 0.1}, "material.damp: is 0.1, must be 0 in a library"),
+        ({"monitor": []}, "monitor: there is none"),
+        ({"boundary": {}}, "wave: none acts on this case"),
+        ({"run.time_step": 3e-4}, r"run.time_step: is 0.0003 s, must be a whole fraction of the spacing, 0.00025 s"),
+    ],
+)
+def test_what_is_not_linear_is_refused(tmp_path, changes, problem):
+    case = small(PUSHED, "refused", changes)
+    with pytest.raises(CaseError, match=problem):
+        build_library(case, SPACING, tmp_path)
+    assert not (tmp_path / "refused_library" / "library.json").exists()
+
+
+def test_folders_that_are_no_library_are_refused(heavy, tmp_path):
+    with pytest.raises(CaseError, match="contains no library"):
+        Library(tmp_path)
+    (tmp_path / "library.json").write_text("{}")
+    with pytest.raises(RecordError, match="is damaged"):
+        Library(tmp_path)
+    text = (heavy.folder / "library.json").read_text()
+    (tmp_path / "library.json").write_text(text.replace('"version": "', '"version": "0.0.'))
+    with pytest.raises(CaseError, match="is a library of dembound 0"):
+        Library(tmp_path)
