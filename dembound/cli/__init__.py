@@ -12,7 +12,20 @@ from dembound.cli import (  # each registers its commands with the application
     results,
     stability,
     starting,
+    sweep,
 )
 from dembound.cli.app import app, main
 
-__all__ = ["app", "calibration", "cases", "chart", "dispersion", "gauge", "main", "results", "stability", "starting"]
+__all__ = [
+    "app",
+    "calibration",
+    "cases",
+    "chart",
+    "dispersion",
+    "gauge",
+    "main",
+    "results",
+    "stability",
+    "starting",
+    "sweep",
+]
