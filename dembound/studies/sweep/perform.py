@@ -124,21 +124,21 @@ class Begun(Progress):
 def _run(task: Task) -> dict[str, float]:
     """Run the member, or continue it if it was left unfinished."""
     case, results = _case_of(task), task.folder / MEMBERS
+    partial = Folder(results, case.name).partial
     shared, progress = Shared(task.folder / SETTLED, task.stop), Begun(task.begun)
     folder = None
-    if _is_unfinished(case, results):
+    if _is_unfinished(case, partial):
         with suppress(CaseError):  # such as a checkpoint with another time step, of another machine
-            folder = resume_case(results / task.name, progress=progress, shared=shared)
+            folder = resume_case(partial, progress=progress, shared=shared)
     if folder is None:
         folder = run_case(case, results, progress, shared=shared)
     return values_of_run(folder, json.loads((folder / "summary.json").read_text(encoding="utf-8")))
 
 
-def _is_unfinished(case: Case, results: Path) -> bool:
-    """Whether the partial folder of a case has a checkpoint of a run with the same results."""
+def _is_unfinished(case: Case, partial: Path) -> bool:
+    """Whether a partial folder has a checkpoint of a run with the same results as that of a case."""
     from dembound.running.unfinished import find_unfinished
 
-    partial = Folder(results, case.name).partial
     try:
         return partial.is_dir() and digest(find_unfinished(partial).case) == digest(case)
     except CaseError:  # no checkpoint, or a damaged one
@@ -154,8 +154,8 @@ def _calibrate(task: Task) -> dict[str, float]:
 
     def after_pass(_: Any) -> None:
         begun.make()
-        if interrupts.caught is not None:
-            raise Stopped(interrupts.caught)
+        if (number := interrupts.caught) is not None:
+            raise Stopped(number)
 
     return values_of_calibration(calibrate_all(case, method=task.method, report=after_pass))
 

@@ -184,7 +184,8 @@ class _Work:
             workers.kill()
             raise
         if not workers.are_elsewhere:  # else members that still have to see it may be under way
-            self._marks.stop.unlink()
+            for mark in self._marks:
+                mark.unlink(missing_ok=True)
 
     @property
     def _standing(self) -> Standing:

@@ -80,7 +80,8 @@ class Processes(Workers):
     def _new(self) -> Process:
         """A new process; not forked, as this one may have threads."""
         pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _prepare, (self._stop,))
-        return Process(pool, pool.submit(os.getpid))
+        with _signals_blocked():
+            return Process(pool, pool.submit(os.getpid))
 
     def has_room(self, under_way: int) -> bool:
         """Up to the number of processes."""
@@ -114,6 +115,19 @@ class Processes(Workers):
 
     def _all(self) -> list[Process]:
         return [*self._waiting, *(process for process, _ in self._working)]
+
+
+@contextmanager
+def _signals_blocked() -> Iterator[None]:
+    """Blocks the signals that end a run, also in a process that is started inside, until it ignores them."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _prepare(stop: Path) -> None:
