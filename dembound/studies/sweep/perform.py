@@ -4,7 +4,7 @@ import json
 import logging
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -53,9 +53,13 @@ class Task:
 
 @dataclass
 class Outcome:
-    """The results of a member: values by name, or why there are none, and the wall time it took (s)."""
+    """The results of a member: values by name, or why there are none, and the wall time it took (s).
+
+    folder : name of the folder of its run; empty for a calibration, which has none.
+    """
 
     name: str
+    folder: str = ""
     failure: str = ""
     values: dict[str, float] = field(default_factory=dict)
     seconds: float = 0.0
@@ -74,6 +78,14 @@ def outcome_in(folder: Path, key: str) -> Outcome | None:
         return None
 
 
+def forget_replaced(folder: Path, names: Collection[str]) -> None:
+    """Delete the outcomes in a sweep whose runs are in folders of these names, as other runs will replace them."""
+    for path in (folder / OUTCOMES).glob("*.json"):
+        outcome = outcome_in(folder, path.stem)
+        if outcome is not None and outcome.folder in names:
+            path.unlink(missing_ok=True)
+
+
 def perform(task: Task) -> Outcome | None:
     """The outcome of a member, which is also written; None if it was asked to stop. One thread is used."""
     import numba
@@ -83,7 +95,7 @@ def perform(task: Task) -> Outcome | None:
             return None
         before = numba.get_num_threads()
         numba.set_num_threads(1)
-        began, outcome = time.perf_counter(), Outcome(task.name)
+        began, outcome = time.perf_counter(), Outcome(task.name, task.name if task.action == "run" else "")
         try:
             outcome.values = _ACTIONS[task.action](task)
         except Stopped:

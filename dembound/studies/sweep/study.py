@@ -15,8 +15,9 @@ from filelock import FileLock, Timeout
 
 from dembound.casefile.sweep import Action, Method
 from dembound.errors import CaseError
+from dembound.machine import cores_here
 from dembound.studies.sweep.members import Member
-from dembound.studies.sweep.perform import OUTCOMES, Outcome, Task, outcome_in
+from dembound.studies.sweep.perform import OUTCOMES, Outcome, Task, forget_replaced, outcome_in
 from dembound.studies.sweep.workers import Performing, Workers, cluster, processes
 
 LOOK = 0.2
@@ -73,7 +74,9 @@ def sweep(members: Sequence[Member], options: Options, folder: Path, report: Rep
         found = {m.key: None if options.anew else outcome_in(folder, m.key) for m in members}
         missing = [member for member in members if (kept := found[member.key]) is None or kept.failure]
         if missing:
-            count = min(options.processes or os.cpu_count() or 1, len(missing))
+            if options.action == "run":
+                forget_replaced(folder, {member.name for member in missing})
+            count = min(options.processes or cores_here(), len(missing))
             with cluster(options.scheduler) if options.scheduler else processes(count, marks.stop) as workers:
                 work = _Work(members, missing, options, folder, marks, report)
                 found |= work.done_by(workers)

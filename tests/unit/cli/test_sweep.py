@@ -140,5 +140,5 @@ def test_outcomes_are_plain_files(tmp_path) -> None:
     (tmp_path / "outcomes").mkdir()
     Outcome("a", values={"x": 1.5}, seconds=2.0).write(tmp_path, "k")
     assert json.loads((tmp_path / "outcomes/k.json").read_text()) == {
-        "name": "a", "failure": "", "values": {"x": 1.5}, "seconds": 2.0,
+        "name": "a", "folder": "", "failure": "", "values": {"x": 1.5}, "seconds": 2.0,
     }  # fmt: skip

@@ -13,7 +13,7 @@ from dembound.results.results import Results
 from dembound.running import job, run_case
 from dembound.studies.all_sides import calibrate_all
 from dembound.studies.sweep.members import changes_of, members_of
-from dembound.studies.sweep.perform import ALONE, MEMBERS, Outcome, outcome_in, perform
+from dembound.studies.sweep.perform import ALONE, MEMBERS, Outcome, forget_replaced, outcome_in, perform
 from dembound.studies.sweep.values import unit_of
 
 
@@ -114,6 +114,15 @@ def test_a_checkpoint_of_another_case_is_not_continued(rods, task, tmp_path, mon
     (tmp_path / "stop").unlink()
     perform(task(member))
     assert json.loads((tmp_path / MEMBERS / member.name / "summary.json").read_text())["resumed"] == []
+
+
+def test_outcomes_of_runs_that_others_replace_are_forgotten(tmp_path) -> None:
+    (tmp_path / "outcomes").mkdir()
+    Outcome("a", folder="a").write(tmp_path, "run of a")
+    Outcome("a").write(tmp_path, "calibration of a")
+    Outcome("b", folder="b").write(tmp_path, "run of b")
+    forget_replaced(tmp_path, {"a"})
+    assert {path.stem for path in (tmp_path / "outcomes").iterdir()} == {"calibration of a", "run of b"}
 
 
 def test_one_thread_is_used_and_others_are_given_back(rods, task, monkeypatch) -> None:

@@ -42,7 +42,8 @@ class Noting(Workers):
         if isinstance(answer, BaseException):
             future.set_exception(answer)
         elif answer is not None:
-            outcome = Outcome(task.name, **answer) if "failure" in answer else Outcome(task.name, values=answer)
+            given = answer if "failure" in answer else {"values": answer}
+            outcome = Outcome(task.name, folder=task.name, **given)
             outcome.write(task.folder, task.key)
             future.set_result(outcome)
         return future
@@ -82,7 +83,7 @@ def test_only_what_is_missing_or_failed_is_done(rods, swept) -> None:
     assert [outcome.failure for outcome in outcomes] == [""] * 3
     more = rods(1e6, 2.5e6, 3e6)
     assert swept(more)[1].submitted == [more[1].name]
-    changed = rods(1e6, 2.5e6, **{"bar.density": 2600.0})
+    changed = rods(4e6, 5e6, **{"bar.density": 2600.0})
     assert swept(changed)[1].submitted == names(changed)
     assert swept(members)[1].submitted == []
     assert swept(members, anew=True)[1].submitted == names(members)
@@ -157,3 +158,11 @@ def test_a_folder_of_something_else_or_in_use_is_refused(rods, swept, tmp_path) 
     swept(rods(1e6))
     with FileLock(folder / LOCK), pytest.raises(CaseError, match="is being written by another sweep"):
         swept(rods(1e6))
+
+
+def test_a_member_in_the_folder_of_another_case_replaces_its_outcome(rods, swept) -> None:
+    members, changed = rods(1e6, 2e6), rods(1e6, **{"bar.density": 2600.0})
+    assert names(changed) == names(members)[:1]
+    swept(members)
+    swept(changed)  # whose run is in the folder of the first member
+    assert swept(members)[1].submitted == names(members)[:1]
