@@ -15,7 +15,7 @@ from rich.table import Column
 from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case
 from dembound.cli.calibration import CalibrationMethod
 from dembound.cli.console import compact_table, err, out
-from dembound.cli.progress import INTERVAL
+from dembound.errors import CaseError
 from dembound.results.interrupts import exit_code_of
 
 if TYPE_CHECKING:
@@ -74,14 +74,15 @@ def sweep(
 
     Values are given by --vary, or by sweep.vary in the case. Means are over members that differ in seeds alone.
 
-    What is done is not repeated: the same command continues a sweep that was stopped, and adds members to one that is
-    complete.
+    What is done is not repeated: the same command continues a sweep, and more values add members to it.
     """
     from dembound.studies.choices import parsed
     from dembound.studies.sweep.members import changes_of, members_of
     from dembound.studies.sweep.study import Options
     from dembound.studies.sweep.study import sweep as sweep_all
 
+    if scheduler and processes:
+        raise CaseError(["--processes: is for this machine, not allowed together with --scheduler"])
     loaded = load_case(case, changes, name)
     table = loaded.sweep
     options = Options(
@@ -91,6 +92,8 @@ def sweep(
         scheduler=scheduler,
         anew=anew,
     )
+    if method and options.action != "calibrate":
+        raise CaseError(["--method: is for --action calibrate"])
     varied = changes_of(parsed(vary) if vary else table.vary, table.together if together is None else together)
     members, left_out = members_of(loaded, varied, options.action, options.method)
     for line in left_out:
@@ -115,6 +118,8 @@ def sweep(
 @contextmanager
 def _shown(name: str) -> Iterator[Report]:
     """Shows how far a sweep is: a bar on a terminal, else a line every ten seconds."""
+    from dembound.cli.progress import INTERVAL
+
     began = said = time.monotonic()
 
     def say(standing: Standing) -> None:
@@ -180,6 +185,7 @@ def _leave(swept: Swept, folder: Path, title: str | None) -> Iterator[Path]:
     from dembound.studies.sweep.tables import write_tables
 
     yield from write_tables(swept, folder)
+    (folder / "sweep.png").unlink(missing_ok=True)
     if swept.shown:
         from dembound.plot.style import save
         from dembound.plot.sweep import plot_sweep

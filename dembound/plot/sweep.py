@@ -125,7 +125,7 @@ def _draw(panel: Axes, each: Panel, content: Content, places: np.ndarray) -> Non
     for number, place in enumerate(places):
         inside = np.flatnonzero(content.member_group == number)
         across = WIDEST * distance * np.linspace(-1.0, 1.0, len(inside)) if len(inside) > 1 else np.zeros(1)
-        label = "members" if number == 0 else None
+        label = "members, side by side" if number == 0 else None
         panel.plot(place + across, each.values[inside], "o", color=COLOURS[4], markersize=4.0, label=label)
     has_interval = np.isfinite(each.interval)
     if has_interval.any():

@@ -5,7 +5,7 @@ import logging
 import threading
 import time
 from collections.abc import Callable, Collection, Mapping
-from contextlib import suppress
+from contextlib import chdir, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -35,7 +35,8 @@ ALONE = threading.Lock()
 class Task:
     """What a process is sent: a case as text with the files it refers to, what to do, and where.
 
-    folder : of the sweep. begun : a file that is made when the member is stepped, so that its code is compiled.
+    current : the folder from which ``static.from`` starts. folder : of the sweep.
+    begun : a file that is made when the member is stepped, so that its code is compiled.
     stop : a file that asks all members to end.
     """
 
@@ -46,6 +47,7 @@ class Task:
     files: Mapping[str, str]
     action: Action
     method: Method
+    current: Path
     folder: Path
     begun: Path
     stop: Path
@@ -97,7 +99,8 @@ def perform(task: Task) -> Outcome | None:
         numba.set_num_threads(1)
         began, outcome = time.perf_counter(), Outcome(task.name, task.name if task.action == "run" else "")
         try:
-            outcome.values = _ACTIONS[task.action](task)
+            with chdir(task.current):
+                outcome.values = _ACTIONS[task.action](task)
         except Stopped:
             return None
         except (DemboundError, OSError, MemoryError) as error:

@@ -157,6 +157,7 @@ class _Work:
             files=case.files,
             action=options.action,
             method=options.method,
+            current=Path.cwd(),
             folder=self._folder,
             begun=self._marks.begun.resolve(),
             stop=self._marks.stop.resolve(),

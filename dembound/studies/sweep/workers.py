@@ -13,7 +13,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from multiprocessing.connection import wait
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from dembound.errors import CaseError
 from dembound.results.interrupts import ENDING
@@ -166,8 +166,12 @@ class Cluster(Workers):
 
     def submit(self, task: Task) -> Performing:
         """Send a task to the scheduler."""
-        found: Any = self._executor.submit(perform, task)
-        return found  # type: ignore[no-any-return]
+        try:
+            performing: Performing = self._executor.submit(perform, task)
+        except Exception as error:  # of a client that has lost its scheduler
+            performing = Future()
+            performing.set_exception(error)
+        return performing
 
     def kill(self) -> None:
         """Members under way go on, until they find the file that asks them to stop."""

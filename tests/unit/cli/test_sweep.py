@@ -106,6 +106,8 @@ def test_invalid_members_are_named_and_left_out(dembound, rod, swept) -> None:
         (["--vary", "run.curant=1.0"], "run.curant: unknown key"),
         (["--vary", "bar.density=9:1"], "--vary: bar.density: 9:1 is a range without a number"),
         (["--vary", "run.courant=0.5,0.9", "--vary", "bar.density=1000.0", "--together"], "--together: keys must have"),
+        (["--vary", "run.courant=0.5", "--method", "ratio"], "--method: is for --action calibrate"),
+        (["--scheduler", "tcp://x:1", "-p", "2"], "--processes: is for this machine, not allowed together with --sch"),
     ],
 )
 def test_sweeps_of_nothing_are_bad_input(dembound, rod, options, said) -> None:

@@ -37,6 +37,7 @@ def task(tmp_path) -> Callable[..., Task]:
             files=member.case.files,
             action=action,
             method=method,
+            current=Path.cwd(),
             folder=tmp_path,
             begun=tmp_path / "begun",
             stop=tmp_path / "stop",
