@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.table import Column
+from rich.table import Column, Table
 
 from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case
 from dembound.cli.calibration import CalibrationMethod
@@ -19,11 +19,16 @@ from dembound.errors import CaseError
 from dembound.results.interrupts import exit_code_of
 
 if TYPE_CHECKING:
+    from dembound.studies.sweep.statistics import Statistic
     from dembound.studies.sweep.study import Report, Standing
     from dembound.studies.sweep.tables import Swept
 
 FAILED = 3
 """Exit code of a sweep with members that failed."""
+
+
+MOST_ROWS = 40
+"""Rows of the table that is printed."""
 
 
 class SweepAction(StrEnum):
@@ -157,27 +162,35 @@ def _duration(seconds: float) -> str:
 def _print(swept: Swept) -> bool:
     """Print failed members, and means of the shown quantities; returns whether any has failed."""
     from dembound.studies.sweep.statistics import statistics
-    from dembound.studies.sweep.values import unit_of
-    from dembound.studies.words import in_words, short_keys
 
     failed = [(m.name, state) for m, state in zip(swept.members, swept.states, strict=True) if state != "done"]
     for member, state in failed:
         err.print(f"{swept.case.name}: {member}: failed, {state}")
+    found = [each for each in statistics(swept.members, swept.outcomes) if each.quantity in swept.shown]
+    if found:
+        out.print(_table(swept.case.name, found[:MOST_ROWS]))
+    if len(found) > MOST_ROWS:
+        out.print(f"{len(found) - MOST_ROWS} more rows are in statistics.csv")
+    out.print(f"{swept.case.name}: {len(swept.members) - len(failed)} of {len(swept.members)} members done")
+    return bool(failed)
+
+
+def _table(title: str, statistics: Sequence[Statistic]) -> Table:
+    """A row for each group of members and quantity."""
+    from dembound.studies.sweep.values import unit_of
+    from dembound.studies.words import in_words, short_keys
+
     table = compact_table(
         *(Column(head, overflow="fold") for head in ("members", "quantity")),
         *(Column(head, no_wrap=True) for head in ("n", "mean", "spread", "95 % ±", "unit")),
-        title=swept.case.name,
+        title=title,
     )
-    for each in statistics(swept.members, swept.outcomes):
-        if each.quantity in swept.shown:
-            group = ", ".join(
-                map(" ".join, zip(short_keys(each.group), map(in_words, each.group.values()), strict=True))
-            )
-            numbers = [f"{value:.6g}" if value == value else "–" for value in (each.mean, each.spread, each.interval)]
-            table.add_row(group or "all", each.quantity, str(each.count), *numbers, unit_of(each.quantity))
-    if table.row_count:
-        out.print(table)
-    return bool(failed)
+    for each in statistics:
+        pairs = zip(short_keys(each.group), each.group.values(), strict=True)
+        group = ", ".join(f"{key} {in_words(value)}" for key, value in pairs)
+        numbers = [f"{value:.6g}" if value == value else "–" for value in (each.mean, each.spread, each.interval)]
+        table.add_row(group or "all", each.quantity, str(each.count), *numbers, unit_of(each.quantity))
+    return table
 
 
 def _leave(swept: Swept, folder: Path, title: str | None) -> Iterator[Path]:

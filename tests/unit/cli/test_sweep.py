@@ -90,6 +90,14 @@ def test_means_over_seeds_are_printed(dembound, written, swept) -> None:
     assert [line[3:5] for line in lines] == [["2", "0.5"], ["2", "2.5"]]  # n and mean of 0, 1 and of 2, 3
 
 
+def test_long_tables_are_cut(dembound, rod, swept) -> None:
+    rod()
+    done = dembound("sweep", "rod.toml", "--vary", "bar.density=2001:2050")
+    assert "10 more rows are in statistics.csv\nrod: 50 of 50 members done\n" in done.out
+    assert "density 2040 " in done.out
+    assert "density 2041 " not in done.out
+
+
 def test_invalid_members_are_named_and_left_out(dembound, rod, swept) -> None:
     rod()
     done = dembound("sweep", "rod.toml", "--vary", "bar.spacing=0.025,0.03")
