@@ -1,4 +1,4 @@
-"""The memory and disks of this machine: how much there is, and how arrays that are removed give memory back."""
+"""The memory, disks and cores of this machine: how much there is, and how arrays that are removed give memory back."""
 
 import ctypes
 import os
@@ -42,6 +42,13 @@ def memory_here(root: Path = Path("/")) -> Memory | None:
     """
     known = [*_of_linux(root / "proc/meminfo"), *_of_groups(root)] or list(_of_machine())
     return Memory(min(m.total for m in known), min(m.free for m in known)) if known else None
+
+
+def cores_here() -> int:
+    """Number of cores that this process may use, which may be fewer than the machine has."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def disk_free(path: Path) -> float | None:

@@ -11,6 +11,7 @@ from dembound.boundaries import Boundary, Free, Motion
 from dembound.casefile.chart import Chart
 from dembound.casefile.output import Output
 from dembound.casefile.run import Run
+from dembound.casefile.sweep import Sweep
 from dembound.errors import CaseError
 from dembound.table import as_toml, every_key
 from dembound.waves import Wave
@@ -26,7 +27,7 @@ class Case:
     boundary : side -> table, in the order left, right, bottom, top; an absent side is free.
     wave : name -> table.
     load, monitor : in the order of the file.
-    run, output, chart : the tables of these names.
+    run, output, chart, sweep : the tables of these names.
     name : the file's name without folder and ending.
     folder : where relative paths in the case start.
     text : the TOML text the case was read from; for a case made in another way, an equivalent text. checked : the
@@ -43,6 +44,7 @@ class Case:
     run: Run
     output: Output = field(default_factory=Output)
     chart: Chart = field(default_factory=Chart)
+    sweep: Sweep = field(default_factory=Sweep)
     name: str = field(default="case", compare=False)
     folder: Path = field(default=Path(), compare=False)
     text: str = field(default="", compare=False, repr=False)

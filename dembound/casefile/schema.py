@@ -48,6 +48,6 @@ class Schema:
     @property
     def keys(self) -> list[str]:
         """All keys allowed at the top level of a file, in the order of messages."""
-        last = ("run", "output", "chart")
+        last = ("run", "output", "chart", "sweep")
         first = [key for key in self.tables if key not in last]
         return ["title", *first, "boundary", *self.staged, *self.optional, "wave", *self.lists, *last]

@@ -15,6 +15,7 @@ from dembound.cli import (  # each registers its commands with the application
     signals,
     stability,
     starting,
+    sweep,
 )
 from dembound.cli.app import app, main
 
@@ -32,4 +33,5 @@ __all__ = [
     "signals",
     "stability",
     "starting",
+    "sweep",
 ]

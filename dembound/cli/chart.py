@@ -88,10 +88,10 @@ def chart(
 
     Writes chart.png, chart.csv and chart.h5, and prints the cheapest choice within 1 % and within 0.1 %.
     """
-    from dembound.studies.chart.choices import combinations, parsed
     from dembound.studies.chart.errors import Wanted
     from dembound.studies.chart.study import Options
     from dembound.studies.chart.study import chart as make
+    from dembound.studies.choices import combinations, parsed
 
     prepare_computing(threads)
     loaded = load_case(case, changes, name)

@@ -10,13 +10,14 @@ import io
 import json
 import logging
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import platformdirs
+from filelock import FileLock, Timeout
 
 from dembound.packings.brick import Brick
 
@@ -37,15 +38,40 @@ def cache_folder() -> Path:
 def load_or_pack(key_params: Mapping[str, Any], pack: Callable[[], Brick]) -> Brick:
     """The brick with these parameters, from the cache, else packed and written to it.
 
-    key_params contains all parameters of the brick, as JSON values; pack() makes it. If a brick cannot be written (no
-    space, no permission), it is still returned.
+    key_params contains all parameters of the brick, as JSON values; pack() makes it. If another process is packing the
+    same brick, it is waited for. If a brick cannot be written (no space, no permission), it is still returned.
     """
     path = cache_folder() / f"brick-{_digest(key_params)}.npz"
-    brick = _load(path)
-    if brick is None:
-        brick = pack()
-        _save(brick, path)
+    if (brick := _load(path)) is not None:
+        return brick
+    with _alone(path.with_suffix(".lock")) as waited:
+        if not waited or (brick := _load(path)) is None:
+            brick = pack()
+            _save(brick, path)
     return brick
+
+
+@contextlib.contextmanager
+def _alone(path: Path) -> Iterator[bool]:
+    """Inside, no other process holds this lock; yields whether another one had to be waited for.
+
+    Where no lock can be made, as in a folder without permission to write, nothing is waited for.
+    """
+    lock, waited = FileLock(path), False
+    with contextlib.suppress(OSError, NotImplementedError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            lock.acquire(blocking=False)
+        except Timeout:
+            waited = True
+            lock.acquire()
+    try:
+        yield waited
+    finally:
+        if lock.is_locked:
+            with contextlib.suppress(OSError):  # Windows keeps a file that is open
+                path.unlink()
+            lock.release()
 
 
 def clear() -> int:

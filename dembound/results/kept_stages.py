@@ -77,6 +77,6 @@ class KeptStages(Stages):
     def finish(self, name: str, arrays: Arrays) -> None:
         """Keep the stage."""
         if self._folder is not None:
-            self._folder.mkdir(exist_ok=True)
+            self._folder.mkdir(parents=True, exist_ok=True)
             facts = {"version": __version__, "keys": self._keys}
             Checkpoint(facts, arrays).write(self._folder / f"{name}.npz")

@@ -4,12 +4,14 @@ from dembound.running.disk_space import disk_facts, disk_warnings
 from dembound.running.job import SECTIONS, resume_case, run_case
 from dembound.running.planning import MOST_STEPS, plan, preflight, require_stages, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
+from dembound.running.shared import Shared
 
 __all__ = [
     "MOST_STEPS",
     "SECTIONS",
     "Progress",
     "Reports",
+    "Shared",
     "disk_facts",
     "disk_warnings",
     "plan",

@@ -30,6 +30,7 @@ from dembound.results.warnings import never_silent
 from dembound.running.disk_space import bytes_left, disk_facts, disk_warnings
 from dembound.running.planning import about, plan, require_stages, simulation_of, warnings_before
 from dembound.running.progress import Progress, Reports
+from dembound.running.shared import Shared
 from dembound.running.unfinished import Unfinished, find_unfinished
 
 SECTIONS = ("import", "compile", "build", "settle", "step", "record", "export", "pictures")
@@ -48,6 +49,7 @@ def run_case(
     progress: Progress | None = None,
     seconds: Mapping[str, float] | None = None,
     begun_for: float | None = None,
+    shared: Shared | None = None,
 ) -> Path:
     """Run a case and write ``results/<case name>/``; returns that folder.
 
@@ -58,6 +60,7 @@ def run_case(
 
     All warnings are sent to the progress and written to the summary; seconds: time already spent, by `SECTIONS`;
     begun_for: s, the duration from which the intervals of ledger and snapshots are found, by default that of the case.
+    shared: with other runs, by default nothing.
 
     Raises the errors of `plan`, RunError when the static stage does not settle or the motion grows without bound,
     Stopped after a signal, CaseError when another run is writing the same folder, and OSError when a file cannot be
@@ -65,7 +68,7 @@ def run_case(
     """
     folder = Folder(results, case.name)
     folder.check()
-    return _Job(case, folder, progress or Progress(), seconds or {}, begun_for=begun_for).run()
+    return _Job(case, folder, progress or Progress(), seconds or {}, begun_for=begun_for, shared=shared).run()
 
 
 def resume_case(
@@ -73,17 +76,18 @@ def resume_case(
     until: float | None = None,
     progress: Progress | None = None,
     seconds: Mapping[str, float] | None = None,
+    shared: Shared | None = None,
 ) -> Path:
     """Continue a run from its last checkpoint, to the same results as if it had never stopped; returns its folder.
 
     folder : of its results, the partial one or the complete one. until : s, another duration; histories, ledger and
-    snapshots keep their intervals. Without it a run that is complete cannot be continued.
+    snapshots keep their intervals. Without it a run that is complete cannot be continued. shared: as of `run_case`.
 
     Raises CaseError if there is no checkpoint, one of another version or of another case than the record, or of a run
     that has reached that time, RecordError if it is damaged; else errors as `run_case`.
     """
     found = find_unfinished(folder, until)
-    return _Job(found.case, found.folder, progress or Progress(), seconds or {}, found).run()
+    return _Job(found.case, found.folder, progress or Progress(), seconds or {}, found, shared=shared).run()
 
 
 class _Job:
@@ -103,9 +107,10 @@ class _Job:
         seconds: Mapping[str, float],
         found: Unfinished | None = None,
         begun_for: float | None = None,
+        shared: Shared | None = None,
     ) -> None:
         self.case, self.folder, self.progress, self.found = case, folder, progress, found
-        self.begun_for = begun_for
+        self.begun_for, self.shared = begun_for, shared or Shared()
         self.clock = Clock()
         self.clock.seconds.update(dict.fromkeys(SECTIONS, 0.0) | dict(seconds))
         for section, spent in (found.facts["seconds"] if found else {}).items():
@@ -169,7 +174,7 @@ class _Job:
         """Start from the state given by the kind of body, or from a checkpoint, and advance to the end."""
         case, steps, found = planned.scene.case, planned.steps, self.found
         counts = None if found is None else found.facts["counts"]
-        with Interrupts() as interrupts:
+        with self.shared.interrupts() as interrupts:
             beginning = self._begin(planned, partial, interrupts)
             simulation, ledger = simulation_of(planned, beginning, self.clock)
             with Recorder(
@@ -194,15 +199,17 @@ class _Job:
         """The state at which the run begins; if a stage before it stalls, its state is written to the record."""
         case, kind, found = self.case, planned.kind, self.found
         in_stage = None if found is None or found.stage is None else (found.stage, found.arrays)
+        keys = kind.stage_keys(planned.stepped)
+        own = partial / STAGES if case.run.checkpoint > 0.0 else None
         stages = KeptStages(
-            partial / STAGES if case.run.checkpoint > 0.0 else None,
-            kind.stage_keys(planned.stepped),
+            self.shared.stages(keys) or own,
+            keys,
             lambda name: self._checkpoints(planned, partial, interrupts, name, None),
             kind.stages_from(case),
             in_stage,
         )
         try:
-            with self.clock.of("settle"):
+            with self.clock.of("settle"), self.shared.settling(keys, interrupts):
                 return kind.begin(planned.stepped, planned.time_step, self.progress.settling, stages)
         except StalledError as stalled:
             with Recorder(partial / "run.h5", stalled.run, planned.step_limit) as recorder:

@@ -204,6 +204,10 @@ vary = { "packing.seed" = [0, 1] }
 [[chart.choice]]
 name = "fine"
 set = { "packing.radius" = 0.2 }
+[sweep]
+action = "calibrate"
+[sweep.vary]
+packing.seed = "1:3"
 """
 
 SOUND = [tomllib.loads(text) for text in (SMALL, RANDOM, *map(starting_point, names()))]

@@ -21,6 +21,7 @@ from dembound.casefile.disks.motion import Motion
 from dembound.casefile.disks.static import Static
 from dembound.casefile.output import Output
 from dembound.casefile.run import Run
+from dembound.casefile.sweep import Sweep
 from dembound.casefile.types import (
     BarEndTable,
     BoundaryTable,
@@ -51,7 +52,7 @@ UNIONS = [(union, False) for union in DISK_UNIONS] + [(union, True) for union in
 TABLES = [
     *(
         (table, False)
-        for table in (Material, Motion, Static, IncidentWave, Load, Monitor, Run, Output, Chart, ChartChoice)
+        for table in (Material, Motion, Static, IncidentWave, Load, Monitor, Run, Output, Chart, ChartChoice, Sweep)
     ),
     *((table, True) for table in (Bar, BarLoad, BarMonitor, BarRun)),
     *((table, of_bar) for union, of_bar in UNIONS for table in members(union)),

@@ -1,12 +1,13 @@
 """The memory of a machine is read as its system reports it, within the limits of containers."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from dembound.machine import Memory, memory_here
+from dembound.machine import Memory, cores_here, memory_here
 
 GIB = 2.0**30
 
@@ -88,3 +89,11 @@ def test_pages_of_removed_arrays_are_given_back() -> None:
     left = int(subprocess.run([sys.executable, "-c", RELEASED], capture_output=True, text=True, check=True).stdout)
 
     assert left < 8e6  # of 64 MB
+
+
+def test_cores_are_those_of_this_process(monkeypatch) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {3, 5, 6}, raising=False)
+    assert cores_here() == 3
+    monkeypatch.delattr(os, "sched_getaffinity")
+    monkeypatch.setattr(os, "cpu_count", lambda: 7)
+    assert cores_here() == 7

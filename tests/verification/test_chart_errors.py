@@ -12,9 +12,9 @@ import tomli_w
 
 from dembound.kinds import loads, with_changes
 from dembound.running import Progress
-from dembound.studies.chart.choices import combinations
 from dembound.studies.chart.errors import Wanted
 from dembound.studies.chart.study import Options, chart
+from dembound.studies.choices import combinations
 
 
 @contextmanager

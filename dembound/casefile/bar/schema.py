@@ -11,6 +11,7 @@ from dembound.casefile.bar.run import BarRun
 from dembound.casefile.chart import Chart
 from dembound.casefile.output import Output
 from dembound.casefile.schema import Schema
+from dembound.casefile.sweep import Sweep
 from dembound.casefile.types import BarEndTable, MethodTable
 
 SCHEMA = Schema(
@@ -24,6 +25,7 @@ SCHEMA = Schema(
         "run": TypeAdapter(BarRun),
         "output": TypeAdapter(Output),
         "chart": TypeAdapter(Chart),
+        "sweep": TypeAdapter(Sweep),
     },
     side=TypeAdapter(BarEndTable),
     sides=("left", "right"),

@@ -17,6 +17,7 @@ from dembound.casefile.disks.static import Static
 from dembound.casefile.output import Output
 from dembound.casefile.run import Run
 from dembound.casefile.schema import Schema
+from dembound.casefile.sweep import Sweep
 from dembound.casefile.types import BoundaryTable, HoleTable, PackingTable, StaticSide
 
 SCHEMA = Schema(
@@ -34,6 +35,7 @@ SCHEMA = Schema(
         "run": TypeAdapter(Run),
         "output": TypeAdapter(Output),
         "chart": TypeAdapter(Chart),
+        "sweep": TypeAdapter(Sweep),
     },
     side=TypeAdapter(BoundaryTable),
     optional={"incident": TypeAdapter(IncidentWave)},

@@ -15,7 +15,7 @@ from dembound.disks.smallest_box import box_tables, cheapest_box, may_be_boxed
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.methods import FiniteDifference, Method, Patch, Peridynamics, Switch
-from dembound.studies.chart.words import label
+from dembound.studies.words import label
 
 COARSER = (1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 10.0)
 """Factors tried for radii and spacings; those that do not divide the scene into whole bricks or cells are left out."""

@@ -11,8 +11,8 @@ from dembound.errors import CaseError
 from dembound.results.compare import on_common_clock, relative_errors
 from dembound.results.histories import Quantity
 from dembound.results.reader import COMPONENTS
-from dembound.studies.chart.choices import Choice
 from dembound.studies.chart.measure import Gauge, Gauges, Outcome
+from dembound.studies.choices import Choice
 
 QUIET = 0.01
 """Monitors whose peak in the reference is below this share of the largest one are left out.

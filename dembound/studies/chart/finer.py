@@ -20,8 +20,8 @@ from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
-from dembound.studies.chart.choices import Choice
 from dembound.studies.chart.measure import Gauge, Outcome
+from dembound.studies.choices import Choice
 
 FINER, MOST = 4, 8
 """Number of its spacings in the finest spacing of all choices: at least, and at most."""

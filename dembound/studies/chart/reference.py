@@ -17,13 +17,13 @@ from dembound.disks.breaks import BREAK_TIME, BREAK_X, BREAK_Y
 from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import with_changes
 from dembound.motion.kind import Finding
-from dembound.studies.chart.choices import Choice
 from dembound.studies.chart.errors import Reference
 from dembound.studies.chart.exact import Exact, exact_of
 from dembound.studies.chart.finer import Finer, finer
 from dembound.studies.chart.measure import Gauges, Outcome
-from dembound.studies.chart.words import label
+from dembound.studies.choices import Choice
 from dembound.studies.extended import MOST, extended
+from dembound.studies.words import label
 from dembound.table import Box
 
 SIDES = "boundary."

@@ -15,7 +15,7 @@ from dembound.errors import CaseError, DemboundError, RunError
 from dembound.kinds import kind_of
 from dembound.results.histories import Quantity
 from dembound.running import Progress
-from dembound.studies.chart.choices import Choice, choices_of, digest, from_table
+from dembound.studies.chart.choices import from_table
 from dembound.studies.chart.defaults import defaults
 from dembound.studies.chart.errors import MonitorError, Reference, Wanted, errors
 from dembound.studies.chart.exact import exact_of
@@ -23,6 +23,7 @@ from dembound.studies.chart.front import EQUAL, ROUNDING, Point, cheapest_within
 from dembound.studies.chart.measure import Outcome, measure
 from dembound.studies.chart.record import Record, record_in
 from dembound.studies.chart.reference import reference_of
+from dembound.studies.choices import Choice, choices_of, digest
 from dembound.table import Box
 
 LEVELS = (0.01, 0.001)

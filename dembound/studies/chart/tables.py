@@ -12,9 +12,9 @@ import numpy as np
 
 from dembound.results.committed import changed_file
 from dembound.results.reader import replacing
-from dembound.studies.chart.choices import digest
 from dembound.studies.chart.record import write_gauges
 from dembound.studies.chart.study import Charted, Line
+from dembound.studies.choices import digest
 from dembound.version import __version__
 
 if TYPE_CHECKING:

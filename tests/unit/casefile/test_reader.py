@@ -199,7 +199,7 @@ def test_optional_tables_may_be_absent() -> None:
             "[output]",
             "[outputs]",
             "outputs: unknown table; allowed: title, ground, packing, material, motion, outside, reduce, boundary, "
-            "static, incident, wave, hole, load, monitor, run, output, chart (did you mean output?)",
+            "static, incident, wave, hole, load, monitor, run, output, chart, sweep (did you mean output?)",
         ),
         (
             "[output]\nsnapshots = 3",

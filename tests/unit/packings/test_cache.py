@@ -3,6 +3,9 @@
 import hashlib
 import io
 import logging
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, fields
 
 import numpy as np
@@ -114,3 +117,23 @@ def test_clear_counts_what_it_deletes(packer):
     assert clear() == 2
     load_or_pack(KEY, packer)
     assert packer.calls == 3
+
+
+def test_a_brick_that_another_process_packs_is_waited_for(packer, own_cache):
+    begun, may_end = threading.Event(), threading.Event()
+
+    def slowly():
+        begun.set()
+        may_end.wait(10.0)
+        return packer()
+
+    with ThreadPoolExecutor(2) as pool:
+        first = pool.submit(load_or_pack, KEY, slowly)
+        begun.wait(10.0)
+        second = pool.submit(load_or_pack, KEY, packer)
+        time.sleep(0.2)
+        assert not second.done()
+        may_end.set()
+        assert np.array_equal(first.result().positions, second.result().positions)
+    assert packer.calls == 1
+    assert [path.suffix for path in own_cache.iterdir()] == [".npz"]

@@ -52,7 +52,7 @@ snapshots = 3
 
 NO_PLACE = (
     "is not allowed here, as [bar] makes this a case of a bar; allowed: title, bar, method, boundary, wave, load, "
-    "monitor, run, output, chart"
+    "monitor, run, output, chart, sweep"
 )
 
 

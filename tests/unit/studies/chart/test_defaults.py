@@ -7,8 +7,8 @@ from dembound.disks.scene import build
 from dembound.kinds import load, with_changes
 from dembound.shipped import folder, names
 from dembound.studies.chart import defaults as chosen
-from dembound.studies.chart.choices import choices_of
 from dembound.studies.chart.defaults import defaults
+from dembound.studies.choices import choices_of
 
 
 @pytest.mark.parametrize("name", names())

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from dembound.errors import CaseError
-from dembound.studies.chart.choices import Choice
 from dembound.studies.chart.errors import Reference, Wanted, errors
 from dembound.studies.chart.measure import Gauge, Outcome
+from dembound.studies.choices import Choice
 
 
 def gauge(samples: int, x: float = 1.0, y: float = 0.0, place: float = 0.0, after: float = 0.0) -> Gauge:

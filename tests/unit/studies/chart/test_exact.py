@@ -10,9 +10,9 @@ from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.kinds import load, with_changes
 from dembound.shipped import folder
-from dembound.studies.chart.choices import choices_of
 from dembound.studies.chart.exact import Continuum, PlaneWave, PulseInBar, exact_of
 from dembound.studies.chart.measure import Gauge
+from dembound.studies.choices import choices_of
 
 ECHO = (75.0 * (1.0 + 3**0.5) - 20.0) / (1000.0 / 2**0.5) + (math.hypot(0.5, 150.5) - 20.0) / 1000.0
 """When (s) the SV wave of `cases/oblique.toml` has met the wall of the hole, and the P wave that leaves there has come

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from dembound.kinds import with_changes
-from dembound.studies.chart.choices import Choice
 from dembound.studies.chart.finer import finer
 from dembound.studies.chart.measure import Gauge, Outcome
+from dembound.studies.choices import Choice
 
 
 def outcome(*positions: float) -> Outcome:

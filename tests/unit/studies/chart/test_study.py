@@ -12,11 +12,11 @@ from dembound.errors import CaseError, RunError
 from dembound.motion.kind import Finding
 from dembound.running import Progress
 from dembound.studies.chart import reference, study
-from dembound.studies.chart.choices import Choice, choices_of, combinations
 from dembound.studies.chart.errors import Reference, Wanted
 from dembound.studies.chart.measure import Outcome
 from dembound.studies.chart.study import Options, chart
 from dembound.studies.chart.tables import COLUMNS, write_results, write_table
+from dembound.studies.choices import Choice, choices_of, combinations
 
 SPACINGS = {"bar.spacing": [0.05, 0.025]}
 

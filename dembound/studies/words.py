@@ -14,26 +14,30 @@ def label(case: Case, changes: Mapping[str, Any]) -> str:
 
     A table of the case that is replaced as a whole is named by its type.
     """
-    last = [key.rpartition(".")[2] for key in changes]
-    names = [
-        short if key.count(".") == 1 and last.count(short) == 1 and not isinstance(value, Mapping) else key
-        for short, (key, value) in zip(last, changes.items(), strict=True)
-    ]
     parts = [
-        ("" if "." not in key else name, _value(value) + _unit(case, key, value))
-        for name, (key, value) in zip(names, changes.items(), strict=True)
+        ("" if "." not in key else name, in_words(value) + _unit(case, key, value))
+        for name, (key, value) in zip(short_keys(changes), changes.items(), strict=True)
     ]
     return ", ".join(" ".join(part).strip() for part in parts)
 
 
-def _value(value: Any) -> str:
+def short_keys(changes: Mapping[str, Any]) -> list[str]:
+    """The last names of keys, where that is clear, else the whole keys."""
+    last = [key.rpartition(".")[2] for key in changes]
+    return [
+        short if key.count(".") == 1 and last.count(short) == 1 and not isinstance(value, Mapping) else key
+        for short, (key, value) in zip(last, changes.items(), strict=True)
+    ]
+
+
+def in_words(value: Any) -> str:
     """A value without quotes; of a table its type, and its other keys in brackets."""
     if isinstance(value, Mapping):
-        kind = [_value(inner) for key, inner in value.items() if key in DISCRIMINATORS]
-        rest = ", ".join(f"{key} {_value(inner)}" for key, inner in value.items() if key not in DISCRIMINATORS)
+        kind = [in_words(inner) for key, inner in value.items() if key in DISCRIMINATORS]
+        rest = ", ".join(f"{key} {in_words(inner)}" for key, inner in value.items() if key not in DISCRIMINATORS)
         return " ".join([*kind, f"({rest})"] if rest else kind)
     if isinstance(value, list):
-        return f"[{', '.join(_value(inner) for inner in value)}]"
+        return f"[{', '.join(in_words(inner) for inner in value)}]"
     if isinstance(value, bool):
         return "true" if value else "false"
     return f"{value:.6g}" if isinstance(value, float) else str(value)

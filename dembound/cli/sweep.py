@@ -1,0 +1,207 @@
+"""The command sweep."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.table import Column, Table
+
+from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case
+from dembound.cli.calibration import CalibrationMethod
+from dembound.cli.console import compact_table, err, out
+from dembound.errors import CaseError
+from dembound.results.interrupts import exit_code_of
+
+if TYPE_CHECKING:
+    from dembound.studies.sweep.statistics import Statistic
+    from dembound.studies.sweep.study import Report, Standing
+    from dembound.studies.sweep.tables import Swept
+
+FAILED = 3
+"""Exit code of a sweep with members that failed."""
+
+
+MOST_ROWS = 40
+"""Rows of the table that is printed."""
+
+
+class SweepAction(StrEnum):
+    """What is done with every member."""
+
+    run = "run"
+    calibrate = "calibrate"
+
+
+@app.command("sweep", rich_help_panel="Cases")
+def sweep(
+    case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")],
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=A,B,…",
+            help="Values of a key, or a range, e.g. packing.seed=1:20. May be repeated: all combinations are members.",
+        ),
+    ] = None,
+    together: Annotated[
+        bool | None,
+        typer.Option(
+            "--together/--product", help="First values of all keys together, then the second ones, and so on."
+        ),
+    ] = None,
+    action: Annotated[
+        SweepAction | None, typer.Option(metavar="ACTION", help="run or calibrate (all sides with dashpots).")
+    ] = None,
+    method: Annotated[
+        CalibrationMethod | None, typer.Option(metavar="METHOD", help="How to calibrate, as of `dembound calibrate`.")
+    ] = None,
+    processes: Annotated[
+        int | None, typer.Option("--processes", "-p", min=1, help="Members at once; as many as cores by default.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Use an existing Dask cluster, e.g. tcp://node1:8786.")
+    ] = None,
+    anew: Annotated[bool, typer.Option("--anew", help="Repeat members that are done, too.")] = False,
+    quantity: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Column of sweep.csv to draw. May be repeated.")
+    ] = None,
+    output: Output = Path("results"),
+    title: PictureTitle = None,
+    changes: Settings = None,
+    name: Name = None,
+) -> None:
+    """Run, or calibrate, a case with many values of its keys, several at once; one table of all results.
+
+    Values are given by --vary, or by sweep.vary in the case. Means are over members that differ in seeds alone.
+
+    What is done is not repeated: the same command continues a sweep, and more values add members to it.
+    """
+    from dembound.studies.choices import parsed
+    from dembound.studies.sweep.members import changes_of, members_of
+    from dembound.studies.sweep.study import Options
+    from dembound.studies.sweep.study import sweep as sweep_all
+
+    if scheduler and processes:
+        raise CaseError(["--processes: is for this machine, not allowed together with --scheduler"])
+    loaded = load_case(case, changes, name)
+    table = loaded.sweep
+    options = Options(
+        action=action.value if action else table.action,
+        method=method.value if method else table.method,
+        processes=processes or table.processes,
+        scheduler=scheduler,
+        anew=anew,
+    )
+    if method and options.action != "calibrate":
+        raise CaseError(["--method: is for --action calibrate"])
+    varied = changes_of(parsed(vary) if vary else table.vary, table.together if together is None else together)
+    members, left_out = members_of(loaded, varied, options.action, options.method)
+    for line in left_out:
+        err.print(f"{loaded.name}: {line}")
+    folder = output / f"{loaded.name}_sweep"
+    try:
+        with _shown(loaded.name) as report:
+            outcomes = sweep_all(members, options, folder, report)
+    except KeyboardInterrupt as stop:
+        err.print(f"{loaded.name}: stopped; the same command continues what is left")
+        raise typer.Exit(exit_code_of(stop)) from None
+    from dembound.studies.sweep.tables import Swept
+
+    swept = Swept(loaded, options.action, members, outcomes, quantity or [])
+    has_failed = _print(swept)
+    for path in _leave(swept, folder, title):
+        out.print(f"wrote {path}")
+    if has_failed:
+        raise typer.Exit(FAILED)
+
+
+@contextmanager
+def _shown(name: str) -> Iterator[Report]:
+    """Shows how far a sweep is: a bar on a terminal, else a line every ten seconds."""
+    from dembound.cli.progress import INTERVAL
+
+    began = said = time.monotonic()
+
+    def say(standing: Standing) -> None:
+        nonlocal said
+        if (now := time.monotonic()) - said >= INTERVAL:
+            said = now
+            err.print(f"{name}: {_in_words(standing, now - began)}")
+
+    if not err.is_terminal:
+        yield say
+        return
+    with err.status(f"{name}: preparing") as status:
+        yield lambda standing: status.update(f"{name}: {_in_words(standing, time.monotonic() - began)}")
+
+
+def _in_words(standing: Standing, elapsed: float) -> str:
+    """How far a sweep is after so many seconds, in one line."""
+    now = standing.done + standing.failed - standing.kept
+    left = standing.members - standing.done - standing.failed
+    parts = [f"{standing.done} of {standing.members} members done"]
+    parts += [f"{standing.failed} failed"] if standing.failed else []
+    parts += [f"{standing.under_way} under way"] if standing.under_way else []
+    parts += [f"about {_duration(elapsed * left / now)} left"] if now and left else []
+    return ", ".join(parts)
+
+
+def _duration(seconds: float) -> str:
+    """A time in the unit that suits it."""
+    for unit, size in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= 2.0 * size:
+            return f"{seconds / size:.0f} {unit}"
+    return f"{seconds:.0f} s"
+
+
+def _print(swept: Swept) -> bool:
+    """Print failed members, and means of the shown quantities; returns whether any has failed."""
+    from dembound.studies.sweep.statistics import statistics
+
+    failed = [(m.name, state) for m, state in zip(swept.members, swept.states, strict=True) if state != "done"]
+    for member, state in failed:
+        err.print(f"{swept.case.name}: {member}: failed, {state}")
+    found = [each for each in statistics(swept.members, swept.outcomes) if each.quantity in swept.shown]
+    if found:
+        out.print(_table(swept.case.name, found[:MOST_ROWS]))
+    if len(found) > MOST_ROWS:
+        out.print(f"{len(found) - MOST_ROWS} more rows are in statistics.csv")
+    out.print(f"{swept.case.name}: {len(swept.members) - len(failed)} of {len(swept.members)} members done")
+    return bool(failed)
+
+
+def _table(title: str, statistics: Sequence[Statistic]) -> Table:
+    """A row for each group of members and quantity."""
+    from dembound.studies.sweep.values import unit_of
+    from dembound.studies.words import in_words, short_keys
+
+    table = compact_table(
+        *(Column(head, overflow="fold") for head in ("members", "quantity")),
+        *(Column(head, no_wrap=True) for head in ("n", "mean", "spread", "95 % ±", "unit")),
+        title=title,
+    )
+    for each in statistics:
+        pairs = zip(short_keys(each.group), each.group.values(), strict=True)
+        group = ", ".join(f"{key} {in_words(value)}" for key, value in pairs)
+        numbers = [f"{value:.6g}" if value == value else "–" for value in (each.mean, each.spread, each.interval)]
+        table.add_row(group or "all", each.quantity, str(each.count), *numbers, unit_of(each.quantity))
+    return table
+
+
+def _leave(swept: Swept, folder: Path, title: str | None) -> Iterator[Path]:
+    """Write the results of a sweep, yielding each file."""
+    from dembound.studies.sweep.tables import write_tables
+
+    yield from write_tables(swept, folder)
+    (folder / "sweep.png").unlink(missing_ok=True)
+    if swept.shown:
+        from dembound.plot.style import save
+        from dembound.plot.sweep import plot_sweep
+
+        save(plot_sweep(folder / "sweep.h5"), folder / "sweep.png", title)
+        yield folder / "sweep.png"

@@ -1,0 +1,182 @@
+"""One member of a sweep, in a process of its own or of a cluster: it is run or calibrated, and its outcome written."""
+
+import json
+import logging
+import threading
+import time
+from collections.abc import Callable, Collection, Mapping
+from contextlib import chdir, suppress
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from dembound.casefile import Case
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.model import as_kind
+from dembound.casefile.sweep import Action, Method
+from dembound.errors import CaseError, DemboundError
+from dembound.kinds import loads
+from dembound.motion.trackers import Run
+from dembound.results.folder import Folder
+from dembound.results.interrupts import Stopped
+from dembound.results.reader import replacing
+from dembound.running import Progress, Shared, resume_case, run_case
+from dembound.studies.choices import digest
+from dembound.studies.sweep.values import values_of_calibration, values_of_run
+
+MEMBERS, OUTCOMES, SETTLED = "members", "outcomes", "settled"
+"""Folders of a sweep: runs, outcomes by key, stages before runs."""
+
+ALONE = threading.Lock()
+"""Held while a member is under way: workers of a cluster may have several threads, but the solver has its own."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a process is sent: a case as text with the files it refers to, what to do, and where.
+
+    current : the folder from which ``static.from`` starts. folder : of the sweep.
+    begun : a file that is made when the member is stepped, so that its code is compiled.
+    stop : a file that asks all members to end.
+    """
+
+    name: str
+    key: str
+    text: str
+    case_folder: Path
+    files: Mapping[str, str]
+    action: Action
+    method: Method
+    current: Path
+    folder: Path
+    begun: Path
+    stop: Path
+
+
+@dataclass
+class Outcome:
+    """The results of a member: values by name, or why there are none, and the wall time it took (s).
+
+    folder : name of the folder of its run; empty for a calibration, which has none.
+    """
+
+    name: str
+    folder: str = ""
+    failure: str = ""
+    values: dict[str, float] = field(default_factory=dict)
+    seconds: float = 0.0
+
+    def write(self, folder: Path, key: str) -> None:
+        """Write it into the folder of a sweep, completely or not at all."""
+        with replacing(folder / OUTCOMES / f"{key}.json") as part:
+            part.write_text(json.dumps(asdict(self)) + "\n", encoding="utf-8")
+
+
+def outcome_in(folder: Path, key: str) -> Outcome | None:
+    """The outcome of the member with this key in the folder of a sweep; None without one that can be read."""
+    try:
+        return Outcome(**json.loads((folder / OUTCOMES / f"{key}.json").read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError):
+        return None
+
+
+def forget_replaced(folder: Path, names: Collection[str]) -> None:
+    """Delete the outcomes in a sweep whose runs are in folders of these names, as other runs will replace them."""
+    for path in (folder / OUTCOMES).glob("*.json"):
+        outcome = outcome_in(folder, path.stem)
+        if outcome is not None and outcome.folder in names:
+            path.unlink(missing_ok=True)
+
+
+def perform(task: Task) -> Outcome | None:
+    """The outcome of a member, which is also written; None if it was asked to stop. One thread is used."""
+    import numba
+
+    with ALONE:
+        if task.stop.exists():
+            return None
+        before = numba.get_num_threads()
+        numba.set_num_threads(1)
+        began, outcome = time.perf_counter(), Outcome(task.name, task.name if task.action == "run" else "")
+        try:
+            with chdir(task.current):
+                outcome.values = _ACTIONS[task.action](task)
+        except Stopped:
+            return None
+        except (DemboundError, OSError, MemoryError) as error:
+            outcome.failure = " ".join(str(error).split()) or type(error).__name__
+        except Exception as error:  # a bug, which must not end the sweep; it is a line in its table
+            logging.getLogger(__name__).exception("%s: a bug", task.name)
+            outcome.failure = f"a bug: {type(error).__name__}: {' '.join(str(error).split())}"
+        finally:
+            numba.set_num_threads(before)
+        outcome.seconds = time.perf_counter() - began
+        outcome.write(task.folder, task.key)
+        return outcome
+
+
+class Begun(Progress):
+    """Makes a file when the first steps are done."""
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._is_made = path, False
+
+    def make(self) -> None:
+        """Make it, once."""
+        if not self._is_made:
+            self._is_made = True
+            self._path.touch()
+
+    def settling(self, steps: int, ratio: float) -> None:
+        """Of a static stage."""
+        self.make()
+
+    def running(self, run: Run, steps: int) -> None:
+        """Of the run itself."""
+        self.make()
+
+
+def _run(task: Task) -> dict[str, float]:
+    """Run the member, or continue it if it was left unfinished."""
+    case, results = _case_of(task), task.folder / MEMBERS
+    partial = Folder(results, case.name).partial
+    shared, progress = Shared(task.folder / SETTLED, task.stop), Begun(task.begun)
+    folder = None
+    if _is_unfinished(case, partial):
+        with suppress(CaseError):  # such as a checkpoint with another time step, of another machine
+            folder = resume_case(partial, progress=progress, shared=shared)
+    if folder is None:
+        folder = run_case(case, results, progress, shared=shared)
+    return values_of_run(folder, json.loads((folder / "summary.json").read_text(encoding="utf-8")))
+
+
+def _is_unfinished(case: Case, partial: Path) -> bool:
+    """Whether a partial folder has a checkpoint of a run with the same results as that of a case."""
+    from dembound.running.unfinished import find_unfinished
+
+    try:
+        return partial.is_dir() and digest(find_unfinished(partial).case) == digest(case)
+    except CaseError:  # no checkpoint, or a damaged one
+        return False
+
+
+def _calibrate(task: Task) -> dict[str, float]:
+    """Calibrate all sides of the member that have dashpots."""
+    from dembound.studies.all_sides import calibrate_all
+
+    case = as_kind(_case_of(task), DiskCase, "is the case of a bar; β of disks is calibrated")
+    interrupts, begun = Shared(stop=task.stop).interrupts(), Begun(task.begun)
+
+    def after_pass(_: Any) -> None:
+        begun.make()
+        if (number := interrupts.caught) is not None:
+            raise Stopped(number)
+
+    return values_of_calibration(calibrate_all(case, method=task.method, report=after_pass))
+
+
+def _case_of(task: Task) -> Case:
+    return loads(task.text, task.case_folder, task.name, task.files)
+
+
+_ACTIONS: Mapping[Action, Callable[[Task], dict[str, float]]] = {"run": _run, "calibrate": _calibrate}

@@ -1,0 +1,144 @@
+"""The results of a sweep in files: ``sweep.csv``, ``statistics.csv``, and both in ``sweep.h5``."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dembound.casefile import Case
+from dembound.casefile.sweep import Action
+from dembound.errors import CaseError
+from dembound.results.committed import new_file
+from dembound.results.datasets import describe, text, write
+from dembound.results.reader import replacing
+from dembound.studies.sweep.members import Member
+from dembound.studies.sweep.perform import Outcome
+from dembound.studies.sweep.statistics import Statistic, quantities, statistics
+from dembound.studies.sweep.values import shown_by_default, unit_of
+from dembound.version import __version__
+
+MISSING = "not done"
+"""State of members that a stopped sweep has left."""
+
+OF_STATISTICS = ("quantity", "unit", "count", "mean", "spread", "interval", "low", "high")
+"""Columns of statistics, after those of the keys: see `Statistic`; low and high are the ends of the interval."""
+
+
+@dataclass(frozen=True)
+class Swept:
+    """A sweep: its case and action, its members, and the outcome of each, None if it was not done.
+
+    wanted : names of the quantities that are printed and drawn, see `shown`.
+    """
+
+    case: Case
+    action: Action
+    members: Sequence[Member]
+    outcomes: Sequence[Outcome | None]
+    wanted: Sequence[str] = ()
+
+    @property
+    def keys(self) -> list[str]:
+        """The varied keys."""
+        return list(dict.fromkeys(key for member in self.members for key in member.changes))
+
+    @property
+    def states(self) -> list[str]:
+        """Of every member: done, or why it is not."""
+        return [MISSING if each is None else each.failure or "done" for each in self.outcomes]
+
+    @property
+    def shown(self) -> list[str]:
+        """The quantities that are printed and drawn: the wanted ones, by default those of `shown_by_default`.
+
+        Raises CaseError for one that no member has.
+        """
+        names = quantities(self.outcomes)
+        if names and (missing := [name for name in self.wanted if name not in names]):
+            raise CaseError([f"--quantity: is {missing[0]}, must be one of {', '.join(names)}"])
+        return [name for name in self.wanted if name in names] or shown_by_default(names, self.action)
+
+    def values(self, quantity: str) -> np.ndarray:
+        """The values (n,) of a quantity, nan for members without it."""
+        return np.array([np.nan if each is None else each.values.get(quantity, np.nan) for each in self.outcomes])
+
+
+def write_tables(swept: Swept, folder: Path) -> list[Path]:
+    """Write all files into the folder of a sweep; returns their paths."""
+    averages = list(statistics(swept.members, swept.outcomes))
+    paths = [folder / name for name in ("sweep.csv", "statistics.csv", "sweep.h5")]
+    _write_csv(paths[0], _rows_of_members(swept))
+    _write_csv(paths[1], _rows_of_statistics(swept, averages))
+    _write_record(paths[2], swept, averages)
+    return paths
+
+
+def _write_csv(path: Path, rows: Iterable[Sequence[Any]]) -> None:
+    """Write rows, completely or not at all; what is missing is empty."""
+    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+        for row in rows:
+            csv.writer(file).writerow(["" if each is None or each != each else each for each in row])
+
+
+def _rows_of_members(swept: Swept) -> Iterable[Sequence[Any]]:
+    """A row for every member: its name and state, the values of its keys, its quantities, and the time it took (s)."""
+    names = quantities(swept.outcomes)
+    yield ["member", "state", *swept.keys, *names, "wall_s"]
+    for member, outcome, state in zip(swept.members, swept.outcomes, swept.states, strict=True):
+        values = [None if outcome is None else outcome.values.get(name) for name in names]
+        seconds = None if outcome is None else round(outcome.seconds, 3)
+        yield [member.name, state, *(_plain(member.changes.get(key)) for key in swept.keys), *values, seconds]
+
+
+def _rows_of_statistics(swept: Swept, averages: Sequence[Statistic]) -> Iterable[Sequence[Any]]:
+    """A row for every group of members and quantity."""
+    keys = list(dict.fromkeys(key for member in swept.members for key in member.group))
+    yield [*keys, *OF_STATISTICS]
+    for each in averages:
+        group = (_plain(each.group.get(key)) for key in keys)
+        numbers = each.count, each.mean, each.spread, each.interval
+        yield [*group, each.quantity, unit_of(each.quantity), *numbers, *each.ends]
+
+
+def _plain(value: Any) -> Any:
+    """A value of a key in a cell: numbers and texts as they are, lists and tables as JSON."""
+    return json.dumps(value) if isinstance(value, list | dict | bool) else value
+
+
+def _write_record(path: Path, swept: Swept, averages: Sequence[Statistic]) -> None:
+    """Write the members by column, and the statistics by group and quantity."""
+    with new_file(path) as file:
+        case = swept.case
+        describe(file, {"name": case.name, "title": case.title, "case": case.text, "version": __version__})
+        describe(file, {"action": swept.action, "shown": json.dumps(swept.shown)})
+        members = file.create_group("members")
+        for name, texts in (
+            ("name", [member.name for member in swept.members]),
+            ("state", swept.states),
+            ("changes", [json.dumps(member.changes) for member in swept.members]),
+            ("group", [json.dumps(member.group) for member in swept.members]),
+        ):
+            members.create_dataset(name, data=np.array([text(each) for each in texts]))
+        seconds = np.array([np.nan if each is None else each.seconds for each in swept.outcomes])
+        write(members, "seconds", seconds, "s")
+        values = file.create_group("values")
+        for name in quantities(swept.outcomes):
+            write(values, name, swept.values(name), unit_of(name))
+        _write_statistics(file.create_group("statistics"), averages)
+
+
+def _write_statistics(group: Any, averages: Sequence[Statistic]) -> None:
+    """A group for every quantity, with a row for every group of members that has it."""
+    for name in dict.fromkeys(each.quantity for each in averages):
+        rows = [each for each in averages if each.quantity == name]
+        inner = group.create_group(name)
+        inner.create_dataset("group", data=np.array([text(json.dumps(each.group)) for each in rows]))
+        write(inner, "count", np.array([each.count for each in rows]), "1")
+        for column in ("mean", "spread", "interval"):
+            write(inner, column, np.array([getattr(each, column) for each in rows]), unit_of(name))

@@ -1,0 +1,206 @@
+"""Who performs the members of a sweep: processes of this machine, or an existing Dask cluster."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
+from multiprocessing.connection import wait
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from dembound.errors import CaseError
+from dembound.results.interrupts import ENDING
+from dembound.studies.sweep.perform import ALONE, Outcome, Task, perform
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+CONNECTING = 30.0
+"""Seconds to wait for a cluster."""
+
+Performing = Future[Outcome | None]
+
+
+class Workers(ABC):
+    """Perform tasks.
+
+    Attributes
+    ----------
+    lost : errors of a future whose process has ended before its task. tries : how often a task is then submitted.
+    are_elsewhere : whether they go on when this process has ended.
+    """
+
+    lost: tuple[type[Exception], ...]
+    tries: int
+    are_elsewhere = False
+
+    @abstractmethod
+    def has_room(self, under_way: int) -> bool:
+        """Whether another task may be submitted, with so many under way."""
+
+    @abstractmethod
+    def submit(self, task: Task) -> Performing:
+        """Begin a task."""
+
+    @abstractmethod
+    def kill(self) -> None:
+        """End all that is under way at once."""
+
+
+class Process(NamedTuple):
+    """A process of this machine: a pool with this worker alone, and its number, known once it has begun."""
+
+    pool: ProcessPoolExecutor
+    number: Future[int]
+
+
+class Processes(Workers):
+    """Processes of this machine, each in a pool of its own: one that is killed takes no other one with it.
+
+    Parameters
+    ----------
+    count : of processes, which begin to import at once. stop : file that they make if this process is killed.
+    """
+
+    lost = (BrokenProcessPool,)
+    tries = 2
+
+    def __init__(self, count: int, stop: Path) -> None:
+        self._count, self._stop = count, stop
+        self._waiting = [self._new() for _ in range(count)]
+        self._working: list[tuple[Process, Performing]] = []
+
+    def _new(self) -> Process:
+        """A new process; not forked, as this one may have threads."""
+        pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _prepare, (self._stop,))
+        with _signals_blocked():
+            return Process(pool, pool.submit(os.getpid))
+
+    def has_room(self, under_way: int) -> bool:
+        """Up to the number of processes."""
+        return under_way < self._count
+
+    def submit(self, task: Task) -> Performing:
+        """Begin a task in a process that waits; one that has ended is replaced."""
+        for process, performed in [each for each in self._working if each[1].done()]:
+            self._working.remove((process, performed))
+            is_lost = isinstance(performed.exception(), self.lost)
+            self._waiting.append(self._new() if is_lost else process)
+        process = self._waiting.pop()
+        try:
+            performing = process.pool.submit(perform, task)
+        except BrokenProcessPool:  # killed while it waited
+            process = self._new()
+            performing = process.pool.submit(perform, task)
+        self._working.append((process, performing))
+        return performing
+
+    def kill(self) -> None:
+        """End all processes at once."""
+        for process in self._all():
+            with suppress(Exception):  # one that has not begun, or that has ended
+                os.kill(process.number.result(timeout=0.0), getattr(signal, "SIGKILL", signal.SIGTERM))
+
+    def close(self) -> None:
+        """Wait for all processes to end."""
+        for process in self._all():
+            process.pool.shutdown()
+
+    def _all(self) -> list[Process]:
+        return [*self._waiting, *(process for process, _ in self._working)]
+
+
+@contextmanager
+def _signals_blocked() -> Iterator[None]:
+    """Blocks the signals that end a run, also in a process that is started inside, until it ignores them."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _prepare(stop: Path) -> None:
+    """Leave signals to the process that has started this one; should that be killed, end as if it had asked to."""
+    for number in ENDING:
+        signal.signal(number, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, args=(stop,), daemon=True).start()
+
+
+def _end_with_parent(stop: Path) -> None:
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    wait([parent.sentinel])
+    with suppress(OSError):
+        stop.touch()
+    with ALONE:  # the member under way has written its checkpoint
+        os._exit(1)
+
+
+class Cluster(Workers):
+    """The workers of a Dask cluster, whose scheduler gives a task to another worker if one is lost."""
+
+    tries = 1
+    are_elsewhere = True
+
+    def __init__(self, client: Client) -> None:
+        from distributed.scheduler import KilledWorker
+
+        self.lost = (KilledWorker,)
+        self._client = client
+        self._executor = client.get_executor(pure=False)
+
+    def has_room(self, under_way: int) -> bool:
+        """Always: the scheduler keeps what waits."""
+        return True
+
+    def submit(self, task: Task) -> Performing:
+        """Send a task to the scheduler."""
+        try:
+            performing: Performing = self._executor.submit(perform, task)
+        except Exception as error:  # of a client that has lost its scheduler
+            performing = Future()
+            performing.set_exception(error)
+        return performing
+
+    def kill(self) -> None:
+        """Members under way go on, until they find the file that asks them to stop."""
+        self._executor.shutdown(wait=False)
+
+
+@contextmanager
+def processes(count: int, stop: Path) -> Iterator[Processes]:
+    """So many processes of this machine; stop : as of `Processes`."""
+    workers = Processes(count, stop)
+    try:
+        yield workers
+    finally:
+        workers.close()
+
+
+@contextmanager
+def cluster(address: str) -> Iterator[Cluster]:
+    """The cluster whose scheduler has this address, such as tcp://10.0.0.1:8786.
+
+    Raises CaseError if Dask is not installed, or no scheduler answers.
+    """
+    try:
+        from distributed import Client
+    except ImportError:
+        raise CaseError(["--scheduler: needs Dask; install dembound[cluster]"]) from None
+    try:
+        client = Client(address, timeout=CONNECTING)
+    except (OSError, ValueError) as error:
+        raise CaseError([f"--scheduler: {address} does not answer: {' '.join(str(error).split())}"]) from None
+    with client:
+        yield Cluster(client)

@@ -1,0 +1,166 @@
+"""A member by itself: its values are those of a run or a calibration alone."""
+
+import json
+import signal
+
+import numba
+import numpy as np
+import pytest
+
+from dembound.results.interrupts import Interrupts
+from dembound.results.reader import open_record
+from dembound.results.results import Results
+from dembound.running import job, run_case
+from dembound.studies.all_sides import calibrate_all
+from dembound.studies.sweep.members import changes_of, members_of
+from dembound.studies.sweep.perform import ALONE, MEMBERS, Outcome, forget_replaced, outcome_in, perform
+from dembound.studies.sweep.values import unit_of
+
+
+def test_values_are_those_of_the_run_alone(rods, task, tmp_path) -> None:
+    (member,) = rods(12e6)
+    outcome = perform(task(member))
+    alone = Results(run_case(member.case, tmp_path / "alone"))
+    assert outcome.failure == ""
+    assert outcome_in(tmp_path, member.key) == outcome
+    assert (tmp_path / "begun").is_file()
+    values, summary = outcome.values, alone.summary
+    assert values["spalls.1.time"] == summary["spalls"][0]["time"]
+    assert values["spalls.1.end.y"] == summary["spalls"][0]["end"][1]
+    assert values["energy.kinetic"] == summary["energy"]["kinetic"]
+    velocity = alone.histories["gauge"]["velocity"][:, 0]
+    assert values["monitors.gauge.peak_velocity.x"] == np.abs(velocity).max()
+    assert values["monitors.gauge.rms_velocity.x"] == pytest.approx(np.sqrt(np.mean(velocity**2)), rel=1e-14)
+    assert not {name.split(".")[0] for name in values} & {"keys", "seconds", "wall_time", "memory_bytes", "threads"}
+    with open_record(tmp_path / MEMBERS / member.name / "run.h5") as file:
+        assert np.array_equal(file["histories/gauge/velocity"][:, 0], velocity)
+
+
+def test_units_are_those_of_the_last_part() -> None:
+    found = {
+        "monitors.end.peak_velocity.x": "m/s",
+        "monitors.end.peak_displacement.y": "m",
+        "boundary.right.beta_p": "1",
+        "energy.kinetic": "J/m",
+        "energy.relative_error": "1",
+        "sides.left.absorbed": "J/m",
+        "sides.left.absorbed_share": "1",
+        "stress.gauge.tension": "Pa",
+        "steps": "1",
+    }
+    assert {name: unit_of(name) for name in found} == found
+
+
+def test_calibrations_are_those_of_the_case_alone(bar, task) -> None:
+    changes = changes_of({"wave.pulse.amplitude": [0.5]}, False)
+    for method in ("impedance", "homogenised"):
+        ((member,), _) = members_of(bar(), changes, "calibrate", method)
+        values = perform(task(member, "calibrate", method)).values
+        (right,) = [each for each in calibrate_all(member.case, method=method) if each.side == "right"][:1]
+        assert values["boundary.right.beta_p"] == right.result
+        assert values["boundary.right.beta_p.passes"] == len(right.beta)
+        assert ("boundary.right.beta_p.ratio" in values) == (method == "impedance")
+
+
+def test_failures_are_outcomes(rods, task, tmp_path) -> None:
+    (unstable,) = rods(12e6, **{"run.courant": 3.0})
+    outcome = perform(task(unstable))
+    assert outcome.failure.startswith("run.courant: is 3")
+    assert outcome_in(tmp_path, unstable.key) == outcome
+    (member,) = rods(12e6)
+    (member2,) = members_of(member.case, [{"title": "x"}], "calibrate", "impedance")[0]
+    assert "is the case of a bar" in perform(task(member2, "calibrate")).failure
+
+
+def test_bugs_are_outcomes_too(rods, task, monkeypatch) -> None:
+    monkeypatch.setattr(job, "plan", lambda *_: 1 / 0)
+    (member,) = rods(12e6)
+    assert perform(task(member)).failure == "a bug: ZeroDivisionError: division by zero"
+    assert not ALONE.locked()
+
+
+def test_a_stopped_member_is_continued_to_the_same_results(rods, task, tmp_path, monkeypatch) -> None:
+    (member,) = rods(12e6)
+    whole = perform(task(member))
+    (tmp_path / "outcomes" / f"{member.key}.json").unlink()
+
+    def touched_soon(self, run, steps):
+        if run.state.step > 20:
+            (tmp_path / "stop").touch()
+
+    with monkeypatch.context() as patch:
+        patch.setattr("dembound.studies.sweep.perform.Begun.running", touched_soon)
+        assert perform(task(member)) is None
+    assert outcome_in(tmp_path, member.key) is None
+    partial = tmp_path / MEMBERS / f"{member.name}.partial"
+    assert (partial / "checkpoint.npz").is_file()
+    assert perform(task(member)) is None  # as the request to stop is still there
+    (tmp_path / "stop").unlink()
+    assert perform(task(member)).values == whole.values
+    summary = json.loads((tmp_path / MEMBERS / member.name / "summary.json").read_text())
+    assert [each["stage"] for each in summary["resumed"]] == [None]
+
+
+def test_a_checkpoint_of_another_case_is_not_continued(rods, task, tmp_path, monkeypatch) -> None:
+    (member,) = rods(12e6)
+    (other,) = rods(12e6, **{"bar.density": 2600.0})
+    assert member.name == other.name
+    with monkeypatch.context() as patch:
+        patch.setattr(
+            "dembound.studies.sweep.perform.Begun.running",
+            lambda self, run, steps: (tmp_path / "stop").touch(),
+        )
+        assert perform(task(other)) is None
+    (tmp_path / "stop").unlink()
+    perform(task(member))
+    assert json.loads((tmp_path / MEMBERS / member.name / "summary.json").read_text())["resumed"] == []
+
+
+def test_outcomes_of_runs_that_others_replace_are_forgotten(tmp_path) -> None:
+    (tmp_path / "outcomes").mkdir()
+    Outcome("a", folder="a").write(tmp_path, "run of a")
+    Outcome("a").write(tmp_path, "calibration of a")
+    Outcome("b", folder="b").write(tmp_path, "run of b")
+    forget_replaced(tmp_path, {"a"})
+    assert {path.stem for path in (tmp_path / "outcomes").iterdir()} == {"calibration of a", "run of b"}
+
+
+def test_one_thread_is_used_and_others_are_given_back(rods, task, monkeypatch) -> None:
+    seen = []
+    monkeypatch.setattr("dembound.studies.sweep.perform._ACTIONS", {"run": lambda _: seen.append(threads()) or {}})
+    threads = numba.get_num_threads
+    before = threads()
+    perform(task(*rods(12e6)))
+    assert seen == [1]
+    assert threads() == before
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"name": 1, "more": 2}'])
+def test_damaged_outcomes_are_none(tmp_path, text) -> None:
+    (tmp_path / "outcomes").mkdir()
+    Outcome("a", values={"x": 1.0}).write(tmp_path, "k")
+    assert outcome_in(tmp_path, "k") == Outcome("a", values={"x": 1.0})
+    (tmp_path / "outcomes" / "k.json").write_text(text)
+    assert outcome_in(tmp_path, "k") is None
+
+
+def test_calibrations_stop_after_a_pass(bar, task, tmp_path) -> None:
+    ((member,), _) = members_of(bar(), [{"boundary.right.beta_p": 0.4}], "calibrate", "impedance")
+    one = task(member, "calibrate")
+    done = []
+
+    class Late(Interrupts):
+        @property
+        def caught(self):
+            done.append(1)
+            return signal.SIGTERM if len(done) > 1 else None
+
+        @caught.setter
+        def caught(self, number):
+            pass
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("dembound.running.shared.StopFile", lambda path: Late())
+        assert perform(one) is None
+    assert len(done) == 2
+    assert outcome_in(tmp_path, member.key) is None

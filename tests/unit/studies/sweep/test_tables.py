@@ -1,0 +1,107 @@
+"""The tables of a sweep, read as a user would."""
+
+import csv
+import json
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.errors import CaseError
+from dembound.plot.sweep import plot_sweep
+from dembound.studies.sweep.members import Member
+from dembound.studies.sweep.perform import Outcome
+from dembound.studies.sweep.tables import Swept, write_tables
+
+SIDE = {"type": "free"}
+
+
+@pytest.fixture
+def swept(bar) -> Swept:
+    """Two dampers with two seeds each, of which one failed and one was not done, and another side."""
+    rows = [
+        ({"packing.seed": 1, "run.safety": 0.5}, {"monitors.end.peak_velocity": 1.0, "energy.kinetic": 2.0}),
+        ({"packing.seed": 2, "run.safety": 0.5}, {"monitors.end.peak_velocity": 3.0, "energy.kinetic": 6.0}),
+        ({"packing.seed": 1, "run.safety": 0.9}, {"monitors.end.peak_velocity": 5.0}),
+        ({"packing.seed": 2, "run.safety": 0.9}, "stalled, at 3 s"),
+        ({"packing.seed": 1, "boundary.right": SIDE}, None),
+    ]
+    members = [Member(f"m{number}", changes, bar(), str(number)) for number, (changes, _) in enumerate(rows)]
+    outcomes = [
+        found if found is None else Outcome("", failure=found) if isinstance(found, str) else Outcome("", values=found)
+        for _, found in rows
+    ]
+    return Swept(bar({"title": "β and $safety$"}), "run", members, outcomes)
+
+
+def rows_of(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_members_are_rows_with_keys_and_values(swept, tmp_path) -> None:
+    write_tables(swept, tmp_path)
+    rows = rows_of(tmp_path / "sweep.csv")
+    assert [row["member"] for row in rows] == ["m0", "m1", "m2", "m3", "m4"]
+    assert [row["state"] for row in rows] == ["done", "done", "done", "stalled, at 3 s", "not done"]
+    assert [row["run.safety"] for row in rows] == ["0.5", "0.5", "0.9", "0.9", ""]
+    assert json.loads(rows[4]["boundary.right"]) == SIDE
+    assert [row["monitors.end.peak_velocity"] for row in rows] == ["1.0", "3.0", "5.0", "", ""]
+
+
+def test_statistics_are_rows_of_groups(swept, tmp_path) -> None:
+    write_tables(swept, tmp_path)
+    rows = rows_of(tmp_path / "statistics.csv")
+    assert [(row["run.safety"], row["quantity"], row["unit"], row["count"], row["mean"]) for row in rows] == [
+        ("0.5", "monitors.end.peak_velocity", "m/s", "2", "2.0"),
+        ("0.5", "energy.kinetic", "J/m", "2", "4.0"),
+        ("0.9", "monitors.end.peak_velocity", "m/s", "1", "5.0"),
+    ]
+    # of 1 and 3: √2, and t(0.975) of one degree, tan(0.475π) = 12.70620, times √2/√2
+    assert float(rows[0]["spread"]) == pytest.approx(np.sqrt(2.0), rel=1e-14)
+    assert float(rows[0]["interval"]) == pytest.approx(np.tan(0.475 * np.pi), rel=1e-9)
+    assert float(rows[0]["high"]) - float(rows[0]["low"]) == pytest.approx(2.0 * float(rows[0]["interval"]))
+    assert (rows[2]["spread"], rows[2]["low"]) == ("", "")
+
+
+def test_the_record_has_the_same_with_units(swept, tmp_path) -> None:
+    write_tables(swept, tmp_path)
+    with h5py.File(tmp_path / "sweep.h5") as file:
+        assert [text.decode() for text in file["members/name"][:]] == ["m0", "m1", "m2", "m3", "m4"]
+        assert json.loads(file["members/changes"][4]) == {"packing.seed": 1, "boundary.right": SIDE}
+        assert np.array_equal(file["values/energy.kinetic"][:], [2.0, 6.0, *[np.nan] * 3], equal_nan=True)
+        assert file["values/energy.kinetic"].attrs["unit"] == b"J/m"
+        inner = file["statistics/monitors.end.peak_velocity"]
+        assert inner["mean"][:].tolist() == [2.0, 5.0]
+        assert inner["count"][:].tolist() == [2, 1]
+
+
+def test_the_picture_has_every_member_and_mean(swept, tmp_path) -> None:
+    write_tables(swept, tmp_path)
+    figure = plot_sweep(tmp_path / "sweep.h5")
+    (panel,) = (axes for axes in figure.axes if axes.axison)
+    assert panel.get_ylabel() == "monitors.end.peak_velocity (m/s)"
+    clouds = [line.get_ydata() for line in panel.lines if line.get_marker() == "o"]
+    points = np.concatenate(clouds)
+    assert sorted(points[np.isfinite(points)]) == [1.0, 3.0, 5.0]
+    (mean,) = (bars.lines[0] for bars in panel.containers)
+    assert mean.get_ydata().tolist() == [2.0]  # where there is an interval
+    assert figure.get_suptitle() == "β and $safety$"
+
+
+def test_groups_with_numbers_are_placed_by_their_value(swept, tmp_path) -> None:
+    write_tables(Swept(swept.case, "run", swept.members[:3], swept.outcomes[:3]), tmp_path)
+    (panel,) = plot_sweep(tmp_path / "sweep.h5").axes
+    assert panel.get_xlabel() == "run.safety"
+    (mean,) = (line for line in panel.lines if line.get_linestyle() == "-" and len(line.get_xdata()) == 2)
+    assert (mean.get_xdata().tolist(), mean.get_ydata().tolist()) == ([0.5, 0.9], [2.0, 5.0])
+
+
+def test_wanted_quantities_are_shown(swept) -> None:
+    def shown(*wanted):
+        return Swept(swept.case, "run", swept.members, swept.outcomes, wanted).shown
+
+    assert shown() == ["monitors.end.peak_velocity"]
+    assert shown("energy.kinetic") == ["energy.kinetic"]
+    with pytest.raises(CaseError, match=r"--quantity: is energy, must be one of monitors.end.peak_velocity, energy.k"):
+        shown("energy")
