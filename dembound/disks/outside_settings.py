@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -152,12 +153,14 @@ def mesh_of(
     element: tuple[float, float] | None = None,
     *,
     surface: float | None = None,
+    tops: tuple[float, float] | None = None,
     periodic: tuple[bool, bool] = (False, False),
     mirrors: Sequence[str] = (),
 ) -> Mesh:
     """The elements with these settings on some sides of a box (left, bottom, right, top; m).
 
     element : largest width and height, m; None: by the settings. surface : height of a free surface above the box, m.
+    tops : heights of the free surface left and right of a box that reaches it, m; None: they are as high as the box.
     periodic : along x and y. mirrors : sides that are planes of symmetry.
 
     Raises CaseError for more elements along a side than anything needs.
@@ -167,6 +170,7 @@ def mesh_of(
     most = max(width / element[0], height / element[1], ((surface or box[3]) - box[3]) / element[1])
     if most > MOST_ALONG:
         raise CaseError([f"outside.element: makes {most:.3g} elements along a side, must make at most {MOST_ALONG:,}"])
+    beside = {} if tops is None else _rows_to(box, tops, settings._replace(element=element[1]))
     there = [side in sides and not (side == "top" and surface is not None) for side in SIDES]
     return Mesh.around(
         box,
@@ -177,7 +181,23 @@ def mesh_of(
         periodic=periodic,
         surface=surface,
         mirror=Around(*(int(side in mirrors) for side in SIDES)),
+        **beside,
     )
+
+
+def _rows_to(box: Box, tops: tuple[float, float], settings: Settings) -> dict[str, Any]:
+    """Heights of the rows beside a box, which end at both tops, m, and how many of them there are below either one."""
+    near = ROUNDING * (box[3] - box[1])
+    ends = [end for end in sorted({*tops, box[3]}) if end < box[3] - near]
+    ends = [end for end, last in zip(ends, [box[1], *ends], strict=False) if end > last + near]
+    rows: list[float] = []
+    reached = {}
+    for low, high in pairwise([box[1], *ends, box[3]]):
+        side = settings.side(high - low)
+        rows += [side] * round((high - low) / side)
+        reached[high] = len(rows)
+    levels = tuple(reached[min(reached, key=lambda end: abs(end - top))] for top in tops)
+    return {"rows": rows, "levels": levels}
 
 
 def least_element(case: DiskCase, diameter: float) -> float:
@@ -238,9 +258,19 @@ def clearance(case: DiskCase, box: Box, sides: Sequence[str]) -> float:
 
 
 def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Lower left and upper right corners of holes, and twice the middle of each force on a place, m."""
+    """Lower left and upper right corners of holes, and twice the middle of each force on a place, m.
+
+    Of a hole that leaves a floor at a side it is the part that is not level.
+    """
+    left, _, right, _ = case.packing.box
     for hole in case.hole:
-        yield np.array(hole.box[:2]), np.array(hole.box[2:])
+        low, high = np.array(hole.box[:2]), np.array(hole.box[2:])
+        for side, floor in case.floors.items():
+            if side == "left" and low[0] <= left + floor.width:
+                low[0] = min(left + floor.width, high[0])
+            elif side == "right" and high[0] >= right - floor.width:
+                high[0] = max(right - floor.width, low[0])
+        yield low, high
     for load in case.load:
         if load.position is not None:
             yield np.array(load.position), np.array(load.position)

@@ -1,7 +1,10 @@
 """A case of bonded disks: all tables of one file."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
+from dembound.casefile.disks.floors import floors
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import IncidentWave
 from dembound.casefile.disks.load import Load
@@ -13,6 +16,7 @@ from dembound.casefile.disks.reduce import Reduce
 from dembound.casefile.disks.static import Static
 from dembound.casefile.model import Case
 from dembound.holes import Hole
+from dembound.holes.floor import Floor
 from dembound.packings import Packing
 
 
@@ -47,6 +51,15 @@ class DiskCase(Case):
     def hole_of(self, load: Load) -> Hole:
         """The hole on whose wall a pressure acts."""
         return next(hole for hole in self.hole if hole.name == load.hole)
+
+    @cached_property
+    def floors(self) -> dict[str, Floor]:
+        """The floors that all holes together leave at the left and right side, by side."""
+        return self.floors_of(self.hole)
+
+    def floors_of(self, holes: Sequence[Hole]) -> dict[str, Floor]:
+        """The floors that some of the holes leave."""
+        return floors(holes, self.packing, self.ground, self.boundary)
 
     @property
     def periodic(self) -> tuple[bool, bool]:
