@@ -153,6 +153,11 @@ class Rim(NamedTuple):
         return cls((left, bottom, right, top), surface, skins, massless, levels)
 
     @property
+    def ends(self) -> dict[str, float]:
+        """Heights (m) above which no disks are beyond a side, by side."""
+        return {side: level.height for side, level in self.levels.items()}
+
+    @property
     def tops(self) -> tuple[float, float] | None:
         """Heights (m) of the free surface beyond the left and the right side; None: as high as the body's."""
         if not self.levels:
@@ -191,7 +196,7 @@ class Outline(NamedTuple):
         """
         size = ElementSizes.of(case, ground, body, sides, periodic)
         rim = Rim.of(case, ground, body, sides, size, floors)
-        _refuse_low(rim, least_element(case, ground.brick.mean_diameter))
+        _refuse_low(rim, min(least_element(case, ground.brick.mean_diameter), case.outside.element or np.inf))
         mirrors = [side for side in SIDES if case.side(side).is_mirror and not periodic[normal_axis(side)]]
         mesh = mesh_of(
             size.settings,
@@ -234,7 +239,7 @@ def _refuse_thin(gap: float, least: float) -> None:
 
 
 def _refuse_low(rim: Rim, least: float) -> None:
-    """Raise CaseError for ground beside a body with a height (m) in which no useful element fits."""
+    """Raise CaseError for ground beside a body between whose heights no useful element (m) fits."""
     surfaces = {f"the surface beyond the {side} side": level.surface for side, level in rim.levels.items()}
     highest = max(rim.tops) if rim.tops else rim.box[3]
     heights = {"the lower side of the disks": rim.box[1], **surfaces}

@@ -13,7 +13,7 @@ from dembound.boundaries.support import Edge, Incident, SupportBuilder
 from dembound.casefile.disks.outside import CONTINUUM
 from dembound.disks.free_surface import mass_of
 from dembound.disks.incident import IncidentForces
-from dembound.disks.outside_mesh import Level, Outline, Rim, box_of, mass_extent, medium_of, on_top
+from dembound.disks.outside_mesh import Level, Outline, box_of, mass_extent, medium_of, on_top
 from dembound.disks.outside_settings import Settings
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.wall import CutBonds, Wall, lag_of
@@ -24,7 +24,7 @@ from dembound.kernels.wall import tie_forces
 from dembound.motion.layout import Layout
 from dembound.outside.body import GridBody
 from dembound.outside.edges import free_edges
-from dembound.packings.cut import CutContacts, cut_contacts
+from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly
 from dembound.table import Box
 
@@ -235,8 +235,7 @@ def surroundings_of(
     Raises CaseError if the packing's sides cut no bonds.
     """
     sides, size, rim, mesh = outline
-    cut = cut_contacts(ground.brick, body, sides, mesh.periodic)
-    cut = cut.only(_is_ground(ground, body, cut, rim))
+    cut = cut_contacts(ground.brick, body, sides, mesh.periodic, rim.ends)
     if len(cut.node) == 0:
         raise CaseError([f"boundary.{sides[0]}: cuts no bonds, so nothing can be tied to the continuum"])
     massless: dict[str, float | np.ndarray] = {**rim.massless}
@@ -257,12 +256,3 @@ def surroundings_of(
     return Surroundings(
         sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, rim.levels, twin, surface_mass
     )
-
-
-def _is_ground(ground: PackedMaterial, body: Assembly, cut: CutContacts, rim: Rim) -> np.ndarray:
-    """Whether the disks beyond are there, at cut contacts (e,): not above ground that is lower than the body."""
-    above = body.positions[cut.node, 1] + cut.vectors(ground.brick)[:, 1]
-    there = np.ones(len(cut.node), dtype=np.bool_)
-    for side, level in rim.levels.items():
-        there &= (cut.side != SIDES.index(side)) | (above < level.height)
-    return there

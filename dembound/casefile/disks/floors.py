@@ -25,30 +25,38 @@ def floors(holes: Sequence[Hole], packing: Packing, ground: Ground, boundary: Ma
     return {side: floor for side, floor in found.items() if floor is not None}
 
 
-def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
-    """What cannot be where the ground beyond a side is lower: all for which it would have to be a half-space.
+def lowered(found: Mapping[str, Floor], boundary: Mapping[str, Any]) -> dict[str, Floor]:
+    """Those floors at sides beyond which a continuum is as high; an invalid side is None."""
+    return {side: floor for side, floor in found.items() if (table := boundary.get(side)) and table.is_outside}
 
-    A table or an entry that is invalid on its own is None.
-    """
+
+def lowered_in(tables: Mapping[str, Any]) -> dict[str, Floor]:
+    """The same for the tables of a case; one that is invalid on its own, or an entry that is, is None."""
     packing, ground, boundary = (tables[key] for key in ("packing", "ground", "boundary"))
-    if not (packing and ground):
-        return
     holes = [hole for hole in tables["hole"] if hole]
-    lower = {
-        side: floor.height
-        for side, floor in floors(holes, packing, ground, boundary).items()
-        if (table := boundary.get(side)) and table.is_outside
-    }
+    return lowered(floors(holes, packing, ground, boundary), boundary) if packing and ground else {}
+
+
+def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
+    """What cannot be where the ground beyond a side is lower, as it would have to be a half-space for it."""
+    lower = lowered_in(tables)
     if not lower:
         return
-    where = " and ".join(f"at y = {height:.4g} m beyond the {side} side" for side, height in lower.items())
-    instead = "end the holes inside the disks, with the surface at its height at both sides"
-    no_half_space = f"as the ground is no half-space, with its surface {where}; {instead}"
+    where = " and ".join(f"at y = {floor.height:.4g} m beyond the {side} side" for side, floor in lower.items())
+    no_half_space = (
+        f"as the ground is no half-space, with its surface {where}; end the holes inside the disks, with the surface at "
+        "its height at both sides"
+    )
     if tables["incident"]:
         yield f"incident: what the surface sends back of the wave is not known, {no_half_space}"
-    for side, table in boundary.items():
+    for side, table in tables["boundary"].items():
         for motion in table.waves if table and table.is_outside else ():
             yield f"boundary.{side}.wave_{motion}: the motion far from the disks is not known, {no_half_space}"
     for place, load in numbered("load", tables["load"]):
         if load.is_everywhere and (load.wave is not None or not tables["static"]):
-            yield f"{place}: acts on all disks and needs [static], without a wave, {no_half_space}"
+            yield f"{place}: acts on all disks, which needs a [static] stage and no wave, {no_half_space}"
+    if static := tables["static"]:
+        for side in SIDEWAYS:
+            table, own = tables["boundary"].get(side), static.boundary.get(side)
+            if table and table.is_outside and not (own and 0 in own.prescribed(0)):
+                yield f'static.boundary.{side}: must be "roller" or "fixed", as the ground beyond is no half-space'

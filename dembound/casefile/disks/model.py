@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from dembound.casefile.disks.floors import floors
+from dembound.casefile.disks.floors import floors, lowered
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import IncidentWave
 from dembound.casefile.disks.load import Load
@@ -87,10 +87,11 @@ class DiskCase(Case):
 
         Beyond sides with a continuum there is one if the ground moves or rests under forces of its own there: under
         waves from below, a static stage, or a load on all of it. The continuum then has the difference from it only.
+        Where the ground is lower beyond one of them no column represents it.
         """
         if self.free_field_sides:
             return self.free_field_sides
-        if any(self.periodic):
+        if any(self.periodic) or lowered(self.floors, self.boundary):
             return ()
         everywhere = any(load.is_everywhere for load in self.load)
         driven = any(self.boundary[side].waves for side in self.outside_sides)
