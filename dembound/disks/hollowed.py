@@ -46,9 +46,7 @@ def hollowed(
     beyond = {"free field": case.free_field_sides, "continuum": case.outside_sides}
     below = {"free field": {}, "continuum": floors}
     problems = [
-        line
-        for what in beyond
-        for line in _at_sides(case, brick, body, kept, holes, what, beyond[what], below[what])
+        line for what in beyond for line in _at_sides(case, brick, body, kept, holes, what, beyond[what], below[what])
     ]
     if problems:
         raise CaseError(problems)
@@ -100,9 +98,7 @@ def _is_level(floor: Floor, lost: np.ndarray, remain: np.ndarray, diameter: floa
     return is_wide and bool((lost > floor.height - diameter).all() and (remain < floor.height + ON_IT * diameter).all())
 
 
-def _mistakes(
-    what: str, sides: np.ndarray, beyond: str, uneven: Mapping[str, Floor], diameter: float
-) -> list[str]:
+def _mistakes(what: str, sides: np.ndarray, beyond: str, uneven: Mapping[str, Floor], diameter: float) -> list[str]:
     """The mistakes of a hole at some sides, by their numbers (k,); none without any. uneven : at these, by side."""
     names = [SIDES[number] for number in np.unique(sides)]
     flat, others = [name for name in names if name in uneven], [name for name in names if name not in uneven]

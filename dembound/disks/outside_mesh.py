@@ -162,9 +162,7 @@ class Rim(NamedTuple):
         """Heights (m) of the free surface beyond the left and the right side; None: as high as the body's."""
         if not self.levels:
             return None
-        left, right = (
-            self.levels[side].surface if side in self.levels else self.box[3] for side in ("left", "right")
-        )
+        left, right = (self.levels[side].surface if side in self.levels else self.box[3] for side in ("left", "right"))
         return left, right
 
 
@@ -245,13 +243,14 @@ def _refuse_low(rim: Rim, least: float) -> None:
     heights = {"the lower side of the disks": rim.box[1], **surfaces}
     heights |= {"the surface beside the disks": rim.box[3]} if highest == rim.box[3] else {}
     order = sorted(heights, key=lambda name: heights[name])
+    least_is = f"at least {least:.4g} m above it, the smallest useful element"
     for low, high in pairwise(order):
         apart = heights[high] - heights[low]
         if WHOLE * rim.box[3] < apart < least:
             raise CaseError(
                 [
-                    f"hole: {high}, y = {heights[high]:.4g} m, is {apart:.4g} m above {low}; must be at the same height, "
-                    f"or at least {least:.4g} m above it, the smallest useful element"
+                    f"hole: {high}, y = {heights[high]:.4g} m, is {apart:.4g} m above {low}; must be "
+                    f"{'as high, or ' if low in surfaces else ''}{least_is}"
                 ]
             )
 

@@ -200,6 +200,17 @@ def _rows_to(box: Box, tops: tuple[float, float], settings: Settings) -> dict[st
     return {"rows": rows, "levels": levels}
 
 
+def expected_tops(case: DiskCase, box: Box) -> tuple[float, float] | None:
+    """Heights (m) of the free surface left and right of a box of a case that reaches it; None: as high as the box.
+
+    Without what a skin takes off them.
+    """
+    if not case.floors or box[3] < (1.0 - ROUNDING) * case.size[1]:
+        return None
+    left, right = (case.floors[side].height if side in case.floors else box[3] for side in ("left", "right"))
+    return left, right
+
+
 def least_element(case: DiskCase, diameter: float) -> float:
     """Smallest useful side (m) of elements beside disks of this mean diameter, m."""
     return choice.least_size(case.outside.order, diameter, is_random=case.packing.packed_under_stress)

@@ -68,7 +68,7 @@ class Surroundings:
         return np.any((places < low - self._near) | (places > high + self._near), axis=1)
 
     def height_at(self, places: np.ndarray) -> np.ndarray:
-        """Height (k,) m up to which there is ground at places (k, 2) m beyond sides where it is lower, else infinite."""
+        """Heights (k,) m up to which there is ground at places (k, 2) m beyond lower sides; infinite at others."""
         left, _, right, _ = self.box
         x, height = places[:, 0], np.full(len(places), np.inf)
         for side, level in self.levels.items():
@@ -76,7 +76,7 @@ class Surroundings:
         return height
 
     def allowed(self, places: np.ndarray) -> np.ndarray:
-        """The places (k, 2) m, those in layers or beyond, or above the ground, moved to the nearest ones that are not."""
+        """The places (k, 2) m, those in layers, beyond, or above lower ground moved to the nearest that are not."""
         mesh = self.body.mesh
         (low, high), thickness = mesh.between_layers, np.array([axis.thickness for axis in mesh.axes])
         too_low = (thickness[:, 0] > 0.0) & (places < low - self._near)
@@ -87,7 +87,7 @@ class Surroundings:
 
     @property
     def depths(self) -> dict[str, float | np.ndarray]:
-        """How deep free edges lie below those of the ground, m, by side: where it is lower somewhere, of each node (n,)."""
+        """How deep free edges lie below those of the ground, m, by side; of each node (n,) where it is lower."""
         if not self.levels:
             return {**self.skins}
         lower = {side: level.floor - level.surface for side, level in self.levels.items()}

@@ -43,8 +43,9 @@ def floor_beside(holes: Sequence[Hole], box: Box, side: str, diameter: float) ->
     last = int(np.argmax(solid))
     if last == 0:
         return None
-    below = float(down[last]) if last < len(down) else bottom
-    height = root(lambda y: -1.0 if is_open(beside, y)[0] else 1.0, below, float(down[last - 1]))
+    height = bottom
+    if last < len(down):
+        height = root(lambda y: -1.0 if is_open(beside, y)[0] else 1.0, float(down[last]), float(down[last - 1]))
     away = np.arange(0.5 * diameter, right - left, diameter / FINE)
     x = edge + inwards * away
     level = is_open(x, height + 0.5 * diameter) & ~is_open(x, height - 0.5 * diameter)

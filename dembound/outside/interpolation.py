@@ -17,7 +17,7 @@ class Interpolation(NamedTuple):
 def located(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The element (k,) of a mesh nearest to each of the points (k, 2) m, and their places (k, 2) in it, −1 … 1 inside.
 
-    Above the free surface beside the box it is the highest one there. Of points beyond periodic sides it is that at their images.
+    Above the free surface beside the box it is the highest one there, and beyond periodic sides that at their images.
     """
     places = np.asarray(points) - mesh.origin
     places = np.where(mesh.periodic, places % mesh.size, places)

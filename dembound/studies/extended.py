@@ -207,21 +207,21 @@ def _sentence(case: Case, what: str, moving: list[str]) -> str:
 def _floors_beyond(case: DiskCase, by: tuple[float, float], size: tuple[float, float]) -> list[Hole]:
     """The holes of a case shifted by (x, y) m that go on as level floors up to the sides of an enlarged one, m."""
     ends = {"left": (0.0, by[0]), "right": (by[0] + case.packing.extent[0], size[0])}
+    first = case.floors_of([hole for hole in case.hole if hole.stage == "before"])
+    each = [("before", side, floor) for side, floor in first.items()]
+    each += [("after", side, floor) for side, floor in case.floors.items() if first.get(side) != floor]
     return [
-        Rectangle(
-            type="rectangle",
-            name=f"beyond_{side}",
-            stage="after" if any(each.stage == "after" and _leaves(case, each, side) for each in case.hole) else "before",
-            corners=(ends[side][0], floor.height + by[1], ends[side][1], size[1]),
+        Rectangle.model_validate(
+            {
+                "type": "rectangle",
+                "name": f"{stage}_{side}",
+                "stage": stage,
+                "corners": (ends[side][0], floor.height + by[1], ends[side][1], size[1]),
+            }
         )
-        for side, floor in case.floors.items()
+        for stage, side, floor in each
         if case.side(side).is_outside and ends[side][0] < ends[side][1]
     ]
-
-
-def _leaves(case: DiskCase, hole: Hole, side: str) -> bool:
-    """Whether a hole is needed for the floor at a side."""
-    return case.floors_of([each for each in case.hole if each is not hole]).get(side) != case.floors[side]
 
 
 def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
@@ -232,7 +232,8 @@ def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
         "scene cannot be extended there"
         for hole in case.hole
         for side, plane in planes.items()
-        if bricks.get(side, 0) and _reaches(hole.box, side, plane)
+        if bricks.get(side, 0)
+        and _reaches(hole.box, side, plane)
         and not (side in case.floors and case.side(side).is_outside)
     ]
     if problems:

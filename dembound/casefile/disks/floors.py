@@ -44,8 +44,8 @@ def lowered_problems(tables: Mapping[str, Any]) -> Iterator[str]:
         return
     where = " and ".join(f"at y = {floor.height:.4g} m beyond the {side} side" for side, floor in lower.items())
     no_half_space = (
-        f"as the ground is no half-space, with its surface {where}; end the holes inside the disks, with the surface at "
-        "its height at both sides"
+        f"as the ground is no half-space, with its surface {where}; end the holes inside the disks, with the surface "
+        "at its height at both sides"
     )
     if tables["incident"]:
         yield f"incident: what the surface sends back of the wave is not known, {no_half_space}"
