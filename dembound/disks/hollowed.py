@@ -68,34 +68,29 @@ def _at_sides(
     kept : (m,) indices of the disks that remain.
     """
     cut = cut_contacts(brick, body, sides, case.periodic)
-    remains = np.isin(cut.node, kept)
+    remains, diameter = np.isin(cut.node, kept), brick.mean_diameter
     wrong = np.zeros(len(cut.node), dtype=np.bool_)
     uneven = {}
     for number, side in enumerate(SIDES):
         here, up = cut.side == number, body.positions[cut.node, 1]
         lost = here & ~remains
-        if (floor := floors.get(side)) is not None:
-            if _is_level(floor, up[lost], up[here & remains], brick.mean_diameter):
-                continue
+        if (floor := floors.get(side)) is None:
+            wrong |= lost
+        elif floor.width < BAND * diameter:
             uneven[side] = floor
-        wrong |= lost
+            wrong |= lost
+        elif np.any(up[here & remains] > floor.height + ON_IT * diameter):
+            wrong |= lost
+        else:  # of random packings a floor also leaves disks without connection
+            wrong |= lost & (up < floor.height - diameter)
     lost = cut.only(wrong)
     problems, inside = [], np.zeros(len(lost.node), dtype=np.bool_)
     for place, hole in numbered("hole", case.hole):
         if hole in holes:
             taken = hole.contains(body.positions[lost.node])
-            problems += _mistakes(f"{place}: reaches", lost.side[taken], beyond, uneven, brick.mean_diameter)
+            problems += _mistakes(f"{place}: reaches", lost.side[taken], beyond, uneven, diameter)
             inside |= taken
-    return problems or _mistakes("hole: cuts off disks at", lost.side[~inside], beyond, {}, brick.mean_diameter)
-
-
-def _is_level(floor: Floor, lost: np.ndarray, remain: np.ndarray, diameter: float) -> bool:
-    """Whether a floor is wide, and has the disks at its side that are lost above it, and those that remain below.
-
-    lost, remain : their heights, m. Of random packings those that a cut leaves without connection are lost, too.
-    """
-    is_wide = floor.width >= BAND * diameter
-    return is_wide and bool((lost > floor.height - diameter).all() and (remain < floor.height + ON_IT * diameter).all())
+    return problems or _mistakes("hole: cuts off disks at", lost.side[~inside], beyond, {}, diameter)
 
 
 def _mistakes(what: str, sides: np.ndarray, beyond: str, uneven: Mapping[str, Floor], diameter: float) -> list[str]:

@@ -155,10 +155,13 @@ def _round(scene: DiskScene, clearance: float) -> Box:
     lows, highs = (np.array(corners) for corners in zip(*extents(case), strict=True))
     size, origin = np.array(case.size), np.array(case.packing.origin)
     origin[1] = 0.0
-    low = origin + brick * np.floor((lows.min(axis=0) - clearance - origin) / brick)
+    least = least_element(case, scene.ground.brick.mean_diameter)
+    lowest = lows.min(axis=0) - clearance
+    lowest[1] = min([lowest[1], *(floor.height - least for floor in case.floors.values())])
+    low = origin + brick * np.floor((lowest - origin) / brick)
     high = origin + brick * np.ceil((highs.max(axis=0) + clearance - origin) / brick)
     low, high = np.maximum(low, 0.0), np.minimum(high, size)
-    if size[1] - high[1] < max(least_element(case, scene.ground.brick.mean_diameter), clearance):
+    if size[1] - high[1] < max(least, clearance):
         high[1] = size[1]
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
