@@ -290,11 +290,18 @@ def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
             yield middle, middle
 
 
+def _why_nothing(case: DiskCase) -> str:
+    """Why there is nothing that the size of elements could follow from, in words."""
+    if case.load:
+        return "its loads are steady and settle in the static stage, so that no waves are there to choose it from"
+    return "the case has no wave or load to choose it from"
+
+
 def _element(case: DiskCase, medium: Medium, box: Box, sides: Sequence[str]) -> float:
     """Largest side (m) of elements that suits the waves, and the fields beside forces and holes."""
     keys, signals = case.outside, signals_of(case)
     if not signals:
-        raise CaseError(["outside.element: is absent, but the case has no wave or load to choose it from; give it"])
+        raise CaseError([f"outside.element: is absent, but {_why_nothing(case)}; give the largest side of elements, m"])
     return min(
         choice.element_size(signals, medium, keys.order, keys.accuracy),
         choice.size_near(clearance(case, box, sides), keys.order, keys.accuracy),

@@ -176,7 +176,7 @@ def test_what_moves_on_under_a_steady_load_is_said(changes: dict, said: str) -> 
 
 
 def test_a_lattice_without_stress_is_not_warned_of(bar) -> None:
-    assert warned(bar({**SLOW, "wave.pulse.amplitude": 1e3})) == []
+    assert warned(bar({**SLOW, "wave.pulse.amplitude": 10.0})) == []
 
 
 @pytest.mark.parametrize(("period", "long"), [(0.99, False), (1.01, True)])
@@ -389,3 +389,26 @@ def test_a_packing_that_was_given_its_speed_or_no_speed_is_not_warned_of(bar) ->
     assert warned(bar({**soft, "material.match": "assembly"})) == []
     moduli = {"density": 2500.0, "emod": 2.25e9, "pb_emod": 0.25e9}
     assert warned(bar({**DENSE, "motion.held": [], "material": moduli})) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (
+            {"wave.pulse.amplitude": 50.0},
+            "wave.pulse: its velocity, 50 m/s, is 10 % of that of waves, 500 m/s, and so are",
+        ),
+        ({"wave.pulse.amplitude": 14.0}, ""),
+        (
+            {"load": [{"name": "weight", "acceleration": [0.0, -9.81e5]}]},
+            "load.weight: its stress ρaL, 2453 MPa, is 98 % of the stiffness, 2500 MPa, and so are strains; the elastic law",
+        ),
+        ({"load": [{"name": "weight", "acceleration": [0.0, -9.81]}]}, ""),
+    ],
+)
+def test_strains_far_beyond_those_of_the_elastic_law_are_warned_of(bar, changes: dict, said: str) -> None:
+    """Above 3 %: velocities over 500 m/s, stresses over 2.5 GPa; a body 1 m high."""
+    free = {"motion.held": []}
+    lines = [line for line in warned(bar(free | changes)) if "the elastic law is for small ones" in line]
+    assert [line.startswith(said) for line in lines] == [True] * bool(said)
+    assert not any("for small ones" in line for line in warned(bar(free | changes | {"material.law": "linearpbond"})))
