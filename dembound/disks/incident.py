@@ -32,8 +32,9 @@ from functools import cached_property
 import numpy as np
 
 from dembound.boundaries.support import Incident, SupportBuilder
+from dembound.disks.cut_bonds import GRADIENT
 from dembound.disks.tie_forces import TieForces, forces_at_rest
-from dembound.disks.wall import GRADIENT, Wall
+from dembound.disks.wall import Wall
 from dembound.kernels.sums import weighted_sums
 from dembound.outside.gll import Rule
 from dembound.outside.medium import Medium

@@ -23,10 +23,11 @@ import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.boundaries.support import SupportBuilder
+from dembound.disks.cut_bonds import CutBonds
 from dembound.disks.ground_waves import GroundWaves, NearPlaces
 from dembound.disks.surroundings import Surroundings
 from dembound.disks.tie_forces import TieForces, forces_at_rest
-from dembound.disks.wall import CutBonds, Wall
+from dembound.disks.wall import Wall
 from dembound.kernels.sums import add_weighted_sums, weighted_sums
 from dembound.outside.gll import Rule
 from dembound.outside.plane_waves import PlaneWave

@@ -11,12 +11,13 @@ import numpy as np
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.boundaries.support import Edge, Incident, SupportBuilder
 from dembound.casefile.disks.outside import CONTINUUM
+from dembound.disks.cut_bonds import CutBonds
 from dembound.disks.free_surface import mass_of
 from dembound.disks.incident import IncidentForces
 from dembound.disks.outside_mesh import Level, Outline, box_of, mass_extent, medium_of, on_top
 from dembound.disks.outside_settings import Settings
 from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.wall import CutBonds, Wall, lag_of
+from dembound.disks.wall import Wall, lag_of
 from dembound.errors import CaseError
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import WallTies

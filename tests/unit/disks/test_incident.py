@@ -7,10 +7,11 @@ import pytest
 
 from dembound.boundaries.support import SupportBuilder
 from dembound.casefile.disks.material import Material
+from dembound.disks.cut_bonds import CutBonds
 from dembound.disks.incident import IncidentForces, PlaneWaves
 from dembound.disks.packed_material import PackedMaterial, make_packed_material
 from dembound.disks.surroundings import medium_of
-from dembound.disks.wall import CutBonds, Wall
+from dembound.disks.wall import Wall
 from dembound.kernels.wall import tie_forces
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import Around, Mesh
