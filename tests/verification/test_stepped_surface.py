@@ -131,8 +131,11 @@ def test_at_rest_it_stays(lab, pattern: str) -> None:
     settled = settle(scene)
     step, datum = choose_step(scene)[0], settled.start.displacement
     simulation = Simulation(scene, step, system=DiskSystem(scene, step, settled.start), datum=datum)
+    ledger = Ledger(simulation, 100)
+    simulation.track(ledger)
     simulation.run(500)
 
+    assert ledger.entries[-1].supplied == 0.0
     assert scene.seam is None
     assert np.abs(simulation.state.velocity).max() < 1e-12
     x, y = scene.assembly.positions.T
