@@ -39,12 +39,9 @@ def hollowed(
 
     floors : those that these holes leave, together with any made before.
 
-    Raises CaseError for holes without a particle in them, and for those that reach a side beyond which the ground goes
-    on, but for floors beside a continuum.
+    Raises CaseError for holes that reach a side beyond which the ground goes on, but for floors beside a continuum.
     """
-    each = [hole.contains(body.positions) for hole in holes]
-    _must_remove(case, {hole.name for hole, inside in zip(holes, each, strict=True) if not inside.any()})
-    removed = np.logical_or.reduce(each)
+    removed = np.logical_or.reduce([hole.contains(body.positions) for hole in holes])
     left, kept = body.without(removed)
     beyond = {"free field": case.free_field_sides, "continuum": case.outside_sides}
     below = {"free field": {}, "continuum": floors}
@@ -54,17 +51,6 @@ def hollowed(
     if problems:
         raise CaseError(problems)
     return left, {side: edge_without(edge, kept) for side, edge in edges.items()}, kept
-
-
-def _must_remove(case: DiskCase, empty: set[str]) -> None:
-    """Raise CaseError for holes, by their names, in which no particle is centred."""
-    problems = [
-        f"{place}: no particle is centred in it; make it larger than the gaps between them, or leave it out"
-        for place, hole in numbered("hole", case.hole)
-        if hole.name in empty
-    ]
-    if problems:
-        raise CaseError(problems)
 
 
 def _at_sides(

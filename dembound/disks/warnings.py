@@ -10,6 +10,7 @@ import numpy as np
 from dembound.boundaries import SIDES, Motion, axis_of_motion
 from dembound.casefile.disks.load import Load
 from dembound.casefile.magnitudes import grip_stress, is_quasi_static, stress_in_words, stress_warnings, time_warnings
+from dembound.casefile.messages import numbered
 from dembound.disks.continuum_facts import continuum_warnings
 from dembound.disks.incident_facts import arrival
 from dembound.disks.matching import homogenised_beta, reflected
@@ -56,6 +57,7 @@ Its error is of the order of the strain. Rock and soil break at a tenth of this,
 def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
     """All of them, one line each; time_step in s."""
     return [
+        *_empty_holes(scene),
         *_steady_without_static(scene),
         *_locked_in(scene),
         *_settles_in_tension(scene),
@@ -69,6 +71,21 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *_speed_of_the_packing(scene),
         *continuum_warnings(scene, scene.case.run.duration / time_step),
     ]
+
+
+def _empty_holes(scene: DiskScene) -> Iterator[str]:
+    """Holes that remove no disk, as none of the packing is centred in them."""
+    brick, (left, bottom, right, top) = scene.ground.brick, scene.case.packing.box
+    origin = np.array([left, bottom])
+    for place, hole in numbered("hole", scene.case.hole):
+        x0, y0, x1, y1 = hole.box
+        low, high = np.array([max(x0, left), max(y0, bottom)]), np.array([min(x1, right), min(y1, top)])
+        first, last = np.floor((low - origin) / brick.size), np.floor((high - origin) / brick.size)
+        last = np.minimum(last, np.array(scene.case.packing.copies) - (not brick.edge_rows.any()))
+        across, up = (np.arange(begin, end + 1.0) for begin, end in zip(first, last, strict=True))
+        tiles = np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 1, 2)
+        if not hole.contains((origin + tiles * brick.size + brick.positions).reshape(-1, 2)).any():
+            yield f"{place}: no particle is centred in it, so it removes none"
 
 
 def _steady_without_static(scene: DiskScene) -> Iterator[str]:

@@ -136,11 +136,3 @@ def test_a_force_on_the_floor_beyond_is_on_the_continuum() -> None:
     assert (loaded >= made.outside.first).all()
     assert made.steady_load[1].sum() == pytest.approx(-8e3, rel=1e-12)
     assert made.positions[loaded, 1] == pytest.approx(np.full(len(loaded), 12.0), abs=1e-9)
-
-
-def test_a_hole_without_a_particle_is_refused() -> None:
-    """Between four disks, or above all of them."""
-    for points in ([(9.6, 9.6), (10.4, 9.6), (10.4, 10.4)], [(9.0, 19.6), (12.0, 19.6), (12.0, 22.0), (9.0, 22.0)]):
-        assert line(*points) == (
-            "hole[1, cut]: no particle is centred in it; make it larger than the gaps between them, or leave it out"
-        )

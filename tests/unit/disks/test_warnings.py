@@ -412,3 +412,20 @@ def test_strains_far_beyond_those_of_the_elastic_law_are_warned_of(bar, changes:
     lines = [line for line in warned(bar(free | changes)) if "the elastic law is for small ones" in line]
     assert [line.startswith(said) for line in lines] == [True] * bool(said)
     assert not any("for small ones" in line for line in warned(bar(free | changes | {"material.law": "linearpbond"})))
+
+
+def test_holes_that_remove_nothing_are_warned_of(bar) -> None:
+    """Between four disks of 0.5 m, above the rows, or with the centre of a single one at their upper right."""
+    between, above, one = (
+        {"name": name, "type": "rectangle", "corners": corners}
+        for name, corners in (
+            ("between", [1.8, 0.3, 2.2, 0.7]),
+            ("above", [3.0, 0.8, 4.0, 2.0]),
+            ("one", [5.8, 0.3, 6.26, 0.76]),
+        )
+    )
+    lines = warned(bar({"packing.size": [10.0, 1.0], "hole": [between, above, one]}))
+    assert [line for line in lines if line.startswith("hole")] == [
+        f"hole[{number}, {name}]: no particle is centred in it, so it removes none"
+        for number, name in ((1, "between"), (2, "above"))
+    ]
