@@ -27,3 +27,21 @@ def one_across() -> Mesh:
     return Mesh.around(
         (0.0, 0.0, 6.0, 4.0), (6.0, 2.0), ORDER, margin=Around(bottom=1), layer=Around(bottom=2), periodic=(True, False)
     )
+
+
+def below() -> Mesh:
+    """Round a box that reaches the free surface."""
+    return Mesh.around((0.0, 0.0, 6.0, 2.0), (3.0, 2.0), ORDER, margin=Around(1, 1, 1, 0), layer=Around(1, 1, 1, 0))
+
+
+def stepped() -> Mesh:
+    """Round a box of 6 × 9 m at the surface, beside which that is 6 m lower at the left and 4 m at the right."""
+    return Mesh.around(
+        (0.0, 0.0, 6.0, 9.0),
+        (3.0, 3.0),
+        ORDER,
+        margin=Around(2, 1, 1, 0),
+        layer=Around(1, 1, 1, 0),
+        rows=(3.0, 2.0, 4.0),
+        levels=(1, 2),
+    )

@@ -52,6 +52,8 @@ def continuum_facts(scene: DiskScene) -> dict[str, str]:
     facts = {"continuum": _elements(outside)}
     if signals:
         facts["continuum waves"] = _waves(scene, outside, signals)
+    if outside.levels:
+        facts["ground beyond"] = _levels(outside)
     if any(abs(depth) >= SHOWN for depth in outside.skins.values()):
         facts["its free edges"] = _skins(outside)
     if scene.foot is not None:
@@ -81,6 +83,21 @@ def _from_to(sizes: np.ndarray) -> str:
 def _skins(outside: Surroundings) -> str:
     """How far inside those of the body the continuum's free edges lie."""
     return ", ".join(f"{depth:.3f} m inside the {side} side" for side, depth in outside.skins.items())
+
+
+def _levels(outside: Surroundings) -> str:
+    """Heights of the ground beyond left and right sides where it is lower, and where the continuum ends there."""
+    return ", ".join(
+        f"up to y = {level.floor:.4g} m at the {side}" + _less(level.floor - level.surface)
+        for side, level in outside.levels.items()
+    )
+
+
+def _less(depth: float) -> str:
+    """That the continuum ends below or above a floor, if it does."""
+    if abs(depth) < SHOWN:
+        return ""
+    return f" (the continuum {abs(depth):.3f} m {'below' if depth > 0.0 else 'above'} that)"
 
 
 def _waves(scene: DiskScene, outside: Surroundings, signals: Sequence[Signal]) -> str:

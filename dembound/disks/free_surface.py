@@ -16,6 +16,7 @@ import numpy as np
 
 from dembound.disks.homogenise import Network
 from dembound.laws import Stiffness
+from dembound.outside.edges import edge_lengths
 from dembound.outside.mesh import Mesh
 from dembound.packings.brick import Brick
 from dembound.packings.tiling import tile
@@ -61,18 +62,34 @@ def skin_depths(brick: Brick, stiffness: Stiffness, tensor: np.ndarray, axis: in
     return 0.5 * thinner + higher, 0.5 * thinner - higher
 
 
+def cut_at(brick: Brick, height: float) -> Brick:
+    """The same packing in bricks that end at a height (m) above the lower edge of one of its bricks.
+
+    Disks centred on it are above. Its rows along y = 0 are rows inside of it.
+    """
+    lowered = brick.positions[:, 1] - height
+    over = np.floor(lowered / brick.size[1]).astype(np.int64)
+    positions, images, rows = brick.positions.copy(), brick.images.copy(), brick.edge_rows.copy()
+    positions[:, 1] = lowered - over * brick.size[1]
+    images[:, 1] += over[brick.pairs[:, 1]] - over[brick.pairs[:, 0]]
+    rows[:, 1] = False
+    return replace(brick, positions=positions, images=images, edge_rows=rows)
+
+
 def inset(box: Box, skins: Mapping[str, float]) -> Box:
     """A box without the skins at some of its sides: side -> depth, m."""
     left, bottom, right, top = (skins.get(side, 0.0) for side in ("left", "bottom", "right", "top"))
     return box[0] + left, box[1] + bottom, box[2] - right, box[3] - top
 
 
-def mass_of(skins: Mapping[str, float], mesh: Mesh, density: float) -> np.ndarray:
+def mass_of(skins: Mapping[str, float | np.ndarray], mesh: Mesh, density: float) -> np.ndarray:
     """Mass ρδ (n,) kg of skins on the nodes of a mesh's outer edges: side -> depth (m), of this density (kg/m³).
+
+    The depth is that everywhere or at each node (n,).
 
     Where the skin is stiff, nodes keep half their mass; only elements smaller than some two diameters are that light.
     """
-    added = sum((depth * density * mesh.edge_lengths(side) for side, depth in skins.items()), np.zeros(mesh.count))
+    added = sum((depth * density * edge_lengths(mesh, side) for side, depth in skins.items()), np.zeros(mesh.count))
     return np.maximum(added, (LEAST_MASS - 1.0) * density * mesh.areas)
 
 

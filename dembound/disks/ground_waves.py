@@ -15,9 +15,9 @@ import numpy as np
 from dembound.boundaries.support import Incident
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.incident import IncidentWave
+from dembound.disks.cut_bonds import GRADIENT
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.surroundings import Surroundings
-from dembound.disks.wall import GRADIENT
 from dembound.errors import CaseError
 from dembound.outside.gll import Rule
 from dembound.outside.medium import Medium

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dembound.boundaries.half_mass import half_contacts, half_edges
+from dembound.disks.cut_bonds import CutBonds
 from dembound.disks.outside_mesh import Box, box_of
-from dembound.disks.wall import CutBonds
 from dembound.errors import CaseError
 from dembound.holes import Hole
 from dembound.holes.outline import Outline

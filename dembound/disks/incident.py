@@ -32,9 +32,10 @@ import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.boundaries.support import Incident, SupportBuilder
+from dembound.disks.cut_bonds import CutBonds
 from dembound.disks.ground_waves import GroundWaves, NearPlaces
 from dembound.disks.surroundings import Surroundings
-from dembound.disks.wall import CutBonds, Wall
+from dembound.disks.wall import Wall
 from dembound.kernels.sums import add_weighted_sums, weighted_sums
 from dembound.kernels.wall import tie_forces
 from dembound.outside.gll import Rule

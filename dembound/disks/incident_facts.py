@@ -9,6 +9,7 @@ import numpy as np
 
 from dembound.disks.ground_waves import GroundWaves, reference_point
 from dembound.disks.scene import DiskScene
+from dembound.disks.surroundings import Surroundings
 from dembound.outside.plane_waves import GRAZING, PlaneWave, critical_angle
 
 NAMES = {"sv": "SV", "p": "P"}
@@ -26,7 +27,7 @@ def incident_facts(scene: DiskScene) -> dict[str, str]:
     x, y = reference_point(scene.case)
     facts = {
         "incident wave": f"{NAMES[table.type]}, {_way(table.angle)}, with the velocity of wave {table.wave} at "
-        f"({x:.10g}, {y:.10g}) m{_along(waves.waves[0])}; reaches the disks at {arrival(scene, waves):.4g} s",
+        f"({x:.10g}, {y:.10g}) m{_along(waves.waves[0], outside)}; reaches the disks at {arrival(scene, waves):.4g} s",
     }
     if outside.free_surface is None:
         return facts | {"reflected waves": "none, as the ground has no surface"}
@@ -45,10 +46,10 @@ def _way(angle: float) -> str:
     return f"{abs(angle):g}° from the vertical to the {'right' if angle > 0.0 else 'left'}"
 
 
-def _along(wave: PlaneWave) -> str:
-    """The speed of its trace along the surface."""
-    slowness = abs(wave.slowness[0])
-    return f", at {1.0 / slowness:.5g} m/s along the surface" if slowness > STRAIGHT * abs(wave.slowness[1]) else ""
+def _along(wave: PlaneWave, outside: Surroundings) -> str:
+    """The speed of its trace along the surface, or along x where there is none."""
+    slowness, where = abs(wave.slowness[0]), "x" if outside.free_surface is None else "the surface"
+    return f", at {1.0 / slowness:.5g} m/s along {where}" if slowness > STRAIGHT * abs(wave.slowness[1]) else ""
 
 
 def arrival(scene: DiskScene, waves: GroundWaves) -> float:

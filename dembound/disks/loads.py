@@ -76,7 +76,7 @@ def _traction(load: Load, outside: Surroundings) -> Traction | None:
         raise _error(load, f"position: lies in the continuum, where a force needs a region at least {least:.4g} m wide")
     if load.region is None:
         return None
-    traction = traction_in(mesh, load.region, outside.skins)
+    traction = traction_in(mesh, load.region, outside.depths)
     if traction.absorbs:
         low, high = mesh.between_layers
         allowed = f"({low[0]:.10g}, {low[1]:.10g}) to ({high[0]:.10g}, {high[1]:.10g}) m"

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.reach import is_in
 from dembound.casefile.types import LAWS
-from dembound.disks.outside_settings import mesh_of, settings_of, signals_of
+from dembound.disks.outside_settings import expected_tops, mesh_of, settings_of, signals_of
 from dembound.disks.packed_material import nominal_moduli
 from dembound.kernels.lanes import LANES
 from dembound.motion.memory import largest, ledger_bytes, motion_bytes, must_fit, record_bytes
@@ -111,7 +111,8 @@ def _expected_grid(case: DiskCase) -> GridSizes | None:
     if "top" in sides and box[3] < (1.0 - TYPED) * case.size[1]:
         surface = case.size[1]
     settings = settings_of(case, medium, 2.0 * case.packing.radius, box, sides)
-    return GridSizes.of(mesh_of(settings, box, sides, surface=surface, periodic=case.periodic))
+    tops = None if any(case.periodic) else expected_tops(case, box)
+    return GridSizes.of(mesh_of(settings, box, sides, surface=surface, tops=tops, periodic=case.periodic))
 
 
 def _expected_probes(case: DiskCase) -> int:

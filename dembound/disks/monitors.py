@@ -132,6 +132,8 @@ class _Around:
             if (x, y) != monitor.position:
                 below = monitor.position[1] < self._lowest
                 where = "below the ground, where incident motion is not known" if below else "in the layer that absorbs"
+                if monitor.position[1] > self.outside.height_at(np.array([monitor.position]))[0]:
+                    where = "above the ground, which is lower beyond this side"
                 x, y = self._rounded(monitor.position, np.array([x, y]))
                 nearest = f"the nearest place allowed is ({x:.10g}, {y:.10g}) m"
                 problems.append(f"monitor[{number}, {monitor.name}].position: lies {where}; {nearest}")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -11,9 +13,11 @@ import numpy as np
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.free_surface import inset
+from dembound.disks.hollowed import ON_IT
 from dembound.disks.outside_settings import Settings, least_element, mesh_of, settings_of
 from dembound.disks.packed_material import PackedMaterial
 from dembound.errors import CaseError
+from dembound.holes.floor import Floor
 from dembound.outside.layer import LONG_WAVES
 from dembound.outside.medium import Medium
 from dembound.outside.mesh import WHOLE, Mesh
@@ -22,6 +26,8 @@ from dembound.table import Box
 
 NARROW = 2.0
 """Width, in elements, up to which waves only run straight away from a periodic body."""
+
+NO_FLOORS: Mapping[str, Floor] = MappingProxyType({})
 
 AT = (0, 2, 1, 3)
 """Where the edges of the sides are in a box, in the order of `SIDES`."""
@@ -72,6 +78,29 @@ class ElementSizes(NamedTuple):
         return cls(settings, box, (width, height), (across, up))
 
 
+class Level(NamedTuple):
+    """The ground beyond a side that stands lower than the disks.
+
+    floor : its height y as the hole has it, m. height : the same but for rounding, m: disks beyond with centres below
+    are there. mass_end, surface : where the mass of the packing and its continuum end, m.
+    """
+
+    floor: float
+    height: float
+    mass_end: float
+    surface: float
+
+    @classmethod
+    def of(cls, ground: PackedMaterial, body: Assembly, floor: Floor, side: str) -> Level:
+        """That beyond a side of a body in front of a floor; disks of the body on it that remain are below."""
+        near, rounding = float(np.abs(ground.brick.vectors[:, 0]).max()), ON_IT * ground.brick.mean_diameter
+        x, y = body.positions.T
+        highest = float(y[x < x.min() + near if side == "left" else x > x.max() - near].max())
+        height = floor.height + float(np.copysign(rounding, highest - floor.height + rounding))
+        mass_end, surface = ground.cut(height - float(body.origin[1]))
+        return cls(floor.height, height, height + mass_end, height + surface)
+
+
 class Rim(NamedTuple):
     """Where the continuum round a body begins, and where it ends at free surfaces.
 
@@ -80,19 +109,27 @@ class Rim(NamedTuple):
 
     box : left, bottom, right and top of what is left out for the body, m. surface : height of the free surface above a
     body in the ground, m; None: it reaches up to the ground's end. skins : depth (m) of free edges below those of the
-    packing, by side. massless : the same below where the mass ends.
+    packing, by side. massless : the same below where the mass ends. levels : the ground beyond left and right sides
+    where it is lower.
     """
 
     box: Box
     surface: float | None
     skins: dict[str, float]
     massless: dict[str, float]
+    levels: dict[str, Level]
 
     @classmethod
     def of(
-        cls, case: DiskCase, ground: PackedMaterial, body: Assembly, sides: Sequence[str], size: ElementSizes
+        cls,
+        case: DiskCase,
+        ground: PackedMaterial,
+        body: Assembly,
+        sides: Sequence[str],
+        size: ElementSizes,
+        floors: Mapping[str, Floor],
     ) -> Rim:
-        """That of a body with a continuum beyond some sides.
+        """That of a body with a continuum beyond some sides, and with floors at its left and right side.
 
         Raises CaseError if no element of the least useful height fits between a body and the surface above it.
         """
@@ -111,8 +148,22 @@ class Rim(NamedTuple):
             skins["top"] = ground.skin("top")
             surface = rim[3] + gap - skins["top"]
             massless["top"] = mass[3] + gap - surface
+        levels = {side: Level.of(ground, body, floor, side) for side, floor in floors.items() if side in sides}
         left, bottom, right, top = box
-        return cls((left, bottom, right, top), surface, skins, massless)
+        return cls((left, bottom, right, top), surface, skins, massless, levels)
+
+    @property
+    def ends(self) -> dict[str, float]:
+        """Heights (m) above which no disks are beyond a side, by side."""
+        return {side: level.height for side, level in self.levels.items()}
+
+    @property
+    def tops(self) -> tuple[float, float] | None:
+        """Heights (m) of the free surface beyond the left and the right side; None: as high as the body's."""
+        if not self.levels:
+            return None
+        left, right = (self.levels[side].surface if side in self.levels else self.box[3] for side in ("left", "right"))
+        return left, right
 
 
 class Outline(NamedTuple):
@@ -135,18 +186,36 @@ class Outline(NamedTuple):
         body: Assembly,
         sides: Sequence[str],
         periodic: tuple[bool, bool],
+        floors: Mapping[str, Floor] = NO_FLOORS,
     ) -> Outline:
-        """That of a body which is periodic along some axes.
+        """That of a body which is periodic along some axes, with floors at its left and right side.
 
         Raises CaseError for settings with which there is no mesh.
         """
         size = ElementSizes.of(case, ground, body, sides, periodic)
-        rim = Rim.of(case, ground, body, sides, size)
+        rim = Rim.of(case, ground, body, sides, size, floors)
+        _refuse_low(rim, min(least_element(case, ground.brick.mean_diameter), case.outside.element or np.inf))
         mirrors = [side for side in SIDES if case.side(side).is_mirror and not periodic[normal_axis(side)]]
         mesh = mesh_of(
-            size.settings, rim.box, sides, size.element, surface=rim.surface, periodic=periodic, mirrors=mirrors
+            size.settings,
+            rim.box,
+            sides,
+            size.element,
+            surface=rim.surface,
+            tops=rim.tops,
+            periodic=periodic,
+            mirrors=mirrors,
         )
         return cls(tuple(sides), size, rim, mesh)
+
+
+def on_top(mesh: Mesh, at_top: float, at_levels: Mapping[str, float]) -> np.ndarray:
+    """(n,) a value on the top of a mesh for all of its nodes, but for those beyond sides with values of their own."""
+    left, right, *_ = mesh.sides
+    x, values = mesh.positions[:, 0], np.full(mesh.count, at_top)
+    for side, value in at_levels.items():
+        values[x <= left if side == "left" else x >= right] = value
+    return values
 
 
 def _gap_above(case: DiskCase, body: Assembly) -> float:
@@ -165,6 +234,25 @@ def _refuse_thin(gap: float, least: float) -> None:
                 f"end at least {least:.4g} m below, the smallest useful element"
             ]
         )
+
+
+def _refuse_low(rim: Rim, least: float) -> None:
+    """Raise CaseError for ground beside a body between whose heights no useful element (m) fits."""
+    surfaces = {f"the surface beyond the {side} side": level.surface for side, level in rim.levels.items()}
+    highest = max(rim.tops) if rim.tops else rim.box[3]
+    heights = {"the lower side of the disks": rim.box[1], **surfaces}
+    heights |= {"the surface beside the disks": rim.box[3]} if highest == rim.box[3] else {}
+    order = sorted(heights, key=lambda name: heights[name])
+    least_is = f"at least {least:.4g} m above it, the smallest useful element"
+    for low, high in pairwise(order):
+        apart = heights[high] - heights[low]
+        if WHOLE * rim.box[3] < apart < least:
+            raise CaseError(
+                [
+                    f"hole: {high}, y = {heights[high]:.4g} m, is {apart:.4g} m above {low}; must be "
+                    f"{'as high, or ' if low in surfaces else ''}{least_is}"
+                ]
+            )
 
 
 def medium_of(ground: PackedMaterial) -> Medium:

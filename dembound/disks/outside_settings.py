@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -152,12 +153,14 @@ def mesh_of(
     element: tuple[float, float] | None = None,
     *,
     surface: float | None = None,
+    tops: tuple[float, float] | None = None,
     periodic: tuple[bool, bool] = (False, False),
     mirrors: Sequence[str] = (),
 ) -> Mesh:
     """The elements with these settings on some sides of a box (left, bottom, right, top; m).
 
     element : largest width and height, m; None: by the settings. surface : height of a free surface above the box, m.
+    tops : heights of the free surface left and right of a box that reaches it, m; None: they are as high as the box.
     periodic : along x and y. mirrors : sides that are planes of symmetry.
 
     Raises CaseError for more elements along a side than anything needs.
@@ -167,6 +170,7 @@ def mesh_of(
     most = max(width / element[0], height / element[1], ((surface or box[3]) - box[3]) / element[1])
     if most > MOST_ALONG:
         raise CaseError([f"outside.element: makes {most:.3g} elements along a side, must make at most {MOST_ALONG:,}"])
+    beside = {} if tops is None else _rows_to(box, tops, settings._replace(element=element[1]))
     there = [side in sides and not (side == "top" and surface is not None) for side in SIDES]
     return Mesh.around(
         box,
@@ -177,7 +181,34 @@ def mesh_of(
         periodic=periodic,
         surface=surface,
         mirror=Around(*(int(side in mirrors) for side in SIDES)),
+        **beside,
     )
+
+
+def _rows_to(box: Box, tops: tuple[float, float], settings: Settings) -> dict[str, Any]:
+    """Heights of the rows beside a box, which end at both tops, m, and how many of them there are below either one."""
+    near = ROUNDING * (box[3] - box[1])
+    ends = [end for end in sorted({*tops, box[3]}) if end < box[3] - near]
+    ends = [end for end, last in zip(ends, [box[1], *ends], strict=False) if end > last + near]
+    rows: list[float] = []
+    reached = {}
+    for low, high in pairwise([box[1], *ends, box[3]]):
+        side = settings.side(high - low)
+        rows += [side] * round((high - low) / side)
+        reached[high] = len(rows)
+    levels = tuple(reached[min(reached, key=lambda end: abs(end - top))] for top in tops)
+    return {"rows": rows, "levels": levels}
+
+
+def expected_tops(case: DiskCase, box: Box) -> tuple[float, float] | None:
+    """Heights (m) of the free surface left and right of a box of a case that reaches it; None: as high as the box.
+
+    Without what a skin takes off them.
+    """
+    if not case.floors or box[3] < (1.0 - ROUNDING) * case.size[1]:
+        return None
+    left, right = (case.floors[side].height if side in case.floors else box[3] for side in ("left", "right"))
+    return left, right
 
 
 def least_element(case: DiskCase, diameter: float) -> float:
@@ -238,9 +269,19 @@ def clearance(case: DiskCase, box: Box, sides: Sequence[str]) -> float:
 
 
 def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Lower left and upper right corners of holes, and twice the middle of each force on a place, m."""
+    """Lower left and upper right corners of holes, and twice the middle of each force on a place, m.
+
+    Of a hole that leaves a floor at a side it is the part that is not level.
+    """
+    left, _, right, _ = case.packing.box
     for hole in case.hole:
-        yield np.array(hole.box[:2]), np.array(hole.box[2:])
+        low, high = np.array(hole.box[:2]), np.array(hole.box[2:])
+        for side, floor in case.floors.items():
+            if side == "left" and low[0] <= left + floor.width:
+                low[0] = min(left + floor.width, high[0])
+            elif side == "right" and high[0] >= right - floor.width:
+                high[0] = max(right - floor.width, low[0])
+        yield low, high
     for load in case.load:
         if load.position is not None:
             yield np.array(load.position), np.array(load.position)
@@ -249,11 +290,18 @@ def extents(case: DiskCase) -> Iterator[tuple[np.ndarray, np.ndarray]]:
             yield middle, middle
 
 
+def _why_nothing(case: DiskCase) -> str:
+    """Why there is nothing that the size of elements could follow from, in words."""
+    if case.load:
+        return "its loads are steady and settle in the static stage, so that no waves are there to choose it from"
+    return "the case has no wave or load to choose it from"
+
+
 def _element(case: DiskCase, medium: Medium, box: Box, sides: Sequence[str]) -> float:
     """Largest side (m) of elements that suits the waves, and the fields beside forces and holes."""
     keys, signals = case.outside, signals_of(case)
     if not signals:
-        raise CaseError(["outside.element: is absent, but the case has no wave or load to choose it from; give it"])
+        raise CaseError([f"outside.element: is absent, but {_why_nothing(case)}; give the largest side of elements, m"])
     return min(
         choice.element_size(signals, medium, keys.order, keys.accuracy),
         choice.size_near(clearance(case, box, sides), keys.order, keys.accuracy),

@@ -15,7 +15,7 @@ import numpy as np
 from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks.material import Material
 from dembound.casefile.types import LAWS
-from dembound.disks.free_surface import skin_depths
+from dembound.disks.free_surface import cut_at, skin_depths
 from dembound.disks.homogenise import Continuum, homogenise
 from dembound.errors import CaseError
 from dembound.laws import Law, Moduli, Stiffness, lattice_moduli
@@ -46,6 +46,7 @@ class PackedMaterial:
     law: Law
     held: tuple[int, ...] = ()
     _skins: dict[int, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
+    _cuts: dict[float, tuple[float, float]] = field(default_factory=dict, init=False, repr=False, compare=False)
     _continua: dict[tuple[int, ...], Continuum] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
@@ -101,6 +102,18 @@ class PackedMaterial:
         if axis not in self._skins:
             self._skins[axis] = skin_depths(self.brick, self.stiffness, self.material_tensor, axis)
         return self._skins[axis][last]
+
+    def cut(self, height: float) -> tuple[float, float]:
+        """Where the mass of the packing and where its continuum end below a cut at a height, m above the brick's edge.
+
+        Both are m above the cut, the second usually negative: see `Brick.mass_offset` and `skin_depths`.
+        """
+        height %= float(self.brick.size[1])
+        if height not in self._cuts:
+            brick = cut_at(self.brick, height)
+            depth = skin_depths(brick, self.stiffness, self.material_tensor)[1]
+            self._cuts[height] = float(brick.mass_offset[1]), -depth
+        return self._cuts[height]
 
     def _continuum(self, held: tuple[int, ...]) -> Continuum:
         """The continuum with some components held, computed once."""

@@ -20,11 +20,12 @@ from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive
 from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
-from dembound.disks.outside_mesh import Outline
+from dembound.disks.outside_mesh import NO_FLOORS, Outline
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.stress import particle_stress
 from dembound.disks.surroundings import Surroundings, surroundings_of
 from dembound.disks.system import DiskSystem
+from dembound.holes.floor import Floor
 from dembound.kernels.contacts import REFERENCE
 from dembound.motion.layout import Layout
 from dembound.packings.brick import Brick
@@ -86,20 +87,29 @@ def build(case: DiskCase) -> DiskScene:
     edges = find_edges(body, case.periodic, case.packing.regular_sides)
     first, later = (tuple(hole for hole in case.hole if hole.stage == stage) for stage in ("before", "after"))
     if first:
-        body, edges, _ = hollowed(case, ground.brick, body, edges, first)
-    scene = _scene(case, ground, body, edges)
+        body, edges, _ = hollowed(case, ground.brick, body, edges, first, case.floors_of(first))
+    scene = _scene(case, ground, body, edges, case.floors_of(first))
     if not later:
         return scene
-    body, edges, kept = hollowed(case, ground.brick, body, edges, later)
+    body, edges, kept = hollowed(case, ground.brick, body, edges, later, case.floors)
     column = np.arange(0 if scene.seam is None else scene.seam.count)
     kept = np.concatenate([column, len(column) + kept])
-    return replace(_scene(case, ground, body, edges), before=scene, kept=kept)
+    return replace(_scene(case, ground, body, edges, case.floors), before=scene, kept=kept)
 
 
-def _scene(case: DiskCase, ground: PackedMaterial, assembly: Assembly, edges: Mapping[str, Edge]) -> DiskScene:
-    """The scene of a body and its sides, with a free-field column and a continuum if the case has such sides."""
+def _scene(
+    case: DiskCase,
+    ground: PackedMaterial,
+    assembly: Assembly,
+    edges: Mapping[str, Edge],
+    floors: Mapping[str, Floor] = NO_FLOORS,
+) -> DiskScene:
+    """The scene of a body and its sides, with a free-field column and a continuum if the case has such sides.
+
+    floors : those that its holes leave at left and right sides.
+    """
     body, seam, beyond = assembly, None, case.outside_sides
-    outline = Outline.of(case, ground, body, beyond, case.periodic) if beyond else None
+    outline = Outline.of(case, ground, body, beyond, case.periodic, floors) if beyond else None
     if sides := case.column_sides:
         left = 0.0 if outline is None else outline.mesh.origin[0]
         assembly, seam = with_column(ground.brick, body, sides, case.column_rows, left)

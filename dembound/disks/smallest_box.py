@@ -11,8 +11,9 @@ import numpy as np
 from dembound.boundaries.sides import SIDES
 from dembound.casefile.disks import DiskCase
 from dembound.disks import step_cost
+from dembound.disks.hollowed import BAND as FLOOR
 from dembound.disks.outside_mesh import medium_of
-from dembound.disks.outside_settings import extents, least_element, mesh_of, settings_of, signals_of
+from dembound.disks.outside_settings import expected_tops, extents, least_element, mesh_of, settings_of, signals_of
 from dembound.disks.packing_errors import in_percent
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
@@ -105,7 +106,31 @@ def may_be_boxed(case: DiskCase) -> bool:
     )
     at_top = case.side("top").is_free or case.side("top").is_outside
     from_below = not any(case.side(side).waves for side in ("left", "right", "top"))
-    return plain and beyond and at_top and from_below and bool(signals_of(case)) and any(True for _ in extents(case))
+    return (
+        plain
+        and _ends_level(case)
+        and beyond
+        and at_top
+        and from_below
+        and bool(signals_of(case))
+        and any(True for _ in extents(case))
+    )
+
+
+def _ends_level(case: DiskCase) -> bool:
+    """Whether holes reach neither left nor right side, or leave a level floor there and nothing moves all ground."""
+    left, _, right, _ = case.packing.box
+    reached = {side for hole in case.hole for side in ("left", "right") if _reaches(hole.box, side, left, right)}
+    if not reached:
+        return True
+    wide = FLOOR * 2.0 * case.packing.radius
+    is_level = all(side in case.floors and case.floors[side].width >= wide for side in reached)
+    return is_level and not case.entering and not any(load.is_everywhere for load in case.load) and case.static is None
+
+
+def _reaches(hole: Box, side: str, left: float, right: float) -> bool:
+    """Whether the rectangle round a hole reaches the left or the right side, at these x, m."""
+    return hole[0] <= left if side == "left" else hole[2] >= right
 
 
 def _candidates(scene: DiskScene) -> Iterator[Candidate]:
@@ -130,10 +155,13 @@ def _round(scene: DiskScene, clearance: float) -> Box:
     lows, highs = (np.array(corners) for corners in zip(*extents(case), strict=True))
     size, origin = np.array(case.size), np.array(case.packing.origin)
     origin[1] = 0.0
-    low = origin + brick * np.floor((lows.min(axis=0) - clearance - origin) / brick)
+    least = least_element(case, scene.ground.brick.mean_diameter)
+    lowest = lows.min(axis=0) - clearance
+    lowest[1] = min([lowest[1], *(floor.height - least for floor in case.floors.values())])
+    low = origin + brick * np.floor((lowest - origin) / brick)
     high = origin + brick * np.ceil((highs.max(axis=0) + clearance - origin) / brick)
     low, high = np.maximum(low, 0.0), np.minimum(high, size)
-    if size[1] - high[1] < max(least_element(case, scene.ground.brick.mean_diameter), clearance):
+    if size[1] - high[1] < max(least, clearance):
         high[1] = size[1]
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
 
@@ -144,7 +172,8 @@ def _candidate(scene: DiskScene, box: Box) -> Candidate:
     below = box[3] < case.size[1]
     sides = SIDES if below else SIDES[:3]
     settings = settings_of(case, medium_of(ground), ground.brick.mean_diameter, box, sides)
-    grid = GridSizes.of(mesh_of(settings, box, sides, surface=case.size[1] if below else None))
+    surface, tops = (case.size[1], None) if below else (None, expected_tops(case, box))
+    grid = GridSizes.of(mesh_of(settings, box, sides, surface=surface, tops=tops))
     first = 0 if scene.seam is None else scene.seam.count
     places = scene.assembly.positions[first:]
     inside = int(np.count_nonzero(((places >= box[:2]) & (places <= box[2:])).all(axis=1)))

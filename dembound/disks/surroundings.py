@@ -11,17 +11,19 @@ import numpy as np
 from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.boundaries.support import Edge, SupportBuilder
 from dembound.casefile.disks.outside import CONTINUUM
+from dembound.disks.cut_bonds import CutBonds
 from dembound.disks.free_surface import mass_of
-from dembound.disks.outside_mesh import Outline, box_of, mass_extent, medium_of
+from dembound.disks.outside_mesh import Level, Outline, box_of, mass_extent, medium_of, on_top
 from dembound.disks.outside_settings import Settings
 from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.wall import CutBonds, Wall, lag_of
+from dembound.disks.wall import Wall, lag_of
 from dembound.errors import CaseError
 from dembound.kernels.lanes import LANES
 from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import tie_forces
 from dembound.motion.layout import Layout
 from dembound.outside.body import GridBody
+from dembound.outside.edges import free_edges
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly
 from dembound.table import Box
@@ -39,7 +41,8 @@ class Surroundings:
     sides : on which it is. settings : as given or chosen. body : elements, medium and layers. wall : the ties of cut
     bonds to it, by the numbers of disks in the scene. first : number of its first node in the scene. box : left,
     bottom, right and top of the body, m; waves from below pass its lower side at their own time. skins : how deep free
-    edges lie below those of the packing, m, by side. twin : (m,) of each disk the twin in the free-field column,
+    edges lie below those of the packing, m, by side. levels : the ground beyond left and
+    right sides where it is lower. twin : (m,) of each disk the twin in the free-field column,
     relative to which it is tied; None: tied by its own motion. surface_mass : kg/m², of the skin on its upper edge.
     """
 
@@ -50,6 +53,7 @@ class Surroundings:
     first: int
     box: Box
     skins: Mapping[str, float]
+    levels: Mapping[str, Level]
     twin: np.ndarray | None = None
     surface_mass: float = 0.0
 
@@ -63,13 +67,31 @@ class Surroundings:
         low, high = np.array(self.box[:2]), np.array(self.box[2:])
         return np.any((places < low - self._near) | (places > high + self._near), axis=1)
 
+    def height_at(self, places: np.ndarray) -> np.ndarray:
+        """Heights (k,) m up to which there is ground at places (k, 2) m beyond lower sides; infinite at others."""
+        left, _, right, _ = self.box
+        x, height = places[:, 0], np.full(len(places), np.inf)
+        for side, level in self.levels.items():
+            height[x < left - self._near if side == "left" else x > right + self._near] = level.floor
+        return height
+
     def allowed(self, places: np.ndarray) -> np.ndarray:
-        """The places (k, 2) m, those in layers or beyond moved to the nearest ones outside all layers."""
+        """The places (k, 2) m, those in layers, beyond, or above lower ground moved to the nearest that are not."""
         mesh = self.body.mesh
         (low, high), thickness = mesh.between_layers, np.array([axis.thickness for axis in mesh.axes])
         too_low = (thickness[:, 0] > 0.0) & (places < low - self._near)
         too_high = (thickness[:, 1] > 0.0) & (places > high + self._near)
-        return np.where(too_low, low, np.where(too_high, high, places))
+        allowed = np.where(too_low, low, np.where(too_high, high, places))
+        allowed[:, 1] = np.minimum(allowed[:, 1], self.height_at(allowed))
+        return allowed
+
+    @property
+    def depths(self) -> dict[str, float | np.ndarray]:
+        """How deep free edges lie below those of the ground, m, by side; of each node (n,) where it is lower."""
+        if not self.levels:
+            return {**self.skins}
+        lower = {side: level.floor - level.surface for side, level in self.levels.items()}
+        return {**self.skins, "top": on_top(self.body.mesh, self.skins["top"], lower)}
 
     @property
     def free_surface(self) -> tuple[float, float] | None:
@@ -98,7 +120,7 @@ class Surroundings:
             "cell": (mesh.node_cells, "1"),
             "element": (mesh.rectangles, "m"),
             "node": (mesh.nodes, "1"),
-            "surface": (mesh.free_sides, "m"),
+            "surface": (free_edges(mesh), "m"),
             "tie": (self.wall.bonds.point, "m"),
         }
 
@@ -208,18 +230,24 @@ def surroundings_of(
     Raises CaseError if the packing's sides cut no bonds.
     """
     sides, size, rim, mesh = outline
-    cut = cut_contacts(ground.brick, body, sides, mesh.periodic)
+    cut = cut_contacts(ground.brick, body, sides, mesh.periodic, rim.ends)
     if len(cut.node) == 0:
         raise CaseError([f"boundary.{sides[0]}: cuts no bonds, so nothing can be tied to the continuum"])
+    massless: dict[str, float | np.ndarray] = {**rim.massless}
+    if rim.levels:
+        beyond = {side: level.mass_end - level.surface for side, level in rim.levels.items()}
+        massless["top"] = on_top(mesh, rim.massless["top"], beyond)
     grid = GridBody(
         mesh=mesh,
         medium=medium_of(ground),
         absorption=size.settings.absorption,
         thickness=float(np.prod(mass_extent(ground, body) / size.box)),
-        added_mass=mass_of(rim.massless, mesh, ground.density),
+        added_mass=mass_of(massless, mesh, ground.density),
         first_slot=-(-layout.count // LANES) * LANES,
     )
     bonds = CutBonds.of(ground, cut, body.positions).between(mesh.sides).numbered_from(first)
     wall = Wall.of(mesh, bonds, lag_of(ground, size.settings.damping), size.narrow)
     surface_mass = rim.massless.get("top", 0.0) * ground.density
-    return Surroundings(sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, twin, surface_mass)
+    return Surroundings(
+        sides, size.settings, grid, wall, len(layout.slot), box_of(body), rim.skins, rim.levels, twin, surface_mass
+    )

@@ -10,6 +10,7 @@ import numpy as np
 from dembound.boundaries import SIDES, Motion, axis_of_motion
 from dembound.casefile.disks.load import Load
 from dembound.casefile.magnitudes import grip_stress, is_quasi_static, stress_in_words, stress_warnings, time_warnings
+from dembound.casefile.messages import numbered
 from dembound.disks.continuum_facts import continuum_warnings
 from dembound.disks.incident_facts import arrival
 from dembound.disks.matching import homogenised_beta, reflected
@@ -40,9 +41,23 @@ SPEED_ERROR = 0.1
 """Share by which the P-wave speed of the packing may differ from the given one without a warning."""
 
 
+AT_REST = 1e-14
+"""Velocity over that of waves, so strain, below which the motion of a settled body is rounding.
+
+Settled strains of 1e-6 to 1e-2 are known to 1e-16 of themselves; slopes under their weight move by 1e-17.
+"""
+
+LARGE_STRAIN = 0.03
+"""Strain of a wave, velocity over that of the wave, or stress over stiffness, above which the elastic law is not valid.
+
+Its error is of the order of the strain. Rock and soil break at a tenth of this, so larger ones are mostly wrong units.
+"""
+
+
 def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
     """All of them, one line each; time_step in s."""
     return [
+        *_empty_holes(scene),
         *_steady_without_static(scene),
         *_locked_in(scene),
         *_settles_in_tension(scene),
@@ -51,10 +66,26 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *_never_arrives(scene),
         *time_warnings(scene.case, time_step, _travel_time(scene)),
         *_stress_beside_strength(scene),
+        *_large_strains(scene),
         *_default_factors(scene),
         *_speed_of_the_packing(scene),
         *continuum_warnings(scene, scene.case.run.duration / time_step),
     ]
+
+
+def _empty_holes(scene: DiskScene) -> Iterator[str]:
+    """Holes that remove no disk, as none of the packing is centred in them."""
+    brick, (left, bottom, right, top) = scene.ground.brick, scene.case.packing.box
+    origin = np.array([left, bottom])
+    for place, hole in numbered("hole", scene.case.hole):
+        x0, y0, x1, y1 = hole.box
+        low, high = np.array([max(x0, left), max(y0, bottom)]), np.array([min(x1, right), min(y1, top)])
+        first, last = np.floor((low - origin) / brick.size), np.floor((high - origin) / brick.size)
+        last = np.minimum(last, np.array(scene.case.packing.copies) - (not brick.edge_rows.any()))
+        across, up = (np.arange(begin, end + 1.0) for begin, end in zip(first, last, strict=True))
+        tiles = np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 1, 2)
+        if not hole.contains((origin + tiles * brick.size + brick.positions).reshape(-1, 2)).any():
+            yield f"{place}: no particle is centred in it, so it removes none"
 
 
 def _steady_without_static(scene: DiskScene) -> Iterator[str]:
@@ -161,6 +192,31 @@ def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
     if static is not None and static.stress is not None:
         stresses["static.stress"] = ("its largest component", max(map(abs, static.stress)))
     yield from stress_warnings(stresses, strength, "material.pb_ten")
+
+
+def _large_strains(scene: DiskScene) -> Iterator[str]:
+    """Waves and loads whose strains are far beyond those that the elastic law is for."""
+    if scene.has_history:
+        return
+    modulus = float(np.diag(scene.ground.material_tensor)[:2].min())
+    stresses = [(f"load.{load.name}", *_load_stress(scene, load)) for load in scene.case.load]
+    slowest = _slowest(scene)
+    for name in sorted(scene.case.entering):
+        peak = scene.case.wave[name].peak()
+        if peak > LARGE_STRAIN * slowest:
+            yield (
+                f"wave.{name}: its velocity, {peak:.3g} m/s, is {100.0 * peak / slowest:.2g} % of that of waves, "
+                f"{slowest:.4g} m/s, and so are strains; {_TOO_LARGE}"
+            )
+    for where, what, stress in stresses:
+        if stress > LARGE_STRAIN * modulus:
+            yield (
+                f"{where}: {what}, {stress_in_words(stress)}, is {100.0 * stress / modulus:.2g} % of the stiffness, "
+                f"{stress_in_words(modulus)}, and so are strains; {_TOO_LARGE}"
+            )
+
+
+_TOO_LARGE = "the elastic law is for small ones, are the units right?"
 
 
 def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str, float]]:
@@ -306,7 +362,8 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
     """Warnings from the summary and record of a run of disks, one line each."""
     with open_record(record) as file:
         cracks = cracks_until(file, np.inf)
-        moving = still_moving(scene, summary["duration"], file, _pieces(scene, cracks["particles"]))
+        at_rest = 0.0 if scene.case.static is None else AT_REST * _slowest(scene)
+        moving = still_moving(scene, summary["duration"], file, _pieces(scene, cracks["particles"]), at_rest)
         return [*moving, *near_tie_warnings(scene, summary, cracks)]
 
 

@@ -20,6 +20,9 @@ GAIN = 0.5
 ROUNDING = 1e-9
 """Energies below this share of the largest count as zero: rounding errors of sums over contacts are smaller."""
 
+AT_REST = 1e-13
+"""Share of the energy stored at the start below which what was supplied is rounding of it, as of a body at rest."""
+
 
 @dataclass(frozen=True)
 class Entry:
@@ -161,9 +164,10 @@ class Ledger(Tracker):
         self._watch()
 
     def _supplied(self, outside: float, load: float) -> float:
-        """The most energy (J) supplied until an entry, from the largest work outside, and load."""
+        """The most energy (J) supplied until an entry, from the largest work outside, and load; 0 if it is rounding."""
         self._most = max(self._most[0], outside), max(self._most[1], load)
-        return self._came + sum(self._most)
+        supplied = self._came + sum(self._most)
+        return supplied if supplied > AT_REST * sum(self._first) else 0.0
 
     def _in_springs(self, run: Run, u: np.ndarray) -> np.ndarray:
         """Energy (s,) J in the springs of every side at displacements (3, slots), of a settled body since the start."""

@@ -17,12 +17,12 @@ class Interpolation(NamedTuple):
 def located(mesh: Mesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The element (k,) of a mesh nearest to each of the points (k, 2) m, and their places (k, 2) in it, −1 … 1 inside.
 
-    Of points beyond periodic sides it is that at their images.
+    Above the free surface beside the box it is the highest one there, and beyond periodic sides that at their images.
     """
     places = np.asarray(points) - mesh.origin
     places = np.where(mesh.periodic, places % mesh.size, places)
     column, row = (mesh.axes[a].cell_at(places[:, a]) for a in (0, 1))
-    chosen = mesh.element_at[row, column]
+    chosen = mesh.element_at[np.minimum(row, mesh.tops[column] - 1), column]
     in_box = chosen < 0
     chosen[in_box] = _nearest_to_box(mesh, places[in_box])
     first = np.stack([mesh.axes[a].edges[mesh.elements[chosen, a]] for a in (0, 1)], axis=1)

@@ -30,7 +30,15 @@ class GridSizes:
                 first, last = mesh.box[axis], mesh.box[2 + axis]
                 left_out *= last - first
                 left_out_nodes *= mesh.order * (last - first) - 1 + (first == 0) + (last == cells)
-        return cls(nodes - left_out_nodes, elements - left_out, elements - elastic, mesh.order)
+        absorbing = elements - elastic
+        if mesh.levels is not None and mesh.box is not None:
+            beside = mesh.box[0], mesh.cells[0] - mesh.box[2]
+            for level, columns, layer in zip(mesh.levels, beside, mesh.layer.along(0), strict=True):
+                above = mesh.cells[1] - level
+                left_out += columns * above
+                left_out_nodes += mesh.order * above * (mesh.order * columns + (columns > 0))  # with the box's side
+                absorbing -= layer * above
+        return cls(nodes - left_out_nodes, elements - left_out, absorbing, mesh.order)
 
     @classmethod
     def all_of(cls, meshes: Sequence[Mesh]) -> GridSizes:

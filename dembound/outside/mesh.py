@@ -1,13 +1,13 @@
 """A mesh of rectangular spectral elements round a rectangular box, with absorbing elements at its sides."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from dembound.boundaries.sides import SIDES
 from dembound.outside.axis import Axis
 from dembound.outside.gll import Rule
 from dembound.table import Box
@@ -46,6 +46,8 @@ class Mesh:
     widths, heights : of the columns from left to right, and of the rows from the bottom, m.
     origin : lower left corner, m.
     box : first column, first row, and those after the last ones, of the elements left out; None: none.
+    levels : in the columns left and right of the box the first rows that are left out, too, as all above them; None:
+        none.
     layer : how many of the columns and rows absorb at each side.
     periodic : whether the first column (row) follows the last one.
     mirror : 1 for each side whose edge is a plane of symmetry.
@@ -56,6 +58,7 @@ class Mesh:
     heights: tuple[float, ...]
     origin: tuple[float, float] = (0.0, 0.0)
     box: tuple[int, int, int, int] | None = None
+    levels: tuple[int, int] | None = None
     layer: Around = NONE
     periodic: tuple[bool, bool] = (False, False)
     mirror: Around = NONE
@@ -68,6 +71,8 @@ class Mesh:
                 raise ValueError(f"a plane of symmetry across axis {axis} has no absorbing layer")
             if sum(self.layer.along(axis)) > len(sizes):
                 raise ValueError(f"layers have more elements along axis {axis} than the mesh, {len(sizes)}")
+        if self.levels is not None and (self.box is None or self.box[3] < len(self.heights) or self.periodic[0]):
+            raise ValueError("only beside a box that reaches the free surface may that be lower")
 
     @classmethod
     def uniform(cls, *, element: tuple[float, float], cells: tuple[int, int], **others: Any) -> "Mesh":
@@ -86,9 +91,9 @@ class Mesh:
         *,
         margin: Around,
         layer: Around,
-        periodic: tuple[bool, bool] = (False, False),
+        rows: Sequence[float] | None = None,
         surface: float | None = None,
-        mirror: Around = NONE,
+        **others: Any,
     ) -> "Mesh":
         """The mesh round a box (left, bottom, right, top; m), which may reach the free surface: no margin, no layer.
 
@@ -96,13 +101,15 @@ class Mesh:
             same widths and heights but for the rows between the box and a free surface above it, which divide that
             distance.
         margin, layer : elements at each side of the box without and with absorption.
-        periodic : along x and y, where the box then has neither.
-        mirror : 1 for sides at planes of symmetry, which have neither.
+        rows : heights of the rows beside the box from the bottom, m; those below have that of the first one. None: of
+            equal height.
         surface : height y of a free surface above the box, m; None: the box reaches it, or there is a margin or layer.
+        others : attributes of a mesh; levels : numbers of the rows beside the box that there are at left and right.
 
         Raises ValueError if the box is empty, or the surface is below its top or has a margin or layer below it.
         """
-        columns, rows = (_divided(box[2 + axis] - box[axis], element[axis]) for axis in (0, 1))
+        columns = divided(box[2] - box[0], element[0])
+        rows = divided(box[3] - box[1], element[1]) if rows is None else tuple(rows)
         if not (columns and rows):
             raise ValueError("the box is empty")
         left, right = ((columns[0],) * (margin.along(0)[side] + layer.along(0)[side]) for side in (0, 1))
@@ -112,16 +119,18 @@ class Mesh:
                 raise ValueError("a free surface above the box leaves no place for a margin or a layer at the top")
             if surface < box[3]:
                 raise ValueError(f"the free surface, y = {surface:g} m, is below the top of the box, {box[3]:g} m")
-            top = _divided(surface - box[3], element[1])
+            top = divided(surface - box[3], element[1])
+        if (levels := others.pop("levels", None)) is not None:
+            levels = len(bottom) + levels[0], len(bottom) + levels[1]
         return cls(
             order=order,
             widths=left + columns + right,
             heights=bottom + rows + top,
             origin=(box[0] - len(left) * columns[0], box[1] - len(bottom) * rows[0]),
             box=(len(left), len(bottom), len(left) + len(columns), len(bottom) + len(rows)),
+            levels=levels,
             layer=layer,
-            periodic=periodic,
-            mirror=mirror,
+            **others,
         )
 
     @cached_property
@@ -144,9 +153,17 @@ class Mesh:
         return len(self.widths), len(self.heights)
 
     @cached_property
+    def tops(self) -> np.ndarray:
+        """The row after the last one of every column, the box included."""
+        tops = np.full(self.cells[0], self.cells[1])
+        if self.levels is not None and self.box is not None:
+            tops[: self.box[0]], tops[self.box[2] :] = self.levels
+        return tops
+
+    @cached_property
     def element_at(self) -> np.ndarray:
-        """Number of the element in every row and column, −1 in the box."""
-        numbers = np.zeros(self.cells[::-1], dtype=np.int64)
+        """Number of the element in every row and column, −1 in the box and above the free surface."""
+        numbers = np.where(np.arange(self.cells[1])[:, None] < self.tops, 0, -1)
         if self.box is not None:
             left, bottom, right, top = self.box
             numbers[bottom:top, left:right] = -1
@@ -227,20 +244,6 @@ class Mesh:
         )
         return np.hstack([low + self.origin, high + self.origin])
 
-    @property
-    def free_sides(self) -> np.ndarray:
-        """(k, 4) m, the ends x, y, x, y of the element sides that are free and do not face the box."""
-        each, corners = [np.zeros((0, 4))], self.rectangles
-        for axis in (0, 1):
-            for end, layer in enumerate(self.layer.along(axis)):
-                if layer or self.periodic[axis] or self.mirror.along(axis)[end]:
-                    continue
-                last = self.elements[:, axis] == (self.cells[axis] - 1) * end
-                side = corners[last]
-                side[:, [axis, axis + 2]] = side[:, [axis + 2 * end]]
-                each.append(side)
-        return np.concatenate(each)
-
     @cached_property
     def crossing(self) -> np.ndarray:
         """(n, 2) the lines across x and across y that every node lies on."""
@@ -311,17 +314,8 @@ class Mesh:
         """(n,) m², of the quadrature: mass over density and thickness."""
         return np.bincount(self.nodes.ravel(), self.quadrature.ravel(), self.count)
 
-    def edge_lengths(self, side: str) -> np.ndarray:
-        """(n,) m, of the quadrature along the outermost edge at a side, for the nodes on it; 0 for others."""
-        axis, last = divmod(SIDES.index(side), 2)
-        at_side = self.elements[:, axis] == last * (self.cells[axis] - 1)
-        nodes = self.nodes if axis == 1 else self.nodes.swapaxes(1, 2)
-        edge = nodes[at_side, -last]
-        each = 0.5 * self.element_sizes[at_side, 1 - axis, None] * self.rule.weights
-        return np.bincount(edge.ravel(), each.ravel(), self.count)
 
-
-def _divided(length: float, largest: float) -> tuple[float, ...]:
+def divided(length: float, largest: float) -> tuple[float, ...]:
     """The sizes of as few equal parts of a length as have at most the largest one, m."""
     count = math.ceil(length / largest - WHOLE)
     return (length / count,) * count if count else ()

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
+from dembound.outside.edges import elements_at, is_free, nodes_at
 from dembound.outside.mesh import Mesh
 from dembound.table import Box
 
@@ -34,18 +35,19 @@ class Traction:
     absorbs: bool
 
 
-def traction_in(mesh: Mesh, region: Box, depth: Mapping[str, float] = NO_DEPTH) -> Traction:
+def traction_in(mesh: Mesh, region: Box, depth: Mapping[str, float | np.ndarray] = NO_DEPTH) -> Traction:
     """The uniform traction on the free edges in a region; without any its length is zero.
 
-    depth : by side, how deep the mesh's edge lies below that of the ground, m; the region may contain either.
+    depth : by side, how deep the mesh's edge lies below that of the ground, m, everywhere or at each node (n,); the
+    region may contain either.
     """
-    parts = [_part(mesh, side, region, depth.get(side, 0.0)) for side in SIDES if _is_free(mesh, side)]
-    parts.append(_NOWHERE)
-    node, place = np.unique(np.concatenate([part.node.ravel() for part in parts]), return_inverse=True)
-    forces = np.concatenate([part.force.ravel() for part in parts])
-    length = sum(part.length for part in parts)
+    parts = [_part(mesh, side, region, depth.get(side, 0.0)) for side in SIDES if is_free(mesh, side)]
+    nodes = [np.zeros(0, dtype=np.int64), *(part.node.ravel() for part in parts)]
+    node, place = np.unique(np.concatenate(nodes), return_inverse=True)
+    forces = np.concatenate([np.zeros(0), *(part.force.ravel() for part in parts)])
+    length, least = sum(part.length for part in parts), max((part.least for part in parts), default=0.0)
     share = np.bincount(place, forces, len(node)) / (length or 1.0)
-    return Traction(node, share, length, max(part.least for part in parts), any(part.absorbs for part in parts))
+    return Traction(node, share, length, least, any(part.absorbs for part in parts))
 
 
 class _Part(NamedTuple):
@@ -58,28 +60,17 @@ class _Part(NamedTuple):
     absorbs: bool
 
 
-_NOWHERE = _Part(np.zeros(0, dtype=np.int64), np.zeros(0), 0.0, 0.0, absorbs=False)
-
-
-def _is_free(mesh: Mesh, side: str) -> bool:
-    """Whether a mesh ends at a side, with a free edge."""
-    axis, end = normal_axis(side), int(side in ("right", "top"))
-    return not (mesh.periodic[axis] or mesh.layer.along(axis)[end] or mesh.mirror.along(axis)[end])
-
-
-def _part(mesh: Mesh, side: str, region: Box, depth: float) -> _Part:
+def _part(mesh: Mesh, side: str, region: Box, depth: float | np.ndarray) -> _Part:
     """The part of a side in a region."""
     axis, end = normal_axis(side), int(side in ("right", "top"))
     along, near = 1 - axis, ROUNDING * float(mesh.size.max())
-    level = float(mesh.origin[axis] + end * mesh.size[axis])
-    levels = level, level + (depth if end else -depth)
-    if region[axis] > max(levels) + near or region[2 + axis] < min(levels) - near:
-        return _NOWHERE
-    element = np.flatnonzero(mesh.elements[:, axis] == end * (mesh.cells[axis] - 1))
-    node = (mesh.nodes if axis == 1 else mesh.nodes.swapaxes(1, 2))[element, -end]
+    element, node = elements_at(mesh, side), nodes_at(mesh, side)
+    level = mesh.positions[node[:, 0], axis]
+    beyond = level + (2 * end - 1) * np.broadcast_to(depth, mesh.count)[node[:, 0]]
+    there = (region[axis] <= np.maximum(level, beyond) + near) & (region[2 + axis] >= np.minimum(level, beyond) - near)
     begin, size = mesh.positions[node[:, 0], along], mesh.element_sizes[element, along]
     first, last = np.maximum(begin, region[along]), np.minimum(begin + size, region[2 + along])
-    inside, absorbs = last - first > near, mesh.absorbs[element].any(axis=1)
+    inside, absorbs = there & (last - first > near), mesh.absorbs[element].any(axis=1)
     kept = inside & ~absorbs
     node, begin, size, first, last = (values[kept] for values in (node, begin, size, first, last))
     force = size[:, None] * _integrals(mesh, (first - begin) / size, (last - begin) / size)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Protocol
 
 import numpy as np
@@ -13,6 +14,8 @@ from dembound.packings.tiling import Assembly
 
 BEYOND = (("left", "right"), ("bottom", "top"))
 """The sides at low and at high coordinates, along x and along y."""
+
+NO_TOPS: Mapping[str, float] = MappingProxyType({})
 
 
 class Hole(Protocol):
@@ -59,11 +62,16 @@ class CutContacts:
 
 
 def cut_contacts(
-    brick: Brick, body: Assembly, sides: Collection[str], periodic: tuple[bool, bool] = (False, False)
+    brick: Brick,
+    body: Assembly,
+    sides: Collection[str],
+    periodic: tuple[bool, bool] = (False, False),
+    tops: Mapping[str, float] = NO_TOPS,
 ) -> CutContacts:
     """The contacts of a body with disks beyond these sides; where a disk is beyond two sides, both must be of them.
 
-    periodic : whether the body is periodic along x and along y, so that nothing is beyond its sides there.
+    periodic : whether the body is periodic along x and along y, so that nothing is beyond its sides there. tops : by
+    side, the height (m) above which no disks are beyond; absent: they are as high as the body.
     """
     where = body.tile.astype(np.int64)
     # images are ±1 at most where bricks are as wide as two disks, so only the outer tiles have contacts beyond
@@ -73,7 +81,10 @@ def cut_contacts(
     out = _beyond(found.tile, brick.edge_rows[found.other], body.copies)
     found = replace(found, side=np.argmax(out, axis=1))
     allowed = np.array([side in sides for axis in BEYOND for side in axis])
-    return found.only(_is_absent(found, brick, body) & out.any(axis=1) & ~(out & ~allowed).any(axis=1))
+    there = np.array([tops.get(side, np.inf) for axis in BEYOND for side in axis])[found.side] > _heights(
+        found, brick, body
+    )
+    return found.only(there & _is_absent(found, brick, body) & out.any(axis=1) & ~(out & ~allowed).any(axis=1))
 
 
 def contacts_into(brick: Brick, body: Assembly, hole: Hole) -> CutContacts:
@@ -107,6 +118,11 @@ def _is_absent(found: CutContacts, brick: Brick, body: Assembly) -> np.ndarray:
     """Whether the other disks of contacts (e,) are not in a body."""
     where = body.tile.astype(np.int64)
     return ~np.isin(_key(found.tile, found.other, brick), _key(where, body.brick_particle, brick))
+
+
+def _heights(found: CutContacts, brick: Brick, body: Assembly) -> np.ndarray:
+    """Heights (e,) m of the other disks of contacts."""
+    return body.positions[found.node, 1] + found.vectors(brick)[:, 1]
 
 
 def _beyond(tile: np.ndarray, closing: np.ndarray, copies: tuple[int, int]) -> np.ndarray:

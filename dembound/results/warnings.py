@@ -31,10 +31,13 @@ QUIET = 0.01
 """Share of the largest peak of all monitors; a monitor with a smaller peak has not been reached by the motion."""
 
 
-def still_moving(scene: Scene, duration: float, file: h5py.File, pieces: np.ndarray) -> Iterator[str]:
+def still_moving(
+    scene: Scene, duration: float, file: h5py.File, pieces: np.ndarray, at_rest: float = 0.0
+) -> Iterator[str]:
     """A warning about monitors that still move at the end of the run and would come to rest later.
 
-    duration : of the run, s. file : its open record. pieces : (n,) number of the piece of each node at the end.
+    duration : of the run, s. file : its open record. pieces : (n,) number of the piece of each node at the end. at_rest
+    : m/s, velocity of bodies at rest.
     """
     braked = _braked(scene, pieces)
     histories = {
@@ -46,6 +49,8 @@ def still_moving(scene: Scene, duration: float, file: h5py.File, pieces: np.ndar
     period = max((scene.case.wave[name].dominant_period() for name in waves_used(scene.case)), default=0.0)
     lately = max(LATELY, min(0.5, 0.5 * period / duration))
     moving = {}
+    if max(peaks.values(), default=0.0) <= at_rest:
+        return
     for name, velocity in histories.items():
         late, last = (velocity[-max(2, round(share * len(velocity))) :] for share in (lately, NOW))
         at_the_end = float(np.abs(last).max())

@@ -32,6 +32,7 @@ from dembound.disks.sources import sources_of
 from dembound.disks.stability import choose_step
 from dembound.disks.wave_front import front_of
 from dembound.errors import CaseError
+from dembound.holes import Hole, Rectangle
 from dembound.motion.paths import Front, Source, plane_needed
 from dembound.motion.silence import monitored
 from dembound.packings.tiling import count_disks
@@ -113,9 +114,11 @@ def _extended_disks(case: DiskCase, most: int) -> Extended:
     wide, high = case.packing.brick_size
     by = added[0][0] * wide, added[1][0] * high
     _holes_must_end(case, bricks)
+    at_places = _at_places(case, scene, by, packing.extent)
     larger = replace(
-        _at_places(case, scene, by, packing.extent),
+        at_places,
         packing=packing,
+        hole=(*at_places.hole, *_floors_beyond(case, by, packing.extent)),
         boundary={side: table.shifted(by) for side, table in case.boundary.items()},
         run=_same_step(case.run, choose_step(scene)[0]),
         name=f"{case.name}_extended",
@@ -203,15 +206,37 @@ def _sentence(case: Case, what: str, moving: list[str]) -> str:
     return f"reference: {stays}, and {reflect} as in the case"
 
 
+def _floors_beyond(case: DiskCase, by: tuple[float, float], size: tuple[float, float]) -> list[Hole]:
+    """The holes of a case shifted by (x, y) m that go on as level floors up to the sides of an enlarged one, m."""
+    ends = {"left": (0.0, by[0]), "right": (by[0] + case.packing.extent[0], size[0])}
+    first = case.floors_of([hole for hole in case.hole if hole.stage == "before"])
+    each = [("before", side, floor) for side, floor in first.items()]
+    each += [("after", side, floor) for side, floor in case.floors.items() if first.get(side) != floor]
+    return [
+        Rectangle.model_validate(
+            {
+                "type": "rectangle",
+                "name": f"{stage}_{side}",
+                "stage": stage,
+                "corners": (ends[side][0], floor.height + by[1], ends[side][1], size[1]),
+            }
+        )
+        for stage, side, floor in each
+        if case.side(side).is_outside and ends[side][0] < ends[side][1]
+    ]
+
+
 def _holes_must_end(case: DiskCase, bricks: Mapping[str, int]) -> None:
-    """Raise CaseError for holes that reach beyond a side that moves."""
+    """Raise CaseError for holes that reach beyond a side that moves, but for level floors beside a continuum."""
     planes = dict(zip(SIDES, (0.0, case.packing.extent[0], 0.0, case.packing.extent[1]), strict=True))
     problems = [
         f"hole.{hole.name}: reaches the {side} side, beyond which the case does not say how it goes on, so that the "
         "scene cannot be extended there"
         for hole in case.hole
         for side, plane in planes.items()
-        if bricks.get(side, 0) and _reaches(hole.box, side, plane)
+        if bricks.get(side, 0)
+        and _reaches(hole.box, side, plane)
+        and not (side in case.floors and case.side(side).is_outside)
     ]
     if problems:
         raise CaseError(problems, case.name)

@@ -1,7 +1,10 @@
 """A case of bonded disks: all tables of one file."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
+from dembound.casefile.disks.floors import floors, lowered
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.incident import IncidentWave
 from dembound.casefile.disks.load import Load
@@ -13,6 +16,7 @@ from dembound.casefile.disks.reduce import Reduce
 from dembound.casefile.disks.static import Static
 from dembound.casefile.model import Case
 from dembound.holes import Hole
+from dembound.holes.floor import Floor
 from dembound.packings import Packing
 
 
@@ -48,6 +52,15 @@ class DiskCase(Case):
         """The hole on whose wall a pressure acts."""
         return next(hole for hole in self.hole if hole.name == load.hole)
 
+    @cached_property
+    def floors(self) -> dict[str, Floor]:
+        """The floors that all holes together leave at the left and right side, by side."""
+        return self.floors_of(self.hole)
+
+    def floors_of(self, holes: Sequence[Hole]) -> dict[str, Floor]:
+        """The floors that some of the holes leave."""
+        return floors(holes, self.packing, self.ground, self.boundary)
+
     @property
     def periodic(self) -> tuple[bool, bool]:
         """Whether the scene is periodic along x and along y."""
@@ -74,10 +87,11 @@ class DiskCase(Case):
 
         Beyond sides with a continuum there is one if the ground moves or rests under forces of its own there: under
         waves from below, a static stage, or a load on all of it. The continuum then has the difference from it only.
+        Where the ground is lower beyond one of them no column represents it.
         """
         if self.free_field_sides:
             return self.free_field_sides
-        if any(self.periodic):
+        if any(self.periodic) or lowered(self.floors, self.boundary):
             return ()
         everywhere = any(load.is_everywhere for load in self.load)
         driven = any(self.boundary[side].waves for side in self.outside_sides)

@@ -6,6 +6,7 @@ from typing import Any
 
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.cross_checks import driving_waves, never_silent, repeated_names, steps_too_long, unknown_waves
+from dembound.casefile.disks.floors import lowered_in, lowered_problems
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.ground_problems import ground_problems
 from dembound.casefile.disks.hole_problems import hole_problems
@@ -49,12 +50,14 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
         for key in ("load", "monitor"):
             yield from _places_outside(key, tables[key], ground, packing, tables["boundary"])
     yield from hole_problems(tables, "static" in given)
+    yield from lowered_problems(tables)
     if tables["material"] and tables["material"].locked_in and "static" not in given:
         yield "material.locked_in: is a stress that is not in equilibrium at cut sides; must relax in a [static] stage"
     if tables["output"] and tables["material"]:
         yield from load_factor_problems(tables["output"], tables["material"], tables["load"], "static" in given)
     if tables["static"]:
-        yield from static_problems(*(tables[key] for key in ("static", "boundary", "load", "material", "motion")))
+        settling = (tables[key] for key in ("static", "boundary", "load", "material", "motion"))
+        yield from static_problems(*settling, has_column=not lowered_in(tables))
     if tables["run"]:
         yield from steps_too_long(tables["run"], tables["output"])
         yield from never_silent(tables["run"], tables["monitor"])

@@ -13,13 +13,22 @@ Sides = Mapping[str, Boundary | None]
 
 
 def static_problems(
-    static: Static, boundaries: Sides, loads: Sequence[Load | None], material: Material | None, motion: Motion | None
+    static: Static,
+    boundaries: Sides,
+    loads: Sequence[Load | None],
+    material: Material | None,
+    motion: Motion | None,
+    *,
+    has_column: bool,
 ) -> Iterator[str]:
-    """Check the static stage; a table or an entry that is invalid on its own is None."""
+    """Check the static stage; a table or an entry that is invalid on its own is None.
+
+    has_column : whether a free-field column represents the ground beyond a continuum.
+    """
     for side in static.boundary:
         if (table := boundaries.get(side)) and table.is_periodic:
             yield f"static.boundary.{side}: is not allowed, as boundary.{side} is periodic"
-        if table and table.is_outside and side != "bottom":
+        if table and table.is_outside and side != "bottom" and has_column:
             yield f"static.boundary.{side}: is not allowed, as the ground goes on beyond; its bottom may be held"
     for side, own in static.boundary.items():
         if own and "artificial" in own.model_fields_set:
@@ -33,7 +42,7 @@ def static_problems(
     if material and None not in loads:
         yield from _nothing_to_settle(static, loads, material)
     if motion and None not in static.boundary.values():
-        yield from _unheld_loads(static, boundaries, loads, motion)
+        yield from _unheld_loads(static, boundaries, loads, motion, has_column=has_column)
 
 
 def _unreachable_stress(static: Static, stress: tuple[float, float, float]) -> Iterator[str]:
@@ -51,9 +60,11 @@ def _nothing_to_settle(static: Static, loads: Sequence[Load | None], material: M
         yield "static: has nothing to settle; give it a stress, give the case a steady load, or the material locked_in"
 
 
-def _unheld_loads(static: Static, boundaries: Sides, loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:
+def _unheld_loads(
+    static: Static, boundaries: Sides, loads: Sequence[Load | None], motion: Motion, *, has_column: bool
+) -> Iterator[str]:
     """Steady loads against which the body, or the free-field column, is not held."""
-    beside = any(table.needs_column or table.is_outside for table in boundaries.values() if table)
+    beside = any(table.needs_column or (table.is_outside and has_column) for table in boundaries.values() if table)
     for place, load in numbered("load", loads):
         if load.wave is not None or load.pressure is not None:  # a pressure is in balance
             continue

@@ -186,3 +186,17 @@ def test_elements_too_large_beside_a_load(case) -> None:
 
 def test_percent() -> None:
     assert [in_percent(share) for share in (1e-3, 0.01234, 7.0)] == ["0.1 %", "1.2 %", "100 %"]
+
+
+def test_heights_of_lower_ground_are_said(case) -> None:
+    """Of lattices the continuum ends at the rows' own height: that of 8.2 m is 8 m."""
+    points = [[20.0, 21.0], [30.0, 8.2], [41.0, 8.2], [41.0, 21.0]]
+    cut = {"name": "cut", "type": "polygon", "points": points}
+    shaft = {"name": "shaft", "type": "rectangle", "corners": [-1.0, 13.0, 6.0, 21.0]}
+    facts = facts_of(case, hole=[cut, shaft])
+
+    assert (
+        facts["ground beyond"]
+        == "up to y = 13 m at the left, up to y = 8.2 m at the right (the continuum 0.200 m below that)"
+    )
+    assert "ground beyond" not in facts_of(case)

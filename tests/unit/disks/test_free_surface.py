@@ -7,7 +7,7 @@ import pytest
 
 from dembound.casefile.disks.material import Material
 from dembound.disks import free_surface
-from dembound.disks.free_surface import LEAST_MASS, _curved, _turned, inset, mass_of, skin_depths
+from dembound.disks.free_surface import LEAST_MASS, _curved, _turned, cut_at, inset, mass_of, skin_depths
 from dembound.disks.homogenise import Network, homogenise
 from dembound.disks.packed_material import PackedMaterial, make_packed_material
 from dembound.laws import Stiffness
@@ -133,3 +133,39 @@ def test_a_stiff_skin_leaves_nodes_half_their_mass() -> None:
     top = mesh.positions[:, 1] == 2.0
     assert added[~top] == pytest.approx(0.0)
     assert added[top] == pytest.approx(-(1.0 - LEAST_MASS) * 1000.0 * mesh.areas[top])
+
+
+def test_bricks_that_end_elsewhere_are_the_same_packing(dense: PackedMaterial) -> None:
+    """The same disks and contacts, with numbers of bricks of their own."""
+    height = 1.7
+    cut = cut_at(dense.brick, height)
+
+    assert ((cut.positions >= 0.0) & (cut.positions < cut.size)).all()
+    np.testing.assert_allclose(cut.vectors, dense.brick.vectors, atol=1e-12)
+    moved = (cut.positions[:, 1] + height) % cut.size[1]
+    np.testing.assert_allclose(moved, dense.brick.positions[:, 1], atol=1e-12)
+
+
+def test_the_mass_below_a_cut_ends_where_it_is_used_up(dense: PackedMaterial) -> None:
+    """ρ times the height from one cut to another is the mass of the disks between them."""
+    brick, (first, last) = dense.brick, (0.8, 3.1)
+    y = brick.positions[:, 1]
+    between = dense.mass[(y >= first) & (y < last)].sum() / (dense.density * brick.size[0])
+    ends = [height + dense.cut(height)[0] for height in (first, last)]
+
+    assert ends[1] - ends[0] == pytest.approx(between, rel=1e-12)
+    assert dense.cut(first + 2.0 * float(brick.size[1])) == pytest.approx(dense.cut(first))
+
+
+def test_a_cut_at_the_edge_of_bricks_has_the_skin_of_the_top(dense: PackedMaterial) -> None:
+    mass_end, surface = dense.cut(0.0)
+
+    assert (mass_end, surface) == pytest.approx((dense.brick.mass_offset[1], -dense.skin("top")), abs=1e-12)
+
+
+@pytest.mark.parametrize("height", [0.01, 0.24, 0.26, 0.49])
+def test_a_lattice_that_is_cut_ends_between_its_rows(height: float) -> None:
+    """Rows are 0.5 m apart, the first one at 0.25 m: cuts above it end at 0.5 m, those below at 0."""
+    end = 0.5 if height > 0.25 else 0.0
+
+    assert np.add(square().cut(height), height) == pytest.approx([end, end], abs=1e-9)

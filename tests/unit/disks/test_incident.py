@@ -7,13 +7,14 @@ from small_cases import SURROUNDED, small
 
 from dembound.boundaries.support import SupportBuilder
 from dembound.casefile.disks.material import Material
+from dembound.disks.cut_bonds import CutBonds
 from dembound.disks.ground_waves import GroundWaves, rising_waves
 from dembound.disks.incident import SummedDrives, let_in, parts_of, power_through
 from dembound.disks.packed_material import PackedMaterial, make_packed_material
 from dembound.disks.scene import build
 from dembound.disks.stability import fill_forces
 from dembound.disks.surroundings import medium_of
-from dembound.disks.wall import CutBonds, Wall
+from dembound.disks.wall import Wall
 from dembound.errors import CaseError
 from dembound.kernels.wall import tie_forces
 from dembound.outside.mesh import Around, Mesh

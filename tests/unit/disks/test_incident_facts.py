@@ -36,6 +36,7 @@ def test_facts_of_the_waves() -> None:
         ({"incident.angle": 0.0}, "reflected waves", "SV at 0° with 1 of the amplitude; critical from 45° on"),
         ({"incident.type": "p"}, "reflected waves", "; no critical angle"),
         ({"boundary.top": {"type": "outside"}}, "reflected waves", "none, as the ground has no surface"),
+        ({"boundary.top": {"type": "outside"}}, "incident wave", "at (0, 0) m, at 1414.2 m/s along x; reaches"),
         ({"incident.point": [1.0, -2.0]}, "incident wave", "at (1, -2) m"),
     ],
 )

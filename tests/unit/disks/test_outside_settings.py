@@ -109,6 +109,12 @@ def test_without_waves_the_size_has_to_be_given(case) -> None:
     with pytest.raises(CaseError, match=r"outside\.element: is absent, but the case has no wave"):
         chosen(replace(case(), load=(), wave={}))
     assert chosen(replace(case(outside={"element": 8.0}), load=(), wave={})).element == 8.0
+    settled = case(load={"wave": None}, wave={}, static={"boundary": {"bottom": {"type": "fixed"}}})
+    words = (
+        "its loads are steady and settle in the static stage, so that no waves are there to choose it from; give the"
+    )
+    with pytest.raises(CaseError, match=rf"outside\.element: is absent, but {words} largest side of elements, m"):
+        chosen(settled)
 
 
 def test_a_load_that_stays_needs_a_margin(case) -> None:

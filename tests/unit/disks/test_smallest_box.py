@@ -91,3 +91,33 @@ def test_a_step_costs_what_its_parts_do() -> None:
     assert sum(costs.values()) == costs["disks"]
     nearly = replace(scene, case=scene.case)
     assert step_cost.of_scene(nearly) == costs
+
+
+SLOPE = {"name": "slope", "type": "polygon", "points": [[60.0, 101.0], [75.0, 80.0], [121.0, 80.0], [121.0, 101.0]]}
+BLOW = {"name": "blow", "force": [0.0, 1.0], "position": [50.5, 99.5], "wave": "pulse"}
+
+
+def test_a_box_round_a_slope_ends_on_its_floor() -> None:
+    """Beyond it the ground is as high as the floor, and has no nodes above."""
+    changes = {"boundary": {side: VISCOUS for side in ("left", "right", "bottom")}, "hole": [SLOPE], "load": [BLOW]}
+    facts = box_facts(build(tunnel(**changes)))
+    tables = tomllib.loads(facts["its tables"])
+    assert tables["boundary"] == {side: {"type": "outside"} for side in ("left", "right", "bottom")}
+    packing = {"pattern": "A", "radius": 0.5} | tables.pop("packing")
+    boxed = build(tunnel(**(changes | {"packing": packing} | tables)))
+    assert f": {boxed.disk_count:,} disks and {boxed.outside.count:,} nodes instead of " in facts["smaller box"]
+    assert boxed.outside.levels["right"].surface == pytest.approx(80.0, abs=1e-9)
+    assert 79.0 <= boxed.outside.box[2] < 115.0
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"hole": [SLOPE]},  # under a wave from below
+        {"hole": [SLOPE | {"points": [[60.0, 101.0], [121.0, 70.0], [121.0, 101.0]]}], "load": [BLOW]},
+    ],
+)
+def test_without_a_level_floor_or_under_waves_there_is_no_box(changes: dict[str, Any]) -> None:
+    if "load" in changes:
+        changes = {"boundary": {side: VISCOUS for side in ("left", "right", "bottom")}} | changes
+    assert box_facts(build(tunnel(**changes))) == {}

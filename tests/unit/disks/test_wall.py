@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from dembound.casefile.disks.material import Material
+from dembound.disks.cut_bonds import CutBonds
 from dembound.disks.homogenise import Network
 from dembound.disks.packed_material import PackedMaterial, make_packed_material
-from dembound.disks.wall import CutBonds, Wall, lag_of
+from dembound.disks.wall import Wall, lag_of
 from dembound.kernels.tables import WallTies
 from dembound.kernels.wall import tie_forces
 from dembound.outside.mesh import Mesh

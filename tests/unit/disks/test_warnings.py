@@ -176,7 +176,7 @@ def test_what_moves_on_under_a_steady_load_is_said(changes: dict, said: str) -> 
 
 
 def test_a_lattice_without_stress_is_not_warned_of(bar) -> None:
-    assert warned(bar({**SLOW, "wave.pulse.amplitude": 1e3})) == []
+    assert warned(bar({**SLOW, "wave.pulse.amplitude": 10.0})) == []
 
 
 @pytest.mark.parametrize(("period", "long"), [(0.99, False), (1.01, True)])
@@ -389,3 +389,43 @@ def test_a_packing_that_was_given_its_speed_or_no_speed_is_not_warned_of(bar) ->
     assert warned(bar({**soft, "material.match": "assembly"})) == []
     moduli = {"density": 2500.0, "emod": 2.25e9, "pb_emod": 0.25e9}
     assert warned(bar({**DENSE, "motion.held": [], "material": moduli})) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (
+            {"wave.pulse.amplitude": 50.0},
+            "wave.pulse: its velocity, 50 m/s, is 10 % of that of waves, 500 m/s, and so are",
+        ),
+        ({"wave.pulse.amplitude": 14.0}, ""),
+        (
+            {"load": [{"name": "weight", "acceleration": [0.0, -9.81e5]}]},
+            "load.weight: its stress ρaL, 2452 MPa, is 98 % of the stiffness, 2500 MPa, and so are strains; ",
+        ),
+        ({"load": [{"name": "weight", "acceleration": [0.0, -9.81]}]}, ""),
+    ],
+)
+def test_strains_far_beyond_those_of_the_elastic_law_are_warned_of(bar, changes: dict, said: str) -> None:
+    """Above 3 %: of velocities 500 m/s, of stresses 2.5 GPa; the body is 1 m high."""
+    free = {"motion.held": []}
+    lines = [line for line in warned(bar(free | changes)) if "the elastic law is for small ones" in line]
+    assert [line.startswith(said) for line in lines] == [True] * bool(said)
+    assert not any("for small ones" in line for line in warned(bar(free | changes | {"material.law": "linearpbond"})))
+
+
+def test_holes_that_remove_nothing_are_warned_of(bar) -> None:
+    """Between four disks of 0.5 m, above the rows, or with the centre of a single one at their upper right."""
+    between, above, one = (
+        {"name": name, "type": "rectangle", "corners": corners}
+        for name, corners in (
+            ("between", [1.8, 0.3, 2.2, 0.7]),
+            ("above", [3.0, 0.8, 4.0, 2.0]),
+            ("one", [5.8, 0.3, 6.26, 0.76]),
+        )
+    )
+    lines = warned(bar({"packing.size": [10.0, 1.0], "hole": [between, above, one]}))
+    assert [line for line in lines if line.startswith("hole")] == [
+        f"hole[{number}, {name}]: no particle is centred in it, so it removes none"
+        for number, name in ((1, "between"), (2, "above"))
+    ]

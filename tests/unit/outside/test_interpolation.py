@@ -1,7 +1,8 @@
 """Where points lie in a mesh, and displacements and their slopes there."""
 
 import numpy as np
-from meshes import buried, one_across, uneven
+import pytest
+from meshes import buried, one_across, stepped, uneven
 
 from dembound.outside.interpolation import interpolation, located, slopes
 from dembound.outside.mesh import Mesh
@@ -82,3 +83,14 @@ def test_points_beyond_a_periodic_side_have_places_within_it() -> None:
     element, place = located(mesh, np.array([[-1.0, -1.0], [7.0, 0.5]]))
     assert mesh.elements[element].tolist() == [[0, 2], [0, 2]]
     np.testing.assert_allclose(place, [[2.0 * 5.0 / 6.0 - 1.0, 0.0], [2.0 / 6.0 - 1.0, 1.5]])
+
+
+def test_points_above_a_lower_surface_belong_to_the_highest_element_below() -> None:
+    """Beside the box by their columns; those in the box that are beside nothing to the nearest element."""
+    mesh = stepped()
+    points = np.array([[-4.0, 3.5], [-8.9, 8.0], [7.0, 5.1], [6.1, 9.5], [5.9, 8.5], [0.2, 4.0]])
+    element, local = located(mesh, points)
+
+    assert [tuple(mesh.elements[each]) for each in element] == [(1, 2), (0, 2), (5, 3), (5, 3), (5, 3), (2, 2)]
+    assert local[0, 1] == pytest.approx(1.0 + 2.0 * 0.5 / 3.0)
+    assert (local[:, 1] > 1.0).all()

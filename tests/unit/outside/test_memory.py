@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from meshes import stepped
 
 from dembound.outside.body import GridBody
 from dembound.outside.medium import Medium
@@ -16,6 +17,10 @@ MESHES = {
     "a corner": Mesh.around(BOX, (5.0, 10.0), 5, margin=Around(0, 1, 1, 0), layer=Around(0, 3, 3, 0)),
     "two sides": Mesh.around(BOX, (20.0, 20.0), 6, margin=Around(1, 1), layer=Around(2, 2)),
     "one side": Mesh.around(BOX, (10.0, 10.0), 4, margin=Around(bottom=1), layer=Around(bottom=3)),
+    "lower beside it": stepped(),
+    "lower at one side": Mesh.around(
+        BOX, (5.0, 5.0), 4, margin=Around(0, 2, 1), layer=Around(0, 3, 3), rows=(8.0, 6.0, 6.0), levels=(3, 1)
+    ),
     "no box": Mesh.uniform(order=4, element=(5.0, 5.0), cells=(7, 9), layer=Around(2, 0, 0, 3)),
     "periodic": Mesh.uniform(order=4, element=(5.0, 5.0), cells=(7, 9), periodic=(True, False), layer=Around(top=3)),
 }

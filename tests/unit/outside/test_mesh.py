@@ -2,14 +2,10 @@
 
 import numpy as np
 import pytest
-from meshes import ORDER, buried, one_across, uneven
+from meshes import ORDER, below, buried, one_across, stepped, uneven
 
+from dembound.outside.edges import free_edges
 from dembound.outside.mesh import NONE, Around, Mesh
-
-
-def below() -> Mesh:
-    """Round a box that reaches the free surface."""
-    return Mesh.around((0.0, 0.0, 6.0, 2.0), (3.0, 2.0), ORDER, margin=Around(1, 1, 1, 0), layer=Around(1, 1, 1, 0))
 
 
 def test_the_box_is_left_out() -> None:
@@ -48,18 +44,6 @@ def test_areas_add_up() -> None:
     assert mesh.areas.min() == pytest.approx(1.5 * 1.0 * 0.1**2, rel=1e-13)
 
 
-@pytest.mark.parametrize(("side", "length"), [("left", 6.0), ("right", 6.0), ("bottom", 18.0), ("top", 12.0)])
-def test_lengths_along_the_edges(side: str, length: float) -> None:
-    """Round a box that takes up a part of the top edge."""
-    mesh = below()
-    place = mesh.positions[:, 0 if side in ("left", "right") else 1]
-    at_end = place == (place.min() if side in ("left", "bottom") else place.max())
-    lengths = mesh.edge_lengths(side)
-
-    assert lengths.sum() == pytest.approx(length)
-    assert set(np.flatnonzero(lengths)) == set(np.flatnonzero(at_end))
-
-
 def test_layers_lie_at_the_sides() -> None:
     mesh = below()
     x, y = mesh.positions.T
@@ -96,23 +80,6 @@ def test_elements_are_rectangles_between_their_nodes() -> None:
     places = mesh.positions[mesh.nodes].reshape(len(mesh.elements), -1, 2)
 
     np.testing.assert_allclose(mesh.rectangles, np.hstack([places.min(axis=1), places.max(axis=1)]), atol=1e-13)
-
-
-def test_the_surface_is_what_is_free_beyond_the_box() -> None:
-    """Sides without a layer, but not those that face the box: of a mesh on the left alone bottom and top."""
-    left = Mesh.around((0.0, 0.0, 6.0, 4.0), (3.0, 2.0), ORDER, margin=Around(left=1), layer=Around(left=1))
-    ends = {tuple(line) for line in left.free_sides.tolist()}
-    assert ends == {(x, y, x + 3.0, y) for x in (-6.0, -3.0) for y in (0.0, 4.0)}
-    ends = {tuple(line) for line in below().free_sides.tolist()}
-    assert ends == {(x, 2.0, x + 3.0, 2.0) for x in (-6.0, -3.0, 6.0, 9.0)}
-    above = Mesh.around((0.0, 0.0, 6.0, 4.0), (3.0, 2.0), ORDER, margin=Around(top=1), layer=Around(top=1))
-    ends = {tuple(line) for line in above.free_sides.tolist()}
-    assert ends == {(x, y, x, y + 2.0) for x in (0.0, 6.0) for y in (4.0, 6.0)}
-    assert len(buried().free_sides) == 0
-    round_a_pipe = Mesh.uniform(
-        order=3, element=(1.0, 1.0), cells=(4, 2), periodic=(True, False), layer=Around(bottom=1)
-    )
-    assert (round_a_pipe.free_sides[:, [1, 3]] == 2.0).all()
 
 
 def test_columns_and_rows_have_their_sizes() -> None:
@@ -183,6 +150,30 @@ def test_boxes_and_surfaces_that_cannot_be_are_refused() -> None:
             Mesh.around((0.0, 0.0, 6.0, 2.0), (3.0, 2.0), surface=3.0, **there)
 
 
+def test_columns_beside_the_box_end_at_their_own_levels() -> None:
+    """3 m and 5 m above the lower side of the box, at the ends of its rows; the layers end there, too."""
+    mesh = stepped()
+    (left, right), (x, y) = (0.0, 6.0), mesh.positions.T
+
+    assert mesh.heights == (3.0, 3.0, 3.0, 2.0, 4.0)
+    assert y[x < left].max() == y[x == left].max() == 3.0
+    assert y[x > right].max() == y[x == right].max() == 5.0
+    assert mesh.tops.tolist() == [3, 3, 3, 5, 5, 4, 4]
+    assert mesh.areas.sum() == pytest.approx(9.0 * 9.0 + 6.0 * 6.0 + 6.0 * 11.0, rel=1e-13)
+    assert mesh.held.sum() == np.count_nonzero((x == -9.0) | (x == 12.0) | (y == -6.0))
+    assert sorted(map(tuple, mesh.rectangles[mesh.rectangles[:, 3] > 3.0].tolist())) == [
+        (6.0, 3.0, 9.0, 5.0),
+        (9.0, 3.0, 12.0, 5.0),
+    ]
+
+
+def test_levels_are_only_beside_a_box_at_the_surface() -> None:
+    whole = {"order": 3, "element": (1.0, 1.0), "cells": (4, 3)}
+    for others in ({}, {"box": (1, 0, 2, 2)}, {"box": (1, 1, 2, 3), "periodic": (True, False)}):
+        with pytest.raises(ValueError, match="only beside a box that reaches the free surface"):
+            Mesh.uniform(**whole, **others, levels=(2, 3))
+
+
 def test_what_lies_between_the_layers() -> None:
     low, high = buried().between_layers
 
@@ -206,7 +197,7 @@ def test_planes_of_symmetry_are_neither_free_nor_absorb() -> None:
 
     np.testing.assert_array_equal(mesh.on_mirrors(0), np.flatnonzero((x == 0.0) & (y > -4.0)))
     assert len(mesh.on_mirrors(1)) == 0
-    assert {tuple(line) for line in mesh.free_sides.tolist()} == {(6.0, 2.0, 9.0, 2.0), (9.0, 2.0, 12.0, 2.0)}
+    assert {tuple(line) for line in free_edges(mesh).tolist()} == {(6.0, 2.0, 9.0, 2.0), (9.0, 2.0, 12.0, 2.0)}
     with pytest.raises(ValueError, match="plane of symmetry across axis 0 has no absorbing layer"):
         Mesh.around((0.0, 0.0, 6.0, 2.0), (3.0, 2.0), margin=NONE, layer=Around(left=1), mirror=Around(left=1))
 

@@ -125,3 +125,14 @@ def test_the_mass_of_a_brick_has_a_centre() -> None:
     assert brick.row_widths.tolist() == [0.0, 0.0]
     nothing[2][0, 1] = True  # a fifth of the mass is in the row on y = 0
     np.testing.assert_allclose(brick.row_widths, [0.0, 0.2])
+
+
+def test_disks_above_lower_ground_beyond_a_side_are_not_there(random_brick) -> None:
+    body = tile(random_brick, (2, 3), OPEN)
+    sides, height = ("left", "right", "bottom"), 0.4 * float(body.size[1])
+    all_of_them, cut = (cut_contacts(random_brick, body, sides, tops=tops) for tops in ({}, {"right": height}))
+    up = (body.positions[all_of_them.node] + all_of_them.vectors(random_brick))[:, 1]
+    there = (all_of_them.side != 1) | (up < height)
+
+    assert 0 < np.count_nonzero(~there) < np.count_nonzero(all_of_them.side == 1)
+    assert listed(cut, body) == listed(all_of_them.only(there), body)

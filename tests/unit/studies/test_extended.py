@@ -254,3 +254,33 @@ def test_monitors_and_loads_in_a_continuum_are_at_disks_of_the_larger_scene(bar,
     (load,) = found.case.load
     np.testing.assert_allclose(np.reshape(load.region, (2, 2)) - found.inside[:2], [[9.0, 3.5], [11.5, 4.0]], atol=1e-9)
     assert f"{large.disk_count:,} particles" in found.sentence
+
+
+@pytest.mark.parametrize("stage", ["before", "after"])
+def test_the_floor_of_a_slope_goes_on_beyond_a_continuum(bar, stage) -> None:
+    slope = {"name": "slope", "type": "polygon", "points": [[4.0, 11.0], [6.0, 6.0], [11.0, 6.0], [11.0, 11.0]]}
+    weight = {"name": "weight", "acceleration": [0.0, -9.81]}
+    blow = BLOW | {"position": [2.25, 9.75]}
+    changes = {
+        **{"packing.size": [10.0, 10.0], "motion.held": [], "run.duration": 0.02, "monitor": []},
+        "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+        "hole": [slope | {"stage": stage}],
+        "load": [blow, weight] if stage == "after" else [blow],
+    }
+    if stage == "after":
+        held = {"bottom": {"type": "fixed"}, "left": {"type": "roller"}, "right": {"type": "roller"}}
+        changes["static"] = {"boundary": held}
+    case = bar(changes)
+    larger = extended(case)
+    left, bottom, right, _ = larger.inside
+    made = build(larger.case)
+
+    assert right < larger.case.packing.extent[0]
+    x, y = made.assembly.positions.T
+    assert y[x > left + 6.0].max() < bottom + 6.0
+    assert y[x < left + 4.0].max() > bottom + 9.5
+    assert checked(larger.case).floors.keys() == {"right"}
+    assert made.outside.levels["right"].surface == pytest.approx(bottom + 6.0, abs=1e-9)
+    assert (made.before is None) == (stage == "before")
+    if stage == "after":
+        assert not made.before.outside.levels

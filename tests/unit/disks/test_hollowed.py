@@ -1,0 +1,138 @@
+"""Holes that reach sides beyond which a continuum goes on."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dembound.disks.scene import DiskScene, build
+from dembound.errors import CaseError
+from dembound.kinds import loads, with_changes
+
+CASE = """\
+[packing]
+pattern = "A"
+size = [30.0, 20.0]
+radius = 0.5
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+fric = 0.5
+[outside]
+element = 4.0
+[boundary.left]
+type = "outside"
+[boundary.right]
+type = "outside"
+[boundary.bottom]
+type = "outside"
+[run]
+duration = 0.1
+"""
+
+
+def scene(*points: tuple[float, float], **changes: Any) -> DiskScene:
+    """30 m × 20 m of disks with a hole."""
+    hole = {"name": "cut", "type": "polygon", "points": [list(point) for point in points]}
+    return build(with_changes(loads(CASE), {"hole": [hole]} | changes))
+
+
+def line(*points: tuple[float, float], **changes: Any) -> str:
+    with pytest.raises(CaseError) as caught:
+        scene(*points, **changes)
+    (only,) = caught.value.problems
+    return only
+
+
+def slope(height: float, end: float = 31.0, last: float | None = None) -> list[tuple[float, float]]:
+    """From (10, 20) m down to a floor at this height, up to x = `end`, where it may have another height."""
+    return [(10.0, 21.0), (18.0, height), (end, height if last is None else last), (end, 21.0)]
+
+
+@pytest.mark.parametrize("height", [11.2, 11.499999999, 11.5, 11.500000001, 11.7])
+def test_disks_below_a_floor_remain_and_are_tied(height: float) -> None:
+    """Up to a row whose centres are on it, within rounding: it is below or above for body and continuum alike."""
+    made = scene(*slope(height))
+    bonds, x = made.outside.wall.bonds, made.assembly.positions
+    at_right = x[x[:, 0] == 29.5, 1]
+    highest = at_right.max() + 0.5
+
+    assert highest == (12.0 if height > 11.5 - 1e-8 and 11.5 in at_right else 11.0)
+    assert (bonds.side == 1).sum() == highest
+    assert made.outside.levels["right"].surface == pytest.approx(highest, abs=1e-9)
+    assert made.outside.body.mesh.positions[made.outside.body.mesh.positions[:, 0] > 30.1, 1].max() == pytest.approx(
+        highest, abs=1e-9
+    )
+    mass = made.outside.body.mass.sum() + made.mass[: made.disk_count].sum()
+    whole = made.outside.body.mesh
+    removed = 30.0 * 20.0 - len(made.assembly.radii)
+    beyond = (whole.size[0] - 30.0) / 2.0
+    assert mass == pytest.approx(2500.0 * (np.prod(whole.size) - removed - beyond * (20.0 - highest)), rel=1e-9)
+
+
+def test_a_floor_that_is_not_level_is_refused() -> None:
+    assert line(*slope(12.0, last=8.0)) == (
+        "hole[1, cut]: reaches boundary.right, beyond which the ground is level: beside it the hole must take all "
+        "disks down to one height, over at least 4 m (now 2.25 m at y = 8.462 m); make it level there, or leave "
+        "disks between them"
+    )
+
+
+def test_a_pillar_on_the_floor_at_the_side_is_refused() -> None:
+    """The hole passes between the last row of disks and that before, which remains."""
+    pillar = [*slope(12.0, 28.9)[:3], (28.9, 14.0), (31.0, 14.0), (31.0, 17.0), (28.9, 17.0), (28.9, 21.0)]
+    assert "hole[1, cut]: reaches boundary.right, where the continuum has no hole" in line(*pillar)
+
+
+def test_holes_below_a_floor_are_refused() -> None:
+    niche = {"name": "niche", "type": "rectangle", "corners": [27.0, 4.0, 31.0, 7.0]}
+    cut = {"name": "cut", "type": "polygon", "points": [list(point) for point in slope(12.0)]}
+    found = line((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), hole=[cut, niche])
+    assert found.startswith("hole[2, niche]: reaches boundary.right, where the continuum has no hole; leave disks")
+
+
+@pytest.mark.parametrize(
+    ("height", "words"),
+    [
+        (
+            17.0,
+            "the surface beside the disks, y = 20 m, is 3 m above the surface beyond the right side; must be as high",
+        ),
+        (3.0, "the surface beyond the right side, y = 3 m, is 3 m above the lower side of the disks; must be at least"),
+    ],
+)
+def test_heights_must_be_an_element_apart(height: float, words: str) -> None:
+    assert words in line(*slope(height))
+    assert line(*slope(height)).endswith("at least 4 m above it, the smallest useful element")
+    smaller = scene(*slope(height), **{"outside.element": 3.0})
+    assert smaller.outside.body.mesh.element_sizes[:, 1].max() <= 3.0
+
+
+def test_both_sides_may_be_as_low() -> None:
+    """Then no element is needed between them and the surface of the disks."""
+    ridge = {"name": "left", "type": "rectangle", "corners": [-1.0, 18.0, 8.0, 21.0]}
+    other = {"name": "right", "type": "rectangle", "corners": [20.0, 18.0, 31.0, 21.0]}
+    made = scene((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), hole=[ridge, other])
+
+    assert made.outside.body.mesh.positions[:, 1].max() == pytest.approx(18.0, abs=1e-9)
+
+
+def test_monitors_above_lower_ground_are_refused() -> None:
+    """The continuum begins 4 m further on to absorb; on the floor itself, at 12 m, a monitor may be."""
+    found = line(*slope(12.0), monitor=[{"name": "air", "position": [32.0, 13.7]}])
+    assert found == (
+        "monitor[1, air].position: lies above the ground, which is lower beyond this side; the nearest place allowed "
+        "is (32, 12) m"
+    )
+    made = scene(*slope(12.0), monitor=[{"name": "on", "position": [32.0, 12.0]}])
+    assert made.between["on"].place.tolist() in ([31.5, 11.5], [32.5, 11.5])
+
+
+def test_a_force_on_the_floor_beyond_is_on_the_continuum() -> None:
+    force = {"name": "f", "force": [0.0, -8e3], "region": [29.9, 11.9, 33.75, 12.5]}
+    made = scene(*slope(12.0), load=[force])
+    loaded = np.flatnonzero(made.steady_load[1])
+
+    assert (loaded >= made.outside.first).all()
+    assert made.steady_load[1].sum() == pytest.approx(-8e3, rel=1e-12)
+    assert made.positions[loaded, 1] == pytest.approx(np.full(len(loaded), 12.0), abs=1e-9)
