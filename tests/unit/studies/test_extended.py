@@ -1,11 +1,13 @@
 """Enlarged scenes: how large, with what where, and when not."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from dembound.disks.scene import build
 from dembound.errors import CaseError
-from dembound.kinds import checked
+from dembound.kinds import checked, load
 from dembound.packings.tiling import count_disks
 from dembound.running import plan
 from dembound.studies.extended import extended
@@ -254,3 +256,16 @@ def test_monitors_and_loads_in_a_continuum_are_at_disks_of_the_larger_scene(bar,
     (load,) = found.case.load
     np.testing.assert_allclose(np.reshape(load.region, (2, 2)) - found.inside[:2], [[9.0, 3.5], [11.5, 4.0]], atol=1e-9)
     assert f"{large.disk_count:,} particles" in found.sentence
+
+
+def test_a_bar_of_ranges_has_a_longer_end_range() -> None:
+    case = load(Path(__file__).parents[3] / "cases" / "shpb.toml")
+    found = extended(case)
+
+    # from the striker's end at 0.2 m over the end to the gauge at 2.0109 m are 3 m for an end at 2.605 m, beyond which
+    # only the precursor of the front counts
+    lengths = [each.length for each in found.case.bar.range]
+    assert lengths[:-1] == [0.2, 1.2, 0.0109]
+    assert 2.605 < found.case.bar.length < 2.7
+    assert found.case.bar.length == pytest.approx(sum(lengths), rel=1e-12)
+    assert found.case.run.courant == 1.0
