@@ -163,7 +163,9 @@ def _recorded(path: Path, name: str | None) -> tuple[np.ndarray, np.ndarray, Gau
         group = _gauge(file, name)
         time, stress = history_of(group, "stress")
         _enough(time, path)
-        density = group.attrs.get("density", file.attrs.get("density"))
+        if "range" in group.attrs:
+            raise CaseError([f"{path}: has a bar of several ranges, must have one without interfaces"])
+        density = file.attrs.get("density")
         known = GaugeMetadata(
             position=_from_loaded_end(file, group),
             length=_length(file),

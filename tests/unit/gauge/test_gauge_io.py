@@ -116,6 +116,13 @@ def test_monitors_go_by_name(record):
         read_gauge(record, "end")
 
 
+def test_a_bar_of_ranges_is_refused(record):
+    with h5py.File(record, "a") as file:
+        file["histories/near"].attrs["range"] = "first"
+    with pytest.raises(CaseError, match="has a bar of several ranges, must have one without interfaces"):
+        read_gauge(record, "near")
+
+
 def test_monitors_at_the_ends_are_no_gauges(record):
     with h5py.File(record, "r+") as file:
         for name, place in (("start", 0.0), ("tip", 0.99 * (1.0 - 1e-15))):

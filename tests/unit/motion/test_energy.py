@@ -60,7 +60,8 @@ def test_what_is_rounding_of_the_stored_energy_is_not_supplied(bar, came: float,
     for where in range(3):
         ledger = booked(simulated(bar))
         ledger._first = 8e5, 2e5
-        assert ledger._supplied(*(came if place == where else 0.0 for place in range(3))) == (came if counts else 0.0)
+        ledger._came, outside, load = (came if place == where else 0.0 for place in range(3))
+        assert ledger._supplied(outside, load) == (came if counts else 0.0)
 
 
 def test_local_damping_takes_its_share(bar) -> None:

@@ -1,11 +1,13 @@
 """Enlarged scenes: how large, with what where, and when not."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from dembound.disks.scene import build
 from dembound.errors import CaseError
-from dembound.kinds import checked
+from dembound.kinds import checked, load
 from dembound.packings.tiling import count_disks
 from dembound.running import plan
 from dembound.studies.extended import extended
@@ -284,3 +286,16 @@ def test_the_floor_of_a_slope_goes_on_beyond_a_continuum(bar, stage) -> None:
     assert (made.before is None) == (stage == "before")
     if stage == "after":
         assert not made.before.outside.levels
+
+
+def test_a_bar_of_ranges_has_a_longer_end_range() -> None:
+    case = load(Path(__file__).parents[3] / "cases" / "shpb.toml")
+    found = extended(case)
+
+    # from the striker's end at 0.2 m over the end to the gauge at 2.0109 m are 3 m for an end at 2.605 m, beyond which
+    # only the precursor of the front counts
+    lengths = [each.length for each in found.case.bar.range]
+    assert lengths[:-1] == [0.2, 1.2, 0.0109]
+    assert 2.605 < found.case.bar.length < 2.7
+    assert found.case.bar.length == pytest.approx(sum(lengths), rel=1e-12)
+    assert found.case.run.courant == 1.0
