@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from dembound.bar.banded import is_stable, largest_stable_step
+from dembound.bar.layers import EndLayer, continued
 from dembound.bar.memory import run_bytes
 from dembound.boundaries.support import Edge, Supports
 from dembound.casefile.bar import BarCase
@@ -29,6 +30,7 @@ class BarBody(Scene):
     edges : the two ends, left and right; the "diameter" of an end node is the section.
     supports : the table of forces from outside, loads included.
     monitors : name -> node.
+    layers : side -> layer of nodes beyond it; these are no nodes of the scene (layers.py).
 
     Stress is the seventh column of a probe's record. Blocks contain many steps, as a step takes little time.
     """
@@ -39,6 +41,7 @@ class BarBody(Scene):
     edges: Mapping[str, Edge]
     supports: Supports
     monitors: Mapping[str, int]
+    layers: Mapping[str, EndLayer]
 
     kind = "bar"
     energy_unit = "J"
@@ -114,6 +117,11 @@ class BarBody(Scene):
         return self.nodes
 
     @property
+    def tied(self) -> dict[str, np.ndarray]:
+        """Nodes (k,) whose bonds reach into layers, by side."""
+        return {side: np.sort(layer.inner) for side, layer in self.layers.items()}
+
+    @property
     def damp(self) -> float:
         """No local damping."""
         return 0.0
@@ -146,11 +154,17 @@ class BarBody(Scene):
 
     def stable_step(self, bonds: Bonds) -> float:
         """Largest stable time step (s) with these bonds."""
-        return largest_stable_step(bonds.stiffness(), self.mass, self._held)
+        decays = (layer.step_limit for layer in self.layers.values())
+        return min(largest_stable_step(*self._with_layers(bonds)), *decays, np.inf)
 
     def is_stable(self, bonds: Bonds, step: float) -> bool:
         """Whether a time step (s) is stable with these bonds; faster than `stable_step`."""
-        return is_stable(step, bonds.stiffness(), self.mass, self._held)
+        decays = all(step <= layer.step_limit for layer in self.layers.values())
+        return decays and is_stable(step, *self._with_layers(bonds))
+
+    def _with_layers(self, bonds: Bonds) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Stiffness bands, masses and held nodes of the bar with these bonds and its layers."""
+        return continued(self.layers, bonds.stiffness(), self.mass, self._held)
 
     @cached_property
     def _held(self) -> np.ndarray:

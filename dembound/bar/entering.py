@@ -12,8 +12,9 @@ MOMENTS = 500
 def entering_pressure(case: BarCase, side: str, time: np.ndarray, *, loads: bool = True) -> np.ndarray:
     """Pressure (Pa), of the shape of times (s), of the wave that enters at an end, with or without its loads.
 
-    The forces F at the end are balanced by ρcA·v of the bar and C·v of the dashpots, so that the pressure ρcv is
-    F·ρc/(ρcA + C). An end whose motion is prescribed has the prescribed v. The forces of springs are neglected.
+    The forces F at the end are balanced by ρcA·v of the bar and C·v of the dashpots, or ρcA·v of a layer beyond it, so
+    that the pressure ρcv is F·ρc/(ρcA + C). An end whose motion is prescribed has the prescribed v. The forces of
+    springs are neglected.
     """
     bar = case.bar.end(side)
     inwards = 1.0 if side == "left" else -1.0
@@ -26,7 +27,8 @@ def entering_pressure(case: BarCase, side: str, time: np.ndarray, *, loads: bool
         if loads and load.side == side:
             force = force + load.pressure * bar.area * case.wave[load.wave].velocity(time)
     impedance = bar.density * bar.speed
-    return impedance / (impedance * bar.area + supports.damping.sum()) * force
+    beyond = impedance * bar.area if case.side(side).layer else supports.damping.sum()
+    return impedance / (impedance * bar.area + beyond) * force
 
 
 def moments(case: BarCase, side: str) -> np.ndarray:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from dembound.bar.lattice import carrying_lattices
+from dembound.bar.layer_echo import most_returned
 from dembound.bar.scene import BarScene
 from dembound.bar.summary import describe_bar, describe_end
 from dembound.boundaries.words import side_in_words
@@ -41,7 +42,7 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
         if case.bar.attenuation > 0.0:
             facts["attenuation"] = f"α = {case.bar.attenuation:g} 1/m"
     for side in scene.edges:
-        facts[f"{side} end"] = side_in_words(describe_end(scene, side))
+        facts[f"{side} end"] = side_in_words(describe_end(scene, side)) + _echo_in_words(scene, side, time_step)
     for load in case.load:
         facts[f"load {load.name}"] = (
             f"{_pressure(load.pressure, case.wave[load.wave].peak())} times wave {load.wave}, "
@@ -54,6 +55,16 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
             f"{cells:.3g} cells in its shortest wavelength, {needed:.3g} needed for an error of {PERCENT}"
         )
     return facts
+
+
+def _echo_in_words(scene: BarScene, side: str, time_step: float) -> str:
+    """The most that the layer beyond an end returns of every wave in use; empty without a layer."""
+    layer, waves = scene.layers.get(side), scene.case.wave
+    if layer is None:
+        return ""
+    echoes = {name: most_returned(layer, waves[name].highest_frequency(), time_step) for name in waves_used(scene.case)}
+    known = [f"{echo:.1g} of wave {name}" for name, echo in echoes.items() if np.isfinite(echo)]
+    return f"; returns at most {', '.join(known)}" if known else ""
 
 
 def _pressure(pressure: float, peak: float) -> str:

@@ -16,6 +16,9 @@ def run_bytes(case: BarCase) -> float:
     nodes, lengths = float(case.bar.nodes), max(case.method.largest_horizon, 1)
     run = scene_bytes(nodes) + bonds_bytes(nodes, lengths) + motion_bytes(nodes) + ledger_bytes(nodes)
     run += record_bytes(len(case.monitor), 2048, 7, sum(load.nodes for load in case.load) + 2.0)
+    run += sum(
+        layer_bytes(table.layer.nodes, case.method.horizon_beyond) for table in case.boundary.values() if table.layer
+    )
     if case.output.snapshots:
         run += damage_bytes(nodes, lengths)
     step = scene_bytes(nodes) + bonds_bytes(nodes, lengths) + 4 * 8 * (lengths + 1) * nodes  # bands of the stiffness
@@ -30,6 +33,11 @@ def scene_bytes(nodes: float) -> float:
 def bonds_bytes(nodes: float, lengths: int) -> float:
     """Of springs with their limits (33 n), bonds, their stiffness and the steps they broke in (24 m n), work space."""
     return (33 + 24 * lengths + 16) * nodes
+
+
+def layer_bytes(nodes: int, lengths: int) -> float:
+    """Of a layer beyond an end: rows of its bonds' forces, rates, stiffness and two factors (56 b), by node as much."""
+    return 56.0 * (lengths + 1) * (nodes + lengths)
 
 
 def motion_bytes(nodes: float) -> float:

@@ -24,6 +24,7 @@ class BarPart(Part):
     ----------
     scene : the bar; time_step : Δt in s.
     first : bonds to begin with; by default those with which the method begins.
+    through : of the scene's layers, see kernels.tables.BarLayers.
 
     Attributes
     ----------
@@ -33,13 +34,15 @@ class BarPart(Part):
 
     name = "bar"
 
-    def __init__(self, scene: BarBody, time_step: float, first: Bonds | None = None) -> None:
+    def __init__(
+        self, scene: BarBody, time_step: float, first: Bonds | None = None, through: np.ndarray | None = None
+    ) -> None:
         self.scene = scene
         self.nodes = slice(0, scene.count)
         self.law_name = scene.case.method.name
         self.bonds = scene.case.method.begin(scene.rod) if first is None else first
         self.bond_updates = 0
-        self._step = time_step
+        self._step, self._through = time_step, through
         self._supported = np.unique(scene.supports.node)
         self._arrays = self._lay()
         self._unstable = not self._is_stable()
@@ -47,7 +50,7 @@ class BarPart(Part):
 
     def _lay(self) -> BarBonds:
         """The bonds for the kernels."""
-        return self.bonds.arrays(self._supported, self._step)
+        return self.bonds.arrays(self._supported, self._step, self._through)
 
     def law(self) -> BarBonds:
         """The bonds as they are now."""
@@ -59,9 +62,22 @@ class BarPart(Part):
         Raises RunError if the time step is unstable with the new bonds.
         """
         self.bond_updates += steps * self.bonds.alive
+        self._refuse_breaks_at_layers()
         if why == TRIGGERED:
             u = state.u[0]
             self._change_bonds(u, u - self._step * state.v[0], state)
+
+    def _refuse_breaks_at_layers(self) -> None:
+        """Raise RunError if a bond broke at a node whose bonds reach into a layer, as these never break."""
+        if not (self.scene.layers and np.isfinite(self.scene.rod.elongation).any()):
+            return
+        step, pair = self.bonds.breaks(0)
+        for side, layer in self.scene.layers.items():
+            for k in np.flatnonzero(np.isin(pair, layer.inner).any(axis=1))[:1]:
+                raise RunError(
+                    f"the bar broke at t = {step[k] * self._step:g} s within {len(layer.inner) * layer.spacing:g} m of "
+                    f"its {side} end, where bonds reach into the matched layer, which never break; make the bar longer"
+                )
 
     def _change_bonds(self, u: np.ndarray, before: np.ndarray, state: State) -> None:
         """Let the method change the bonds, and add the energy difference to the ledger.

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.bar.body import BarBody
+from dembound.bar.layers import ENDS, EndLayer, LayerTie, layers_of
 from dembound.bar.memory import must_fit_here
 from dembound.bar.part import BarPart
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Supports
 from dembound.casefile.bar import BarCase
 from dembound.casefile.bar.bar import Bar
+from dembound.methods.bonds import Bonds
 from dembound.methods.rod import Range, Rod
 from dembound.motion.part import System
 
@@ -22,20 +24,26 @@ HELD = (1, 2)
 class BarScene(BarBody):
     """The arrays of a case of a bar."""
 
-    def system(self, time_step: float) -> System:
-        """The bar at rest as its method begins, to be stepped by time_step (s)."""
-        return System([BarPart(self, time_step)], [], self.steady_load)
+    def system(self, time_step: float, first: Bonds | None = None) -> System:
+        """The bar and its layers at rest, to be stepped by time_step (s).
+
+        first : bonds to begin with; by default those with which the method begins.
+        """
+        ties = [LayerTie(list(self.layers.values()), self.count, time_step)] if self.layers else []
+        part = BarPart(self, time_step, first, ties[0].through if ties else None)
+        return System([part], ties, self.steady_load)
 
 
 def build_bar(case: BarCase) -> BarScene:
     """Place a bar's nodes and support them; raises CaseError when a run needs more memory than there is."""
     must_fit_here(case)
     bar = case.bar
-    rod = _rod(bar)
+    rod = _rod(bar).continued(*(case.method.horizon_beyond if case.side(side).layer else 0 for side in ENDS))
     positions = np.stack([rod.positions, np.zeros(rod.count)], axis=1)
     edges = {side: _edge(case, side) for side in ("left", "right")}
     monitors = {monitor.name: rod.nearest(monitor.position) for monitor in case.monitor}
-    return BarScene(case, rod, positions, edges, _supports(case, rod, edges), monitors)
+    layers = layers_of(case, rod)
+    return BarScene(case, rod, positions, edges, _supports(case, rod, edges, layers), monitors, layers)
 
 
 def _rod(bar: Bar) -> Rod:
@@ -69,8 +77,8 @@ def bar_medium(case: BarCase, side: str) -> BoundaryMedium:
     return BoundaryMedium(end.density, end.speed, 0.0, lambda diameters: (none, none))
 
 
-def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge]) -> Supports:
-    """The support table: rows of both ends, of all loads, and the attenuation of the nodes they act on."""
+def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge], layers: Mapping[str, EndLayer]) -> Supports:
+    """The support table: rows of both ends, of all loads, and the attenuation of the nodes they or layers act on."""
     builder = SupportBuilder(held=HELD)
     for side, table in case.boundary.items():
         builder.side = side
@@ -82,7 +90,7 @@ def _supports(case: BarCase, rod: Rod, edges: Mapping[str, Edge]) -> Supports:
         inwards = 1.0 if load.side == "left" else -1.0
         force = inwards * load.pressure * rod.end(load.side).section * share
         builder.add(nodes, 0, drive=force, signal=case.wave[load.wave].velocity)
-    supported = np.unique(builder.table().node)
+    supported = np.unique(np.concatenate([builder.table().node, *(layer.inner for layer in layers.values())]))
     drag = rod.summed(lambda part: part.drag_rate * part.density * part.volumes)
     builder.add(supported, 0, damping=drag[supported])
     return builder.table()

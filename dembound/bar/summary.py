@@ -92,6 +92,8 @@ def describe_end(scene: BarScene, side: str) -> dict[str, Any]:
     """One end in numbers: its type, and the numbers of its table that apply to bars."""
     table = scene.case.side(side)
     numbers = table.describe(scene.edges[side], bar_medium(scene.case, side))
+    if side in scene.layers:
+        numbers["layer_length"] = float(f"{scene.layers[side].length:.12g}")
     return {"type": table.type} | {key: value for key, value in numbers.items() if key not in OF_DISKS}
 
 

@@ -7,6 +7,7 @@ from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.fixed import Fixed
 from dembound.boundaries.free import Free
 from dembound.boundaries.free_field import FreeField
+from dembound.boundaries.matched_layer import MatchedLayer
 from dembound.boundaries.outside import Outside
 from dembound.boundaries.periodic import Periodic
 from dembound.boundaries.roller import Roller
@@ -29,6 +30,7 @@ TYPES: tuple[type[Boundary], ...] = (
     ViscoelasticInput,
     FreeField,
     Outside,
+    MatchedLayer,
 )
 """All types of sides."""
 
@@ -40,6 +42,7 @@ __all__ = [
     "Fixed",
     "Free",
     "FreeField",
+    "MatchedLayer",
     "Motion",
     "Outside",
     "Periodic",

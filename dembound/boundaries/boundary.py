@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Self
 
+from dembound.boundaries.layer import Layer
 from dembound.boundaries.sides import Motion
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import Table
@@ -76,6 +77,11 @@ class Boundary(Table):
     def is_artificial(self) -> bool:
         """Whether the side stands in for ground or rock beyond it, so that it may be farther away; by default not."""
         return False
+
+    @property
+    def layer(self) -> Layer | None:
+        """The layer of nodes that follows an end of a bar; by default none."""
+        return None
 
     @property
     def half_cells(self) -> bool:

@@ -150,18 +150,20 @@ def break_at_limit(number, u, v, step, bonds):
 
 
 @njit(**FAST)
-def plane_force(k, u, spring, bond):
+def plane_force(k, u, bonds):
     """Force (N, tension positive) through plane k, between nodes k and k + 1, of all that crosses it."""
-    total = spring[k] * (u[k + 1] - u[k])
-    for row in range(bond.shape[0]):
+    total = bonds.spring[k] * (u[k + 1] - u[k])
+    for row in range(bonds.bond.shape[0]):
         p = row + 1
         for i in range(max(0, k - row), min(k, u.size - 1 - p) + 1):
-            total += bond[row, i] * (u[i + p] - u[i])
+            total += bonds.bond[row, i] * (u[i + p] - u[i])
+    if bonds.through.size > 0:
+        total += bonds.through[k]
     return total
 
 
 @njit(**FAST)
-def node_stress(i, u, spring, bond, sections):
+def node_stress(i, u, bonds):
     """Stress (Pa, tension positive) at node i: the mean of both adjacent planes, at an end of the one plane.
 
     Between planes of different sections it is the mean force over the mean section.
@@ -169,11 +171,11 @@ def node_stress(i, u, spring, bond, sections):
     total = 0.0
     section = 0.0
     if i > 0:
-        total += plane_force(i - 1, u, spring, bond)
-        section += sections[i - 1]
+        total += plane_force(i - 1, u, bonds)
+        section += bonds.sections[i - 1]
     if i < u.size - 1:
-        total += plane_force(i, u, spring, bond)
-        section += sections[i]
+        total += plane_force(i, u, bonds)
+        section += bonds.sections[i]
     return total / section
 
 
@@ -181,7 +183,7 @@ def node_stress(i, u, spring, bond, sections):
 def stresses(u, bonds, stress):
     """Fill stress (n,) Pa of all nodes, see `node_stress`."""
     for i in range(u.size):
-        stress[i] = node_stress(i, u, bonds.spring, bonds.bond, bonds.sections)
+        stress[i] = node_stress(i, u, bonds)
 
 
 @njit(**FAST)
@@ -279,7 +281,7 @@ def push(bonds, u, u_next, v, number, step, work):
 def note(bonds, index, u, log):
     """Record the stress (Pa) at the probes, in the seventh column."""
     for q in range(log.probes.size):
-        log.record[index, q, 6] = node_stress(log.probes[q], u[0], bonds.spring, bonds.bond, bonds.sections)
+        log.record[index, q, 6] = node_stress(log.probes[q], u[0], bonds)
 
 
 @njit(**FAST)

@@ -8,7 +8,7 @@ nodes of the same range; at a bonded interface local springs carry what bonds ac
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -58,6 +58,7 @@ class Bonds:
         self.complement = complement
         self.trigger_ratio = trigger_ratio
         self.zones: list[tuple[int, int]] = []
+        self.influence = influence
         self._rows = rod.bond_rows(horizon, influence)
         planes = rod.count - 1
         self.spring = rod.springs.copy()
@@ -99,11 +100,21 @@ class Bonds:
 
     @cached_property
     def _complemented(self) -> np.ndarray:
-        """Planes (n − 1,) where springs carry what bonds do not: all, or without complement those near interfaces."""
+        """Planes (n − 1,) where springs carry what bonds do not: all, or without it those near springs beyond."""
         chosen = np.full(self.rod.count - 1, self.complement)
         for left, right in self.rod.bonded:
             chosen[max(left.first, left.last - self.horizon) : min(right.last, right.first + self.horizon)] = True
+        for near in self._near_springs_beyond():
+            chosen[near] = True
         return chosen
+
+    def _near_springs_beyond(self) -> Iterator[slice]:
+        """The planes near ends beyond which a layer has local springs."""
+        left, right = self.rod.end("left"), self.rod.end("right")
+        if left.beyond[0] == 1:
+            yield slice(left.first, min(left.last, left.first + self.horizon))
+        if right.beyond[1] == 1:
+            yield slice(max(right.first, right.last - self.horizon), right.last)
 
     def shares(self, part: Range) -> tuple[float, ...]:
         """Shares of the stress under uniform strain that bonds of one, two … spacings carry in the middle of a range.
@@ -119,11 +130,15 @@ class Bonds:
         return tuple(np.trim_zeros(shares, "b").tolist())
 
     def soften_ends(self) -> None:
-        """Halve the springs at all ends that are not bonded, as half volumes do in peridynamics with m = 1."""
+        """Halve the springs at all ends, as half volumes do in peridynamics with m = 1.
+
+        Not where ranges are bonded, nor where a layer follows.
+        """
         bonded = {left.last for left, _ in self.rod.bonded}
         for part in self.rod.ranges:
-            for node, plane in ((part.first, part.first), (part.last, part.last - 1)):
-                self.spring[plane] *= 1.0 if node in bonded else 0.5
+            planes = (part.first, part.first), (part.last, part.last - 1)
+            for (node, plane), reach in zip(planes, part.beyond, strict=True):
+                self.spring[plane] *= 1.0 if node in bonded or reach > 0 else 0.5
 
     def triggered(self, u: np.ndarray) -> np.ndarray:
         """Springs (a,) that trigger the method at displacements u (n,) m."""
@@ -193,8 +208,11 @@ class Bonds:
             getattr(self, name)[...] = memory[name]
         self.zones = [(int(first), int(last)) for first, last in memory["zones"]]
 
-    def arrays(self, supported: np.ndarray, step: float) -> BarBonds:
-        """All arrays for the kernels; supported (k,) are nodes that the support table moves; step Δt in s."""
+    def arrays(self, supported: np.ndarray, step: float, through: np.ndarray | None = None) -> BarBonds:
+        """All arrays for the kernels; supported (k,) are nodes that the support table moves; step Δt in s.
+
+        through : of layers beyond the ends, see kernels.tables.BarLayers.
+        """
         from dembound.kernels.tables import BarBonds, BarContacts
 
         rod = self.rod
@@ -233,6 +251,7 @@ class Bonds:
             mobility=(0.5 * (1.0 + keep)) * mobility,
             drag=rod.drag_rate * rod.mass if rod.drag_rate.any() else np.zeros(0),
             contacts=contacts,
+            through=np.zeros(0) if through is None else through,
             space=np.zeros(rod.count + self.horizon + 1),
             mean=np.zeros(rod.count),
             before=np.empty(len(supported)),
@@ -271,7 +290,7 @@ class Bonds:
         """Share (n − 1,) of the stress under uniform strain that bonds of stiffness rows (m, n) carry across planes."""
         carried = np.zeros(self.rod.count - 1)
         for part in self.rod.ranges:
-            carried[part.planes] = part.carried_share(rows[:, part.nodes])
+            carried[part.planes] = part.carried_share(rows[:, part.nodes]) + part.carried_beyond(self.influence)
         return carried
 
     def _set_limits(self, carried: np.ndarray) -> None:

@@ -28,6 +28,11 @@ class Method(Table, ABC):
         """The largest horizon (in spacings) of all its stages; 1 for local springs."""
 
     @property
+    def horizon_beyond(self) -> int:
+        """The horizon (in spacings) of the bonds in layers beyond the ends, at all stages; 1 for local springs."""
+        return 1
+
+    @property
     def soft_ends(self) -> bool:
         """Whether in some stage the bar is softer near its ends than elsewhere."""
         return False

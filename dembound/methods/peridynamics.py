@@ -32,6 +32,11 @@ class Peridynamics(Method):
         return self.horizon
 
     @property
+    def horizon_beyond(self) -> int:
+        """The horizon m: bonds reach beyond the ends as if the bar went on."""
+        return self.horizon
+
+    @property
     def soft_ends(self) -> bool:
         """True unless they are corrected."""
         return not self.corrected_ends

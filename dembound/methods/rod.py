@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,6 +24,8 @@ class Range:
     section : m²; modulus : Pa, Young's; density : kg/m³; critical_stretch : 1, at which bonds break.
     drag_rate : 1/s, of dashpots that attenuate, as parts of the masses.
     gap : m, opening at rest of its contact with the range on its left, if it touches it.
+    beyond : length, in spacings, of the longest bonds that reach beyond the bar's left and right end into a layer of
+    nodes there (bar/layers.py), 0 for none; a node at such an end has its whole volume.
     """
 
     first: int
@@ -36,6 +38,7 @@ class Range:
     critical_stretch: float = math.inf
     drag_rate: float = 0.0
     gap: float = 0.0
+    beyond: tuple[int, int] = (0, 0)
 
     @property
     def cells(self) -> int:
@@ -74,9 +77,10 @@ class Range:
 
     @property
     def volumes(self) -> np.ndarray:
-        """Volumes (cells + 1,) m³ of its nodes; half at its ends."""
+        """Volumes (cells + 1,) m³ of its nodes; half at its ends, unless a layer follows."""
         volumes = np.full(self.cells + 1, self.section * self.spacing)
-        volumes[[0, -1]] *= 0.5
+        for end, reach in zip((0, -1), self.beyond, strict=True):
+            volumes[end] *= 0.5 if reach == 0 else 1.0
         return volumes
 
     def bond_rows(self, horizon: int, influence: np.ndarray | None = None) -> np.ndarray:
@@ -106,6 +110,28 @@ class Range:
         for p, row in enumerate(rows, start=1):
             through += np.convolve(row * p * self.spacing, np.ones(p))[: self.cells + 1]  # p of them cross a plane
         return through[:-1] / (self.modulus * self.section)
+
+    def stiffness_beyond(self, side: int, influence: np.ndarray | None = None) -> np.ndarray:
+        """Stiffness (b,) N/m by length of bonds that reach beyond its left (0) or right (1) end, as if it went on.
+
+        They are springs where the longest has one spacing, else peridynamic bonds, see `bond_rows`.
+        """
+        reach = self.beyond[side]
+        if reach <= 1:
+            return np.full(reach, self.spring)
+        longer = replace(self, first=0, last=4 * reach, beyond=(0, 0))
+        return longer.bond_rows(reach, influence)[:, reach]
+
+    def carried_beyond(self, influence: np.ndarray | None = None) -> np.ndarray:
+        """Share (cells,) of the stress under uniform strain that the bonds beyond both ends carry across its planes.
+
+        Of those of length p, p − 1 − k cross the k-th plane from the end: they begin at a node farther from the end.
+        """
+        carried = np.zeros(self.cells)
+        for side, planes in enumerate((carried, carried[::-1])):
+            for p, stiffness in enumerate(self.stiffness_beyond(side, influence), start=1):
+                planes[: p - 1] += stiffness * p * np.arange(p - 1, 0, -1) / self.spring
+        return carried
 
 
 def _influenced(horizon: int, influence: np.ndarray) -> float:
@@ -138,6 +164,13 @@ class Rod:
     ) -> Rod:
         """A bar of one range with so many nodes, in the units of `Range`."""
         return cls((Range(0, count - 1, 0.0, spacing, section, modulus, density, critical_stretch, drag_rate),))
+
+    def continued(self, left: int, right: int) -> Rod:
+        """The bar with bonds that reach beyond its ends, the longest of so many spacings; see `Range.beyond`."""
+        first, *others = self.ranges
+        ranges = [replace(first, beyond=(left, first.beyond[1])), *others]
+        ranges[-1] = replace(ranges[-1], beyond=(ranges[-1].beyond[0], right))
+        return Rod(tuple(ranges))
 
     @property
     def count(self) -> int:

@@ -59,7 +59,14 @@ class Part(ABC):
 
 
 class Tie(ABC):
-    """A coupling between nodes of two parts."""
+    """A coupling between nodes of two parts, or of a part and what lies beyond it.
+
+    Attributes
+    ----------
+    name : in the state, where it has a memory.
+    """
+
+    name: str = "tie"
 
     @property
     @abstractmethod
@@ -69,6 +76,14 @@ class Tie(ABC):
     @abstractmethod
     def bundle(self, supported: np.ndarray) -> NamedTuple:
         """Its arrays for the kernels; supported (s,) are all nodes of the support table, ascending."""
+
+    def memory(self) -> Arrays:
+        """All arrays that change during a run, by name; by default none."""
+        return {}
+
+    def recall(self, memory: Arrays) -> None:
+        """Restore what `memory` has returned in another run of the same case."""
+        return
 
 
 class System:
@@ -174,15 +189,20 @@ class System:
         """
         return {}
 
+    @property
+    def _remembering(self) -> list[Part | Tie]:
+        """The parts and ties."""
+        return [*self.parts, *self.ties]
+
     def memory(self) -> Arrays:
         """All arrays that change during a run except the motion, by name."""
         memory: dict[str, np.ndarray] = {"load": self.load, "steady": self.steady}
-        for part in self.parts:
-            memory |= {f"{part.name}/{name}": values for name, values in part.memory().items()}
+        for each in self._remembering:
+            memory |= {f"{each.name}/{name}": values for name, values in each.memory().items()}
         return memory
 
     def recall(self, memory: Mapping[str, Any]) -> None:
         """Restore what `memory` has returned in another run of the same case."""
         self.load, self.steady = memory["load"].copy(), memory["steady"].copy()
-        for part in self.parts:
-            part.recall(within(memory, part.name))
+        for each in self._remembering:
+            each.recall(within(memory, each.name))

@@ -91,7 +91,7 @@ def _passed(seen: WaveScene) -> float | None:
     mirrors: dict[int, list[float]] = {axis: [] for axis in seen.axes}
     for side in SIDES:
         table, axis = case.side(side), normal_axis(side)
-        if axis in mirrors and not any(factor > 0.0 for factor in table.factors.values()):
+        if axis in mirrors and not (table.layer or any(factor > 0.0 for factor in table.factors.values())):
             mirrors[axis].append(seen.plane(side))
     if any(len(planes) > 1 for planes in mirrors.values()):
         return None  # periodic sides, too
@@ -114,11 +114,12 @@ def _slowest_way(source: Source, seen: WaveScene, mirrors: dict[int, list[float]
 
 
 def _movable(seen: WaveScene) -> Iterator[str]:
-    """Artificial sides that no wave drives, of the axes along which waves run."""
+    """Artificial sides that may reflect and that no wave drives, of the axes along which waves run."""
     case = seen.planned.scene.case
     for side in SIDES:
         table = case.side(side)
-        if table.is_artificial and not (table.is_outside or table.waves) and normal_axis(side) in seen.axes:
+        returns = not (table.is_outside or table.waves or table.layer)
+        if table.is_artificial and returns and normal_axis(side) in seen.axes:
             yield side
 
 

@@ -85,14 +85,14 @@ def never_silent(scene: Scene, ended: object, file: h5py.File) -> Iterator[str]:
 
 
 def _braked(scene: Scene, pieces: np.ndarray) -> np.ndarray:
-    """The nodes (n,) bool whose motion is damped: all with local damping, else those connected to dashpots.
+    """The nodes (n,) bool whose motion is damped: all with local damping, else those connected to what absorbs.
 
     Pieces that have broken off continue to move and vibrate.
     """
     if scene.damp > 0.0:
         return np.ones(scene.count, dtype=np.bool_)
     tables = {side: scene.case.side(side) for side in scene.edges}
-    sides = [scene.edges[side] for side, table in tables.items() if table.factors or table.is_outside]
+    sides = [scene.edges[side] for side, table in tables.items() if table.factors or table.is_outside or table.layer]
     ends = np.concatenate([np.zeros(0, dtype=np.int64), *(edge.nodes for edge in sides)])
     return np.isin(pieces, pieces[ends])
 

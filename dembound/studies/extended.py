@@ -198,6 +198,8 @@ def _sentence(case: Case, what: str, moving: list[str]) -> str:
     stays = f"{what}, from whose {' and '.join(moving)} {until}; {' and '.join(staying)} {stay}, as waves enter there"
     if all(case.side(side).is_outside for side in staying):
         return f"reference: {stays}, before a continuum, which returns next to nothing"
+    if all(case.side(side).layer for side in staying):
+        return f"reference: {stays}, before a matched layer, which returns next to nothing"
     return f"reference: {stays}, and {reflect} as in the case"
 
 

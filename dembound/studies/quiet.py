@@ -9,7 +9,6 @@ from typing import TypeVar
 import numpy as np
 
 from dembound.bar import stability as of_bars
-from dembound.bar.part import BarPart
 from dembound.bar.scene import build_bar
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
@@ -101,8 +100,7 @@ def of_bar(case: BarCase) -> tuple[list[Trial], list[str]]:
     for index, bonds in enumerate(stages):
 
         def system(time_step: float, index: int = index) -> System:
-            bonds = case.method.stages(scene.rod)[index]
-            return System([BarPart(scene, time_step, bonds)], [], np.zeros((3, scene.count)))
+            return scene.system(time_step, case.method.stages(scene.rod)[index])
 
         name = case.method.name if len(stages) == 1 else f"{case.method.type}, stage {index + 1}"
         found.append(Trial(name, scene, scene.stable_step(bonds), step, system, is_linear=True))

@@ -1,5 +1,6 @@
 """Bundles of arrays, the arguments of kernels."""
 
+from dembound.kernels.tables.bar_layers import BarLayers
 from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
 from dembound.kernels.tables.grid import ALONG, Absorber, Blocks, Elements, Grid, Shape
 from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, LaneBonded, Links, WatchedLinks
@@ -13,6 +14,7 @@ __all__ = [
     "Absorber",
     "BarBonds",
     "BarContacts",
+    "BarLayers",
     "Blocks",
     "Body",
     "Bonded",

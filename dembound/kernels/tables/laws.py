@@ -99,8 +99,8 @@ class BarBonds(NamedTuple):
     in a step, plain_limit (r,) m : where all trigger. mixed : (q, 3) the runs of all other nodes, with whether they
     have springs, and mixed_keep (q,) as plain_keep. sections : (n − 1,) m², between neighbours, 0 where nothing joins
     them. mobility : (n,) Δt/m, less what attenuation takes, 0 for supported nodes; drag : (n,) N·s/m of dashpots that
-    attenuate, or (0,) for none. contacts : between ranges. space (n + m + 1,), mean (n,), before (k,), reached (1,) :
-    work space.
+    attenuate, or (0,) for none. contacts : between ranges. through : (n − 1,) N, tension in bonds that reach into
+    layers, see BarLayers, or (0,) without these. space (n + m + 1,), mean (n,), before (k,), reached (1,) : work space.
     """
 
     spring: np.ndarray
@@ -121,6 +121,7 @@ class BarBonds(NamedTuple):
     mobility: np.ndarray
     drag: np.ndarray
     contacts: BarContacts
+    through: np.ndarray
     space: np.ndarray
     mean: np.ndarray
     before: np.ndarray

@@ -127,7 +127,7 @@ class PulseInBar(Exact):
         if case.bar.range:
             return None
         load, far = case.load[0], case.side("right")
-        end: End | None = "absorbing" if far.factors else "free" if far.is_free else None
+        end: End | None = "absorbing" if far.factors or far.layer else "free" if far.is_free else None
         end = "fixed" if 0 in far.prescribed(0) else end
         if load.side != "left" or not case.side("left").is_free or end is None:
             return None
