@@ -72,6 +72,12 @@ CASES = {
     "switch": BAR | {"method": {"type": "switch", "horizon": 3}},
     "patch": BAR | {"method": {"type": "patch", "horizon": 3}},
     "ranges": BAR | {"bar": RANGES, "method": {"type": "patch", "horizon": 3}},
+    "matched layers": BAR
+    | {
+        "bar": PULLED["bar"] | {"attenuation": 0.5, "strength": 1e9},
+        "boundary": {side: {"type": "matched_layer", "nodes": nodes} for side, nodes in (("left", 12), ("right", 8))},
+        "method": {"type": "peridynamics", "horizon": 3},
+    },
 }
 
 

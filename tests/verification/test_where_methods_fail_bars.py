@@ -1,6 +1,7 @@
 """Where bars of nodes fail: the thresholds of docs/where_methods_fail.md, measured again."""
 
 import bars
+import ends
 import numpy as np
 import pytest
 
@@ -62,3 +63,14 @@ def test_soft_ends_reflect():
 def test_families_and_volumes(horizon):
     assert bars.families_by_distance(horizon) > 0.1
     assert bars.too_stiff(horizon) == pytest.approx(1.0 + 1.0 / horizon, rel=1e-12)
+
+
+@pytest.mark.parametrize(("horizon", "nodes", "echo"), [(1, 20, 5e-5), (1, 40, 6e-6), (8, 20, 7e-4), (8, 40, 4e-5)])
+def test_thin_layers_return_more(horizon, nodes, echo):
+    """Of the larger of two steps; to a fourth, as the page has one digit."""
+    found = max(ends.sharp_echo(horizon, ends.layer(nodes), share) for share in (0.5, 0.9))
+    assert found == pytest.approx(echo, rel=0.25)
+
+
+def test_dashpots_return_a_hundred_times_as_much():
+    assert ends.sharp_echo(1, ends.VISCOUS, 0.5) == pytest.approx(5.7e-3, rel=0.05)

@@ -25,6 +25,18 @@ def test_a_dashpot_takes_its_part_of_a_load_and_lets_its_wave_in(spalling, side:
     assert entering_pressure(case, side, np.zeros((2, 3))).shape == (2, 3)
 
 
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_layer_takes_half_of_a_load_and_lets_its_wave_in(spalling, side: str) -> None:
+    load = {"name": "hit", "pressure": 12e6, "wave": "hit", "side": side}
+    velocity = 1.0 if side == "left" else -1.0  # inwards
+    wave = {"type": "triangle", "amplitude": velocity, "rise": 2e-4, "fall": 2e-4}
+    end = {"type": "matched_layer", "wave_p": "in"}
+    case = spalling({"load": [load], f"boundary.{side}": end, "wave.in": wave})
+
+    np.testing.assert_allclose(entering_pressure(case, side, TIME, loads=False), 2.5e6 * SHAPE, rtol=1e-12, atol=1e-6)
+    np.testing.assert_allclose(entering_pressure(case, side, TIME), (2.5e6 + 6e6) * SHAPE, rtol=1e-12, atol=1e-6)
+
+
 def test_a_wave_is_looked_at_from_its_start_to_its_end(spalling) -> None:
     time = moments(spalling({"wave.hit.start": 1e-3, "run.duration": 1e-2}), "left")
 

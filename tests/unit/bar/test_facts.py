@@ -49,6 +49,16 @@ def test_numbers_of_an_end_of_another_type_are_told(spalling) -> None:
     assert bar_facts(build_bar(case), 2.5e-5)["right end"] == "viscous, β_P = 1, depth = 2.5"
 
 
+def test_a_layer_is_told_with_its_length_and_what_it_returns(spalling) -> None:
+    method = {"type": "finite_difference"}
+    case = spalling({"boundary.right": {"type": "matched_layer", "nodes": 80}, "method": method, "run.courant": 0.5})
+    layer, echo = facts_of(case)["right end"].split("; ")
+    assert layer == "matched_layer, nodes = 80, power = 3.0, reflection = 1e-08, layer_length = 2.0"
+    assert echo.startswith("returns at most ")
+    assert echo.endswith(" of wave hit")
+    assert 1e-9 < float(echo.split()[3]) < 1e-6
+
+
 def test_what_a_bar_lacks_is_not_told(spalling) -> None:
     bar = {"length": 1.0, "spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0}
     facts = facts_of(spalling({"bar": bar, "monitor": [], "load": []}))

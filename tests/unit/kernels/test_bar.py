@@ -337,7 +337,7 @@ def test_force_through_a_plane_is_what_pulls_at_either_side(layout) -> None:
     force, stress = -matrix(bonds) @ u, np.empty(COUNT)
     bar.stresses(u, arrays, stress)
 
-    through = np.array([bar.plane_force(k, u, arrays.spring, arrays.bond) for k in range(COUNT - 1)])
+    through = np.array([bar.plane_force(k, u, arrays) for k in range(COUNT - 1)])
     # sums of up to 60 forces below 4 N
     np.testing.assert_allclose(through, np.cumsum(force)[:-1], rtol=0.0, atol=COUNT * 4 * EPS)
     np.testing.assert_allclose(through, -np.cumsum(force[::-1])[-2::-1], rtol=0.0, atol=COUNT * 4 * EPS)

@@ -115,6 +115,15 @@ def test_a_rock_bar(spalling) -> None:
     assert "shorter run" not in lines(case)  # a bar that may break
 
 
+def test_a_layer_sends_nothing_back(spalling) -> None:
+    changes = {"boundary.right": {"type": "matched_layer"}, "method": {"type": "finite_difference"}}
+    changes |= {"run.duration": 0.01, "load.hit.nodes": 1, "bar.length": 4.0}
+    found = lines(loads(spalling(changes).text.replace("strength = 8000000.0\n", "")))
+
+    assert "by 0.00094 s; run.duration is 0.01 s" in found["shorter run"]  # as before dashpots
+    assert not {"echoes", "smaller scene"} & set(found)
+
+
 def test_one_half_of_a_scene_needs_what_the_whole_needs(bar) -> None:
     middle = {"load": [{"name": "blow", "force": [0.0, 1e5], "region": [29.0, 29.0, 31.0, 31.0], "wave": "pulse"}]}
     found = [lines(bar({**SQUARE, **middle, "reduce.symmetry": symmetric})) for symmetric in (True, False)]

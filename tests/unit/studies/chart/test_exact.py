@@ -50,7 +50,7 @@ def test_other_bars_have_none(spalling, changes) -> None:
         exact_of(spalling(changes))
 
 
-@pytest.mark.parametrize(("end", "echo"), [("free", 1.0), ("fixed", -1.0), ("viscous", 0.0)])
+@pytest.mark.parametrize(("end", "echo"), [("free", 1.0), ("fixed", -1.0), ("viscous", 0.0), ("matched_layer", 0.0)])
 def test_the_far_end_of_a_bar_reflects(spalling, end: str, echo: float) -> None:
     case = spalling({"bar.strength": 1e9, "boundary.right": {"type": end}})
     time = np.array([0.7e-3, 1.7e-3])  # 0.5 m from the load: the crest of 0.2 ms, and its echo

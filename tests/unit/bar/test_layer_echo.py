@@ -1,0 +1,57 @@
+"""What layers return of harmonic waves, from their equations."""
+
+import numpy as np
+import pytest
+
+from dembound.bar.layer_echo import most_returned, returned
+from dembound.bar.layers import EndLayer
+from dembound.boundaries.layer import Layer
+from dembound.exact import Lattice
+
+SPACING, SPEED, MASS = 0.01, 1000.0, 3.0
+
+
+def layer_of(profile: Layer, drag_rate: float = 0.0, horizon: int = 1) -> EndLayer:
+    inner = np.arange(horizon)
+    stiffness = np.full(horizon, MASS * (SPEED / SPACING) ** 2)
+    if horizon > 1:  # as that of peridynamics
+        stiffness *= 2.0 / horizon**2 / np.arange(1, horizon + 1) * np.where(inner == horizon - 1, 0.5, 1.0)
+    return EndLayer("right", profile, inner, stiffness, MASS, SPACING, SPEED, drag_rate)
+
+
+@pytest.mark.parametrize("reflection", [0.1, 1e-2, 1e-3])
+@pytest.mark.parametrize("drag_rate", [0.0, 50.0])
+def test_a_long_layer_returns_r0(reflection, drag_rate):
+    """The echo of its outer end, less what dashpots take on the way.
+
+    A free end of a whole node is half a spacing farther away, where the rate is the largest. The rest is of the order
+    (kΔx)² = 0.004 and (dΔx/c)² = 0.002, and of the numerical dispersion on the way.
+    """
+    frequency, profile = SPEED / (100 * SPACING), Layer(300, 3.0, reflection)
+    layer = layer_of(profile, drag_rate)
+    farther = np.exp(-layer.node_rates[-1] * SPACING / SPEED)
+    expected = reflection * farther * np.exp(-0.5 * drag_rate * 2.0 * 300.5 * SPACING / SPEED)
+    assert returned(layer, frequency, 0.5 * SPACING / SPEED) == pytest.approx(expected, rel=0.01)
+
+
+def test_what_no_bar_carries_is_nan():
+    """Above ω = 2c/Δx nothing runs."""
+    layer, step = layer_of(Layer(40, 3.0, 1e-6)), 1e-4 * SPACING / SPEED
+    most = SPEED / (np.pi * SPACING)
+    assert np.isnan(returned(layer, 1.1 * most, step))
+    assert returned(layer, 0.9 * most, step) < 1e-3
+    assert most_returned(layer, 0.9 * most, step) >= returned(layer, 0.9 * most, step)
+
+
+def test_bonds_of_all_lengths_count():
+    """With the force of peridynamics waves run as its lattice says: to where they stop."""
+    layer, step = layer_of(Layer(40, 3.0, 1e-6), horizon=3), 1e-4 * SPACING / SPEED
+    most = (
+        float(np.nanmax(Lattice(3, SPACING, 0.0, SPEED).frequency(np.linspace(1.0, np.pi / SPACING, 500)))) / 6.2831853
+    )
+    assert np.isnan(returned(layer, 1.05 * most, step))
+    assert returned(layer, 0.5 * most, step) < 1e-4
+
+
+def test_nothing_is_said_of_very_long_bonds():
+    assert np.isnan(most_returned(layer_of(Layer(200, 3.0, 1e-6), horizon=31), 100.0, 1e-7))
