@@ -1,6 +1,7 @@
-"""The pictures of where methods fail: oblique waves, short waves in packings, springs and lagged dampers."""
+"""The pictures of where methods fail: oblique waves, short waves in packings, springs, lagged dampers, ends of bars."""
 
 import numpy as np
+from ends import dashpot_echo, harmonic_echo
 from grains import coda, pulse_along_bar
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
@@ -100,5 +101,40 @@ def springs_and_dampers() -> Figure:
     return figure
 
 
-PICTURES = {"oblique_waves": oblique_waves, "short_waves": short_waves, "springs_and_dampers": springs_and_dampers}
+@styled
+def bar_ends() -> Figure:
+    """What matched layers and a dashpot return, against the wavelength and against the number of nodes."""
+    figure = new_figure(9.5, 4.4)
+    left, right = figure.subplots(1, 2, sharey=True)
+    cells = np.geomspace(5.0, 2000.0, 40)
+    left.plot(cells, [dashpot_echo(each) for each in cells], color=REFERENCE, label="dashpot, finite differences")
+    counts = np.array([8, 12, 16, 20, 30, 40, 60, 80, 120, 160])
+    for index, horizon in enumerate((1, 3, 8)):
+        name = f"peridynamics, m = {horizon}" if horizon > 1 else "finite differences"
+        for nodes, line in ((40, "-"), (80, "--")):
+            echoes = [harmonic_echo(horizon, nodes, each) for each in cells]
+            left.plot(cells, echoes, line, color=COLOURS[index], label=f"{name}, {nodes} nodes")
+        enough = counts[counts >= 2 * horizon]
+        most = [max(harmonic_echo(horizon, int(nodes), each) for each in (20.0, 50.0, 200.0)) for nodes in enough]
+        right.plot(enough, most, label=f"{name}, largest at 20, 50, 200 Δx", **point_style(index))
+    left.set_xlabel("wavelength c/f over Δx (–)")
+    left.set_ylabel("returned / arriving amplitude (–)")
+    right.set_xlabel("nodes in the layer (–)")
+    for panel in (left, right):
+        panel.set_xscale("log")
+        panel.set_yscale("log")
+        panel.set_ylim(1e-10, 1.0)
+    right.set_xticks(counts[::3], [f"{count}" for count in counts[::3]])
+    right.xaxis.set_minor_formatter(NullFormatter())
+    figure.suptitle("Matched layers beyond an end of a bar, 0.9 of the stability limit", fontsize=11)
+    outside_legend(figure, (left, right), columns=2)
+    return figure
+
+
+PICTURES = {
+    "oblique_waves": oblique_waves,
+    "short_waves": short_waves,
+    "springs_and_dampers": springs_and_dampers,
+    "bar_ends": bar_ends,
+}
 """Name of the file -> drawing."""
