@@ -12,6 +12,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from dembound.api import case
+from dembound.bar.scene import build_bar
 from dembound.boundaries import MatchedLayer
 from dembound.errors import RunError
 from dembound.motion.energy import Ledger
@@ -196,6 +198,43 @@ def test_the_ledger_closes_and_all_that_came_is_absorbed(rock, own):
     assert kept + let_go == pytest.approx(came, rel=1e-3)
     assert let_go > 0.97 * came
     assert last.kinetic < 1e-3 * peak
+
+
+@pytest.mark.parametrize("horizon", [1, 3])
+@pytest.mark.parametrize("interface", ["bonded", "contact"])
+def test_layers_continue_the_ranges_at_their_ends(rock, horizon, interface):
+    """Steel before rock, each with its own spacing and impedance: as in a bar with longer ends, until these return.
+
+    A hump of 20 nodes moves left in the rock and meets the steel in compression; to the errors of the ends above.
+    """
+    second = 101 if interface == "contact" else 100  # first node of the rock
+
+    def moved(longer: int, end: dict | None, step: float) -> tuple[float, np.ndarray]:
+        steel = {"name": "steel", "length": (100 + longer) * 8e-3, "spacing": 8e-3}
+        steel |= {"density": 7800.0, "wave_speed": 5000.0}
+        other = {"name": "rock", "length": (100 + longer) * SPACING, "interface": interface}
+        material = {"spacing": SPACING, "density": rock.density, "wave_speed": rock.speed}
+        scene = build_bar(
+            case(
+                bar=material | {"range": [steel, other]},
+                method=method(horizon),
+                boundary={"left": end, "right": end} if end else {},
+                run={"duration": 1.0},
+            )
+        )
+        first = longer + second
+        simulation = Simulation(scene, step or 0.8 * scene.step_limit(), np.array([20, 90, second + 60]) + longer)
+        velocity = np.zeros((3, scene.count))
+        velocity[0, first + 20 : first + 41] = -0.5 * (1.0 - np.cos(2.0 * np.pi * np.arange(21) / 20))
+        simulation.state.velocity = velocity
+        return simulation.time_step, simulation.advance(int(400 * SPACING / rock.speed / simulation.time_step))[:, :, 3]
+
+    step, expected = moved(200, None, 0.0)
+    _, got = moved(0, layer(), step)
+    impedance = rock.density * rock.speed
+    through = impedance / (impedance + 7800.0 * 5000.0)  # of the half of the hump that runs left, twice this share
+    assert np.abs(expected[:, 1]).max() == pytest.approx(through, rel=0.02)
+    assert np.abs(got - expected).max() < 7e-6 * np.abs(expected).max()
 
 
 def test_a_wave_enters_through_a_layer_and_nothing_comes_back(rock):

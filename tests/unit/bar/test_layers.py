@@ -104,3 +104,13 @@ def test_a_layer_shorter_than_two_horizons_is_refused(spalling) -> None:
 def test_springs_in_a_layer_need_no_more(spalling) -> None:
     scene = build_bar(spalling({"method": {"type": "patch", "horizon": 5}} | ends()))
     assert [len(layer.inner) for layer in scene.layers.values()] == [1, 1]
+
+
+def test_a_moving_range_beside_a_layer_is_refused(spalling) -> None:
+    ranges = [{"name": "striker", "length": 0.25, "velocity": 5.0}, {"name": "rock", "length": 0.75}]
+    bar = {"spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0, "range": ranges}
+    with pytest.raises(CaseError) as error:
+        spalling({"bar": bar} | ends())
+    assert error.value.problems == [
+        "boundary.left.type: its layer is at rest, but range striker beside it has a velocity"
+    ]
