@@ -65,7 +65,7 @@ class Driven:
         return lost
 
     def force(self, plane: int) -> float:
-        return plane_force(plane, self.u, self.bonds.spring, self.bonds.bond)
+        return plane_force(plane, self.u, self.arrays)
 
 
 def cracked(w: float, strain: float, plane: int = 13) -> np.ndarray:
