@@ -12,6 +12,7 @@ from dembound.bar.scene import BarScene, build_bar
 from dembound.bar.stability import choose_step
 from dembound.errors import RunError
 from dembound.exact.dispersion import cells_per_wavelength
+from dembound.gauge.estimates import pull_back_strength
 from dembound.methods.bonds import Bonds
 from dembound.methods.rod import Rod
 from dembound.motion.part import System
@@ -81,6 +82,43 @@ def pieces(method: str, spacing: float = 1e-3) -> list[float]:
     part = simulation.system.parts[0]
     found = spalls(part.bonds, scene.positions[:, 0], simulation.time_step)
     return [0.5 * (spall.start[0] + spall.start[1]) for spall in sorted(found, key=lambda spall: spall.time)]
+
+
+def energy_of_a_spall(energy: float, horizon: float = 8e-3, spacing: float = 0.5e-3) -> tuple[float, float]:
+    """Horizon over EG_f/σ_t², and energy of fully open bonds over G_f for each spall, under 2.6 strengths.
+
+    energy : G_f, J/m²; horizon : mΔx, m.
+    """
+    lengths = round(horizon / spacing)
+    load = [{"name": "blow", "pressure": 2.6 * STRENGTH, "wave": "pulse", "nodes": lengths}]
+    rock = {"strength": STRENGTH, "fracture_energy": energy}
+    method = {"type": "peridynamics", "horizon": lengths}
+    scene = build_bar(bar(method, spacing, bar=rock, load=load, wave={"pulse": triangle(0.12e-3)}))
+    simulation = Simulation(scene, 0.9 * spacing / ROCK_SPEED)
+    simulation.run(int(0.6e-3 / simulation.time_step))
+    bonds = simulation.system.parts[0].bonds
+    found = spalls(bonds, scene.positions[:, 0], simulation.time_step)
+    opening = bonds.opening
+    taken = 0.5 * opening["whole"] * opening["limit"] * opening["apart"]
+    share = float(taken[opening.left == 0.0].sum()) / energy / len(found)
+    return horizon / scene.case.bar.characteristic_length, share
+
+
+def apparent_strength(period: float, energy: float = 100.0, strength: float = 6.34e6) -> float:
+    """Pull-back strength over strength of a concrete bar with one strength (Pa), under a pulse of 20 MPa.
+
+    period : its length, s; energy : G_f, J/m².
+    """
+    length, density, speed, cells = max(1.0, round(1.2 * 3800.0 * period, 2)), 2400.0, 3800.0, 2400
+    concrete = {"length": length, "spacing": length / cells, "density": density, "wave_speed": speed}
+    pulse = {"type": "cosine", "amplitude": 1.0, "period": period}
+    load = [{"name": "blow", "pressure": 20e6, "wave": "pulse"}]
+    concrete |= {"strength": strength, "fracture_energy": energy}
+    scene = build_bar(bar(METHODS["finite_difference"], bar=concrete, load=load, wave={"pulse": pulse}))
+    step = 0.9 * length / cells / speed
+    steps = int((2.2 * length / speed + period) / step)
+    velocity = Simulation(scene, step, [cells]).advance(steps)[:, 0, 3]
+    return pull_back_strength(step * np.arange(steps), velocity, density, speed, length) / strength
 
 
 def tearing_load(horizon: int, nodes: int = 1, spacing: float = 5e-3) -> float:

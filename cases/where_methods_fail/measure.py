@@ -79,6 +79,12 @@ def of_bars() -> Iterator[str]:
         yield f"seam, {cells:g} cells in a wavelength: returns {plain:.5f}, without complement {without:.4f}"
     for method in bars.METHODS:
         yield f"spalls, {method}: {', '.join(f'{place:.4f}' for place in bars.pieces(method))} m"
+    for energy in (400.0, 200.0, 100.0, 50.0):
+        share, taken = bars.energy_of_a_spall(energy)
+        yield f"horizon of {share:.2f} EG_f/σ_t²: open bonds of a spall take {taken:.3f} G_f"
+    for energy, period in ((100.0, 480e-6), (100.0, 80e-6), (20.0, 240e-6)):
+        apparent = 6.34 * bars.apparent_strength(period, energy)
+        yield f"{energy:g} J/m², pulse of {1e6 * period:g} µs: pull-back {apparent:.2f} MPa of a bar with 6.34 MPa"
     for courant in (1.0, 0.99, 0.9):
         yield f"sudden load, ν = {courant:g}: springs bear up to {bars.odd_even_swing(0.0, courant):.3f} of it"
     for share in (1.0, 1.0001, 1.001):

@@ -8,7 +8,7 @@ from dembound.bar.scene import BarScene
 from dembound.bar.summary import describe_bar, describe_end
 from dembound.boundaries.words import side_in_words
 from dembound.casefile.bar import BarCase
-from dembound.casefile.bar.bar import Bar
+from dembound.casefile.bar.bar import COARSEST, Bar
 from dembound.casefile.bar.range import BarRange
 from dembound.casefile.magnitudes import stress_in_words, waves_used
 from dembound.casefile.messages import counted, show
@@ -39,6 +39,10 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
         facts["bar"] += f", section {bar['section']:.4g} m², density {bar['density']:g} kg/m³"
         facts["stiffness"] = f"E = {case.bar.modulus / 1e9:.4g} GPa, c = {case.bar.speed:.4g} m/s"
         facts["strength"] = _strength_in_words(case.bar)
+        if case.bar.fracture_energy is not None:
+            facts["cracks"] = _cracks_in_words(case.bar)
+        if case.bar.strength_rates is not None:
+            facts["strain rates"] = _rates_in_words(case.bar)
         if case.bar.attenuation > 0.0:
             facts["attenuation"] = f"α = {case.bar.attenuation:g} 1/m"
     for side in scene.edges:
@@ -86,6 +90,8 @@ def _range_in_words(given: BarRange, start: float, part: Bar) -> str:
         f"ρ = {part.density:g} kg/m³, c = {part.speed:.4g} m/s, ρcA = {part.density * part.speed * part.area:.4g} kg/s",
         _strength_in_words(part),
     ]
+    words += [_cracks_in_words(part)] * (part.fracture_energy is not None)
+    words += [_rates_in_words(part)] * (part.strength_rates is not None)
     words += [f"α = {part.attenuation:g} 1/m"] * (part.attenuation > 0.0)
     words += [f"starts at {given.velocity:g} m/s"] * (given.velocity != 0.0)
     if given.interface == "contact":
@@ -99,6 +105,30 @@ def _strength_in_words(bar: Bar) -> str:
     if np.isinf(stretch):
         return "unbreakable"
     return f"{stretch * bar.modulus / 1e6:.4g} MPa, critical stretch {stretch:.4g}"
+
+
+def _cracks_in_words(bar: Bar) -> str:
+    """Fracture energy, opening at which a crack bears nothing, and the lengths that follow from them."""
+    if bar.fracture_energy is None:
+        return ""
+    length = bar.characteristic_length
+    opening = bar.fracture.opening(bar.breaking_stretch * bar.modulus)
+    return (
+        f"G_f = {bar.fracture_energy:g} J/m², open at w_c = 2G_f/σ_t = {opening * 1e6:.4g} µm, characteristic length "
+        f"EG_f/σ_t² = {length * 1e3:.4g} mm, spacing at most {COARSEST * length * 1e3:.4g} mm"
+    )
+
+
+def _rates_in_words(bar: Bar) -> str:
+    """Strength at the slowest and at the fastest strain rate."""
+    if bar.strength_rates is None:
+        return ""
+    slowest, fastest = bar.strength_rates
+    strength = bar.breaking_stretch * bar.modulus
+    return (
+        f"strength from {strength / 1e6:.4g} MPa at {slowest:g} 1/s to {bar.largest_strength / 1e6:.4g} MPa at "
+        f"{fastest:g} 1/s"
+    )
 
 
 def cells_of_waves(scene: BarScene, time_step: float) -> dict[str, tuple[float, float]]:

@@ -1,6 +1,10 @@
-"""Place and time of spalls, from the steps in which bonds broke."""
+"""Place and time of spalls, from the steps in which bonds broke.
 
-from collections.abc import Mapping, Sequence
+Without a fracture energy a bar is cracked where local damage has reached 0.3; with one it has spalled where nothing
+bears tension across a plane any more.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,20 +16,29 @@ from dembound.methods.bonds import Bonds
 
 @dataclass(frozen=True)
 class Spall:
-    """One place where local damage has reached 0.3 (L section 1.2).
+    """One place where local damage has reached 0.3 (L section 1.2), or where cracks are open.
 
     time : s, at which this first happened; start : m, range of the cracked nodes at that time; end : m, their range at
-    the end of the run.
+    the end of the run. began : s, when the first bond across it began to open; None without a fracture energy.
     """
 
     time: float
     start: tuple[float, float]
     end: tuple[float, float]
+    began: float | None = None
+
+    @property
+    def reached(self) -> float:
+        """Time (s) when the bar reached its strength there."""
+        return self.time if self.began is None else self.began
 
     def describe(self) -> dict[str, Any]:
         """As plain JSON values, rounded to twelve digits; further digits are rounding errors of steps and spacings."""
         ranges = {"start": self.start, "end": self.end}
-        return {"time": _short(self.time)} | {key: [_short(x) for x in ends] for key, ends in ranges.items()}
+        times = {"time": self.time} | ({} if self.began is None else {"began": self.began})
+        return {key: _short(time) for key, time in times.items()} | {
+            key: [_short(x) for x in ends] for key, ends in ranges.items()
+        }
 
 
 def _short(value: float) -> float:
@@ -47,21 +60,71 @@ def cracked_since(bonds: Bonds) -> np.ndarray:
 
 def spalls(bonds: Bonds, positions: np.ndarray, time_step: float) -> list[Spall]:
     """Every spall of a bar in order of time; positions (n,) m of its nodes, time_step s."""
-    since = cracked_since(bonds)
+    if any(part.fracture.energy > 0.0 for part in bonds.rod.ranges):
+        found = list(_open_cracks(bonds, positions, time_step))
+    else:
+        found = list(_damaged(cracked_since(bonds), positions, time_step))
+    return sorted(found, key=lambda spall: spall.time)
+
+
+def _damaged(since: np.ndarray, positions: np.ndarray, time_step: float) -> Iterator[Spall]:
+    """Spalls from the steps (n,) in which nodes became cracked, −1 for never."""
     cracked = np.concatenate([[False], since >= 0, [False]])
     edges = np.flatnonzero(np.diff(cracked))
-    found = []
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         steps, places = since[first:last], positions[first:last]
         at_first = places[steps == steps.min()]
-        found.append(
-            Spall(
-                float(steps.min() * time_step),
-                (float(at_first.min()), float(at_first.max())),
-                (float(places.min()), float(places.max())),
-            )
+        yield Spall(
+            float(steps.min() * time_step),
+            (float(at_first.min()), float(at_first.max())),
+            (float(places.min()), float(places.max())),
         )
-    return sorted(found, key=lambda spall: spall.time)
+
+
+def _open_cracks(bonds: Bonds, positions: np.ndarray, time_step: float) -> Iterator[Spall]:
+    """Spalls from the planes across which all bonds have broken; those nearer than the horizon are one.
+
+    What is between them is shorter than the bonds that broke.
+    """
+    began, since = opened_planes(bonds)
+    planes = np.flatnonzero(since >= 0)
+    for group in np.split(planes, np.flatnonzero(np.diff(planes) > max(bonds.horizon, 1)) + 1):
+        if len(group) == 0:
+            continue
+        first = group[since[group] == since[group].min()]
+        yield Spall(
+            float(since[group].min() * time_step),
+            (float(positions[first[0]]), float(positions[first[-1] + 1])),
+            (float(positions[group[0]]), float(positions[group[-1] + 1])),
+            float(began[group].min() * time_step),
+        )
+
+
+def opened_planes(bonds: Bonds) -> tuple[np.ndarray, np.ndarray]:
+    """Steps (n − 1,) in which the first bond across each plane began to open and the last one broke; −1 for not yet."""
+    opening = bonds.opening
+    length = np.maximum(opening["row"] + 1, 1)
+    broken = opening.of(bonds.spring_broken, bonds.bond_broken)
+    began, since = np.full(bonds.rod.count - 1, np.iinfo(np.int64).max), np.full(bonds.rod.count - 1, -1)
+    for k in range(length.max(initial=0)):
+        across = length > k
+        np.minimum.at(began, opening["first"][across] + k, opening["began"][across])
+        np.maximum.at(since, opening["first"][across] + k, broken[across])
+    whole = bonds.springs & (bonds.spring_broken < 0)
+    holding = np.concatenate([whole, [False]]).astype(np.int64)
+    for p, row in enumerate(bonds.laid & (bonds.bond_broken < 0), start=1):
+        holding += np.convolve(row, np.ones(p, dtype=np.int64))[: len(holding)]
+    since[holding[:-1] > 0] = -1
+    return np.where(began > opening["began"].max(initial=0), -1, began), since
+
+
+def crack_strain_rates(bonds: Bonds) -> dict[str, float] | None:
+    """Strain rates (1/s), the slowest and the fastest, of bonds that have broken; None without a law of rates."""
+    broken = bonds.opening.of(bonds.spring_broken, bonds.bond_broken) >= 0
+    if not bonds.opening.has_rates or not broken.any():
+        return None
+    rates = bonds.opening["rate"][broken]
+    return {"slowest": float(rates.min()), "fastest": float(rates.max())}
 
 
 def breaks_at_ends(found: Sequence[Spall], ends: Mapping[str, float]) -> dict[str, Spall]:

@@ -109,11 +109,11 @@ class Bars(Kind[BarCase, BarScene]):
         return part_of(run).bond_updates
 
     def findings(self, scene: BarScene, run: Run, inside: Box | None = None) -> dict[str, Finding]:
-        """Middle (m) and time (s) of the first spall, if there is one there."""
-        for spall in spalls_of(scene, run)[0]:
+        """Middle (m) and time (s) of the first spall, if there is one there; with a fracture energy when it began."""
+        for spall in sorted(spalls_of(scene, run)[0], key=lambda spall: spall.reached):
             place = 0.5 * sum(spall.start)
             if inside is None or inside[0] <= place <= inside[2]:
-                return {SPALL_PLACE: Finding(place, "m"), SPALL_TIME: Finding(spall.time, "s")}
+                return {SPALL_PLACE: Finding(place, "m"), SPALL_TIME: Finding(spall.reached, "s")}
         return {}
 
     def outcome(self, summary: Mapping[str, Any]) -> list[str]:

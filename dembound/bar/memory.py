@@ -19,6 +19,8 @@ def run_bytes(case: BarCase) -> float:
     run += sum(
         layer_bytes(table.layer.nodes, case.method.horizon_beyond) for table in case.boundary.values() if table.layer
     )
+    if case.bar.opens:
+        run += opening_bytes(nodes, lengths)
     if case.output.snapshots:
         run += damage_bytes(nodes, lengths)
     step = scene_bytes(nodes) + bonds_bytes(nodes, lengths) + 4 * 8 * (lengths + 1) * nodes  # bands of the stiffness
@@ -38,6 +40,11 @@ def bonds_bytes(nodes: float, lengths: int) -> float:
 def layer_bytes(nodes: int, lengths: int) -> float:
     """Of a layer beyond an end: rows of its bonds' forces, rates, stiffness and two factors (56 b), by node as much."""
     return 56.0 * (lengths + 1) * (nodes + lengths)
+
+
+def opening_bytes(nodes: float, lengths: int) -> float:
+    """Of the list of bonds that open (64 for each bond), and of the steps before they did (8), if all of them open."""
+    return 72 * (lengths + 1) * nodes
 
 
 def motion_bytes(nodes: float) -> float:

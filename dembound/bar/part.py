@@ -71,7 +71,7 @@ class BarPart(Part):
         """Raise RunError if a bond broke at a node whose bonds reach into a layer, as these never break."""
         if not (self.scene.layers and np.isfinite(self.scene.rod.elongation).any()):
             return
-        step, pair = self.bonds.breaks(0)
+        step, pair = self.bonds.begun()
         for side, layer in self.scene.layers.items():
             for k in np.flatnonzero(np.isin(pair, layer.inner).any(axis=1))[:1]:
                 raise RunError(

@@ -53,7 +53,8 @@ def _rod(bar: Bar) -> Rod:
     for part, start, touches, gap in zip(bar.parts, bar.starts, bar.contacts, gaps, strict=True):
         first = ranges[-1].last + touches if ranges else 0
         material = part.modulus, part.density, part.breaking_stretch, part.drag_rate
-        ranges.append(Range(first, first + part.cells, start, part.length / part.cells, part.area, *material, gap))
+        size = start, part.length / part.cells, part.area
+        ranges.append(Range(first, first + part.cells, *size, *material, gap, fracture=part.fracture))
     return Rod(tuple(ranges))
 
 

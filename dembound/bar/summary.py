@@ -5,7 +5,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from dembound.bar.fracture import Spall, breaks_at_ends, spalls
+from dembound.bar.fracture import Spall, breaks_at_ends, crack_strain_rates, spalls
 from dembound.bar.part import BarPart
 from dembound.bar.scene import BarScene, bar_medium
 from dembound.casefile.bar.bar import Bar
@@ -15,7 +15,13 @@ from dembound.motion.trackers import Run
 from dembound.results.reader import open_record
 
 LATER_SPALLS = "spalls after the first do not converge as bar.spacing decreases: their number and places depend on it"
-"""Added where a bar has spalled more than once."""
+"""Added where a bar without a fracture energy has spalled more than once."""
+
+AT_ONE_HORIZON = (
+    "spalls after the first converge as bar.spacing decreases if the method is peridynamics and its horizon mΔx "
+    "remains the same; else their number and places may depend on bar.spacing"
+)
+"""Added where one with a fracture energy has."""
 
 
 OF_DISKS = {"beta_s", "half_mass"}
@@ -33,12 +39,18 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
         "courant": max(run.time_step * part.speed / part.spacing for part in scene.rod.ranges),
         "spalls": [spall.describe() for spall in found],
         "breaks_at_ends": {side: spall.describe() for side, spall in at_ends.items()},
-        "spalls_note": LATER_SPALLS if len(found) > 1 else None,
+        "spalls_note": _note(scene) if len(found) > 1 else None,
+        "crack_strain_rates": crack_strain_rates(bar.bonds),
         "bar": describe_bar(scene),
         "boundaries": {side: describe_end(scene, side) for side in scene.edges},
         "stress": _largest_stresses(record),
         "pull_back_strength": _pull_backs(scene, record) if found else {},
     }
+
+
+def _note(scene: BarScene) -> str:
+    """Whether spalls after the first converge."""
+    return AT_ONE_HORIZON if scene.case.bar.opens else LATER_SPALLS
 
 
 def spalls_of(scene: BarScene, run: Run) -> tuple[list[Spall], dict[str, Spall]]:
@@ -85,6 +97,9 @@ def _describe_part(bar: Bar, numbers: Range) -> dict[str, float | None]:
         "critical_stretch": bar.breaking_stretch if breaks else None,
         "strength": bar.breaking_stretch * bar.modulus if breaks else None,
         "attenuation": bar.attenuation,
+        "fracture_energy": bar.fracture_energy,
+        "crack_opening": bar.fracture.opening(bar.breaking_stretch * bar.modulus) if bar.fracture_energy else None,
+        "characteristic_length": bar.characteristic_length if bar.fracture_energy else None,
     }
 
 

@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 NOTHING = 0.05
 """Share of the strength that the largest tension must reach; oscillations behind a pulse reach some per cent of it."""
 
+LONGEST = 0.25
+"""Horizon over EG_f/σ_t² up to which a crack opens at one plane: at 0.2 it takes 1.00 to 1.04 of its fracture energy,
+at 0.4 up to 1.3, at 0.8 up to 1.8 under a pulse of 2.6 strengths."""
+
 
 def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
     """All of them, one line each; time_step in s."""
@@ -40,6 +44,7 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
         *_too_few_cells(scene, time_step),
         *(times or ends_too_soon(case)),  # with doubtful times of waves the second check means nothing
         *_dashpots_at_soft_ends(case),
+        *_long_bonds_across_cracks(case),
         *stress_beside_strength(case),
     ]
 
@@ -54,6 +59,20 @@ def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:
             yield (
                 f"wave.{name}: has {few} in its shortest wavelength, fewer than the {needed:.3g} that keep "
                 f"the error of its speed under {PERCENT}; take a smaller bar.spacing{finer}"
+            )
+
+
+def _long_bonds_across_cracks(case: BarCase) -> Iterator[str]:
+    """Horizons so long that a crack spreads over several planes."""
+    for part in case.bar.parts:
+        horizon = case.method.largest_horizon * part.spacing
+        if part.fracture_energy is None or case.method.largest_horizon == 1:
+            continue
+        if horizon > LONGEST * part.characteristic_length:
+            yield (
+                f"method.horizon: is {horizon:.4g} m long, {horizon / part.characteristic_length:.2g} of EG_f/σ_t²; "
+                f"above {LONGEST:g} cracks may spread over several planes and take more than bar.fracture_energy; take "
+                "a smaller horizon"
             )
 
 
@@ -142,8 +161,25 @@ def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path
         return [
             *still_moving(scene, summary["duration"], file, pieces),
             *_torn_by_the_load(scene.case, summary),
+            *_outside_the_rates(scene.case, summary),
             *_no_tension(scene.case, file),
         ]
+
+
+def _outside_the_rates(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:
+    """Cracks at strain rates for which no strength is given."""
+    laws = [part.strength_rates for part in case.bar.parts if part.strength_rates is not None]
+    found = summary["crack_strain_rates"]
+    if not laws or found is None:
+        return
+    given = min(slowest for slowest, _ in laws), max(fastest for _, fastest in laws)
+    beyond = [
+        f"{found[key]:.3g} 1/s, {words} {limit:g}"
+        for key, words, limit in (("slowest", "below", given[0]), ("fastest", "above", given[1]))
+        if (found[key] < limit) == (key == "slowest") and found[key] != limit
+    ]
+    if beyond:
+        yield f"bar.strength_rates: cracks had strain rates of {' and '.join(beyond)}; the strength is constant there"
 
 
 def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:

@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 
 from dembound.kernels.bar_contacts import close_contacts, note_approach, note_impacts
+from dembound.kernels.bar_cracks import soften
 from dembound.kernels.common import DONE, FAST, FASTMATH, REST, TRIGGERED, U
 from dembound.kernels.law import is_law
 from dembound.kernels.tables import BarBonds
@@ -269,9 +270,13 @@ def check(bonds, u, u_next, v):
 
 @njit(**FAST)
 def push(bonds, u, u_next, v, number, step, work):
-    """Break springs and bonds at their limit, and store the forces of the others in u_next."""
-    if bonds.reached[0] > 0:
-        work[0, 3] += break_at_limit(number, u[0], v[0], step, bonds)
+    """Break springs and bonds at their limit, or let them open; store the forces of the others in u_next."""
+    soft, reached = bonds.softening, bonds.reached[0] > 0
+    if reached or soft.listed[0] > 0 or soft.below.size > 0:
+        if soft.row.size > 0:
+            work[0, 3] += soften(number, u[0], v[0], step, bonds)
+        else:
+            work[0, 3] += break_at_limit(number, u[0], v[0], step, bonds)
         work[1, 3] = work[0, 3]
         forces(u[0], bonds, u_next[0])
     return 0

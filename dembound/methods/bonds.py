@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dembound.laws.peridynamic import Family, damage, families
+from dembound.methods.opening import RISE, Opening
 from dembound.methods.rod import Range, Rod
 
 if TYPE_CHECKING:
@@ -41,7 +42,8 @@ class Bonds:
     Attributes
     ----------
     spring, spring_limit, triggers, spring_broken : (n − 1,) of local springs, bond, bond_broken : (m, n) of bonds; they
-    are the arrays of kernels.tables.BarBonds. zones : (first, one beyond last) node of every zone, from left to right.
+    are the arrays of kernels.tables.BarBonds. opening : the bonds that open, in a bar with a fracture energy. zones :
+    (first, one beyond last) node of every zone, from left to right.
     """
 
     def __init__(
@@ -56,7 +58,8 @@ class Bonds:
         self.rod = rod
         self.horizon = horizon
         self.complement = complement
-        self.trigger_ratio = trigger_ratio
+        self.opening = Opening(rod.ranges, rod.count, horizon)
+        self.trigger_ratio = min(trigger_ratio, RISE) if self.opening.has_rates else trigger_ratio
         self.zones: list[tuple[int, int]] = []
         self.influence = influence
         self._rows = rod.bond_rows(horizon, influence)
@@ -75,6 +78,7 @@ class Bonds:
 
         A zone ends where its range does; one that extends over several ranges becomes a zone in each.
         """
+        opened = self.opening.of(self.spring, self.bond)
         for part in self.rod.ranges:
             low, high = max(part.first, first), min(part.last + 1, last)
             if low < high - 1:
@@ -83,6 +87,7 @@ class Bonds:
         left = np.where(self._complemented, 1.0 - carried, carried == 0.0)
         left[(np.abs(left) < TINY) | (self.spring_broken >= 0)] = 0.0
         self.spring[:] = self.rod.springs * left
+        self.opening.put(opened, self.spring, self.bond)
         self._set_limits(carried)
 
     def _add_zone(self, part: Range, first: int, last: int) -> None:
@@ -155,6 +160,13 @@ class Bonds:
         return (self.bond > 0.0) | (self.bond_broken >= 0)
 
     @property
+    def springs(self) -> np.ndarray:
+        """(n − 1,) which local springs bear something, or will when pressed: those of cracks with a fracture energy."""
+        opened = np.zeros_like(self.spring)
+        self.opening.put(np.ones(len(self.opening)), opened, np.zeros_like(self.bond))
+        return (self.spring > 0.0) | (opened > 0.0)
+
+    @property
     def alive(self) -> int:
         """Number of intact springs and bonds."""
         return int(np.count_nonzero(self.spring)) + int(np.count_nonzero(self.bond))
@@ -172,21 +184,20 @@ class Bonds:
     def damage(self, step: int | None = None) -> np.ndarray:
         """Local damage φ (n,) at the end of a step, by default the last (L eq. 7).
 
-        A local spring replaces the bonds that are left out on its side of a node.
+        A local spring replaces the bonds that are left out on its side of a node. Bonds that open now count by the
+        share of their fracture energy that is left.
         """
-        last = np.iinfo(np.int64).max if step is None else step
+        springs, bonds = self._left(step)
         first, second = self._family.pairs.T
         row = self._family.apart - 1
-        whole = (self.spring_broken < 0) | (self.spring_broken > last)
-        intact = np.column_stack([whole[first], whole[second - 1]])
+        left = np.column_stack([springs[first], springs[second - 1]])
         if self.horizon > 0:
-            broken = self.bond_broken[row, first]
             laid = self.laid[row, first]
-            intact[laid] = ((broken < 0) | (broken > last))[laid, None]
+            left[laid] = bonds[row, first][laid, None]
         volumes = self.rod.volumes[self._family.pairs[:, ::-1]]
         stiffness = self._rows[row, first] if self.horizon > 0 else self.rod.springs[first]
         factor = self._family.factor * (stiffness > 0.0)  # those without stiffness are no bonds and do not break
-        return damage(self._family.pairs, factor[:, None] * volumes, intact, self.rod.count)
+        return damage(self._family.pairs, factor[:, None] * volumes, left, self.rod.count)
 
     def breaks(self, since: int) -> tuple[np.ndarray, np.ndarray]:
         """What broke in step `since` or later: steps (b,) and pairs of nodes (b, 2), in the order of the steps."""
@@ -197,15 +208,23 @@ class Bonds:
         order = np.argsort(steps, kind="stable")
         return steps[order], pairs[order]
 
+    def begun(self) -> tuple[np.ndarray, np.ndarray]:
+        """What broke or began to open so far: steps (b,) and pairs of nodes (b, 2)."""
+        if len(self.opening) == 0:
+            return self.breaks(0)
+        first = self.opening["first"]
+        return self.opening["began"], np.stack([first, first + np.maximum(self.opening["row"] + 1, 1)], axis=1)
+
     def memory(self) -> dict[str, np.ndarray]:
         """All arrays that change during a run, by name."""
         kept = {name: getattr(self, name) for name in _EVOLVING}
-        return kept | {"zones": np.array(self.zones, dtype=np.int64).reshape(-1, 2)}
+        return kept | self.opening.memory() | {"zones": np.array(self.zones, dtype=np.int64).reshape(-1, 2)}
 
     def recall(self, memory: Mapping[str, np.ndarray]) -> None:
         """Restore what `memory` has returned for the same bar."""
         for name in _EVOLVING:
             getattr(self, name)[...] = memory[name]
+        self.opening.recall(memory)
         self.zones = [(int(first), int(last)) for first, last in memory["zones"]]
 
     def arrays(self, supported: np.ndarray, step: float, through: np.ndarray | None = None) -> BarBonds:
@@ -256,6 +275,7 @@ class Bonds:
             mean=np.zeros(rod.count),
             before=np.empty(len(supported)),
             reached=np.zeros(1, dtype=np.int64),
+            softening=self.opening.bundle,
         )
 
     def _runs(self, supported: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -278,8 +298,17 @@ class Bonds:
         begins[1:-1] |= plain[1:] != plain[:-1]
         edges = np.flatnonzero(begins)
         runs, is_plain = np.stack([edges[:-1], edges[1:]], axis=1), plain[edges[:-1]]
-        held = [self.spring[max(0, first - 1) : last].any() for first, last in runs]
+        springs = self.springs
+        held = [springs[max(0, first - 1) : last].any() for first, last in runs]
         return runs[is_plain], np.column_stack([runs, held])[~is_plain].astype(np.int64)
+
+    def _left(self, step: int | None) -> tuple[np.ndarray, np.ndarray]:
+        """Share (n − 1,) and (m, n) of springs and bonds that was left at the end of a step, by default the last."""
+        last = np.iinfo(np.int64).max if step is None else step
+        springs, bonds = (((b < 0) | (b > last)).astype(float) for b in (self.spring_broken, self.bond_broken))
+        if step is None:
+            self.opening.put(self.opening.left, springs, bonds)
+        return springs, bonds
 
     @cached_property
     def _family(self) -> Family:

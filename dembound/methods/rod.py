@@ -11,6 +11,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.laws.peridynamic import families, micromodulus
+from dembound.methods.opening import AT_ONCE, Fracture
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class Range:
     gap : m, opening at rest of its contact with the range on its left, if it touches it.
     beyond : length, in spacings, of the longest bonds that reach beyond the bar's left and right end into a layer of
     nodes there (bar/layers.py), 0 for none; a node at such an end has its whole volume.
+    fracture : how its bonds open.
     """
 
     first: int
@@ -39,6 +41,7 @@ class Range:
     drag_rate: float = 0.0
     gap: float = 0.0
     beyond: tuple[int, int] = (0, 0)
+    fracture: Fracture = AT_ONCE
 
     @property
     def cells(self) -> int:

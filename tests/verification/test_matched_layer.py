@@ -270,9 +270,10 @@ def test_a_switch_keeps_springs_in_the_layer(rock):
     assert 0.5 * seam < difference(rock, 3, layer(), 0.9, **words) < 2.0 * seam
 
 
-def test_breaks_beside_a_layer_are_refused(rock):
-    """A pull at the left end tears the bar there at once."""
-    scene = bar(rock, 3, load=False, strength=1e6, boundary={"left": layer(wave_p="pulse"), "right": layer()})
+@pytest.mark.parametrize("cracks", [{}, {"fracture_energy": 1e4}])
+def test_breaks_beside_a_layer_are_refused(rock, cracks):
+    """A pull at the left end tears the bar there at once, or begins to open a crack."""
+    scene = bar(rock, 3, load=False, strength=1e6, **cracks, boundary={"left": layer(wave_p="pulse"), "right": layer()})
     with pytest.raises(RunError, match=r"within 0\.015 m of its left end, where bonds reach into the matched layer"):
         Simulation(scene, 0.5 * scene.step_limit()).run(100)
 

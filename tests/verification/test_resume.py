@@ -78,6 +78,11 @@ CASES = {
         "boundary": {side: {"type": "matched_layer", "nodes": nodes} for side, nodes in (("left", 12), ("right", 8))},
         "method": {"type": "peridynamics", "horizon": 3},
     },
+    "cracks that open": BAR
+    | {
+        "bar": PULLED["bar"] | {"fracture_energy": 1e4, "strength_per_decade": 1e6, "strength_rates": [0.1, 1e3]},
+        "method": {"type": "patch", "horizon": 3},
+    },
 }
 
 

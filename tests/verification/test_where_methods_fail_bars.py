@@ -34,6 +34,22 @@ def test_methods_agree_on_the_first_spall_only():
     assert len({len(places) for places in found.values()}) > 1
 
 
+@pytest.mark.parametrize(("energy", "share", "taken"), [(400.0, 0.1, 1.0), (50.0, 0.81, 1.63)])
+def test_long_bonds_spread_cracks(energy, share, taken):
+    found = bars.energy_of_a_spall(energy)
+    assert found[0] == pytest.approx(share, rel=0.02)
+    assert found[1] == pytest.approx(taken, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("energy", "period", "low", "high"),
+    [(20.0, 240e-6, 0.99, 1.03), (100.0, 480e-6, 1.03, 1.13), (100.0, 80e-6, 1.75, 2.1)],
+)
+def test_short_pulses_seem_to_strengthen_a_bar(energy, period, low, high):
+    """The ranges over spacings of docs/cracks.md, in strengths, with 0.02, and 0.1 for the shortest, to either side."""
+    assert low < bars.apparent_strength(period, energy) < high
+
+
 @pytest.mark.parametrize(("horizon", "strengths", "spread"), [(3, 7.68, 53.6), (8, 0.812, 5.44)])
 def test_a_load_on_one_node_tears_the_end(horizon, strengths, spread):
     assert bars.tearing_load(horizon) == pytest.approx(strengths, rel=0.02)

@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import ValidationError, model_validator
 
 from dembound.casefile.bar.range import BarRange
+from dembound.methods.opening import Fracture
 from dembound.table import LARGEST, SMALLEST, Table, quantity
 
 PAIRS = (("section", "diameter"), ("wave_speed", "youngs_modulus"), ("strength", "critical_stretch"))
@@ -17,6 +18,15 @@ OF_RANGES = {"name", "velocity", "interface", "gap"}
 
 MOST_CELLS = 2_000_000
 """Largest number of cells: more is a mistake, and computing the stability limit alone would take minutes."""
+
+COARSEST = 0.2
+"""Largest spacing over the characteristic length EG_f/σ_t².
+
+A spring then bears no more than a tenth of its elongation at the end, w_c, when it begins to open.
+"""
+
+ROUNDING = 1e-9
+"""Tolerance of this comparison: the spacing may be exactly the largest."""
 
 
 class Bar(Table):
@@ -39,6 +49,15 @@ class Bar(Table):
     youngs_modulus: float | None = quantity(None, unit="Pa", help="Young's modulus E", gt=0.0)
     strength: float | None = quantity(None, unit="Pa", help="tensile strength σ_t; absent: unbreakable", gt=0.0)
     critical_stretch: float | None = quantity(None, unit="1", help="stretch s₀ at which a bond breaks", gt=0.0)
+    fracture_energy: float | None = quantity(
+        None, unit="J/m²", help="energy G_f that a crack takes as it opens; absent: bonds break at once", gt=0.0
+    )
+    strength_per_decade: float | None = quantity(
+        None, unit="Pa", help="rise of the strength for a tenfold strain rate, within strength_rates", gt=0.0
+    )
+    strength_rates: tuple[float, float] | None = quantity(
+        None, unit="1/s", help="strain rates between which the strength rises; it is constant below and above"
+    )
     attenuation: float = quantity(
         0.0, unit="1/m", help="α: high frequencies fade by exp(−αx) over a distance x (L eq. 19)", ge=0.0
     )
@@ -51,8 +70,11 @@ class Bar(Table):
             for first, second in PAIRS
             if getattr(self, first) is not None and getattr(self, second) is not None
         ]
-        problems += self._problems_with_stiffness()
+        stiffness = list(self._problems_with_stiffness())
+        problems += stiffness
         problems += self._problems_with_ranges() if self.range else self._problems_with_spacing()
+        if not self.range and not stiffness:
+            problems += list(self._problems_with_rates()) or self._problems_with_cracks()
         if problems:
             raise ValueError("\n".join(problems))
         if self.range and "length" not in self.model_fields_set:
@@ -77,6 +99,30 @@ class Bar(Table):
         elif cells < 1.5 or abs(cells - round(cells)) > 1e-6 * cells:
             yield (
                 f"spacing: is {self.spacing:g}, must divide the length, {self.length:g} m, into two or more equal parts"
+            )
+
+    def _problems_with_rates(self) -> Iterator[str]:
+        """Incomplete laws of rates."""
+        keys = ("strength_per_decade", "strength_rates")
+        given = [key for key in keys if getattr(self, key) is not None]
+        if given and self.fracture_energy is None:
+            yield f"{given[0]}: needs fracture_energy, too"
+        if len(given) == 1:
+            (missing,) = set(keys) - set(given)
+            yield f"{missing}: is missing; strength_per_decade and strength_rates are given together"
+        if self.strength_rates is not None and not 0.0 < self.strength_rates[0] < self.strength_rates[1]:
+            yield f"strength_rates: is {list(self.strength_rates)}, must be two rates above 0, the slower one first"
+
+    def _problems_with_cracks(self) -> Iterator[str]:
+        """A fracture energy without a strength, and too coarse a spacing for it."""
+        if self.fracture_energy is None:
+            return
+        if self.strength is None and self.critical_stretch is None:
+            yield "fracture_energy: needs strength or critical_stretch, at which a crack begins"
+        elif self.spacing > (most := COARSEST * self.characteristic_length) * (1.0 + ROUNDING):
+            yield (
+                f"spacing: is {self.spacing:g}, must be at most {most:.6g} m, {COARSEST:g} EG_f/σ_t² at the largest "
+                "strength, for cracks with this fracture_energy"
             )
 
     def _problems_with_ranges(self) -> Iterator[str]:
@@ -184,3 +230,28 @@ class Bar(Table):
         if self.critical_stretch is not None:
             return self.critical_stretch
         return math.inf if self.strength is None else self.strength / self.modulus
+
+    @property
+    def opens(self) -> bool:
+        """Whether cracks take energy in some part of it."""
+        return any(part.fracture_energy is not None for part in self.parts)
+
+    @property
+    def largest_strength(self) -> float:
+        """Strength (Pa) at the fastest of `strength_rates`; infinite for an unbreakable bar."""
+        strength = self.breaking_stretch * self.modulus
+        if self.strength_per_decade is None or self.strength_rates is None:
+            return strength
+        return strength + self.strength_per_decade * math.log10(self.strength_rates[1] / self.strength_rates[0])
+
+    @property
+    def characteristic_length(self) -> float:
+        """EG_f/σ_t² in m, at the largest strength; it needs a fracture energy."""
+        assert self.fracture_energy is not None
+        return self.modulus * self.fracture_energy / self.largest_strength**2
+
+    @property
+    def fracture(self) -> Fracture:
+        """Fracture energy and law of rates for methods."""
+        rates = self.strength_rates or (1.0, 1.0)
+        return Fracture(self.fracture_energy or 0.0, self.strength_per_decade or 0.0, rates)

@@ -24,6 +24,9 @@ class BarRange(Table):
     youngs_modulus: float | None = quantity(None, unit="Pa", help="its Young's modulus E", gt=0.0)
     strength: float | None = quantity(None, unit="Pa", help="its tensile strength σ_t", gt=0.0)
     critical_stretch: float | None = quantity(None, unit="1", help="its stretch s₀ at which a bond breaks", gt=0.0)
+    fracture_energy: float | None = quantity(None, unit="J/m²", help="energy G_f that a crack in it takes", gt=0.0)
+    strength_per_decade: float | None = quantity(None, unit="Pa", help="as that of the bar", gt=0.0)
+    strength_rates: tuple[float, float] | None = quantity(None, unit="1/s", help="as those of the bar")
     attenuation: float | None = quantity(None, unit="1/m", help="its α, see that of the bar", ge=0.0)
     velocity: float = quantity(0.0, unit="m/s", help="velocity at the start, positive to the right")
     interface: Literal["bonded", "contact"] = quantity(

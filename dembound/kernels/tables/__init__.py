@@ -6,6 +6,7 @@ from dembound.kernels.tables.grid import ALONG, Absorber, Blocks, Elements, Grid
 from dembound.kernels.tables.laws import BarBonds, BarContacts, Bonded, LaneBonded, Links, WatchedLinks
 from dembound.kernels.tables.motion import Body, Followers, Log, Supports
 from dembound.kernels.tables.sides import NO_SIDES, Sides
+from dembound.kernels.tables.softening import Softening
 from dembound.kernels.tables.ties import Repeats, Seam, SeamEnds, WallTies
 
 __all__ = [
@@ -35,6 +36,7 @@ __all__ = [
     "SeamEnds",
     "Shape",
     "Sides",
+    "Softening",
     "Supports",
     "WallTies",
     "WatchedLinks",

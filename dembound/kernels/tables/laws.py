@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dembound.kernels.tables.contacts import Cells, Contacts, LaneRows, Limits, NeighbourTable, PairRows
+from dembound.kernels.tables.softening import Softening
 
 
 class Links(NamedTuple):
@@ -92,15 +93,16 @@ class BarBonds(NamedTuple):
 
     spring : (n − 1,) N/m of the local springs between neighbours, 0 where there is none; spring_limit : (n − 1,) m, the
     elongation at which each breaks, or where it triggers (n − 1,) the method; bond : (m, n) N/m, row p − 1
-    those between nodes i and i + p. spring_broken (n − 1,), bond_broken (m, n) : step in which each broke, −1 for not.
-    zones : (z, 2) nodes among which there are bonds, zones share at most one node; bond_limit : (z, m) m, the
+    those between nodes i and i + p. spring_broken (n − 1,), bond_broken (m, n) : step in which each broke, negative
+    for not. zones : (z, 2) nodes among which there are bonds, zones share at most one node; bond_limit : (z, m) m, the
     elongation at which they break, by length. plain : (r, 2) runs of nodes between equal springs; of each plain_push
     (r,) 1/s : Δt k/m, less what attenuation takes, plain_keep (r,) : part of a velocity that remains after attenuation
     in a step, plain_limit (r,) m : where all trigger. mixed : (q, 3) the runs of all other nodes, with whether they
     have springs, and mixed_keep (q,) as plain_keep. sections : (n − 1,) m², between neighbours, 0 where nothing joins
     them. mobility : (n,) Δt/m, less what attenuation takes, 0 for supported nodes; drag : (n,) N·s/m of dashpots that
     attenuate, or (0,) for none. contacts : between ranges. through : (n − 1,) N, tension in bonds that reach into
-    layers, see BarLayers, or (0,) without these. space (n + m + 1,), mean (n,), before (k,), reached (1,) : work space.
+    layers, see BarLayers, or (0,) without these. softening : bonds that open. space (n + m + 1,), mean (n,), before
+    (k,), reached (1,) : work space.
     """
 
     spring: np.ndarray
@@ -122,6 +124,7 @@ class BarBonds(NamedTuple):
     drag: np.ndarray
     contacts: BarContacts
     through: np.ndarray
+    softening: Softening
     space: np.ndarray
     mean: np.ndarray
     before: np.ndarray

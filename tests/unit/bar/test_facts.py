@@ -134,3 +134,15 @@ def test_check_tells_of_the_run_and_the_bar(spalling) -> None:
     assert facts["estimated time"] == "less than 1 s with 1 thread, without building, pictures"
     assert facts["nodes"] == "41, 0.025 m apart"
     assert warnings == bar_warnings(build_bar(spalling()), 2.5e-5)
+
+
+def test_facts_of_cracks_that_open(spalling) -> None:
+    law = {"bar.strength_per_decade": 2e6, "bar.strength_rates": [1.0, 100.0]}
+    facts = facts_of(spalling({"bar.fracture_energy": 1e4, **law}))
+
+    assert facts["cracks"] == (
+        "G_f = 10000 J/m², open at w_c = 2G_f/σ_t = 2500 µm, characteristic length EG_f/σ_t² = 173.6 mm, spacing at "
+        "most 34.72 mm"
+    )
+    assert facts["strain rates"] == "strength from 8 MPa at 1 1/s to 12 MPa at 100 1/s"
+    assert not {"cracks", "strain rates"} & facts_of(spalling()).keys()

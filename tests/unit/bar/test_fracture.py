@@ -1,10 +1,14 @@
 """Where and when a bar came apart, from bonds broken by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from dembound.bar.fracture import Spall, breaks_at_ends, cracked_since, spalls
+from dembound.kernels.bar_cracks import OPENING
 from dembound.methods.bonds import Bonds
+from dembound.methods.opening import Fracture
 from dembound.methods.rod import Rod
 
 COUNT, SPACING, STEP = 41, 0.25, 1e-3
@@ -144,3 +148,58 @@ def test_rounding_of_products_is_not_told() -> None:
     described = Spall(3 * 0.1, (696 * 1e-3, 1e-7 / 3.0), (0.25, 1.0)).describe()
 
     assert described == {"time": 0.3, "start": [0.696, 3.33333333333e-8], "end": [0.25, 1.0]}
+
+
+def opened(bonds: Bonds, plane: int, step: int) -> None:
+    """Let all bonds across a plane begin to open in a step and break three steps later, as the kernel would."""
+    bundle = bonds.opening.bundle
+    for p in (1, 2, 3):
+        for i in range(max(0, plane - p + 1), min(plane, COUNT - 1 - p) + 1):
+            q = bundle.listed[0]
+            bundle.row[q], bundle.first[q], bundle.began[q] = p - 1, i, step
+            bundle.limit[q], bundle.apart[q], bundle.furthest[q] = 1e-3, 1e-2, 1e-2
+            bundle.listed[0] += 1
+            bonds.bond[p - 1, i], bonds.bond_broken[p - 1, i] = 0.0, step + 3
+
+
+@pytest.fixture
+def tough() -> Bonds:
+    """Peridynamics with m = 3 all over, with a fracture energy."""
+    (part,) = ROD.ranges
+    made = Bonds(Rod((replace(part, fracture=Fracture(1e4)),)), 3, complement=False)
+    made.add_zone(0, COUNT)
+    return made
+
+
+def test_with_a_fracture_energy_a_spall_is_an_open_plane(tough) -> None:
+    assert spalls(tough, PLACES, STEP) == []
+    opened(tough, 20, step=5)
+    place = (PLACES[20], PLACES[21])
+    assert spalls(tough, PLACES, STEP) == [Spall(8 * STEP, place, place, 5 * STEP)]
+    assert spalls(tough, PLACES, STEP)[0].describe()["began"] == 5e-3
+
+
+def test_a_plane_that_one_bond_still_crosses_is_no_spall(tough) -> None:
+    opened(tough, 20, step=5)
+    tough.bond[2, 18], tough.bond_broken[2, 18] = 1.0, OPENING
+    assert spalls(tough, PLACES, STEP) == []
+
+
+def test_open_planes_within_a_horizon_are_one_spall(tough) -> None:
+    for plane, step in ((20, 5), (23, 2), (30, 1)):
+        opened(tough, plane, step)
+    found = spalls(tough, PLACES, STEP)
+    assert [(spall.start, spall.end) for spall in found] == [
+        ((PLACES[30], PLACES[31]), (PLACES[30], PLACES[31])),
+        ((PLACES[23], PLACES[24]), (PLACES[20], PLACES[24])),
+    ]
+
+
+def test_damage_counts_what_is_left_of_opening_bonds(tough) -> None:
+    opened(tough, 20, step=5)
+    tough.bond[tough.bond_broken >= 0] = 1.0
+    tough.bond_broken[tough.bond_broken >= 0] = OPENING
+    listed = len(tough.opening)
+    tough.opening.bundle.furthest[:listed] = 1e-3 + 0.4 * 9e-3
+    # 0.4 of the half of its family that node 20 would lose
+    assert tough.damage()[20] == pytest.approx(0.2, rel=1e-12)

@@ -6,6 +6,7 @@ from dembound.bar import memory as bar_memory
 from dembound.bar.scene import build_bar
 from dembound.errors import CaseError
 from dembound.machine import Memory
+from dembound.methods.opening import COLUMNS
 from dembound.motion import memory
 
 
@@ -18,6 +19,15 @@ def test_bonds_are_the_sum_of_their_arrays(spalling) -> None:
     work = 16 * nodes  # of the kernels
     # there is a spring less than nodes
     assert bar_memory.bonds_bytes(nodes, lengths) == pytest.approx(work + sum(each.nbytes for each in kept), rel=0.01)
+
+
+def test_opening_bonds_are_the_sum_of_their_arrays(spalling) -> None:
+    law = {"bar.fracture_energy": 1e4, "bar.strength_per_decade": 1e3, "bar.strength_rates": [1.0, 2.0]}
+    bonds = build_bar(spalling({"bar.spacing": 0.001, **law})).system(1e-9).parts[0].bonds
+    lengths, nodes = bonds.bond.shape
+    bundle = bonds.opening.bundle
+    listed = [getattr(bundle, name) for name in COLUMNS] + [bundle.below]
+    assert bar_memory.opening_bytes(nodes, lengths) == sum(each.nbytes for each in listed)
 
 
 def test_memory_grows_with_nodes_lengths_of_bonds_and_snapshots(spalling) -> None:

@@ -60,6 +60,9 @@ def test_a_bar_in_numbers(spalling) -> None:
         "critical_stretch": 8e6 / 2.5e9,
         "strength": pytest.approx(8e6, rel=1e-15),
         "attenuation": 0.1,
+        "fracture_energy": None,
+        "crack_opening": None,
+        "characteristic_length": None,
     }
 
 

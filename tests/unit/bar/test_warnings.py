@@ -266,3 +266,10 @@ def test_a_pressure_that_stays_makes_no_tension_but_a_crest(spalling) -> None:
     stays = {"wave.hit": {"type": "constant", "amplitude": 1.0, "rise": 2e-4}}
     (warning,) = ends_too_soon(spalling(ends_at(1e-3, stays)))
     assert warning.endswith("before 0.0012 s")
+
+
+@pytest.mark.parametrize(("energy", "warned"), [(7.6e3, True), (7.8e3, False)])
+def test_long_bonds_across_cracks_are_warned_of(spalling, energy: float, warned: bool) -> None:
+    # δ = 3·25 mm; a quarter of EG_f/σ_t², 2.5 GPa·G_f/(8 MPa)², is as long at 7.68 kJ/m²
+    found = of_key("method.horizon", bar_warnings(build_bar(spalling({"bar.fracture_energy": energy})), 2e-5))
+    assert len(found) == warned

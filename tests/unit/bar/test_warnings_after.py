@@ -27,7 +27,7 @@ def run(spalling, tmp_path):
 
 def summary_of(*spalls: dict, duration: float = 1.0) -> dict:
     """What warnings ask of the summary of a run with these spalls."""
-    return {"duration": duration, "spalls": list(spalls), "breaks_at_ends": {}}
+    return {"duration": duration, "spalls": list(spalls), "breaks_at_ends": {}, "crack_strain_rates": None}
 
 
 def _summary(folder: Path) -> dict:
@@ -155,3 +155,13 @@ def test_places_count_from_the_end_that_is_loaded(spalling, spalled_run, near: f
 
     said = "load.blow: the load itself broke the bar, at 0.0001 s and 0.07 m from the right end, before any "
     assert found == warned * [f"{said}reflected wave had returned there; take a smaller bar.spacing"]
+
+
+@pytest.mark.parametrize(("rates", "beyond"), [([1e-3, 2e-3], "above 0.002"), ([1e4, 2e4], "below 10000")])
+def test_cracks_at_strain_rates_without_a_strength_are_warned_of(run, rates: list[float], beyond: str) -> None:
+    law = {"bar.fracture_energy": 2e3, "bar.strength_per_decade": 1e3, "bar.strength_rates": rates}
+    law |= {"bar.spacing": 0.0125, "run.duration": 2.4e-3, **blow(20e6, 3)}
+    (warning,) = (each for each in run(law) if "rates" in each)
+
+    assert warning.startswith("bar.strength_rates: cracks had strain rates of ")
+    assert f"{beyond}; the strength is constant there" in warning

@@ -10,6 +10,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import BOUNDARIES, METHODS
 from dembound.errors import CaseError
 from dembound.kinds import loads, with_changes
+from dembound.methods.opening import Fracture
 from dembound.starting import starting_point
 from dembound.table import name_of
 
@@ -424,3 +425,51 @@ def test_two_spacings_are_too_few_with_soft_ends() -> None:
     assert problems(changed("horizon = 3", "horizon = 1", two)) == [
         "bar.spacing: makes 2 of them in the bar, with soft ends it must be 3 or more"
     ]
+
+
+def with_bar(*lines: str) -> str:
+    """The good case with more keys in [bar]."""
+    return GOOD.replace("[method]", "\n".join([*lines, "[method]"]), 1)
+
+
+def test_a_fracture_energy_makes_cracks_that_open() -> None:
+    case = loads(with_bar("fracture_energy = 1000", "strength_per_decade = 5e6", "strength_rates = [2, 20]"))
+
+    assert isinstance(case, BarCase)
+    assert case.bar.largest_strength == pytest.approx(15e6, rel=1e-15)
+    assert case.bar.characteristic_length == pytest.approx(2620.0 * 2740.0**2 * 1000.0 / 15e6**2, rel=1e-15)
+    assert case.bar.fracture == Fracture(1000.0, 5e6, (2.0, 20.0))
+    assert case.bar.fracture.opening(10e6) == pytest.approx(2e-4, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (("fracture_energy = 0",), "bar.fracture_energy: "),
+        # 0.2·19.67 GPa·200 J/m²/(10 MPa)², and 2² times less at twice the strength
+        (("fracture_energy = 200",), "bar.spacing: is 0.01, must be at most 0.00786796 m, 0.2 EG_f/σ_t² "),
+        (
+            ("fracture_energy = 600", "strength_per_decade = 10e6", "strength_rates = [1, 10]"),
+            "bar.spacing: is 0.01, must be at most 0.00590097 m, 0.2 EG_f/σ_t² at the largest strength",
+        ),
+        (("fracture_energy = 500", "strength_rates = [1, 10]"), "bar.strength_per_decade: is missing; "),
+        (("fracture_energy = 500", "strength_per_decade = 1e6"), "bar.strength_rates: is missing; "),
+        (
+            ("fracture_energy = 500", "strength_per_decade = 1e6", "strength_rates = [10, 1]"),
+            "bar.strength_rates: is [10.0, 1.0], must be two rates above 0, the slower one first",
+        ),
+        (
+            ("fracture_energy = 500", "strength_per_decade = 1e6", "strength_rates = [0, 1]"),
+            "bar.strength_rates: is [0.0, 1.0], must be two rates above 0, the slower one first",
+        ),
+        (("strength_per_decade = 1e6", "strength_rates = [1, 10]"), "bar.strength_per_decade: needs fracture_energy"),
+    ],
+)
+def test_mistakes_with_cracks(lines: tuple[str, ...], said: str) -> None:
+    (line,) = problems(with_bar(*lines))
+    assert line.startswith(said)
+
+
+def test_cracks_need_a_strength() -> None:
+    (line,) = problems(with_bar("fracture_energy = 500").replace("strength = 10e6\n", ""))
+    assert line == "bar.fracture_energy: needs strength or critical_stretch, at which a crack begins"

@@ -1,0 +1,117 @@
+"""The bonds of a bar that open: those of cracks with a fracture energy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from dembound.kernels.tables import Softening
+    from dembound.methods.rod import Range
+
+COLUMNS = ("row", "first", "began", "whole", "limit", "apart", "furthest", "rate")
+"""The columns of the list of opening bonds."""
+
+RISE = 0.5
+"""Share of the limit of a bond from which on its strain rate is measured, if the strength depends on it.
+
+A method that waits for a stretch is called at this share at the latest, as plain springs are not watched.
+"""
+
+
+@dataclass(frozen=True)
+class Fracture:
+    """How bonds open: fracture energy J/m², 0 for bonds that break at once; and their strength at higher strain rates.
+
+    per_decade : Pa by which the strength rises for a tenfold strain rate, between the two rates (1/s).
+    """
+
+    energy: float = 0.0
+    per_decade: float = 0.0
+    rates: tuple[float, float] = (1.0, 1.0)
+
+    def opening(self, strength: float) -> float:
+        """Opening w_c (m) of a crack at which it bears nothing, 2G_f/σ_t, at a strength in Pa."""
+        return 2.0 * self.energy / strength
+
+
+AT_ONCE = Fracture()
+"""Bonds that break at once."""
+
+
+class Opening:
+    """The list of bonds whose force falls as they open, in a bar of n nodes with bonds of m lengths.
+
+    Attributes
+    ----------
+    bundle : the arrays for the kernels; their unused rows are not touched. has_rates : whether strength depends on the
+    strain rate somewhere.
+    """
+
+    def __init__(self, ranges: Sequence[Range], count: int, horizon: int) -> None:
+        from dembound.kernels.tables import Softening
+
+        opens = any(part.fracture.energy > 0.0 for part in ranges)
+        self.has_rates = any(part.fracture.per_decade > 0.0 for part in ranges)
+        most = count * (horizon + 1) if opens else 0
+        part_of = np.zeros(count - 1, dtype=np.int64)
+        for number, part in enumerate(ranges):
+            part_of[part.planes] = number
+        self.bundle: Softening = Softening(
+            part=part_of,
+            laws=np.array([_law(part) for part in ranges]),
+            rise=RISE,
+            **{name: np.zeros(most, dtype=np.int64) for name in COLUMNS[:3]},
+            **{name: np.zeros(most) for name in COLUMNS[3:]},
+            below=np.full((horizon + 1, count) if self.has_rates else (0, 0), -1),
+            listed=np.zeros(1, dtype=np.int64),
+        )
+
+    def __len__(self) -> int:
+        return int(self.bundle.listed[0])
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A column of the list (see kernels.tables.Softening), without unused rows."""
+        column: np.ndarray = getattr(self.bundle, name)[: len(self)]
+        return column
+
+    @property
+    def left(self) -> np.ndarray:
+        """Share of its strength, and of its fracture energy, that each bond has left: 1 − w/w_c."""
+        apart = self["apart"]
+        return np.maximum(0.0, apart - self["furthest"]) / np.abs(apart - self["limit"])
+
+    def of(self, springs: np.ndarray, bonds: np.ndarray) -> np.ndarray:
+        """The values of the bonds in the list, from arrays of springs (n − 1,) and bonds (m, n)."""
+        row, first = self["row"], self["first"]
+        values = np.empty(len(self), dtype=springs.dtype)
+        values[row < 0] = springs[first[row < 0]]
+        values[row >= 0] = bonds[row[row >= 0], first[row >= 0]]
+        return values
+
+    def put(self, values: np.ndarray, springs: np.ndarray, bonds: np.ndarray) -> None:
+        """Write values of the bonds in the list to arrays of springs (n − 1,) and bonds (m, n)."""
+        row, first = self["row"], self["first"]
+        springs[first[row < 0]] = values[row < 0]
+        bonds[row[row >= 0], first[row >= 0]] = values[row >= 0]
+
+    def memory(self) -> dict[str, np.ndarray]:
+        """All that changes during a run, by name."""
+        return {f"opening_{name}": self[name] for name in COLUMNS} | {"opening_below": self.bundle.below}
+
+    def recall(self, memory: Mapping[str, np.ndarray]) -> None:
+        """Restore what `memory` has returned for the same bar."""
+        self.bundle.listed[0] = len(memory["opening_row"])
+        for name in COLUMNS:
+            self[name][:] = memory[f"opening_{name}"]
+        self.bundle.below[...] = memory["opening_below"]
+
+
+def _law(part: Range) -> list[float]:
+    """A row of laws of tables.Softening."""
+    strength, fracture = part.modulus * part.critical_stretch, part.fracture
+    gain = fracture.per_decade / strength
+    return [part.elongation, part.critical_stretch, fracture.opening(strength), gain, *fracture.rates]
