@@ -10,9 +10,22 @@ from dembound.cli import (  # each registers its commands with the application
     dispersion,
     gauge,
     results,
+    showing,
     stability,
     starting,
 )
 from dembound.cli.app import app, main
 
-__all__ = ["app", "calibration", "cases", "chart", "dispersion", "gauge", "main", "results", "stability", "starting"]
+__all__ = [
+    "app",
+    "calibration",
+    "cases",
+    "chart",
+    "dispersion",
+    "gauge",
+    "main",
+    "results",
+    "showing",
+    "stability",
+    "starting",
+]

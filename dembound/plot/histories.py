@@ -61,7 +61,7 @@ def plot_histories(
     if quantity == "stress" and component is not None:
         raise CaseError(["component: is of motions; the stress of a bar is that along it"])
     histories = [read_histories(path, quantity) for path in runs]
-    shown = _choose(runs, histories, monitors)
+    shown = choose_monitors(runs, histories, monitors)
     drawn = [{name: run[name] for name in (*shown, *map(_twin, shown)) if name in run} for run in histories]
     columns = _columns(drawn, component)
     unit = time_unit(max(history.time.max(initial=0.0) for run in drawn for history in run.values()))
@@ -76,7 +76,7 @@ def plot_histories(
                 _draw(panel, run, monitor, column, unit.seconds, label, style)
     for row, monitor in zip(panels, shown, strict=True):
         row[0].set_title(
-            _title(monitor, [run[monitor] for run in drawn if monitor in run]), loc="left", fontsize=9, pad=3
+            place_title(monitor, [run[monitor] for run in drawn if monitor in run]), loc="left", fontsize=9, pad=3
         )
     for panel in panels[-1]:
         panel.set_xlabel(unit.label)
@@ -100,11 +100,11 @@ def _draw(
 def _name_axes(figure: Figure, panels: np.ndarray, quantity: Quantity, columns: Sequence[int]) -> None:
     """Write quantity, component and unit on the axes of the panels (rows, columns)."""
     sense, unit = SENSES.get(quantity, ""), UNITS[quantity][columns[0]]
-    shown = f"{quantity} {' and '.join(map(_direction, columns))}"
+    shown = f"{quantity} {' and '.join(map(direction_of, columns))}"
     if len(columns) > 1:
         for row in panels:
             for panel, column in zip(row, columns, strict=True):
-                panel.set_ylabel(_direction(column), fontsize=9)
+                panel.set_ylabel(direction_of(column), fontsize=9)
     figure.supylabel(f"{shown if len(columns) == 1 else quantity}{sense} ({unit})", fontsize=10)
     figure.suptitle(f"{shown.capitalize()} at the monitors", fontsize=11)
 
@@ -114,7 +114,7 @@ def _twin(monitor: str) -> str:
     return f"{monitor}{FREE_FIELD}"
 
 
-def _title(monitor: str, histories: Sequence[History]) -> str:
+def place_title(monitor: str, histories: Sequence[History]) -> str:
     """Name of the monitor, position of its particle in each run, and the given position if it differs."""
     places, wanted = (list(dict.fromkeys(getattr(each, what) for each in histories)) for what in ("place", "wanted"))
     asked = "" if places == wanted else f", wanted {_in_words(wanted)}"
@@ -128,7 +128,7 @@ def _in_words(places: Sequence[str]) -> str:
     return f"{places[0]} and {len(places) - 1} other places"
 
 
-def _choose(runs: Sequence[Path], histories: Sequence[Histories], wanted: Sequence[str] | None) -> list[str]:
+def choose_monitors(runs: Sequence[Path], histories: Sequence[Histories], wanted: Sequence[str] | None) -> list[str]:
     """Names of the monitors that have a panel, each once; errors as in `plot_histories`."""
     known = list(dict.fromkeys(name for run in histories for name in run))
     if not known:
@@ -144,14 +144,15 @@ def _columns(histories: Sequence[Histories], component: Component | None) -> lis
     """The columns of the histories that are shown, one, or those of x and y."""
     if component == "both":
         return [0, 1]
-    return [_largest(histories) if component is None else COMPONENTS.index(component)]
+    return [int(np.argmax(largest_values(histories))) if component is None else COMPONENTS.index(component)]
 
 
-def _largest(histories: Sequence[Histories]) -> int:
-    """0 or 1, the column of x or y with the largest value in any history."""
+def largest_values(histories: Sequence[Histories]) -> np.ndarray:
+    """Largest sizes (2,) along x and y, (1,) of a stress, in any history; there must be one."""
     largest = [np.abs(h.values[:, :2]).max(axis=0, initial=0.0) for run in histories for h in run.values()]
-    return int(np.argmax(np.max(largest, axis=0)))
+    return np.asarray(np.max(largest, axis=0))
 
 
-def _direction(column: int) -> str:
+def direction_of(column: int) -> str:
+    """A column of a motion in words."""
     return "of rotation" if COMPONENTS[column] == "rotation" else f"along {COMPONENTS[column]}"
