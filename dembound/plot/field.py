@@ -86,7 +86,8 @@ class Field:
 
     captions, k texts with the times; values (k, n) in the unit; cracks so far, each time, as by `cracks_until`; limits
     of the colour scale, equally far from zero for a field of either sign; the name and unit of the field; the meaning
-    of its sign, if the name does not give it; beyond (k, m), values of the nodes of a continuum, None if it has none.
+    of its sign, if the name does not give it; beyond (k, m), values of the nodes of a continuum, None if it has none;
+    moved (k, n, 2) and moved_beyond (k, m, 2) m, how far from their places disks and nodes are drawn, None at them.
     """
 
     captions: list[str]
@@ -97,6 +98,8 @@ class Field:
     unit: str
     sense: str = ""
     beyond: np.ndarray | None = None
+    moved: np.ndarray | None = None
+    moved_beyond: np.ndarray | None = None
 
     @property
     def label(self) -> str:

@@ -11,7 +11,7 @@ from dembound.casefile.messages import counted
 from dembound.errors import CaseError
 from dembound.laws.peridynamic import CRACKED
 from dembound.plot.bar import FIELDS, read_course
-from dembound.plot.style import COLOURS, REFERENCE, lay_out, new_figure, outside_legend, pixels_of, styled
+from dembound.plot.style import COLOURS, REFERENCE, lay_out, new_figure, outside_legend, pixels_of, set_pixels, styled
 
 MARGIN = 0.05
 """Of the vertical axes, over the range of the values."""
@@ -105,6 +105,6 @@ class MovingBar:
     @styled
     def frame(self, index: int, pixels: int) -> np.ndarray:
         """One frame as a picture (rows, pixels, 3)."""
-        self.figure.set_dpi(pixels / self.width)
+        set_pixels(self.figure, pixels)
         self._fill(index)
         return pixels_of(self.figure)

@@ -10,9 +10,9 @@ import numpy as np
 from dembound.casefile.messages import counted
 from dembound.plot.continuum import GROUP
 from dembound.plot.disks import Window
-from dembound.plot.field import Disks, Field, FieldInRecord, FieldName, find_field, read_disks
+from dembound.plot.field import Field, FieldInRecord, FieldName, find_field, read_disks
 from dembound.plot.scene import DRAWING, LONG, close_up, draw_panel, mark_monitors, mark_part
-from dembound.plot.style import Powers, lay_out, new_figure, outside_legend, pixels_of, styled
+from dembound.plot.style import Powers, lay_out, new_figure, outside_legend, pixels_of, set_pixels, styled
 from dembound.results.reader import cracks_until, open_record, reading
 
 
@@ -28,7 +28,8 @@ class MovingScene:
     field
         as in `plot_scene`, but for peak, which does not change with time.
     exaggerate
-        how many times their displacement disks, nodes and cracks are moved; 0 shows them where they began.
+        how many times their displacement disks, nodes and cracks are moved; 0 shows them where they began. Monitors,
+        outlines of elements and ties remain where they were at the start.
 
     Raises CaseError when the file cannot be read, has no snapshots, or does not contain the field.
     """
@@ -48,7 +49,7 @@ class MovingScene:
             last = found.at([found.groups[-1]])
         self._part = close_up(self._disks, largest.values[0]) if self._is_long else None
         self._make_panels()
-        self._fill(self._disks, last, len(self.times) - 1)
+        self._fill(last, len(self.times) - 1)
         bar: dict[str, Any] = {"label": last.label, "shrink": 0.9, "pad": 0.02, "format": Powers()}
         self.figure.colorbar(self._colours, ax=self._panels, **bar)
         moved = f", displacements × {exaggerate:g}" if exaggerate else ""
@@ -90,19 +91,19 @@ class MovingScene:
         self._panels = list(self.figure.subplots(squeeze=False, **shape).flat)
         self._scales = room
 
-    def _fill(self, disks: Disks, shown: Field, index: int) -> None:
+    def _fill(self, shown: Field, index: int) -> None:
         """Draw a snapshot into all panels, in place of another one."""
         whole, *close = self._panels
         whole.clear()
         scale = self._scales[0]
         dots = self.figure.dpi
-        self._colours = draw_panel(whole, disks, shown, 0, self._window, scale * dots, counted=False)
+        self._colours = draw_panel(whole, self._disks, shown, 0, self._window, scale * dots, counted=False)
         mark_monitors(whole, self._disks, scale)
         whole.set_title(self.caption(index), pad=18)  # above the names of monitors at the top
         if self._part is not None:
             mark_part(whole, self._part)
             close[0].clear()
-            draw_panel(close[0], disks, shown, 0, self._part, self._scales[1] * dots, counted=False)
+            draw_panel(close[0], self._disks, shown, 0, self._part, self._scales[1] * dots, counted=False)
 
     def caption(self, index: int) -> str:
         """The time of a frame, and how many bonds have broken until then."""
@@ -112,23 +113,22 @@ class MovingScene:
     @styled
     def frame(self, index: int, pixels: int) -> np.ndarray:
         """One frame as a picture (rows, pixels, 3)."""
-        self.figure.set_dpi(pixels / self.width)
+        set_pixels(self.figure, pixels)
         with reading(self._run) as file:
             group = file[self._names[index]]
-            shown = self._found.at([group])
-            disks = self._moved(group, shown)
-        self._fill(disks, shown, index)
+            shown = self._moved(group, self._found.at([group]))
+        self._fill(shown, index)
         return pixels_of(self.figure)
 
-    def _moved(self, group: h5py.Group, shown: Field) -> Disks:
-        """The disks and the continuum at a snapshot, and its cracks with them, moved as far as asked for."""
+    def _moved(self, group: h5py.Group, shown: Field) -> Field:
+        """The field at a snapshot, with its disks, nodes and cracks moved as far as asked for."""
         if self._exaggerate == 0.0:
-            return self._disks
+            return shown
         moved = self._exaggerate * group["displacement"][:, :2]
-        for cracks in shown.cracks:
-            cracks["position"] = cracks["position"] + moved[cracks["particles"]].mean(axis=1)
-        continuum = self._disks.continuum
-        if continuum is not None:
-            nodes = self._exaggerate * group[f"{GROUP}/displacement"][:, :2]
-            continuum = replace(continuum, corners=continuum.corners + nodes[continuum.nodes])
-        return replace(self._disks, positions=self._disks.positions + moved, continuum=continuum)
+        cracks = [
+            each | {"position": each["position"] + moved[each["particles"]].mean(axis=1)} for each in shown.cracks
+        ]
+        beyond = None
+        if self._disks.continuum is not None:
+            beyond = self._exaggerate * group[f"{GROUP}/displacement"][:, :2][None]
+        return replace(shown, cracks=cracks, moved=moved[None], moved_beyond=beyond)

@@ -174,10 +174,12 @@ def draw_panel(
     panel: Axes, disks: Disks, shown: Field, index: int, window: Window, scale: float, counted: bool = True
 ) -> ScalarMappable:
     """A window of the scene at one of its times, at `scale` pixels per metre; counted : cracks are, in their labels."""
-    colours = draw_field(panel, window, disks.positions, disks.radii, shown.values[index], shown.limits, scale)
+    positions = disks.positions if shown.moved is None else disks.positions + shown.moved[index]
+    colours = draw_field(panel, window, positions, disks.radii, shown.values[index], shown.limits, scale)
     if disks.continuum is not None:
         beyond = None if shown.beyond is None else shown.beyond[index]
-        draw_continuum(panel, disks.continuum, disks.part_windows, beyond, shown.limits, scale)
+        continuum = disks.continuum.moved(None if shown.moved_beyond is None else shown.moved_beyond[index])
+        draw_continuum(panel, continuum, disks.part_windows, beyond, shown.limits, scale)
     if disks.seam is not None and disks.seam > window.corner[0]:
         panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
     _mark_cracks(panel, shown, index, counted)

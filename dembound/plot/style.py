@@ -186,3 +186,8 @@ def pixels_of(figure: Figure) -> np.ndarray:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+
+
+def set_pixels(figure: Figure, width: int) -> None:
+    """Give a figure a width in pixels; its size in inches, and so that of its texts beside it, remains."""
+    figure.set_dpi((width + 0.5) / figure.get_figwidth())  # the canvas leaves out fractions of a pixel
