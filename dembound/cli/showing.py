@@ -74,8 +74,8 @@ def movie(
         ),
     ] = None,
     histories: Annotated[bool, typer.Option(help="Show histories below the scene.")] = True,
-    fps: Annotated[float, typer.Option(help="Frames per second.", min=0.1, max=50.0)] = 10.0,
-    size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200, max=4000)] = 960,
+    fps: Annotated[float, typer.Option(help="Frames per second.", min=0.1)] = 10.0,
+    size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200)] = 960,
     every: Annotated[int, typer.Option(help="Show every so many-th snapshot.", min=1)] = 1,
 ) -> None:
     """Write a movie of a run: its snapshots, and below them histories with a line at the time.

@@ -29,6 +29,12 @@ MOST_MONITORS = 4
 PALETTE_FRAMES = 6
 """Frames from which the colours of a GIF are taken, which all of its frames share."""
 
+WHITE = 245
+"""From this value of red, green and blue a colour of the palette is white: it is the mean of nearly white ones."""
+
+FASTEST_GIF = 2
+"""Hundredths of a second of a GIF's frame: browsers show those of one hundredth ten times as long."""
+
 WEBP_QUALITY = 80
 """In WebP's scale up to 100."""
 
@@ -116,7 +122,7 @@ def write_movie(
     Parameters
     ----------
     fps
-        frames per second; a GIF has frames of whole hundredths of a second.
+        frames per second; a GIF has frames of whole hundredths of a second, at least two.
     progress
         called with the number of frames drawn so far.
 
@@ -162,9 +168,10 @@ def _picture(pixels: np.ndarray) -> Image:
 def _common_colours(movie: Movie) -> Image:
     """A picture whose palette has the colours of some frames of a movie."""
     some = np.unique(np.linspace(0, len(movie) - 1, PALETTE_FRAMES).astype(int))
-    colours = _picture(np.vstack([movie.frame(int(number)) for number in some])).quantize(256 - 2)
-    found = (colours.getpalette() or [])[: 3 * 254]
-    colours.putpalette([*found, *[0] * (3 * 255 - len(found)), *[255] * 3])  # exactly black and white as well
+    colours = _picture(np.vstack([movie.frame(int(number)) for number in some])).quantize(256)
+    palette = np.array(colours.getpalette()).reshape(-1, 3)
+    palette[palette.min(axis=1) >= WHITE] = 255
+    colours.putpalette(palette.ravel().tolist())
     return colours
 
 
@@ -178,7 +185,7 @@ def _reduced(frame: np.ndarray, colours: Image) -> Image:
 def _write_pictures(pictures: Iterator[Image], path: Path, form: str, fps: float, **looks: object) -> None:
     """Write an animated picture that repeats."""
     first = next(pictures)
-    hundredths = max(1, math.floor(100.0 / fps + 0.5))
+    hundredths = max(FASTEST_GIF, math.floor(100.0 / fps + 0.5))
     duration = 10 * hundredths if form == "gif" else round(1000.0 / fps)
     first.save(path, form, save_all=True, append_images=chain(pictures), duration=duration, loop=0, **looks)
 

@@ -71,6 +71,7 @@ def _read(record: Path) -> tuple[Kind[Any, Any], Results, Mapping[str, Any]]:
         return kind, results, {}
     summary = results.summary
     with understood(record):
+        _ = summary["version"]  # which every summary has
         return kind, results, dict(summary)
 
 
