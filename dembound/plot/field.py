@@ -170,14 +170,12 @@ class FieldInRecord:
 
 
 def find_field(file: h5py.File, name: FieldName, component: str | None) -> FieldInRecord:
-    """A field of an open record that has snapshots; name and component as in `plot_scene`.
+    """A field of the snapshots of an open record, which peak is not; name and component as in `plot_scene`.
 
     Raises CaseError when the record has no snapshots or does not have the field, or snapshots have no such field.
     """
     if name not in get_args(FieldName):
         raise CaseError([f"field: is {name}, must be one of {', '.join((*get_args(FieldName), FORCES))} for disks"])
-    if name == "peak":
-        raise CaseError(["peak: is of the whole run, not of a snapshot"])
     groups = snapshots_of(file, required=True)
     dataset = "stress" if name in STRESSES else name
     if dataset not in groups[0]:

@@ -2,18 +2,22 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 import h5py
 import numpy as np
 
 from dembound.casefile.messages import counted
+from dembound.errors import CaseError
 from dembound.plot.continuum import GROUP
 from dembound.plot.disks import Window
 from dembound.plot.field import Field, FieldInRecord, FieldName, find_field, read_disks
 from dembound.plot.scene import DRAWING, LONG, close_up, draw_panel, mark_monitors, mark_part
 from dembound.plot.style import Powers, lay_out, new_figure, outside_legend, pixels_of, set_pixels, styled
 from dembound.results.reader import cracks_until, open_record, reading
+
+CHANGING = tuple(name for name in get_args(FieldName) if name != "peak")
+"""The fields that snapshots have."""
 
 
 class MovingScene:
@@ -26,7 +30,7 @@ class MovingScene:
     run
         the ``run.h5`` of a run.
     field
-        as in `plot_scene`, but for peak, which does not change with time.
+        one of `CHANGING`, as in `plot_scene`.
     exaggerate
         how many times their displacement disks, nodes and cracks are moved; 0 shows them where they began. Monitors,
         outlines of elements and ties remain where they were at the start.
@@ -36,6 +40,8 @@ class MovingScene:
 
     @styled
     def __init__(self, run: Path, field: str = "velocity", exaggerate: float = 0.0) -> None:
+        if field not in CHANGING:
+            raise CaseError([f"field: is {field}, must be one of {', '.join(CHANGING)} for disks that move"])
         self._run, self._exaggerate = run, exaggerate
         with open_record(run) as file:
             self._disks = read_disks(file)

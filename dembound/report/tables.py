@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from dembound.plot.energy import BAR_COLUMNS, COLUMNS
+from dembound.plot.continuum import GROUP
+from dembound.plot.energy import BAR_COLUMNS, COLUMNS, PREFIXES, power_of_unit
 from dembound.report.runs import ReportedRun
-from dembound.results.reader import laws_in_words
+from dembound.results.reader import laws_in_words, open_record
 from dembound.results.summary import end_in_words
 
 NONE = "–"
@@ -48,8 +49,7 @@ def _overview(run: ReportedRun) -> Iterator[tuple[str, str]]:
     if run.is_bar:
         yield "body", f"bar of {size[0]:.6g} m, {len(run.results.particles['position']):,} nodes"
     else:
-        disks = len(run.results.particles["radius"])
-        yield "body", f"{size[0]:.6g} m × {size[1]:.6g} m, {disks:,} disks"
+        yield "body", f"{size[0]:.6g} m × {size[1]:.6g} m, {', '.join(_contents(run))}"
     yield "duration", f"{attributes['steps']:,} steps of {attributes['time_step']:.5g} s"
     if run.results.laws:
         yield "law", laws_in_words(run.results.laws)
@@ -62,6 +62,17 @@ def _overview(run: ReportedRun) -> Iterator[tuple[str, str]]:
     cracks = summary["cracks"]
     yield "broken bonds", f"{cracks['tension']:,} in tension, {cracks['shear']:,} in shear"
     yield "largest error of the energy balance", percent(summary["energy"]["relative_error"])
+
+
+def _contents(run: ReportedRun) -> Iterator[str]:
+    """What the scene of disks consists of."""
+    column = run.results.attributes.get("column", 0)
+    yield f"{len(run.results.particles['radius']) - column:,} disks"
+    if column > 0:
+        yield f"{column:,} more in the free-field column"
+    with open_record(run.record) as file:
+        if GROUP in file:
+            yield f"a continuum of {len(file[f'{GROUP}/position']):,} nodes"
 
 
 def changed_keys(runs: Sequence[ReportedRun]) -> Table | None:
@@ -123,11 +134,11 @@ def sides(runs: Sequence[ReportedRun]) -> Table | None:
     """Of each side its type, its factors, and the energies that came in and that it took; None without summaries."""
     rows = []
     for run in runs:
-        tables, unit = run.summary.get("boundaries", {}), "J" if run.is_bar else "J/m"
+        tables = run.summary.get("boundaries", {})
         for side, energy in run.summary.get("sides", {}).items():
             table = tables.get(side, {})
             factors = [f"{letter} = {table[key]:.5g}" for key, letter in FACTORS.items() if key in table]
-            amounts = [f"{energy[column]:.4g} {unit}" for column in ("came_in", "absorbed", "stored")]
+            amounts = [_joules(energy[column], run) for column in ("came_in", "absorbed", "stored")]
             share = energy["absorbed_share"]
             rows.append([side, run.name, table.get("type", NONE), ", ".join(factors) or NONE, *amounts, percent(share)])
     heads = ["side", "run", "type", "factors", "came in", "absorbed", "stored in springs", "absorbed of all"]
@@ -148,14 +159,19 @@ def _energies(run: ReportedRun) -> Iterator[tuple[str, str]]:
     ledger = run.summary.get("energy")
     if ledger is None:
         return
-    unit = "J" if run.is_bar else "J/m"
-    yield "supplied in all", f"{ledger['supplied']:.4g} {unit}"
+    yield "supplied in all", _joules(ledger["supplied"], run)
     for column, words in (BAR_COLUMNS if run.is_bar else COLUMNS).items():
         if ledger.get(column, 0.0) != 0.0:
-            yield words, f"{ledger[column]:.4g} {unit}"
+            yield words, _joules(ledger[column], run)
     left = sum(ledger.get(column, 0.0) for column in ("kinetic", "contact", "bond"))
     if ledger["supplied"] > 0.0:
         yield "left in the body, of all that was supplied", percent(left / ledger["supplied"])
+
+
+def _joules(energy: float, run: ReportedRun) -> str:
+    """An energy with a prefix of its unit, which for disks is J per metre of thickness."""
+    power = power_of_unit(abs(energy))
+    return f"{energy / 10.0**power:.4g} {PREFIXES[power]}{'J' if run.is_bar else 'J/m'}"
 
 
 def time_split(runs: Sequence[ReportedRun]) -> Table | None:

@@ -670,7 +670,7 @@ def test_pages_and_movies_are_written(dembound, small_run, spalled_run, other_ru
         (("report", "nowhere"), "nowhere: contains no results"),
         (("movie", small_run, "-o", "m.png"), "--output: is m.png, must end in one of .gif, .webp, .mp4\n"),
         (("movie", other_run), "has no snapshots, run with output.snapshots above 0\n"),
-        (("movie", small_run, "--field", "peak"), "peak: is of the whole run, not of a snapshot\n"),
+        (("movie", small_run, "--field", "forces"), "field: is forces, must be one of velocity, displacement, "),
     ):
         answer = dembound(*arguments)
         assert (answer.code, answer.out) == (2, "")

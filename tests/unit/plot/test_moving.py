@@ -139,7 +139,7 @@ def test_the_line_in_the_histories_is_at_the_time(small_run):
 def test_what_cannot_be_drawn_is_said(small_run, other_run, spalled_run):
     with pytest.raises(CaseError, match=r"has no snapshots, run with output\.snapshots above 0"):
         MovingScene(other_run)
-    with pytest.raises(CaseError, match="peak: is of the whole run, not of a snapshot"):
+    with pytest.raises(CaseError, match="field: is peak, must be one of velocity, displacement, "):
         MovingScene(small_run, "peak")
     with pytest.raises(CaseError, match="field: is damage, must be one of velocity"):
         MovingScene(small_run, "damage")

@@ -69,17 +69,24 @@ def test_names_and_texts_of_users_are_no_markup(two, pushed_runs):
     assert Results(pushed_runs[0].parent).case.strip() in two.said("pre")
 
 
+def joules(energy):
+    """An energy of disks from 1 J/m to below 1 MJ/m, or none."""
+    if energy == 0.0:
+        return "0 J/m"
+    assert 1.0 <= energy < 1e6
+    return f"{energy:.4g} J/m" if energy < 1e3 else f"{energy / 1e3:.4g} kJ/m"
+
+
 def test_runs_stand_side_by_side(two, pushed_runs):
     assert two.row("boundary.right.beta_p") == ["1", "0.5"]
     summaries = [Results(record.parent).summary for record in pushed_runs]
     assert two.row("duration") == [f"{each['steps']:,} steps of {each['time_step']:.5g} s" for each in summaries]
-    supplied = [f"{each['energy']['supplied']:.4g} J/m" for each in summaries]
-    assert two.row("supplied in all") == supplied
+    assert two.row("supplied in all") == [joules(each["energy"]["supplied"]) for each in summaries]
     assert two.row("compile") == [f"{each['seconds']['compile']:.3g} s" for each in summaries]
     assert two.row("dembound") == [each["version"] for each in summaries]
     right = [row for row in two.rows if row[:2] == ["right", "half"]]
     side = summaries[1]["sides"]["right"]
-    amounts = [f"{side[name]:.4g} J/m" for name in ("came_in", "absorbed", "stored")]
+    amounts = [joules(side[name]) for name in ("came_in", "absorbed", "stored")]
     share = f"{100.0 * side['absorbed_share']:.3g} %"
     assert right == [["right", "half", "viscous", "β_P = 0.5, β_S = 1", *amounts, share]]
     ledger = summaries[1]["energy"]
