@@ -22,7 +22,8 @@ def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = Non
     """Amplitude spectra |∫ v exp(−2πift) dt| of the velocities at the monitors, one panel each, with common axes.
 
     Frequencies end where all spectra are below 1 % of the largest value of any. Of a motion that is not over at the end
-    of the run the spectrum is that of the part that was recorded.
+    of the run the spectrum is that of the part that was recorded. A monitor at rest, or with a velocity that is not
+    finite, has an empty panel.
 
     Parameters
     ----------
@@ -43,7 +44,8 @@ def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = Non
     spectra = []
     for index, (label, run) in enumerate(zip(record_names(runs), drawn, strict=True)):
         for name, history in run.items():
-            if len(history.time) < FEWEST or not history.values[:, column].any():
+            values = history.values[:, column]
+            if len(values) < FEWEST or not values.any() or not np.isfinite(values).all():
                 continue
             frequencies, amplitudes = spectrum_of(history, column)
             spectra.append((frequencies, amplitudes))

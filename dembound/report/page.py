@@ -121,14 +121,14 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
         if each.energy is not None:
             live[f"energy-{number}"] = each.energy.chart
     environment = Environment(
-        loader=PackageLoader("dembound.report", "page"),
+        loader=PackageLoader("dembound.report", "template"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     return environment.get_template("page.html").render(
-        title=" and ".join(run.name for run in runs),
+        title=", ".join(run.name for run in runs),
         version=__version__,
         runs=shown,
         charts=charts,

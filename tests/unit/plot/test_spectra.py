@@ -61,8 +61,12 @@ def test_the_component_can_be_chosen(tmp_path):
     np.testing.assert_allclose(along, 0.5 * LENGTH * HEIGHT * np.array([1.0, 1.0, 0.1]), rtol=1e-4)
 
 
-def test_a_monitor_at_rest_has_an_empty_panel(tmp_path):
-    figure = plot_spectra([record(tmp_path / "run.h5", "rest", {"P": 0.0})])
-    assert not figure.axes[0].lines
+@pytest.mark.parametrize("height", [0.0, np.nan, np.inf])
+def test_a_monitor_without_a_spectrum_has_an_empty_panel(tmp_path, height):
+    figure = plot_spectra([record(tmp_path / "run.h5", "rest", {"P": HEIGHT, "Q": height})])
+    assert [len(panel.lines) for panel in figure.axes] == [1, 0]
+
+
+def test_a_run_without_monitors_has_no_spectra(tmp_path):
     with pytest.raises(CaseError, match="has no monitors to show"):
         plot_spectra([record(tmp_path / "none.h5", "none", {})])

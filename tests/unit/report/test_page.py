@@ -69,12 +69,13 @@ def test_names_and_texts_of_users_are_no_markup(two, pushed_runs):
     assert Results(pushed_runs[0].parent).case.strip() in two.said("pre")
 
 
-def joules(energy):
-    """An energy of disks from 1 J/m to below 1 MJ/m, or none."""
+def joules(energy, unit="J/m"):
+    """An energy from 1 mJ/m to below 1 MJ/m, or none."""
     if energy == 0.0:
-        return "0 J/m"
-    assert 1.0 <= energy < 1e6
-    return f"{energy:.4g} J/m" if energy < 1e3 else f"{energy / 1e3:.4g} kJ/m"
+        return f"0 {unit}"
+    assert 1e-3 <= energy < 1e6
+    scale, prefix = (1e-3, "m") if energy < 1.0 else (1.0, "") if energy < 1e3 else (1e3, "k")
+    return f"{energy / scale:.4g} {prefix}{unit}"
 
 
 def test_runs_stand_side_by_side(two, pushed_runs):
@@ -134,6 +135,16 @@ def test_of_many_snapshots_some_are_frames(pushed_runs, tmp_path, monkeypatch):
     assert frames["captions"] == [f"t = {times[index]:.4g} s" for index in (0, 2)]
 
 
+def test_a_single_snapshot_needs_no_slider(small_run, tmp_path):
+    record = copied(small_run, tmp_path / "single")
+    with h5py.File(record, "r+") as file:
+        del file["snapshots/0001"]
+    write_report([record], tmp_path / "page.html")
+    page = Page(tmp_path / "page.html")
+    assert not [name for name in page.live() if name.startswith("frames")]
+    assert "small: velocity along x of 100 disks" in [each["alt"] for each in page.all("img")]
+
+
 def test_pages_of_the_same_runs_are_the_same(two, pushed_runs, tmp_path):
     write_report(pushed_runs, tmp_path / "again.html")
     assert (tmp_path / "again.html").read_text(encoding="utf-8") == two.source
@@ -152,7 +163,7 @@ def test_a_bar_has_its_stresses_and_its_picture_over_place_and_time(spalled_resu
     ]
     assert len(page.live()["frames-0"]["uris"]) == 12
     assert page.row("body") == ["bar of 1 m, 41 nodes"]
-    assert page.row("supplied in all")[0].endswith(" J")
+    assert page.row("supplied in all") == [joules(Results(spalled_results.parent).summary["energy"]["supplied"], "J")]
 
 
 def test_what_results_lack_is_said_in_one_line_each_and_the_rest_is_there(blind_run, tmp_path):
