@@ -29,6 +29,11 @@ class ReportedRun:
     summary: Mapping[str, Any]
 
     @property
+    def is_exact(self) -> bool:
+        """Whether it is the exact motion at monitors, without a body."""
+        return len(self.results.particles) == 0
+
+    @property
     def is_bar(self) -> bool:
         """Whether it is that of a bar."""
         return self.kind.name == "bar"

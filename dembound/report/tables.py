@@ -45,6 +45,9 @@ def overview(runs: Sequence[ReportedRun]) -> Table:
 def _overview(run: ReportedRun) -> Iterator[tuple[str, str]]:
     """Entries of a run."""
     attributes, summary = run.results.attributes, run.summary
+    if run.is_exact:
+        yield "body", "exact motion at monitors"
+        return
     size = attributes.get("size", [0.0, 0.0])
     if run.is_bar:
         yield "body", f"bar of {size[0]:.6g} m, {len(run.results.particles['position']):,} nodes"

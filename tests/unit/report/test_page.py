@@ -191,6 +191,19 @@ def test_a_run_that_is_not_complete_has_what_it_recorded(small_run, tmp_path):
     assert "frames-0" in page.live()
 
 
+def test_an_exact_motion_is_a_line_beside_those_of_runs(pushed_runs, tmp_path):
+    exact, said = tmp_path / "exact.h5", []
+    with h5py.File(pushed_runs[0]) as run, h5py.File(exact, "w") as file:
+        file.attrs["name"], file.attrs["size"] = "front_exact", run.attrs["size"]
+        run.copy("histories", file)
+    write_report([pushed_runs[0], exact], tmp_path / "page.html", said.append)
+    page = Page(tmp_path / "page.html")
+    assert said == []
+    assert page.row("body") == ["10 m × 2.5 m, 100 disks", "exact motion at monitors"]
+    names = [[line["name"] for line in panel["lines"]] for panel in page.live()["chart-0"]["panels"]]
+    assert names == [["whole", "front_exact"]] * 2
+
+
 def test_an_error_estimate_is_shown_if_there_is_one(two, pushed_runs, tmp_path):
     record = copied(pushed_runs[0], tmp_path / "estimated")
     summary = json.loads((record.parent / "summary.json").read_text())
