@@ -21,6 +21,7 @@ from dembound.bar.warnings import bar_warnings, warnings_after_bar
 from dembound.bar.wave_front import front_of_bar
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.motion.kind import Beginning, Finding, Kind, OnLook
+from dembound.motion.moving_picture import MovingPicture
 from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
@@ -138,3 +139,9 @@ class Bars(Kind[BarCase, BarScene]):
         from dembound.plot.bar import plot_bar_field
 
         return plot_bar_field(record, field, snapshot)
+
+    def moving_picture(self, record: Path, field: str | None, exaggerate: float) -> MovingPicture:
+        """Fields along the bar, by default stress and damage."""
+        from dembound.plot.moving_bar import MovingBar
+
+        return MovingBar(record, ("stress", "damage") if field is None else (field,), exaggerate)

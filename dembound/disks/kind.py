@@ -28,6 +28,7 @@ from dembound.disks.system import DiskSystem
 from dembound.disks.warnings import disk_warnings, warnings_after_disks
 from dembound.disks.wave_front import front_of
 from dembound.motion.kind import Beginning, Finding, Kind, OnLook, Reduction, Stage
+from dembound.motion.moving_picture import MovingPicture
 from dembound.motion.paths import Front, Source
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
@@ -185,6 +186,12 @@ class Disks(Kind[DiskCase, DiskScene]):
         if field == FORCES:
             return plot_chains(record, snapshot)
         return plot_scene(record, snapshot, cast("FieldName", field))
+
+    def moving_picture(self, record: Path, field: str | None, exaggerate: float) -> MovingPicture:
+        """The scene with disks coloured by a field, by default velocity."""
+        from dembound.plot.moving_scene import MovingScene
+
+        return MovingScene(record, field or "velocity", exaggerate)
 
 
 def _stages(scene: DiskScene, settled: Settled) -> Iterator[Stage]:

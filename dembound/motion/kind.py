@@ -14,6 +14,7 @@ from dembound.casefile import Case
 from dembound.casefile.schema import Schema
 from dembound.errors import RunError
 from dembound.motion.cracks import Cracks
+from dembound.motion.moving_picture import MovingPicture
 from dembound.motion.part import System
 from dembound.motion.paths import Front, Source
 from dembound.motion.scene import Scene
@@ -249,3 +250,10 @@ class Kind(ABC, Generic[C, S]):
     @abstractmethod
     def field_picture(self, record: Path, field: str, snapshot: int | None) -> Figure:
         """A field of a record as a picture, of one snapshot or of suitable ones; raises CaseError if it is missing."""
+
+    @abstractmethod
+    def moving_picture(self, record: Path, field: str | None, exaggerate: float) -> MovingPicture:
+        """A field of a record at every snapshot, by default the one that pictures of a run show.
+
+        exaggerate : how many times their displacement nodes are moved. Raises CaseError without snapshots or the field.
+        """

@@ -1,8 +1,8 @@
 """Draws the continuum round disks: its elements, layers that absorb, free surface and ties, coloured by a field."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import h5py
 import numpy as np
@@ -53,6 +53,10 @@ class Continuum:
         """The smallest one that holds all elements."""
         low = self.elements[:, :2].min(axis=0)
         return Window(low, self.elements[:, 2:].max(axis=0) - low)
+
+    def moved(self, displacements: np.ndarray | None) -> Self:
+        """The same with the cells where displacements (m, 2) m of the nodes move them; None: not at all."""
+        return self if displacements is None else replace(self, corners=self.corners + displacements[self.nodes])
 
 
 def read_continuum(file: h5py.File) -> Continuum | None:

@@ -96,7 +96,7 @@ def plot_energy(run: Path) -> Figure:
     lines = _not_negligible([*_of_ledger(columns, bar, bool(sides)), *_of_sides(sides, bar)])
     unit = time_unit(columns["time"][-1])
     time = columns["time"] / unit.seconds
-    power = _power_of_unit(max((float(np.abs(line.values).max()) for line in lines), default=0.0))
+    power = power_of_unit(max((float(np.abs(line.values).max()) for line in lines), default=0.0))
     figure = new_figure(9.0, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[4, 1])
     for line in lines:
@@ -140,7 +140,7 @@ def _not_negligible(lines: list[EnergyLine]) -> list[EnergyLine]:
     return [line for line, each in zip(lines, largest, strict=True) if each > NEGLIGIBLE * max(largest)]
 
 
-def _power_of_unit(largest: float) -> int:
+def power_of_unit(largest: float) -> int:
     """The power of ten of the unit in which the largest energy (J or J/m) is from 1 to below 1000, if there is one."""
     power = 3 * floor(log10(largest) / 3.0) if largest > 0.0 else 0
     return min(max(power, min(PREFIXES)), max(PREFIXES))

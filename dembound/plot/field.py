@@ -86,7 +86,8 @@ class Field:
 
     captions, k texts with the times; values (k, n) in the unit; cracks so far, each time, as by `cracks_until`; limits
     of the colour scale, equally far from zero for a field of either sign; the name and unit of the field; the meaning
-    of its sign, if the name does not give it; beyond (k, m), values of the nodes of a continuum, None if it has none.
+    of its sign, if the name does not give it; beyond (k, m), values of the nodes of a continuum, None if it has none;
+    moved (k, n, 2) and moved_beyond (k, m, 2) m, how far from their places disks and nodes are drawn, None at them.
     """
 
     captions: list[str]
@@ -97,6 +98,8 @@ class Field:
     unit: str
     sense: str = ""
     beyond: np.ndarray | None = None
+    moved: np.ndarray | None = None
+    moved_beyond: np.ndarray | None = None
 
     @property
     def label(self) -> str:
@@ -125,18 +128,54 @@ def read_disks(file: h5py.File) -> Disks:
     )
 
 
-def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot: int | None, most: int) -> Field:
-    """A field of an open record; name and component as in `plot_scene`.
+@dataclass(frozen=True)
+class FieldInRecord:
+    """Where a field is in a record, and its limits in all snapshots.
 
-    Without the number of a snapshot there are up to `most`, evenly chosen, including the last, or if that is 1 the one
-    in which the field is largest. The limits are those of the whole run, 1 where all is zero.
+    groups, all snapshots; dataset and beyond, names in each of them, the latter of a continuum, None for none; column
+    of both; words, sense and unit as of a `Field`, scale the SI value of the unit; largest (g,) size in each snapshot,
+    in the unit.
+    """
 
-    Raises CaseError when the record has no such snapshot or does not have the field, or disks have no such field.
+    groups: list[h5py.Group]
+    dataset: str
+    beyond: str | None
+    column: int
+    words: str
+    sense: str
+    unit: str
+    scale: float
+    largest: np.ndarray
+
+    @property
+    def limit(self) -> float:
+        """The end of the colour scale: the largest size, or 1 where all is zero."""
+        return float(self.largest.max()) or 1.0
+
+    def at(self, chosen: Sequence[h5py.Group]) -> Field:
+        """The field in some snapshots of the record, which must be open."""
+        times = [float(group.attrs["time"]) for group in chosen]
+        return Field(
+            captions=[f"t = {time:.3g} s" for time in times],
+            values=np.array([group[self.dataset][:, self.column] for group in chosen]) / self.scale,
+            beyond=None
+            if self.beyond is None
+            else np.array([group[self.beyond][:, self.column] for group in chosen]) / self.scale,
+            cracks=[cracks_until(chosen[0].file, time) for time in times],
+            limits=(-self.limit, self.limit),
+            name=self.words,
+            unit=self.unit,
+            sense=self.sense,
+        )
+
+
+def find_field(file: h5py.File, name: FieldName, component: str | None) -> FieldInRecord:
+    """A field of the snapshots of an open record, which peak is not; name and component as in `plot_scene`.
+
+    Raises CaseError when the record has no snapshots or does not have the field, or snapshots have no such field.
     """
     if name not in get_args(FieldName):
         raise CaseError([f"field: is {name}, must be one of {', '.join((*get_args(FieldName), FORCES))} for disks"])
-    if name == "peak":
-        return _peak(file, snapshot)
     groups = snapshots_of(file, required=True)
     dataset = "stress" if name in STRESSES else name
     if dataset not in groups[0]:
@@ -152,25 +191,33 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
         largest = np.maximum(largest, _largest(groups, beyond, _outside_layers(file)))
     scale = MEGA if name in STRESSES else 1.0
     column, words, unit = _column(name, component, largest.max(axis=0))
-    if snapshot is not None:
-        chosen = [snapshot_of(file, snapshot)]
-    elif most == 1:
-        chosen = [groups[np.argmax(largest[:, column])]]
-    else:
-        backwards = np.linspace(len(groups) - 1, 0, min(most, len(groups)))
-        chosen = [groups[round(number)] for number in reversed(backwards)]
-    times = [float(group.attrs["time"]) for group in chosen]
-    limit = float(largest[:, column].max()) / scale or 1.0
-    return Field(
-        captions=[f"t = {time:.3g} s" for time in times],
-        values=np.array([group[dataset][:, column] for group in chosen]) / scale,
-        beyond=None if beyond is None else np.array([group[beyond][:, column] for group in chosen]) / scale,
-        cracks=[cracks_until(file, time) for time in times],
-        limits=(-limit, limit),
-        name=words,
-        unit=unit,
-        sense=SENSES.get(name, ""),
+    return FieldInRecord(
+        groups, dataset, beyond, column, words, SENSES.get(name, ""), unit, scale, largest[:, column] / scale
     )
+
+
+def evenly_chosen(count: int, most: int) -> list[int]:
+    """Numbers of up to `most` of so many snapshots, evenly chosen, including the last."""
+    backwards = np.linspace(count - 1, 0, min(most, count))
+    return [round(number) for number in reversed(backwards)]
+
+
+def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot: int | None, most: int) -> Field:
+    """A field of an open record; name and component as in `plot_scene`.
+
+    Without the number of a snapshot there are up to `most`, evenly chosen, including the last, or if that is 1 the one
+    in which the field is largest. The limits are those of the whole run, 1 where all is zero.
+
+    Raises CaseError when the record has no such snapshot or does not have the field, or disks have no such field.
+    """
+    if name == "peak":
+        return _peak(file, snapshot)
+    found = find_field(file, name, component)
+    if snapshot is not None:
+        return found.at([snapshot_of(file, snapshot)])
+    if most == 1:
+        return found.at([found.groups[np.argmax(found.largest)]])
+    return found.at([found.groups[number] for number in evenly_chosen(len(found.groups), most)])
 
 
 def _largest(groups: Sequence[h5py.Group], dataset: str, chosen: slice | np.ndarray = slice(None)) -> np.ndarray:

@@ -144,13 +144,13 @@ def shown_columns(histories: Sequence[Histories], component: Component | None) -
     """The columns of the histories that are shown, one, or those of x and y."""
     if component == "both":
         return [0, 1]
-    return [_largest(histories) if component is None else COMPONENTS.index(component)]
+    return [int(np.argmax(largest_values(histories))) if component is None else COMPONENTS.index(component)]
 
 
-def _largest(histories: Sequence[Histories]) -> int:
-    """0 or 1, the column of x or y with the largest value in any history."""
+def largest_values(histories: Sequence[Histories]) -> np.ndarray:
+    """Largest sizes (2,) along x and y, (1,) of a stress, in any history; there must be one."""
     largest = [np.abs(h.values[:, :2]).max(axis=0, initial=0.0) for run in histories for h in run.values()]
-    return int(np.argmax(np.max(largest, axis=0)))
+    return np.asarray(np.max(largest, axis=0))
 
 
 def direction(column: int) -> str:

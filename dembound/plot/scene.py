@@ -106,9 +106,9 @@ def _draw_whole(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarM
     rows = 1.6 if disks.continuum is None else 2.1  # of title, axis and legend
     figure = new_figure(max(scale * width, 3.0) + 1.8, scale * height + rows)
     panel = figure.subplots()
-    colours = _draw_panel(panel, disks, shown, 0, disks.window, scale * figure.dpi)
+    colours = draw_panel(panel, disks, shown, 0, disks.window, scale * figure.dpi)
     panel.set_title(shown.captions[0], pad=18)  # above the names of monitors at the top
-    _mark_monitors(panel, disks, scale)
+    mark_monitors(panel, disks, scale)
     return figure, [panel], colours
 
 
@@ -129,16 +129,16 @@ def _draw_long(disks: Disks, shown: Field) -> tuple[Figure, list[Axes], ScalarMa
         figure = new_figure(room + 2.6, max(sum(sizes) + STRIP_GAP * count, 1.3) + 2.2)
         panels = figure.subplots(count + 1, 1, height_ratios=sizes)
     _draw_strips(panels[:-1], disks, shown, scales[0] * figure.dpi)
-    colours = _draw_panel(panels[-1], disks, shown, framed, part, scales[1] * figure.dpi)
-    _frame(panels[framed], part)
-    _mark_monitors(panels[0], disks, scales[0])
+    colours = draw_panel(panels[-1], disks, shown, framed, part, scales[1] * figure.dpi)
+    mark_part(panels[framed], part)
+    mark_monitors(panels[0], disks, scales[0])
     return figure, list(panels), colours
 
 
 def _draw_strips(panels: np.ndarray, disks: Disks, shown: Field, scale: float) -> None:
     """The whole scene at each of its times, in panels (k,) with one axis at the last; `scale` in pixels per metre."""
     for index, (panel, caption) in enumerate(zip(panels, shown.captions, strict=True)):
-        _draw_panel(panel, disks, shown, index, disks.window, scale)
+        draw_panel(panel, disks, shown, index, disks.window, scale)
         beside: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 9}
         panel.annotate(caption, (1.0, 0.5), (8, 0), xycoords="axes fraction", **beside)
     for panel in panels[:-1]:
@@ -147,7 +147,7 @@ def _draw_strips(panels: np.ndarray, disks: Disks, shown: Field, scale: float) -
     measured_once(panels[:, None])
 
 
-def _frame(panel: Axes, part: Window) -> None:
+def mark_part(panel: Axes, part: Window) -> None:
     """Mark the enlarged part of the scene."""
     left, right, bottom, top = part.extent
     looks: dict[str, Any] = {"fill": False, "linewidth": 1.5, "clip_on": False, "label": "part shown closely"}
@@ -170,15 +170,19 @@ def part_around(disks: Disks, centre: np.ndarray) -> Window:
     return Window(np.clip(centre - 0.5 * size, scene.corner, scene.corner + scene.size - size), size)
 
 
-def _draw_panel(panel: Axes, disks: Disks, shown: Field, index: int, window: Window, scale: float) -> ScalarMappable:
-    """A window of the scene at one of its times, at `scale` pixels per metre."""
-    colours = draw_field(panel, window, disks.positions, disks.radii, shown.values[index], shown.limits, scale)
+def draw_panel(
+    panel: Axes, disks: Disks, shown: Field, index: int, window: Window, scale: float, counted: bool = True
+) -> ScalarMappable:
+    """A window of the scene at one of its times, at `scale` pixels per metre; counted : cracks are, in their labels."""
+    positions = disks.positions if shown.moved is None else disks.positions + shown.moved[index]
+    colours = draw_field(panel, window, positions, disks.radii, shown.values[index], shown.limits, scale)
     if disks.continuum is not None:
         beyond = None if shown.beyond is None else shown.beyond[index]
-        draw_continuum(panel, disks.continuum, disks.part_windows, beyond, shown.limits, scale)
+        continuum = disks.continuum.moved(None if shown.moved_beyond is None else shown.moved_beyond[index])
+        draw_continuum(panel, continuum, disks.part_windows, beyond, shown.limits, scale)
     if disks.seam is not None and disks.seam > window.corner[0]:
         panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
-    _mark_cracks(panel, shown, index)
+    _mark_cracks(panel, shown, index, counted)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
         if pixels > 45:
             axis.set_label_text(f"{name} (m)")
@@ -188,18 +192,19 @@ def _draw_panel(panel: Axes, disks: Disks, shown: Field, index: int, window: Win
     return colours
 
 
-def _mark_cracks(panel: Axes, shown: Field, index: int) -> None:
-    """A mark at each bond broken up to one of the times; the legend has the number at the last of them."""
+def _mark_cracks(panel: Axes, shown: Field, index: int, counted: bool) -> None:
+    """A mark at each bond broken up to one of the times; the legend may have the number at the last of them."""
     until = f" until {shown.captions[-1]}" if len(shown.captions) > 1 else ""
     for shear, (label, (mark, size, colour)) in enumerate(CRACKS.items()):
         places, last = (each["position"][each["shear"] == shear] for each in (shown.cracks[index], shown.cracks[-1]))
         if len(places) > 0:
             looks: dict[str, Any] = {"color": colour, "edgecolors": "white", "linewidths": 0.5, "zorder": ABOVE_DISKS}
             x, y = places.T
-            panel.scatter(x, y, s=size, marker=mark, label=f"{label} ({len(last):,}{until})", **looks)
+            number = f" ({len(last):,}{until})" if counted else ""
+            panel.scatter(x, y, s=size, marker=mark, label=f"{label}{number}", **looks)
 
 
-def _mark_monitors(panel: Axes, disks: Disks, scale: float) -> None:
+def mark_monitors(panel: Axes, disks: Disks, scale: float) -> None:
     """A triangle and a name at each monitor, a hollow triangle at each twin; `scale` in inches per metre."""
     mark: dict[str, Any] = {"marker": "^", "s": 40, "clip_on": False, "zorder": ABOVE_CRACKS}
     if not disks.monitors:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
-from typing import Any, NamedTuple, ParamSpec
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 from matplotlib import style
@@ -44,6 +44,7 @@ SHORT = 0.1
 """A picture of less than this many seconds has times in milliseconds."""
 
 Parameters = ParamSpec("Parameters")
+Drawn = TypeVar("Drawn")
 
 
 class TimeUnit(NamedTuple):
@@ -63,11 +64,11 @@ def time_unit(last: float) -> TimeUnit:
     return TimeUnit("ms", 1e-3) if last < SHORT else TimeUnit("s", 1.0)
 
 
-def styled(draw: Callable[Parameters, Figure]) -> Callable[Parameters, Figure]:
+def styled(draw: Callable[Parameters, Drawn]) -> Callable[Parameters, Drawn]:
     """Give a drawing function this style, whatever the user's matplotlib settings are."""
 
     @wraps(draw)
-    def in_style(*args: Parameters.args, **kwargs: Parameters.kwargs) -> Figure:
+    def in_style(*args: Parameters.args, **kwargs: Parameters.kwargs) -> Drawn:
         installed = set(get_font_names())
         settings = {
             "font.family": [name for name in FONTS if name in installed],
@@ -167,8 +168,26 @@ def save(figure: Figure, path: Path, title: str | None = None) -> None:
     """Write the figure as a PNG file, either completely or not at all; `title` replaces the title of the figure."""
     if title is not None:
         figure.suptitle(title, fontsize=11, parse_math=False)
+    lay_out(figure)
+    with replacing(path) as part:  # by the canvas, as savefig draws everything twice
+        FigureCanvasAgg(figure).print_png(part, pil_kwargs={"compress_level": COMPRESSION})
+
+
+def lay_out(figure: Figure) -> None:
+    """Find the places of all panels and keep them, also if the panels change later."""
     if figure.axes and (layout := figure.get_layout_engine()) is not None:
         layout.execute(figure)
         figure.set_layout_engine("none")
-    with replacing(path) as part:  # by the canvas, as savefig draws everything twice
-        FigureCanvasAgg(figure).print_png(part, pil_kwargs={"compress_level": COMPRESSION})
+
+
+def pixels_of(figure: Figure) -> np.ndarray:
+    """The picture (rows, columns, 3) of a figure as it is now, red, green and blue from 0 to 255."""
+    lay_out(figure)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+
+
+def set_pixels(figure: Figure, width: int) -> None:
+    """Give a figure a width in pixels; its size in inches, and so that of its texts beside it, remains."""
+    figure.set_dpi((width + 0.5) / figure.get_figwidth())  # the canvas leaves out fractions of a pixel

@@ -48,7 +48,7 @@ def columns_of(figure: Figure) -> Iterator[Column]:
                 break
         else:
             groups.append((along, [(panel, line)]))
-    heads = [_x_label(lines[0][0]) for _, lines in groups]
+    heads = [x_label(lines[0][0]) for _, lines in groups]
     names = Counter(_head(figure, panel, line) for _, lines in groups for panel, line in lines)
     for head, (along, lines) in zip(heads, groups, strict=True):
         of = f" of {lines[0][1].get_label()}" if heads.count(head) > 1 else ""
@@ -73,7 +73,7 @@ def _head(figure: Figure, panel: Axes, line: Line2D) -> str:
     return f"{name}{run}: {axis}"
 
 
-def _x_label(panel: Axes) -> str:
+def x_label(panel: Axes) -> str:
     """The label below a panel, or below the lowest panel with the same axis."""
     sharing = [panel, *panel.get_shared_x_axes().get_siblings(panel)]
     return next(filter(None, (each.get_xlabel() for each in sharing)), "x")

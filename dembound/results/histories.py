@@ -65,6 +65,12 @@ def read_histories(path: Path, quantity: Quantity) -> dict[str, History]:
         return {name: _read(group, quantity, file.attrs["size"].tolist()) for name, group in groups.items()}
 
 
+def monitor_names(path: Path) -> list[str]:
+    """The names of the monitors of a record, without twins in a free-field column."""
+    with open_record(path) as file:
+        return [name for name in file.get("histories", {}) if not name.endswith(FREE_FIELD)]
+
+
 def _read(group: h5py.Group, quantity: Quantity, size: list[float]) -> History:
     """A monitor's history."""
     time, values = history_of(group, SOURCES.get(quantity, quantity))

@@ -69,6 +69,7 @@ def drawn(path: Path, sound: Path) -> None:
     compare(sound, [path], "velocity")
     write_vtu(path, path.parent / "paraview", kind)
     list(kind.pictures(path))
+    kind.moving_picture(path, None, 1.0)
     if kind.name == "bar":
         read_gauge(path)
     else:

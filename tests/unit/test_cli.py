@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 import tomli_w
 from matplotlib.figure import Figure
+from PIL import Image
 
 from dembound import cli, starting
 from dembound.boundaries import SIDES
@@ -59,7 +60,8 @@ def test_version_and_help_end_well(dembound) -> None:
     assert dembound("--version") == (0, f"dembound {__version__}\n", "")
     told = dembound("--help")
     assert told.code == 0
-    for command in ("new", "cases", "schema", "check", "run", "calibrate", "plot", "dispersion", "stability", "gauge"):
+    commands = "new cases schema check run calibrate plot report movie dispersion stability gauge"
+    for command in commands.split():
         assert command in told.out
 
 
@@ -648,6 +650,33 @@ def test_what_bars_and_disks_do_not_have_is_bad_input(dembound, spalled_run, sma
         assert answer.code == 2
         assert said in answer.err
     assert not files(tmp_path)
+
+
+def test_pages_and_movies_are_written(dembound, small_run, spalled_run, other_run, tmp_path) -> None:
+    answer = dembound("report", small_run, "-o", "page.html")
+    assert answer.code == 0
+    assert re.fullmatch(r"wrote page\.html \(0\.\d MB\)\n", answer.out)
+    assert answer.err.splitlines()[-1].endswith("has no summary, the run is not complete; tables lack it")
+    assert (tmp_path / "page.html").read_text(encoding="utf-8").startswith("<!doctype html>")
+    options = ("--every", "6", "--size", "200", "--exaggerate", "50", "--fps", "5", "--monitor", "gauge")
+    answer = dembound("movie", spalled_run, "-o", "bar.gif", "--field", "velocity", *options)
+    assert (answer.code, answer.err) == (0, "")
+    assert re.fullmatch(r"wrote bar\.gif \(3 frames, 0\.\d MB\)\n", answer.out)
+    with Image.open(tmp_path / "bar.gif") as picture:
+        assert (picture.size[0], picture.n_frames, picture.info["duration"]) == (200, 3, 200)
+    for arguments, said in (
+        (("report", small_run, "-o", "page.pdf"), "--output: is page.pdf, must end in .html\n"),
+        (("report", small_run, spalled_run), "RESULTS: holds runs of bars and of disks, which have no page in common"),
+        (("report", "nowhere"), "nowhere: contains no results"),
+        (("movie", small_run, "-o", "m.png"), "--output: is m.png, must end in one of .gif, .webp, .mp4\n"),
+        (("movie", other_run), "has no snapshots, run with output.snapshots above 0\n"),
+        (("movie", small_run, "--field", "forces"), "field: is forces, must be one of velocity, displacement, "),
+    ):
+        answer = dembound(*arguments)
+        assert (answer.code, answer.out) == (2, "")
+        assert said in answer.err
+        assert answer.err.count("\n") == 1
+    assert dembound("report", small_run, "-o", "nowhere/page.html").code == 5
 
 
 def test_force_chains_are_drawn_of_contacts(dembound, cracked_run, tmp_path) -> None:

@@ -1,0 +1,114 @@
+"""Commands that show results to people without dembound: report, movie."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from dembound.cli.app import app, writable
+from dembound.cli.console import err, out
+from dembound.cli.plotted import SceneField
+from dembound.cli.progress import INTERVAL
+from dembound.cli.results import results_file
+from dembound.errors import CaseError
+
+
+def _page(path: Path) -> Path:
+    """A page to write. Raises CaseError if its name does not end in ``.html``."""
+    if path.suffix.lower() not in (".html", ".htm"):
+        raise CaseError([f"--output: is {path}, must end in .html"])
+    writable(path)
+    return path
+
+
+@app.command("report", rich_help_panel="Results")
+def report(
+    results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Page to write (HTML).", callback=_page)] = Path(
+        "report.html"
+    ),
+) -> None:
+    """Write a page of one or several runs for any browser: scenes, histories and spectra to zoom, energies, cases.
+
+    The page is one file and loads nothing; pictures and tables are there without scripts and in print, too.
+    """
+    from dembound.report.page import write_report
+
+    write_report([results_file(path) for path in results], output, err.print)
+    out.print(f"wrote {output} ({output.stat().st_size / 1e6:.1f} MB)")
+
+
+def _movie(path: Path) -> Path:
+    """A movie to write, of a format that can be written here."""
+    from dembound.report.movie import require_movie
+
+    require_movie(path)
+    return path
+
+
+@app.command("movie", rich_help_panel="Results")
+def movie(
+    results: Annotated[Path, typer.Argument(metavar="RESULTS", help="A run's result folder or HDF5 file.")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Movie to write: .gif, .webp, or with ffmpeg .mp4.", callback=_movie)
+    ] = Path("movie.gif"),
+    field: Annotated[
+        SceneField | None,
+        typer.Option(
+            metavar="FIELD",
+            help="What colours the disks, or is drawn along a bar; velocity, of a bar stress and damage.",
+        ),
+    ] = None,
+    exaggerate: Annotated[
+        float, typer.Option(help="Show all moved by this many times its displacement; 0: where it began.")
+    ] = 0.0,
+    monitor: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME", help="Show this monitor's history below. May be repeated; by default the first four."
+        ),
+    ] = None,
+    histories: Annotated[bool, typer.Option(help="Show histories below the scene.")] = True,
+    fps: Annotated[float, typer.Option(help="Frames per second.", min=0.1)] = 10.0,
+    size: Annotated[int, typer.Option(help="Width of the picture in pixels.", min=200)] = 960,
+    every: Annotated[int, typer.Option(help="Show every so many-th snapshot.", min=1)] = 1,
+) -> None:
+    """Write a movie of a run: its snapshots, and below them histories with a line at the time.
+
+    There is a frame for each snapshot: run the case with --set output.snapshots=100 or so.
+    """
+    from dembound.report.movie import movie_of, write_movie
+
+    shown = movie_of(
+        results_file(results),
+        field=None if field is None else field.value,
+        exaggerate=exaggerate,
+        monitors=(monitor or None) if histories else [],
+        every=every,
+        pixels=size,
+    )
+    with _counted(len(shown)) as progress:
+        write_movie(shown, output, fps, progress)
+    out.print(f"wrote {output} ({len(shown)} frames, {output.stat().st_size / 1e6:.1f} MB)")
+
+
+@contextmanager
+def _counted(frames: int) -> Iterator[Callable[[int], None]]:
+    """Print how many frames are drawn: on a terminal in one line, else every ten seconds."""
+    said = time.monotonic()
+
+    def count(drawn: int) -> None:
+        nonlocal said
+        if err.is_terminal:
+            status.update(f"frame {drawn} of {frames}")
+        elif time.monotonic() - said >= INTERVAL:
+            said = time.monotonic()
+            err.print(f"frame {drawn} of {frames}")
+
+    with err.status("") as status:
+        yield count

@@ -1,0 +1,211 @@
+"""Movies of a run: the body at every snapshot, and below it the histories with a line at the time."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dembound.errors import CaseError, DemboundError
+from dembound.kinds import kind_of_record
+from dembound.motion.moving_picture import MovingPicture
+from dembound.plot.time_line import TimeLine
+from dembound.results.histories import monitor_names
+from dembound.results.reader import replacing, require_folder
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+MOST_MONITORS = 4
+"""Below a scene, if none are asked for by name."""
+
+PALETTE_FRAMES = 6
+"""Frames from which the colours of a GIF are taken, which all of its frames share."""
+
+WHITE = 245
+"""From this value of red, green and blue a colour of the palette is white: it is the mean of nearly white ones."""
+
+FASTEST_GIF = 2
+"""Hundredths of a second of a GIF's frame: browsers show those of one hundredth ten times as long."""
+
+WEBP_QUALITY = 80
+"""In WebP's scale up to 100."""
+
+MP4_QUALITY = 20
+"""Constant rate factor of x264: 0 is without loss, 51 the worst."""
+
+FORMATS = (".gif", ".webp", ".mp4")
+"""Endings of the names of movies."""
+
+
+@dataclass(frozen=True)
+class Movie:
+    """The frames of a movie: a moving picture at some of its times, and a time line below it, if there is one.
+
+    chosen : numbers of the snapshots. pixels : width of a frame.
+    """
+
+    picture: MovingPicture
+    below: TimeLine | None
+    chosen: Sequence[int]
+    pixels: int
+
+    def __len__(self) -> int:
+        return len(self.chosen)
+
+    def frame(self, number: int) -> np.ndarray:
+        """One frame (rows, columns, 3), of an even number of rows and columns, as videos require."""
+        index = self.chosen[number]
+        parts = [self.picture.frame(index, self.pixels)]
+        if self.below is not None:
+            parts.append(self.below.frame(float(self.picture.times[index]), self.pixels))
+        whole = np.vstack(parts)
+        rows, columns, _ = whole.shape
+        return np.pad(whole, ((0, rows % 2), (0, columns % 2), (0, 0)), mode="edge")
+
+
+def movie_of(
+    record: Path,
+    *,
+    field: str | None = None,
+    exaggerate: float = 0.0,
+    monitors: Sequence[str] | None = None,
+    every: int = 1,
+    pixels: int = 960,
+) -> Movie:
+    """The movie of a run.
+
+    Parameters
+    ----------
+    record
+        a ``run.h5``.
+    field
+        what colours disks, or is drawn along a bar; by default velocity, of a bar stress and damage.
+    exaggerate
+        how many times their displacement nodes are moved; 0 shows them where they began.
+    monitors
+        whose histories are below; by default the first four, none where this is empty or the run has none.
+    every
+        how many snapshots one frame stands for; the last one is always shown.
+    pixels
+        width of a frame.
+
+    Raises CaseError when the record cannot be read, has fewer than two snapshots, or lacks the field or a monitor.
+    """
+    picture = kind_of_record(record).moving_picture(record, field, exaggerate)
+    count = len(picture.times)
+    if count < 2:
+        raise CaseError([f"{record}: has only one snapshot, a movie needs two; run with output.snapshots above 1"])
+    chosen = sorted({*range(0, count, every), count - 1})
+    return Movie(picture, _below(record, picture.width, monitors), chosen, pixels)
+
+
+def _below(record: Path, width: float, monitors: Sequence[str] | None) -> TimeLine | None:
+    """The histories below the scene."""
+    if monitors is None:
+        monitors = monitor_names(record)[:MOST_MONITORS]
+    return TimeLine(record, width, monitors) if monitors else None
+
+
+def write_movie(
+    movie: Movie, path: Path, fps: float = 10.0, progress: Callable[[int], None] = lambda frames: None
+) -> None:
+    """Write a movie, either completely or not at all; the ending of the path decides on its format, see `FORMATS`.
+
+    Parameters
+    ----------
+    fps
+        frames per second; a GIF has frames of whole hundredths of a second, at least two.
+    progress
+        called with the number of frames drawn so far.
+
+    Raises CaseError for another ending, or an MP4 without ffmpeg; DemboundError where ffmpeg fails.
+    """
+    ending = path.suffix.lower()
+    require_movie(path)
+
+    def frames() -> Iterator[np.ndarray]:
+        for number in range(len(movie)):
+            yield movie.frame(number)
+            progress(number + 1)
+
+    with replacing(path) as part:
+        if ending == ".mp4":
+            _write_video(frames(), part, fps)
+        elif ending == ".webp":
+            looks = {"quality": WEBP_QUALITY, "method": 4, "minimize_size": True}
+            _write_pictures(map(_picture, frames()), part, "webp", fps, **looks)
+        else:
+            colours = _common_colours(movie)
+            _write_pictures((_reduced(frame, colours) for frame in frames()), part, "gif", fps, optimize=False)
+
+
+def require_movie(path: Path) -> None:
+    """Raise CaseError if no movie of such a name can be written here, FileNotFoundError if there is no such folder."""
+    ending = path.suffix.lower()
+    if ending not in FORMATS:
+        raise CaseError([f"--output: is {path}, must end in one of {', '.join(FORMATS)}"])
+    if ending == ".mp4" and shutil.which("ffmpeg") is None:
+        raise CaseError(
+            [f"--output: is {path}, .mp4 needs the program ffmpeg, which is not found; .gif and .webp do not"]
+        )
+    require_folder(path)
+
+
+def _picture(pixels: np.ndarray) -> Image:
+    from PIL import Image
+
+    return Image.fromarray(pixels)
+
+
+def _common_colours(movie: Movie) -> Image:
+    """A picture whose palette has the colours of some frames of a movie."""
+    some = np.unique(np.linspace(0, len(movie) - 1, PALETTE_FRAMES).astype(int))
+    colours = _picture(np.vstack([movie.frame(int(number)) for number in some])).quantize(256)
+    palette = np.array(colours.getpalette()).reshape(-1, 3)
+    palette[palette.min(axis=1) >= WHITE] = 255
+    colours.putpalette(palette.ravel().tolist())
+    return colours
+
+
+def _reduced(frame: np.ndarray, colours: Image) -> Image:
+    """A frame in the colours of a palette."""
+    from PIL.Image import Dither
+
+    return _picture(frame).quantize(palette=colours, dither=Dither.NONE)
+
+
+def _write_pictures(pictures: Iterator[Image], path: Path, form: str, fps: float, **looks: object) -> None:
+    """Write an animated picture that repeats."""
+    first = next(pictures)
+    hundredths = max(FASTEST_GIF, math.floor(100.0 / fps + 0.5))
+    duration = 10 * hundredths if form == "gif" else round(1000.0 / fps)
+    first.save(path, form, save_all=True, append_images=chain(pictures), duration=duration, loop=0, **looks)
+
+
+def _write_video(frames: Iterator[np.ndarray], path: Path, fps: float) -> None:
+    """Write an MP4 with ffmpeg."""
+    first = next(frames)
+    rows, columns, _ = first.shape
+    given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{columns}x{rows}", "-r", f"{fps:g}", "-i", "-"]
+    made = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", str(MP4_QUALITY), "-movflags", "+faststart", "-f", "mp4"]
+    command = ["ffmpeg", "-y", "-loglevel", "error", *given, "-an", *made, str(path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdin is not None
+        assert process.stderr is not None
+        try:
+            for frame in chain([first], frames):
+                process.stdin.write(frame.tobytes())
+            process.stdin.close()
+        except BrokenPipeError:
+            pass  # its message says why
+        message = process.stderr.read().decode(errors="replace").strip()
+    if process.returncode != 0:
+        raise DemboundError(f"ffmpeg: {(message.splitlines() or ['failed'])[-1]}")

@@ -1,0 +1,204 @@
+"""One HTML page of runs that holds all it shows: pictures, charts to zoom, tables, cases. It loads nothing."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from dembound.errors import CaseError, RecordError
+from dembound.plot.energy import plot_energy
+from dembound.plot.field import evenly_chosen
+from dembound.plot.histories import largest_values, plot_histories
+from dembound.plot.linear_spectra import plot_spectra
+from dembound.report import tables
+from dembound.report.pictures import Picture, picture_of, uri_of
+from dembound.report.runs import ReportedRun, read_runs, understood
+from dembound.results.histories import read_histories
+from dembound.results.reader import replacing, require_folder
+from dembound.version import __version__
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST_FRAMES = 40
+"""Of a scene; of more snapshots some are chosen evenly."""
+
+FRAME_DOTS = 105
+"""Pixels of an inch of a frame."""
+
+VISIBLE = 0.01
+"""Share of the largest velocity from which another component has a picture of its own."""
+
+TABLES = (
+    tables.overview,
+    tables.changed_keys,
+    tables.monitors,
+    tables.sides,
+    tables.energies,
+    tables.error_estimate,
+    tables.time_split,
+    tables.versions,
+)
+"""The tables of the page, in its template by the names of their functions."""
+
+
+@dataclass(frozen=True)
+class Frames:
+    """A scene at several times: URIs of its pictures, what each shows in words, and their size in pixels."""
+
+    uris: list[str]
+    captions: list[str]
+    width: int
+    height: int
+
+
+@dataclass(frozen=True)
+class ShownRun:
+    """A run on a page, with the still pictures of its scene, its frames, and the picture of its energy."""
+
+    run: ReportedRun
+    scenes: list[Picture]
+    frames: Frames | None
+    energy: Picture | None
+
+
+def write_report(records: Sequence[Path], path: Path, say: Callable[[str], None] = lambda line: None) -> None:
+    """Write the page of some runs of one kind, either completely or not at all.
+
+    Parameters
+    ----------
+    records
+        ``run.h5`` files; the ``summary.json`` beside each is used if there is one.
+    path
+        of the HTML file.
+    say
+        called with a line for everything that a run does not contain and the page therefore lacks.
+
+    Raises CaseError or RecordError, with a line for each record that cannot be used, FileNotFoundError if the folder of
+    the path does not exist.
+    """
+    require_folder(path)
+    runs = read_runs(records)
+    text = _render(runs, say)
+    with replacing(path) as part:
+        part.write_text(text, encoding="utf-8")
+
+
+def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
+    """The text of the page."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    made = _tables(runs)
+    missing: list[str] = []
+
+    def attempt(draw: Callable[[], Any]) -> Any:
+        """What can be drawn, or None and a line about what is missing."""
+        try:
+            return draw()
+        except RecordError:
+            raise
+        except CaseError as error:
+            missing.extend(line for line in str(error).splitlines() if line not in missing)
+            return None
+
+    shown = [_shown(run, attempt) for run in runs]
+    charts = list(_charts(runs, attempt))
+    for run in runs:
+        if not run.summary and not run.is_exact:
+            missing.append(f"{run.record.parent}: has no summary, the run is not complete; tables lack it")
+    for line in missing:
+        say(line)
+    live: dict[str, Any] = {f"chart-{number}": each.chart for number, each in enumerate(charts)}
+    for number, each in enumerate(shown):
+        if each.frames is not None:
+            live[f"frames-{number}"] = vars(each.frames)
+        if each.energy is not None:
+            live[f"energy-{number}"] = each.energy.chart
+    environment = Environment(
+        loader=PackageLoader("dembound.report", "template"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("page.html").render(
+        title=", ".join(run.name for run in runs),
+        version=__version__,
+        runs=shown,
+        charts=charts,
+        missing=missing,
+        live=_packed(live),
+        tables=made,
+    )
+
+
+def _shown(run: ReportedRun, attempt: Callable[[Callable[[], Any]], Any]) -> ShownRun:
+    """The pictures of one run alone, none of an exact motion."""
+    if run.is_exact:
+        return ShownRun(run, [], None, None)
+    scenes = attempt(lambda: [picture_of(figure) for name, figure in run.kind.pictures(run.record) if name == "scene"])
+    frames = attempt(lambda: _frames(run))
+    energy = attempt(lambda: picture_of(plot_energy(run.record)))
+    return ShownRun(run, scenes or [], frames, energy)
+
+
+def _frames(run: ReportedRun) -> Frames | None:
+    """The scene at its snapshots; None if there is only one."""
+    moving = run.kind.moving_picture(run.record, None, 0.0)
+    if len(moving.times) == 1:
+        return None
+    pixels = round(FRAME_DOTS * moving.width)
+    chosen = evenly_chosen(len(moving.times), MOST_FRAMES)
+    uris = [uri_of(moving.frame(index, pixels), lossless=False) for index in chosen]
+    return Frames(uris, [*map(moving.caption, chosen)], pixels, round(FRAME_DOTS * moving.height))
+
+
+def _charts(runs: Sequence[ReportedRun], attempt: Callable[[Callable[[], Any]], Any]) -> Iterator[Picture]:
+    """Histories and spectra of all runs together, of every component that is visible beside the largest."""
+    records = [run.record for run in runs]
+    components = attempt(lambda: _components(records)) or []
+    draws = [partial(plot_histories, records, component) for component in components]
+    if components and runs[0].is_bar:
+        draws.append(partial(plot_histories, records, quantity="stress"))
+    draws += [partial(plot_spectra, records, component) for component in components]
+    for draw in draws:
+        if picture := attempt(partial(_drawn, draw)):
+            yield picture
+
+
+def _drawn(draw: Callable[[], Figure]) -> Picture:
+    """The picture that a function draws."""
+    return picture_of(draw())
+
+
+def _components(records: Sequence[Path]) -> list[Any]:
+    """Those of x and y along which the velocity is visible at any monitor, or the larger if both are zero."""
+    histories = [read_histories(record, "velocity") for record in records]
+    if not any(histories):
+        raise CaseError([f"{', '.join(map(str, records))}: has no monitors to show"])
+    largest = largest_values(histories)
+    return [
+        name
+        for name, each in zip("xy", largest, strict=True)
+        if each >= VISIBLE * largest.max() and (each or name == "x")
+    ]
+
+
+def _tables(runs: Sequence[ReportedRun]) -> dict[str, tables.Table | None]:
+    """All tables of the page by the names of their functions. Raises RecordError for a foreign summary."""
+    for run in runs:
+        with understood(run.record):  # of which run a foreign summary is
+            _ = [table([run]) for table in TABLES]
+    return {table.__name__: table(runs) for table in TABLES}
+
+
+def _packed(values: dict[str, Any]) -> str:
+    """Plain values as compressed JSON in characters that a page may contain; the same for the same values."""
+    text = json.dumps(values, separators=(",", ":"), allow_nan=False)
+    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()

@@ -1,0 +1,90 @@
+"""The runs of a page: their records, and what is known of each in words and numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from dembound.errors import CaseError, RecordError
+from dembound.kinds import kind_of_record
+from dembound.motion.kind import Kind
+from dembound.results.reader import record_names
+from dembound.results.results import Results
+
+
+@dataclass(frozen=True)
+class ReportedRun:
+    """A run: its record, a name that no other run of the page has, its kind, its results, and its summary.
+
+    The summary is empty for a run that is not complete.
+    """
+
+    record: Path
+    name: str
+    kind: Kind[Any, Any]
+    results: Results
+    summary: Mapping[str, Any]
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether it is the exact motion at monitors, without a body."""
+        return len(self.results.particles) == 0
+
+    @property
+    def is_bar(self) -> bool:
+        """Whether it is that of a bar."""
+        return self.kind.name == "bar"
+
+
+def read_runs(records: Sequence[Path]) -> list[ReportedRun]:
+    """The runs of a page.
+
+    Raises CaseError or RecordError, with one line for each record that cannot be read, is not that of a run, or is of
+    another kind than the first.
+    """
+    found: list[tuple[Path, Kind[Any, Any], Results, Mapping[str, Any]]] = []
+    errors: list[CaseError] = []
+    for record in records:
+        try:
+            found.append((record, *_read(record)))
+        except CaseError as error:
+            errors.append(error)
+    if errors:
+        failure = RecordError if all(isinstance(error, RecordError) for error in errors) else CaseError
+        raise failure([line for error in errors for line in str(error).splitlines()])
+    kinds = sorted({kind.plural for _, kind, _, _ in found})
+    if len(kinds) > 1:
+        raise CaseError(
+            [f"RESULTS: holds runs of {' and of '.join(kinds)}, which have no page in common; name one kind"]
+        )
+    names = record_names(records)
+    return [
+        ReportedRun(record, name, kind, results, summary)
+        for name, (record, kind, results, summary) in zip(names, found, strict=True)
+    ]
+
+
+def _read(record: Path) -> tuple[Kind[Any, Any], Results, Mapping[str, Any]]:
+    """Kind, results and summary of a record."""
+    if record.name == "calibration.h5":
+        raise CaseError([f"{record}: is of a calibration; pages and movies are of runs"])
+    kind, results = kind_of_record(record), Results(record)
+    if record.name != "run.h5" or not (record.parent / "summary.json").is_file():
+        return kind, results, {}
+    summary = results.summary
+    with understood(record):
+        _ = summary["version"]  # which every summary has
+        return kind, results, dict(summary)
+
+
+@contextmanager
+def understood(record: Path) -> Iterator[None]:
+    """Raise RecordError, in one line, for everything that a foreign record or summary raises."""
+    try:
+        yield
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        what = f"{type(error).__name__}: {error}".splitlines()[0]
+        raise RecordError([f"{record}: it or its summary.json is not of this version of dembound ({what})"]) from error

@@ -1,0 +1,222 @@
+"""The tables of a page: what runs are, what their sides took, where their energy is, and where their time went."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from dembound.plot.continuum import GROUP
+from dembound.plot.energy import BAR_COLUMNS, COLUMNS, PREFIXES, power_of_unit
+from dembound.report.runs import ReportedRun
+from dembound.results.reader import laws_in_words, open_record
+from dembound.results.summary import end_in_words
+
+NONE = "–"
+"""What stands where a run has no such entry."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of texts: its title, the heads of its columns, and rows of as many cells."""
+
+    title: str
+    heads: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+
+Entries = Mapping[str, str]
+"""Rows of a run by their names."""
+
+
+def beside(title: str, runs: Sequence[ReportedRun], entries: Callable[[ReportedRun], Entries]) -> Table:
+    """A table with a column for each run, and a row for each entry that any of them has."""
+    found = [entries(run) for run in runs]
+    names = dict.fromkeys(name for each in found for name in each)
+    rows = [[name, *(each.get(name, NONE) for each in found)] for name in names]
+    return Table(title, ["", *(run.name for run in runs)], rows)
+
+
+def overview(runs: Sequence[ReportedRun]) -> Table:
+    """What each run is, and how it ended."""
+    return beside("Runs", runs, lambda run: dict(_overview(run)))
+
+
+def _overview(run: ReportedRun) -> Iterator[tuple[str, str]]:
+    """Entries of a run."""
+    attributes, summary = run.results.attributes, run.summary
+    if run.is_exact:
+        yield "body", "exact motion at monitors"
+        return
+    size = attributes.get("size", [0.0, 0.0])
+    if run.is_bar:
+        yield "body", f"bar of {size[0]:.6g} m, {len(run.results.particles['position']):,} nodes"
+    else:
+        yield "body", f"{size[0]:.6g} m × {size[1]:.6g} m, {', '.join(_contents(run))}"
+    yield "duration", f"{attributes['steps']:,} steps of {attributes['time_step']:.5g} s"
+    if run.results.laws:
+        yield "law", laws_in_words(run.results.laws)
+    if not summary:
+        yield "end", "the run is not complete"
+        return
+    yield "end", (end_in_words(summary) or [f"after {summary['duration']:.6g} s, as planned"])[0]
+    if outcome := run.kind.outcome(summary):
+        yield "outcome", "; ".join(outcome)
+    cracks = summary["cracks"]
+    yield "broken bonds", f"{cracks['tension']:,} in tension, {cracks['shear']:,} in shear"
+    yield "largest error of the energy balance", percent(summary["energy"]["relative_error"])
+
+
+def _contents(run: ReportedRun) -> Iterator[str]:
+    """What the scene of disks consists of."""
+    column = run.results.attributes.get("column", 0)
+    yield f"{len(run.results.particles['radius']) - column:,} disks"
+    if column > 0:
+        yield f"{column:,} more in the free-field column"
+    with open_record(run.record) as file:
+        if GROUP in file:
+            yield f"a continuum of {len(file[f'{GROUP}/position']):,} nodes"
+
+
+def changed_keys(runs: Sequence[ReportedRun]) -> Table | None:
+    """The keys of the cases in which the runs differ; None of one run, or where there is none."""
+    found = [dict(_flat(run.summary.get("keys", {}))) for run in runs]
+    names = dict.fromkeys(name for each in found for name in each)
+    different = [name for name in names if len({each.get(name, NONE) for each in found}) > 1]
+    if not different:
+        return None
+    rows = [[name, *(each.get(name, NONE) for each in found)] for name in different]
+    return Table("Keys of the cases that differ", ["", *(run.name for run in runs)], rows)
+
+
+def _flat(value: Any, name: str = "") -> Iterator[tuple[str, str]]:
+    """Keys of nested tables by their paths, and their values as text."""
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            yield from _flat(inner, f"{name}.{key}" if name else str(key))
+    elif isinstance(value, list) and any(isinstance(each, Mapping) for each in value):
+        for number, inner in enumerate(value, start=1):
+            yield from _flat(inner, f"{name}[{number}]")
+    else:
+        yield name, _text(value)
+
+
+def _text(value: Any) -> str:
+    """A plain value as text."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(_text, value))}]"
+    if value is None or isinstance(value, bool):
+        return {None: NONE, True: "yes", False: "no"}[value]
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def monitors(runs: Sequence[ReportedRun]) -> Table | None:
+    """Peaks and arrivals at the monitors of all runs; None without any."""
+    rows = [
+        [
+            name,
+            run.name,
+            f"({', '.join(f'{each:.5g}' for each in entry['position'])}) m",
+            f"{entry['peak_velocity']:.4g} m/s along {entry['component']}",
+            _seconds(entry["peak_time"]),
+            _seconds(entry["arrival"]),
+        ]
+        for run in runs
+        for name, entry in run.summary.get("monitors", {}).items()
+    ]
+    rows.sort(key=lambda row: row[0])  # a monitor of several runs in consecutive rows
+    heads = ["monitor", "run", "position", "peak velocity", "time of the peak", "arrival"]
+    return Table("Monitors", heads, rows) if rows else None
+
+
+def _seconds(time: float | None) -> str:
+    return NONE if time is None else f"{time:.5g} s"
+
+
+def sides(runs: Sequence[ReportedRun]) -> Table | None:
+    """Of each side its type, its factors, and the energies that came in and that it took; None without summaries."""
+    rows = []
+    for run in runs:
+        tables = run.summary.get("boundaries", {})
+        for side, energy in run.summary.get("sides", {}).items():
+            table = tables.get(side, {})
+            factors = [f"{letter} = {table[key]:.5g}" for key, letter in FACTORS.items() if key in table]
+            amounts = [_joules(energy[column], run) for column in ("came_in", "absorbed", "stored")]
+            share = energy["absorbed_share"]
+            rows.append([side, run.name, table.get("type", NONE), ", ".join(factors) or NONE, *amounts, percent(share)])
+    heads = ["side", "run", "type", "factors", "came in", "absorbed", "stored in springs", "absorbed of all"]
+    return Table("Sides", heads, rows) if rows else None
+
+
+FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
+"""Factors of absorbing sides, and their letters."""
+
+
+def energies(runs: Sequence[ReportedRun]) -> Table | None:
+    """The last entries of the energy ledgers; None without summaries."""
+    return _or_none(beside("Energy at the end", runs, lambda run: dict(_energies(run))))
+
+
+def _energies(run: ReportedRun) -> Iterator[tuple[str, str]]:
+    """Entries of a run."""
+    ledger = run.summary.get("energy")
+    if ledger is None:
+        return
+    yield "supplied in all", _joules(ledger["supplied"], run)
+    for column, words in (BAR_COLUMNS if run.is_bar else COLUMNS).items():
+        if ledger.get(column, 0.0) != 0.0:
+            yield words, _joules(ledger[column], run)
+    left = sum(ledger.get(column, 0.0) for column in ("kinetic", "contact", "bond"))
+    if ledger["supplied"] > 0.0:
+        yield "left in the body, of all that was supplied", percent(left / ledger["supplied"])
+
+
+def _joules(energy: float, run: ReportedRun) -> str:
+    """An energy with a prefix of its unit, which for disks is J per metre of thickness."""
+    power = power_of_unit(abs(energy))
+    return f"{energy / 10.0**power:.4g} {PREFIXES[power]}{'J' if run.is_bar else 'J/m'}"
+
+
+def time_split(runs: Sequence[ReportedRun]) -> Table | None:
+    """Seconds by part of each run, rate and memory; None without summaries."""
+    return _or_none(beside("Where the time went", runs, lambda run: dict(_time(run))))
+
+
+def _time(run: ReportedRun) -> Iterator[tuple[str, str]]:
+    """Entries of a run."""
+    summary = run.summary
+    if not summary:
+        return
+    yield from ((part, f"{seconds:.3g} s") for part, seconds in summary["seconds"].items())
+    yield "in all", f"{summary['wall_time']:.3g} s"
+    yield "threads", str(summary["threads"])
+    yield "rate", f"{summary['particle_steps_per_second'] / 1e6:.3g} million particle-steps per second"
+    yield "memory", f"{summary['memory_bytes'] / 1e6:.0f} MB"
+
+
+def versions(runs: Sequence[ReportedRun]) -> Table:
+    """The version and the seed of each run, and from where it was resumed."""
+
+    def entries(run: ReportedRun) -> Entries:
+        attributes = run.results.attributes
+        resumed = [f"step {each['step']:,}" for each in run.summary.get("resumed", [])]
+        known = {"dembound": attributes.get("version", NONE), "seed": attributes.get("seed", NONE)}
+        return {name: str(value) for name, value in known.items()} | (
+            {"resumed": ", ".join(resumed)} if resumed else {}
+        )
+
+    return beside("Versions", runs, entries)
+
+
+def error_estimate(runs: Sequence[ReportedRun]) -> Table | None:
+    """The entry `error_estimate` of summaries, whatever it consists of; None where no run has it."""
+    return _or_none(beside("Error estimate", runs, lambda run: dict(_flat(run.summary.get("error_estimate") or {}))))
+
+
+def _or_none(table: Table) -> Table | None:
+    return table if table.rows else None
+
+
+def percent(share: float | None) -> str:
+    """A share in per cent."""
+    return NONE if share is None else f"{100.0 * share:.3g} %"

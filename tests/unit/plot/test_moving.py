@@ -1,0 +1,147 @@
+"""Moving pictures show every snapshot in the same axes, with disks where they are, or moved as far as asked for."""
+
+import h5py
+import numpy as np
+import pytest
+from matplotlib.collections import EllipseCollection, PathCollection, TriMesh
+
+from dembound.errors import CaseError
+from dembound.plot.moving_bar import MovingBar
+from dembound.plot.moving_scene import MovingScene
+from dembound.plot.style import COLOURS
+from dembound.plot.time_line import TimeLine
+
+
+def one(panel, kind):
+    """The only collection of a kind in a panel."""
+    (found,) = [each for each in panel.collections if isinstance(each, kind)]
+    return found
+
+
+def test_every_snapshot_is_drawn_with_its_own_values_in_the_same_axes(small_run):
+    scene = MovingScene(small_run)
+    with h5py.File(small_run) as file:
+        groups = list(file["snapshots"].values())
+        velocities = [group["velocity"][:, 0] for group in groups]
+        np.testing.assert_array_equal(scene.times, [group.attrs["time"] for group in groups])
+        positions = file["particles/position"][:]
+    limit = np.abs(velocities).max()
+    frames, axes = [], []
+    for index in (1, 0):
+        frames.append(scene.frame(index, 400))
+        panel = scene.figure.axes[0]
+        disks = one(panel, EllipseCollection)
+        np.testing.assert_array_equal(disks.get_array(), velocities[index])
+        np.testing.assert_array_equal(disks.get_offsets(), positions)
+        assert disks.get_clim() == (-limit, limit)
+        assert panel.get_title() == f"t = {scene.times[index]:.4g} s"
+        axes.append((panel.get_position().bounds, panel.get_xlim(), panel.get_ylim()))
+    assert axes[0] == axes[1]
+    assert frames[0].shape == frames[1].shape
+    assert frames[0].shape[1] == 400
+    assert (frames[0] != frames[1]).any()
+    np.testing.assert_array_equal(scene.frame(1, 400), frames[0])
+
+
+@pytest.mark.parametrize("pixels", [399, 960, 1001])
+def test_frames_are_exactly_as_wide_as_asked_for(small_run, spalled_run, pixels):
+    for moving in (MovingScene(small_run), MovingBar(spalled_run), TimeLine(small_run, 7.3)):
+        assert moving.frame(0, pixels).shape[1:] == (pixels, 3)
+
+
+def test_disks_and_cracks_are_moved_by_their_exaggerated_displacements(cracked_run):
+    factor = 20.0
+    scene = MovingScene(cracked_run, exaggerate=factor)
+    scene.frame(1, 300)
+    with h5py.File(cracked_run) as file:
+        moved = file["particles/position"][:] + factor * file["snapshots/0001/displacement"][:, :2]
+        cracks = {name: file["cracks"][name][:] for name in ("time", "position", "particles", "shear")}
+    broken = cracks["time"] <= scene.times[1]
+    assert broken.sum() > 0
+    assert scene.caption(1) == f"t = {scene.times[1]:.4g} s, {broken.sum()} broken bonds"
+    panel = scene.figure.axes[0]
+    np.testing.assert_array_equal(one(panel, EllipseCollection).get_offsets(), moved)
+    # in a long scene or not, no disk is cut: the axes are wider by the largest displacement
+    assert (moved > np.array([panel.get_xlim()[0], panel.get_ylim()[0]])).all()
+    assert (moved < np.array([panel.get_xlim()[1], panel.get_ylim()[1]])).all()
+    marks = {each.get_label(): each.get_offsets() for each in panel.collections if isinstance(each, PathCollection)}
+    # a crack is between its two disks, which is where its place at the start moves with their mean displacement
+    displacement = moved - _positions(cracked_run)
+    for label, shear in (("bond broken in tension", False), ("bond broken in shear", True)):
+        chosen = broken & (cracks["shear"] == shear)
+        if chosen.any():
+            mean = displacement[cracks["particles"][chosen]].mean(axis=1)
+            np.testing.assert_allclose(marks[label], cracks["position"][chosen] + mean, rtol=1e-12)
+
+
+def _positions(run):
+    with h5py.File(run) as file:
+        return file["particles/position"][:]
+
+
+def test_the_cells_of_a_continuum_move_with_its_nodes(surrounded_run):
+    still, moved = MovingScene(surrounded_run), MovingScene(surrounded_run, exaggerate=100.0)
+    for scene in (still, moved):
+        scene.frame(0, 900)
+    corners = [one(scene.figure.axes[0], TriMesh)._triangulation for scene in (still, moved)]
+    with h5py.File(surrounded_run) as file:
+        cells = still._disks.continuum.nodes.ravel()
+        displacement = file["snapshots/0000/continuum/displacement"][:][cells]
+    np.testing.assert_allclose(corners[1].x - corners[0].x, 100.0 * displacement[:, 0], atol=1e-10)
+    np.testing.assert_allclose(corners[1].y - corners[0].y, 100.0 * displacement[:, 1], atol=1e-10)
+
+
+def test_a_bar_is_drawn_along_itself_with_the_bonds_broken_so_far(spalled_run):
+    bar = MovingBar(spalled_run)
+    with h5py.File(spalled_run) as file:
+        groups = list(file["snapshots"].values())
+        stresses = np.array([group["stress"][:] for group in groups]) / 1e6
+        times, places = file["cracks/time"][:], file["cracks/position"][:, 0]
+        np.testing.assert_allclose(bar.times, [group.attrs["time"] for group in groups], rtol=1e-12)
+    limits = set()
+    for index in (0, len(groups) - 1):
+        bar.frame(index, 300)
+        stress = bar.figure.axes[0]
+        np.testing.assert_array_equal(stress.lines[0].get_ydata(), stresses[index])
+        limits.add((stress.get_xlim(), stress.get_ylim()))
+        broken = places[times <= bar.times[index] * (1.0 + 1e-12)]
+        marks = [each for each in stress.collections if isinstance(each, PathCollection)]
+        assert len(marks) == (len(broken) > 0)
+        if len(broken) > 0:
+            np.testing.assert_allclose(marks[0].get_offsets()[:, 0], broken)
+            assert bar.caption(index).endswith(f", {len(broken)} broken bonds")
+    assert len(limits) == 1
+    assert len(times) > 0
+
+
+def test_the_nodes_of_a_bar_are_moved_along_it(spalled_run):
+    bar = MovingBar(spalled_run, ["velocity"], exaggerate=30.0)
+    bar.frame(11, 300)
+    with h5py.File(spalled_run) as file:
+        moved = file["particles/position"][:, 0] + 30.0 * file["snapshots/0011/displacement"][:, 0]
+        velocity = file["snapshots/0011/velocity"][:, 0]
+    (line,) = bar.figure.axes[0].lines
+    np.testing.assert_allclose(line.get_xdata(), moved, rtol=1e-12)
+    np.testing.assert_array_equal(line.get_ydata(), velocity)
+
+
+def test_the_line_in_the_histories_is_at_the_time(small_run):
+    shown = TimeLine(small_run, 8.0, ["front"])
+    colour = np.array([int(COLOURS[1][begin : begin + 2], 16) for begin in (1, 3, 5)])
+    panel = shown.figure.axes[0]
+    for time in (0.002, 0.004):  # the record has milliseconds below 0.1 s
+        frame = shown.frame(time, 800)
+        near = np.abs(frame.astype(int) - colour).max(axis=2) < 40
+        column = np.flatnonzero(near.sum(axis=0) > 20).mean()
+        assert abs(column - panel.transData.transform((1e3 * time, 0.0))[0]) < 1.0
+
+
+def test_what_cannot_be_drawn_is_said(small_run, other_run, spalled_run):
+    with pytest.raises(CaseError, match=r"has no snapshots, run with output\.snapshots above 0"):
+        MovingScene(other_run)
+    with pytest.raises(CaseError, match="field: is peak, must be one of velocity, displacement, "):
+        MovingScene(small_run, "peak")
+    with pytest.raises(CaseError, match="field: is damage, must be one of velocity"):
+        MovingScene(small_run, "damage")
+    with pytest.raises(CaseError, match="field: is peak, must be one of stress, damage"):
+        MovingBar(spalled_run, ["peak"])

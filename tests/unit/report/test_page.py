@@ -1,0 +1,244 @@
+"""A page holds all that it shows, is complete without scripts, and says what results lack."""
+
+import json
+import re
+import shutil
+from itertools import pairwise
+
+import h5py
+import numpy as np
+import pytest
+from pages import Page
+
+from dembound.errors import CaseError, RecordError
+from dembound.report import page as page_module
+from dembound.report.page import write_report
+from dembound.results.results import Results
+
+
+@pytest.fixture(scope="module")
+def two(pushed_runs, tmp_path_factory) -> Page:
+    """The page of both runs of disks."""
+    path, said = tmp_path_factory.mktemp("page") / "two.html", []
+    write_report(pushed_runs, path, said.append)
+    assert said == []
+    return Page(path)
+
+
+def copied(record, folder):
+    """A copy of the results of a record."""
+    shutil.copytree(record.parent, folder)
+    return folder / record.name
+
+
+def test_nothing_is_loaded(two):
+    sources = [value for _, attributes in two.tags for key, value in attributes.items() if key in ("src", "href")]
+    assert sources
+    assert all(value.startswith(("data:image/webp;base64,", "#")) for value in sources)
+    assert "url(http" not in two.source
+    assert not re.search(r"https?://(?!www\.w3\.org/2000/svg)", two.source)
+    (policy,) = (each["content"] for each in two.all("meta") if "content" in each and "default-src" in each["content"])
+    assert policy.startswith("default-src 'none'")
+
+
+def test_every_picture_says_what_it_shows(two, pushed_runs):
+    pictures = two.all("img")
+    # of two runs: scenes, energies; of both: velocities and spectra along x and y
+    assert len(pictures) == 2 * 2 + 4
+    assert all(each["alt"] and each["width"] and each["height"] for each in pictures)
+    (velocity,) = (each["alt"] for each in pictures if each["alt"].startswith("Velocity along x at the monitors"))
+    with h5py.File(pushed_runs[0]) as file:
+        largest = np.abs(file["histories/front/velocity"][:, 0]).max()
+    assert f"whole, front at (2.25, 1.25) m, wanted (2.40, 1.20) m: peak {largest:.4g} where x is" in velocity
+
+
+def test_headings_are_in_order(two):
+    levels = [int(tag[1]) for tag, _ in two.tags if re.fullmatch("h[1-6]", tag)]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(later <= level + 1 for level, later in pairwise(levels))
+    sections = {attributes.get("id") for attributes in two.all("section")}
+    assert {each["href"][1:] for each in two.all("a")} <= sections | {"main"}
+
+
+def test_names_and_texts_of_users_are_no_markup(two, pushed_runs):
+    assert len(two.all("script")) == 2  # the values and their script
+    title = Results(pushed_runs[0].parent).attributes["title"]
+    assert "<script>" in title
+    assert title in two.said("p")
+    assert Results(pushed_runs[0].parent).case.strip() in two.said("pre")
+
+
+def joules(energy, unit="J/m"):
+    """An energy from 1 mJ/m to below 1 MJ/m, or none."""
+    if energy == 0.0:
+        return f"0 {unit}"
+    assert 1e-3 <= energy < 1e6
+    scale, prefix = (1e-3, "m") if energy < 1.0 else (1.0, "") if energy < 1e3 else (1e3, "k")
+    return f"{energy / scale:.4g} {prefix}{unit}"
+
+
+def test_runs_stand_side_by_side(two, pushed_runs):
+    assert two.row("boundary.right.beta_p") == ["1", "0.5"]
+    summaries = [Results(record.parent).summary for record in pushed_runs]
+    assert two.row("duration") == [f"{each['steps']:,} steps of {each['time_step']:.5g} s" for each in summaries]
+    assert two.row("supplied in all") == [joules(each["energy"]["supplied"]) for each in summaries]
+    assert two.row("compile") == [f"{each['seconds']['compile']:.3g} s" for each in summaries]
+    assert two.row("dembound") == [each["version"] for each in summaries]
+    right = [row for row in two.rows if row[:2] == ["right", "half"]]
+    side = summaries[1]["sides"]["right"]
+    amounts = [joules(side[name]) for name in ("came_in", "absorbed", "stored")]
+    share = f"{100.0 * side['absorbed_share']:.3g} %"
+    assert right == [["right", "half", "viscous", "β_P = 0.5, β_S = 1", *amounts, share]]
+    ledger = summaries[1]["energy"]
+    left = sum(ledger[name] for name in ("kinetic", "contact", "bond")) / ledger["supplied"]
+    assert two.row("left in the body, of all that was supplied")[1] == f"{100.0 * left:.3g} %"
+
+
+def test_charts_have_the_lines_of_the_pictures(two, pushed_runs):
+    live = two.live()
+    figures = {attributes.get("id") for attributes in two.all("figure")}
+    assert (
+        set(live)
+        == figures
+        == {
+            "chart-0",
+            "chart-1",
+            "chart-2",
+            "chart-3",
+            *(f"{what}-{number}" for what in ("frames", "energy") for number in (0, 1)),
+        }
+    )
+    front = live["chart-0"]["panels"][0]
+    assert front["title"].startswith("front at ")
+    assert [line["name"] for line in front["lines"]] == ["whole", "half"]
+    for line, record in zip(front["lines"], pushed_runs, strict=True):
+        with h5py.File(record) as file:
+            time, velocity = file["histories/front/time"][:], file["histories/front/velocity"][:, 0]
+        np.testing.assert_allclose(line["x"], 1e3 * time, rtol=1e-5)  # in ms, with six digits
+        np.testing.assert_allclose(line["y"], velocity, rtol=1e-5, atol=1e-30)
+    assert live["chart-0"]["sharedY"]
+    assert not live["energy-0"]["sharedY"]
+    frames = live["frames-1"]
+    with h5py.File(pushed_runs[1]) as file:
+        times = [group.attrs["time"] for group in file["snapshots"].values()]
+    assert frames["captions"] == [f"t = {time:.4g} s" for time in times]
+    assert len(set(frames["uris"])) == 3
+
+
+def test_of_many_snapshots_some_are_frames(pushed_runs, tmp_path, monkeypatch):
+    monkeypatch.setattr(page_module, "MOST_FRAMES", 2)
+    write_report(pushed_runs[:1], tmp_path / "page.html")
+    frames = Page(tmp_path / "page.html").live()["frames-0"]
+    with h5py.File(pushed_runs[0]) as file:
+        times = [group.attrs["time"] for group in file["snapshots"].values()]
+    assert frames["captions"] == [f"t = {times[index]:.4g} s" for index in (0, 2)]
+
+
+def test_a_single_snapshot_needs_no_slider(small_run, tmp_path):
+    record = copied(small_run, tmp_path / "single")
+    with h5py.File(record, "r+") as file:
+        del file["snapshots/0001"]
+    write_report([record], tmp_path / "page.html")
+    page = Page(tmp_path / "page.html")
+    assert not [name for name in page.live() if name.startswith("frames")]
+    assert "small: velocity along x of 100 disks" in [each["alt"] for each in page.all("img")]
+
+
+def test_pages_of_the_same_runs_are_the_same(two, pushed_runs, tmp_path):
+    write_report(pushed_runs, tmp_path / "again.html")
+    assert (tmp_path / "again.html").read_text(encoding="utf-8") == two.source
+
+
+def test_a_bar_has_its_stresses_and_its_picture_over_place_and_time(spalled_results, tmp_path):
+    write_report([spalled_results], tmp_path / "bar.html")
+    page = Page(tmp_path / "bar.html")
+    titles = [each["alt"].split(";")[0] for each in page.all("img")]
+    assert titles == [
+        "bar: stress and local damage along the bar",
+        "Velocity along x at the monitors",
+        "Stress along x at the monitors",
+        "Spectra of the velocity along x at the monitors",
+        "bar: where its energy is, and where it went",
+    ]
+    assert len(page.live()["frames-0"]["uris"]) == 12
+    assert page.row("body") == ["bar of 1 m, 41 nodes"]
+    assert page.row("supplied in all") == [joules(Results(spalled_results.parent).summary["energy"]["supplied"], "J")]
+
+
+def test_what_results_lack_is_said_in_one_line_each_and_the_rest_is_there(blind_run, tmp_path):
+    said = []
+    write_report([blind_run], tmp_path / "page.html", said.append)
+    assert said == [
+        f"{blind_run}: has no snapshots, run with output.snapshots above 0",
+        f"{blind_run}: has no monitors to show",
+    ]
+    page = Page(tmp_path / "page.html")
+    assert [line for line in page.said("li") if line in said] == said
+    assert len(page.all("img")) == 1  # the energy
+    assert page.row("supplied in all")
+
+
+def test_a_run_that_is_not_complete_has_what_it_recorded(small_run, tmp_path):
+    said = []
+    write_report([small_run], tmp_path / "page.html", said.append)
+    assert said == [
+        f"{small_run}: has no entries in its energy ledger",
+        f"{small_run.parent}: has no summary, the run is not complete; tables lack it",
+    ]
+    page = Page(tmp_path / "page.html")
+    assert page.row("end") == ["the run is not complete"]
+    assert "frames-0" in page.live()
+
+
+def test_an_exact_motion_is_a_line_beside_those_of_runs(pushed_runs, tmp_path):
+    exact, said = tmp_path / "exact.h5", []
+    with h5py.File(pushed_runs[0]) as run, h5py.File(exact, "w") as file:
+        file.attrs["name"], file.attrs["size"] = "front_exact", run.attrs["size"]
+        run.copy("histories", file)
+    write_report([pushed_runs[0], exact], tmp_path / "page.html", said.append)
+    page = Page(tmp_path / "page.html")
+    assert said == []
+    assert page.row("body") == ["10 m × 2.5 m, 100 disks", "exact motion at monitors"]
+    names = [[line["name"] for line in panel["lines"]] for panel in page.live()["chart-0"]["panels"]]
+    assert names == [["whole", "front_exact"]] * 2
+
+
+def test_an_error_estimate_is_shown_if_there_is_one(two, pushed_runs, tmp_path):
+    record = copied(pushed_runs[0], tmp_path / "estimated")
+    summary = json.loads((record.parent / "summary.json").read_text())
+    (record.parent / "summary.json").write_text(json.dumps(summary | {"error_estimate": {"front": {"rms": 0.0123}}}))
+    write_report([record], tmp_path / "page.html")
+    page = Page(tmp_path / "page.html")
+    assert page.row("front.rms") == ["0.0123"]
+    assert "Error estimate" in page.said("h3")
+    assert "Error estimate" not in two.said("h3")
+
+
+@pytest.mark.parametrize("text", ["[]", "{}", '{"energy": 3}', '{"sides": [], "monitors": {"a": 1}}', '"text"', "null"])
+def test_a_foreign_summary_is_one_line_and_writes_nothing(pushed_runs, tmp_path, text):
+    record = copied(pushed_runs[0], tmp_path / "foreign")
+    (record.parent / "summary.json").write_text(text)
+    with pytest.raises(RecordError) as raised:
+        write_report([record], tmp_path / "page.html")
+    (line,) = str(raised.value).splitlines()
+    assert line.startswith(f"{record}: it or its summary.json is not of this version of dembound (")
+    assert not (tmp_path / "page.html").exists()
+
+
+def test_every_damaged_file_is_one_line(pushed_runs, spalled_results, tmp_path):
+    damaged = tmp_path / "damaged.h5"
+    damaged.write_bytes(pushed_runs[0].read_bytes()[:5000])
+    other = tmp_path / "calibration.h5"
+    shutil.copy(pushed_runs[0], other)
+    missing = tmp_path / "nowhere" / "run.h5"
+    with pytest.raises(CaseError) as raised:
+        write_report([damaged, pushed_runs[0], other, missing], tmp_path / "page.html")
+    lines = str(raised.value).splitlines()
+    assert [line.split(": ")[0] for line in lines] == [str(damaged), str(other), str(missing)]
+    assert raised.value.exit_code == 2  # not only damaged ones
+    with pytest.raises(RecordError):
+        write_report([damaged], tmp_path / "page.html")
+    with pytest.raises(CaseError, match="RESULTS: holds runs of bars and of disks"):
+        write_report([pushed_runs[0], spalled_results], tmp_path / "page.html")
+    assert not (tmp_path / "page.html").exists()
