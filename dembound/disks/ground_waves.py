@@ -1,8 +1,8 @@
-"""The motion of the undisturbed ground under a plane wave that comes at an angle.
+"""The motion of the undisturbed ground under plane waves.
 
-It consists of the plane waves of its medium (outside/plane_waves.py): the incident one, and below a free surface those
-that this sends back. In the undisturbed packing a disk i at x_i moves by u(x_i) + χ_i : ∇u, with the correctors χ of
-homogenise.py.
+It consists of plane waves of its medium (outside/plane_waves.py): of one that comes at an angle, and below a free
+surface those that this sends back; or of waves that run straight up, with velocities given along x and y. In the
+undisturbed packing a disk i at x_i moves by u(x_i) + χ_i : ∇u, with the correctors χ of homogenise.py.
 """
 
 from __future__ import annotations
@@ -33,6 +33,9 @@ undisturbed lattice in elements of 30 m deviate by 0.020 %, with eight by 0.009 
 (cosine pulse of 0.5 s).
 """
 
+NO_PART = 1e-12
+"""Part of a wave below which it is rounding: S waves have none of P waves in an isotropic medium."""
+
 
 @dataclass(frozen=True, eq=False)
 class GroundWaves:
@@ -40,13 +43,13 @@ class GroundWaves:
 
     Attributes
     ----------
-    medium : of the ground. waves : the plane waves that it consists of. signal : the wave of the case, g. grain : mean
-    diameter of the disks, m.
+    medium : of the ground. waves : the plane waves that it consists of. signals : g of each. grain : mean diameter of
+    the disks, m.
     """
 
     medium: Medium
     waves: tuple[PlaneWave, ...]
-    signal: Incident
+    signals: tuple[Incident, ...]
     grain: float
 
     def near(self, places: np.ndarray) -> NearPlaces:
@@ -63,12 +66,12 @@ class GroundWaves:
         of : "displacement" (m and rad) or "velocity" (m/s and rad/s).
         """
         moved = np.zeros((len(times), len(places), 3))
-        for wave in self.waves:
-            at = times[:, None] - wave.delays(places)
-            moved[:, :, :2] += getattr(self.signal, of)(at)[:, :, None] * np.array(wave.motion)
+        for wave, signal in zip(self.waves, self.signals, strict=True):
+            at, g = times[:, None] - wave.delays(places), getattr(signal, of)
+            moved[:, :, :2] += g(at)[:, :, None] * np.array(wave.motion)
             if corrector is not None:
                 step = 0.5 * self.grain * float(np.hypot(*wave.slowness))  # waves have no accelerations
-                change = (getattr(self.signal, of)(at + step) - getattr(self.signal, of)(at - step)) / (2.0 * step)
+                change = (g(at + step) - g(at - step)) / (2.0 * step)
                 moved -= change[:, :, None] * np.einsum("cgd,g->dc", corrector, _gradient(wave))
         return moved
 
@@ -99,9 +102,9 @@ class NearPlaces:
 
     @cached_property
     def _delays(self) -> np.ndarray:
-        """All delays (count,) s."""
+        """Delays (w, DELAYS) s of each wave."""
         low, high = np.array(self.spans).T[:, :, None]
-        return (0.5 * (low + high) + 0.5 * (high - low) * self._rule.points).ravel()
+        return 0.5 * (low + high) + 0.5 * (high - low) * self._rule.points
 
     @property
     def count(self) -> int:
@@ -110,7 +113,8 @@ class NearPlaces:
 
     def amplitudes(self, times: np.ndarray) -> np.ndarray:
         """Displacements g (k, count) m at times (k,) s and the delays."""
-        return self.ground.signal.displacement(times[:, None] - self._delays)
+        each = zip(self.ground.signals, self._delays, strict=True)
+        return np.hstack([signal.displacement(times[:, None] - delays) for signal, delays in each])
 
     def velocities(self, behind: float) -> np.ndarray:
         """(count, count) 1/s, from the amplitudes to ġ at the same delays, `behind` (s) before."""
@@ -144,6 +148,24 @@ class NearPlaces:
         return (2.0 * wave.delays(places) - low - high) / (high - low)
 
 
+def rising_waves(
+    medium: Medium, height: float, signals: tuple[Incident | None, Incident | None], grain: float
+) -> GroundWaves:
+    """Waves that run straight up: the two of the medium that together move as given at a height.
+
+    signals : whose velocities are those along x and y at y = height (m); None for none. grain : mean diameter, m.
+    """
+    speeds, polarisations = medium.plane_waves((0.0, 1.0))
+    waves, own = [], []
+    for signal, parts in zip(signals, polarisations, strict=True):
+        for speed, polarisation, part in zip(speeds.tolist(), polarisations.T, parts.tolist(), strict=True):
+            if signal is not None and abs(part) > NO_PART:
+                x, y = (part * polarisation).tolist()
+                waves.append(PlaneWave((0.0, 1.0 / speed), (x, y), -height / speed))
+                own.append(signal)
+    return GroundWaves(medium, tuple(waves), tuple(own), grain)
+
+
 def ground_waves(case: DiskCase, ground: PackedMaterial, outside: Surroundings) -> GroundWaves | None:
     """The motion of the ground under the incident wave of a case, None without one.
 
@@ -158,7 +180,8 @@ def ground_waves(case: DiskCase, ground: PackedMaterial, outside: Surroundings) 
         if (reflected := reflected_waves(medium, wave, *surface)) is None:
             raise CaseError([_beyond(medium, table)])
         waves += reflected
-    found = GroundWaves(medium, tuple(waves), case.wave[table.wave], ground.brick.mean_diameter)
+    signals = (case.wave[table.wave],) * len(waves)
+    found = GroundWaves(medium, tuple(waves), signals, ground.brick.mean_diameter)
     _must_not_be_there(case, found, outside)
     return found
 

@@ -1,203 +1,231 @@
-"""Plane waves that enter a body from the continuum below it, and the forces by which its ties pass them on.
+"""The forces by which plane waves of the ground enter a body through its ties to the continuum.
 
-Disks have the total motion, the grid has the scattered one alone: what remains without the incident wave
+Disks have the total motion, the grid has the scattered one alone: what remains without the motion u of the undisturbed
+ground (disks/ground_waves.py). In the undisturbed packing a disk i at x_i then moves by ξ⁰_i = u(x_i) + χ_i : ∇u, with
+the correctors χ of homogenise.py. Let A_i ξ_i be the share of a disk in the elongations of a tie, B w that of the
+grid's motion w, K the stiffness of the tie, and f_i the force of the bond on the disk per unit gradient of the packing.
+What acts on a tied disk is the force of the bond in the undisturbed packing, and that of the tie, which is strained by
+what differs from there; on the grid acts the transpose of the latter alone:
 
-    u(y, t) = Σ_m p_m g_m(t − (y − y_0)/c_m),   Σ_m p_m ġ_m(t) = (v_s(t), v_p(t)),
+    on the disk  f_i : ∇u(x_e) + A_iᵀK(1 + η d/dt)(B w − A_i(ξ_i − ξ⁰_i)),
+    on the grid  −BᵀK(1 + η d/dt)(B w − A_i(ξ_i − ξ⁰_i)).
 
-the sum of both plane waves along y (Christoffel's equation, outside/medium.py), whose velocity on the line y_0 is that
-of the waves of the case. In the undisturbed packing a disk i at height y_i then moves by x_i = u + χ_i ∂_y u, with the
-correctors χ of homogenise.py. Let A_i x_i be the share of a disk in the elongations of a tie, B w that of the grid's
-motion w, K the stiffness of the tie, and f_i the force of the bond on the disk per unit gradient of the packing. What
-acts on a tied disk is the force of the bond in the undisturbed packing, and that of the tie, which is strained by what
-differs from there; on the grid acts the transpose of the latter alone:
+So in a packing that moves as undisturbed the grid remains at rest. The terms of w and ξ are those of the kernel
+(kernels/wall.py). The others are the drives here: the bond's force, and what the kernel computes for the motions −ξ⁰_i
+of the disks and a grid at rest.
 
-    on the disk  f_i ∂_y u(y_c) + A_iᵀK(1 + η d/dt)(B w − A_i(ξ_i − x_i)),
-    on the grid  −BᵀK(1 + η d/dt)(B w − A_i(ξ_i − x_i)),
+The place x_e of the gradient is the contact's, moved along the normal of the side to where the grid begins: the forces
+of the bonds of a side accelerate the mass behind, which is that of a uniform body behind the grid's edge
+(`Brick.mass_offset`). Then errors are of second order in D/λ. With the gradient at the bonds, or the grid's motion at
+the contact in place of f_i, they would be of first order.
 
-with ξ_i the disk's own motion and y_c the edge of the grid. So in a packing that moves as undisturbed the grid remains
-at rest. The terms of w and ξ are those of the kernel (kernels/wall.py). The others are the drives here: the bond's
-force, and what the kernel computes for the motions −x_i of the disks and a grid at rest.
-
-The bonds of one cut are at several heights, but the sum of their forces accelerates the mass above, which is that of a
-uniform body above y_c (`Brick.mass_offset`), so that it is the stress at y_c. Then errors are of second order in D/λ.
-With the stress at the bonds, or the grid's motion at the contact in place of f_i, they would be of first order.
-
-Heights of tied disks differ by a few diameters. There u is the polynomial in y through its values at `HEIGHTS`
-Gauss–Lobatto points, so that all drives follow from g at so many delays.
+All ties are somewhere else along the waves. Those of one element of the grid are near each other: there the waves are
+the polynomials of their delays through a few points (`NearPlaces`), and all forces follow from g at so many delays.
 """
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
+from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.boundaries.support import Incident, SupportBuilder
-from dembound.disks.tie_forces import TieForces, forces_at_rest
-from dembound.disks.wall import GRADIENT, Wall
-from dembound.kernels.sums import weighted_sums
+from dembound.disks.ground_waves import GroundWaves, NearPlaces
+from dembound.disks.surroundings import Surroundings
+from dembound.disks.wall import CutBonds, Wall
+from dembound.kernels.sums import add_weighted_sums, weighted_sums
+from dembound.kernels.wall import tie_forces
 from dembound.outside.gll import Rule
-from dembound.outside.medium import Medium
+from dembound.outside.plane_waves import PlaneWave
 
-HEIGHTS = 5
-"""Delays at which waves are computed. Over four diameters and 20 diameters to a wavelength the error is 1e-5."""
+PLACES = 8
+"""Places along a side at which the power of waves is summed."""
 
-NO_PART = 1e-12
-"""Part of a wave below which it is rounding: S waves have none of P waves in an isotropic medium."""
-
-UPWARDS = (0.0, 1.0)
+Sharing = tuple[np.ndarray, np.ndarray]
+"""Tied disks (k,), and disks (k,) that have the forces of these, too."""
 
 
-@dataclass(frozen=True, eq=False)
-class PlaneWaves:
-    """Plane waves that run upwards through a medium, near some heights.
+class Part(NamedTuple):
+    """Forces through the ties of one element.
+
+    ground : the motion near them. node, component : (r,) the degrees of freedom. moved, moving : (count, r) N or N·m
+    per unit of the displacements, and of the velocities that ties see, of all amplitudes.
+    """
+
+    ground: NearPlaces
+    node: np.ndarray
+    component: np.ndarray
+    moved: np.ndarray
+    moving: np.ndarray
+
+    def per_displacement(self, half_step: float) -> np.ndarray:
+        """All forces (count, r) per unit of displacements; velocities follow from these, half a step (s) behind."""
+        factors = np.empty_like(self.moving)
+        weighted_sums(np.ascontiguousarray(self.ground.velocities(half_step).T), self.moving, factors)
+        return factors + self.moved
+
+    def shared(self, sharing: Sharing) -> Part:
+        """The same forces on other disks, too."""
+        row, which = np.nonzero(self.node[:, None] == sharing[0])
+        rows = np.concatenate([np.arange(len(self.node)), row])
+        node = np.concatenate([self.node, sharing[1][which]])
+        return Part(self.ground, node, self.component[rows], self.moved[:, rows], self.moving[:, rows])
+
+
+def parts_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int) -> Iterator[Part]:
+    """The forces by which the ground's motion enters through the ties of each element.
+
+    positions : (n, 2) m of disks. first : number of the first node of the grid.
+    """
+    for element in wall.elements:
+        yield _part_of(wall.only(np.flatnonzero(wall.element == element)), ground, positions, first)
+
+
+def _part_of(wall: Wall, ground: GroundWaves, positions: np.ndarray, first: int) -> Part:
+    """Those of a few ties."""
+    bonds = wall.bonds
+    disk, own, place = np.unique(bonds.particle, return_index=True, return_inverse=True)
+    edges = _at_edges(bonds, positions, wall.mesh.sides)
+    near = ground.near(np.concatenate([positions[disk], edges]))
+    of_bonds = np.zeros((3, len(disk), near.count))
+    for sums, forces in zip(of_bonds, near.strained(edges, bonds.on_disks), strict=True):
+        np.add.at(sums, place, forces)
+    of_ties, reactions = forces_at_rest(wall, disk, -near.motion(positions[disk], bonds.own[:, :, own]))
+    component, node, at_once = _listed(of_bonds + of_ties, disk)
+    nodes = _listed(reactions, first + wall.nodes)
+    lagged = wall.lag * np.hstack([_listed(of_ties, disk)[2], nodes[2]])
+    return Part(
+        near, np.concatenate([node, nodes[1]]), np.concatenate([component, nodes[0]]), np.hstack([at_once, nodes[2]]),
+        lagged,
+    )  # fmt: skip
+
+
+def _listed(forces: np.ndarray, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Components (r,), nodes (r,) and forces (count, r), of forces (c, k, count) on nodes (k,)."""
+    component, number = np.indices(forces.shape[:2]).reshape(2, -1)
+    return component, nodes[number], np.ascontiguousarray(forces.reshape(len(number), -1).T)
+
+
+def forces_at_rest(wall: Wall, disk: np.ndarray, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Forces of ties (3, d, q) on disks (d,) with motions (3, d, q), and (2, m, q) on the nodes, which are at rest.
+
+    disk : all that are tied, ascending.
+    """
+    count = len(disk) + len(wall.nodes)
+    own, node = np.zeros(int(disk.max()) + 1, dtype=np.int64), np.zeros(wall.mesh.count, dtype=np.int64)
+    own[disk], node[wall.nodes] = np.arange(len(disk)), np.arange(len(disk), count)
+    ties = wall.ties(own, node, np.arange(count), None)
+    forces = np.zeros((motion.shape[2], count, 3))
+    for force, each in zip(forces, np.moveaxis(motion, 2, 0), strict=True):
+        u = np.zeros((3, count))
+        u[:, : len(disk)] = each
+        tie_forces(ties, u, np.zeros_like(u), force, 0.0)
+    of_all = np.moveaxis(forces, 0, 2).swapaxes(0, 1)
+    return of_all[:, : len(disk)], of_all[:2, len(disk) :]
+
+
+def _at_edges(bonds: CutBonds, positions: np.ndarray, sides: Sequence[float]) -> np.ndarray:
+    """The contacts (t, 2) m of bonds, moved along the normals of their sides to the edges of the grid, m."""
+    places = positions[bonds.particle] + (bonds.arm * bonds.normal).T
+    for number, edge in enumerate(sides):
+        places[bonds.side == number, number // 2] = edge
+    return places
+
+
+class SummedDrives:
+    """Forces on some degrees of freedom, sums of those through the ties of several elements.
+
+    Parameters
+    ----------
+    parts : of each element.
 
     Attributes
     ----------
-    medium : density and moduli. datum : y_0, m, where they have the given velocities.
-    waves : whose velocities are those along x and y; None for none.
-    span : lowest and highest place, m.
+    node, component : (count,) the degrees of freedom, each once.
     """
 
-    medium: Medium
-    datum: float
-    waves: tuple[Incident | None, Incident | None]
-    span: tuple[float, float]
-
-    @cached_property
-    def _plane(self) -> tuple[np.ndarray, np.ndarray]:
-        """Speeds (2,) and polarisations (2, 2) in columns."""
-        return self.medium.plane_waves(UPWARDS)
-
-    @cached_property
-    def _rule(self) -> Rule:
-        """The points of the heights."""
-        return Rule(HEIGHTS - 1)
-
-    def _places(self, y: np.ndarray) -> np.ndarray:
-        """Heights y as −1 … 1 within the span."""
-        low, high = self.span
-        return (2.0 * y - low - high) / (high - low)
-
-    @property
-    def count(self) -> int:
-        """Number of amplitudes: of both plane waves at each of the heights."""
-        return 2 * HEIGHTS
-
-    def amplitudes(self, times: np.ndarray, of: str) -> np.ndarray:
-        """g_m (k, 2·HEIGHTS) at times (k,) s and the heights; of : "displacement" (m) or "velocity" (m/s)."""
-        speeds, polarisations = self._plane
-        low, high = self.span
-        heights = 0.5 * (low + high + (high - low) * self._rule.points)
-        values = np.zeros((len(times), 2, HEIGHTS))
-        for wave, parts in zip(self.waves, polarisations, strict=True):
-            for mode, part in enumerate(parts):
-                if wave is not None and abs(part) > NO_PART:
-                    delay = (heights - self.datum) / speeds[mode]
-                    values[:, mode] += part * getattr(wave, of)(times[:, None] - delay)
-        return values.reshape(len(times), -1)
-
-    def strained(self, y: float | np.ndarray, values: np.ndarray) -> np.ndarray:
-        """What values (3, 4, d) per unit gradient become at heights y m, one or (d,): (3, d, 2·HEIGHTS)."""
-        at = self._places(np.atleast_1d(y))
-        slope = self._rule.slope(at) * (2.0 / (self.span[1] - self.span[0]))
-        each = np.einsum("cgd,gm->cdm", values[:, [GRADIENT[0][1], GRADIENT[1][1]]], self._plane[1])
-        return (each[:, :, :, None] * slope[:, None, :]).reshape(3, values.shape[2], -1)
-
-    def motion(self, y: np.ndarray, corrector: np.ndarray) -> np.ndarray:
-        """Motion (3, d, 2·HEIGHTS) of disks at heights y (d,) m with correctors (3, 4, d), per unit of amplitudes."""
-        moved = self.strained(y, corrector)
-        value = self._rule.shape(self._places(y))
-        moved[:2] += (self._plane[1][:, None, :, None] * value[:, None, :]).reshape(2, len(y), -1)
-        return moved
-
-    def power(self, times: np.ndarray) -> np.ndarray:
-        """Power (k,) W that they bring through a metre of the line y_0: Σ ρ c_m ġ_m²."""
-        speeds, polarisations = self._plane
-        given = np.stack([np.zeros_like(times) if wave is None else wave.velocity(times) for wave in self.waves])
-        return self.medium.density * np.sum(speeds[:, None] * (polarisations.T @ given) ** 2, axis=0)
-
-
-@dataclass(frozen=True, eq=False)
-class Drives:
-    """Forces on some degrees of freedom, each a sum of amplitudes of plane waves.
-
-    Attributes
-    ----------
-    waves : the plane waves. factors : (2·count, r) N or N·m per unit of the displacements, and of the velocities that
-    ties see, of all their amplitudes.
-    """
-
-    waves: PlaneWaves
-    factors: np.ndarray
+    def __init__(self, parts: Sequence[Part]) -> None:
+        numbers = [3 * part.node + part.component for part in parts]
+        unique, column = np.unique(np.concatenate(numbers), return_inverse=True)
+        self.node, self.component = unique // 3, unique % 3
+        self._parts = parts
+        self._columns = np.split(column, np.cumsum([len(each) for each in numbers])[:-1])
+        self._factors: tuple[float, list[np.ndarray]] | None = None
 
     @property
     def count(self) -> int:
         """Number of the degrees of freedom."""
-        return self.factors.shape[1]
+        return len(self.node)
 
     def __call__(self, times: np.ndarray, half_step: float) -> np.ndarray:
-        """Forces (k, r) at times (k,) s; velocities are half a step (s) behind."""
-        waves, forces = self.waves, np.empty((len(times), self.count))
-        moved, moving = waves.amplitudes(times, "displacement"), waves.amplitudes(times - half_step, "velocity")
-        weighted_sums(np.hstack([moved, moving]), self.factors, forces)
+        """Forces (k, count) at times (k,) s; velocities are half a step (s) behind."""
+        if self._factors is None or self._factors[0] != half_step:  # all steps of a run have one length
+            self._factors = half_step, [part.per_displacement(half_step) for part in self._parts]
+        forces = np.zeros((len(times), self.count))
+        for part, column, factors in zip(self._parts, self._columns, self._factors[1], strict=True):
+            add_weighted_sums(part.ground.amplitudes(times), factors, column, forces, np.empty(len(column)))
         return forces
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class IncidentForces(TieForces):
-    """Forces by which plane waves enter from below.
+def let_in(outside: Surroundings, ground: GroundWaves, positions: np.ndarray, builder: SupportBuilder) -> None:
+    """Add the forces by which the ground's motion enters a body on all its sides to the support table.
 
-    Attributes
-    ----------
-    waves : the plane waves.
+    positions : (n, 2) m of all nodes of the scene.
     """
+    drives = SummedDrives(list(parts_of(outside.wall, ground, positions, outside.first)))
+    by_side = {side: np.zeros(0, dtype=np.int64) for side in outside.sides}
+    for name, nodes in outside.tied_by_side.items():
+        side = name.partition(".")[0]
+        by_side[side] = np.concatenate([by_side[side], nodes])
+    builder.add_forces(drives.node, drives.component, drives, by_side)
+    for side in outside.sides:
+        builder.add_power(side, power_through(side, outside.wall.mesh.sides, ground, outside.body.thickness))
 
-    waves: PlaneWaves
 
-    @classmethod
-    def of(
-        cls, wall: Wall, medium: Medium, datum: float, waves: tuple[Incident | None, Incident | None]
-    ) -> "IncidentForces":
-        """Those of waves along x and y (None for none) that pass the line y = datum (m) at their own time."""
-        bonds, edge = wall.bonds, wall.mesh.sides[2]
-        disk, first, place = np.unique(bonds.particle, return_index=True, return_inverse=True)
-        heights = bonds.height[first]
-        plane = PlaneWaves(medium, datum, waves, (min(edge, *heights), max(edge, *heights)))
-        summed = np.zeros((3, 4, len(disk)))
-        for sums, forces in zip(summed.reshape(12, -1), bonds.on_disks.reshape(12, -1), strict=True):
-            np.add.at(sums, place, forces)
-        of_ties, reactions = forces_at_rest(wall, disk, -plane.motion(heights, bonds.own[:, :, first]))
-        return cls(
-            waves=plane,
-            disk=disk,
-            bonds=plane.strained(edge, summed),
-            ties=of_ties,
-            node=wall.nodes,
-            reactions=reactions,
-            lag=wall.lag,
-        )
+def let_in_below(
+    outside: Surroundings, ground: GroundWaves, positions: np.ndarray, builder: SupportBuilder, sharing: Sharing
+) -> None:
+    """Add the forces of waves that run straight up and enter a body from below; above, the continuum has them, too.
 
-    def add_to_disks(self, builder: SupportBuilder, disks: np.ndarray) -> None:
-        """Add rows to the disks (d,) of a scene that are, or have the place of, those that are tied."""
-        self._add(builder, disks, *self.on_disks)
+    sharing : disks that have the forces of others. The rest as for `let_in`.
+    """
+    below = outside.wall.only(np.flatnonzero(outside.wall.bonds.side == SIDES.index("bottom")))
+    parts = parts_of(below, ground, positions, outside.first)
+    drives = SummedDrives([part.shared(sharing) for part in parts])
+    builder.add_forces(drives.node, drives.component, drives)
 
-    def at(self, place: np.ndarray) -> "IncidentForces":
-        """The same with some of the disks, by their places (k,) among them, maybe more than once; without nodes."""
-        nothing = self.reactions[:, :0]
-        return replace(
-            self,
-            disk=self.disk[place],
-            bonds=self.bonds[:, place],
-            ties=self.ties[:, place],
-            node=self.node[:0],
-            reactions=nothing,
-        )
 
-    def add_to_nodes(self, builder: SupportBuilder, nodes: np.ndarray) -> None:
-        """Add rows to the nodes (m,) of a scene."""
-        self._add(builder, nodes, *self.on_nodes)
+def power_through(
+    side: str, edges: Sequence[float], ground: GroundWaves, thickness: float = 1.0
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Power (W), at times (k,) s, of the waves whose energy runs inwards through a side, the mean of `PLACES` places.
 
-    def _add(self, builder: SupportBuilder, nodes: np.ndarray, where: np.ndarray, factors: np.ndarray) -> None:
-        """Add forces on nodes (k,), see `on_disks`."""
-        if factors.any():
-            builder.add_forces(nodes[where[1]], where[0], Drives(self.waves, factors))
+    edges : left and right (x), lower and upper (y) of a body, m; thickness : m.
+    """
+    number, axis = SIDES.index(side), normal_axis(side)
+    inwards = -1.0 if number % 2 else 1.0
+    low, high = edges[2 - 2 * axis], edges[3 - 2 * axis]
+    rule = Rule(PLACES - 1)
+    places = np.full((PLACES, 2), edges[number])
+    places[:, 1 - axis] = 0.5 * (low + high + (high - low) * rule.points)
+
+    together: dict[tuple[float, float], list[tuple[PlaneWave, Incident]]] = {}
+    for wave, signal in zip(ground.waves, ground.signals, strict=True):  # several may have one slowness
+        together.setdefault(wave.slowness, []).append((wave, signal))
+
+    def power(times: np.ndarray) -> np.ndarray:
+        total = np.zeros(len(times))
+        for slowness, waves in together.items():
+            direction = np.array(waves[0][0].motion) / np.hypot(*waves[0][0].motion)
+            x, y = direction.tolist()
+            if (flux := inwards * PlaneWave(slowness, (x, y)).flux(ground.medium)[axis]) > 0.0:
+                velocity = sum(
+                    np.dot(wave.motion, direction) * signal.velocity(times[:, None] - wave.delays(places))
+                    for wave, signal in waves
+                )
+                total += 0.5 * thickness * (high - low) * flux * np.sum(velocity**2 * rule.weights, axis=1)
+        return total
+
+    return power

@@ -13,13 +13,13 @@ from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.disks.body import DiskBody, parts_of
 from dembound.disks.contact_arrays import plain_contacts
 from dembound.disks.edges import edges_beside_column, find_edges
-from dembound.disks.ground_waves import ground_waves
+from dembound.disks.ground_waves import ground_waves, rising_waves
 from dembound.disks.hollowed import hollowed
+from dembound.disks.incident import let_in, let_in_below, power_through
 from dembound.disks.layout import lay_out
 from dembound.disks.loads import drive
 from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
-from dembound.disks.oblique import let_in
 from dembound.disks.outside_mesh import Outline
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
 from dembound.disks.stress import particle_stress
@@ -228,13 +228,13 @@ def _supports(scene: DiskScene) -> Supports:
         each.support(builder)
     bottom = case.side("bottom")
     if bottom.is_outside and bottom.waves:
-        _let_in(scene, bottom.waves_by_axis(1), builder)
+        _let_in_below(scene, bottom.waves_by_axis(1), builder)
     if scene.outside is not None and scene.ground_waves is not None:
         let_in(scene.outside, scene.ground_waves, scene.positions, builder)
     return builder.table()
 
 
-def _let_in(scene: DiskScene, names: tuple[str | None, str | None], builder: SupportBuilder) -> None:
+def _let_in_below(scene: DiskScene, names: tuple[str | None, str | None], builder: SupportBuilder) -> None:
     """Add the waves along x and y, by their names, that enter through the continuum below to the support table.
 
     Beside a free-field column they enter through its foot, and the body's disks that stand on the ground below have the
@@ -243,14 +243,9 @@ def _let_in(scene: DiskScene, names: tuple[str | None, str | None], builder: Sup
     beneath = scene.outside if scene.foot is None else scene.foot
     assert beneath is not None
     x, y = (None if name is None else scene.case.wave[name] for name in names)
-    incident = beneath.incident((x, y))
+    waves = rising_waves(beneath.body.medium, beneath.box[1], (x, y), scene.ground.brick.mean_diameter)
+    twins = scene.on_foot if scene.twin is None else scene.twin[scene.on_foot]
     builder.side = "bottom"
-    incident.add_to_disks(builder, incident.disk)
-    incident.add_to_nodes(builder, beneath.first + incident.node)
-    if len(scene.on_foot) and scene.twin is not None:
-        place = np.searchsorted(incident.disk, scene.twin[scene.on_foot])
-        incident.at(place).add_to_disks(builder, scene.on_foot)
-    left, right, *_ = beneath.body.mesh.sides
-    width = beneath.body.thickness * (right - left)
+    let_in_below(beneath, waves, scene.positions, builder, (twins, scene.on_foot))
     side = "bottom" if scene.foot is None else f"bottom{FREE_FIELD}"
-    builder.add_power(side, lambda times: width * incident.waves.power(times))
+    builder.add_power(side, power_through("bottom", beneath.body.mesh.sides, waves, beneath.body.thickness))

@@ -9,10 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
-from dembound.boundaries.support import Edge, Incident, SupportBuilder
+from dembound.boundaries.support import Edge, SupportBuilder
 from dembound.casefile.disks.outside import CONTINUUM
 from dembound.disks.free_surface import mass_of
-from dembound.disks.incident import IncidentForces
 from dembound.disks.outside_mesh import Outline, box_of, mass_extent, medium_of
 from dembound.disks.outside_settings import Settings
 from dembound.disks.packed_material import PackedMaterial
@@ -174,11 +173,6 @@ class Surroundings:
         others = builder.nodes
         others = others[(others >= self.nodes.start) & (others < self.nodes.stop)]
         builder.add(np.union1d(self.first + self.wall.nodes, others), 2, prescribed=True)
-
-    def incident(self, waves: tuple[Incident | None, Incident | None]) -> IncidentForces:
-        """Forces by which waves along x and y (None for none) enter from below; above, the continuum has them, too."""
-        below = np.flatnonzero(self.wall.bonds.side == SIDES.index("bottom"))
-        return IncidentForces.of(self.wall.only(below), self.body.medium, self.box[1], waves)
 
     def adds_forces(self, layout: Layout) -> Callable[[np.ndarray, np.ndarray, float], None]:
         """A function of displacements u (3, slots), forces (3, slots) and a factor.

@@ -147,7 +147,9 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
     beyond = f"{GROUP}/{dataset}" if f"{GROUP}/{dataset}" in groups[0] else None
     if dataset == "stress" and is_scattered(file):
         beyond = None
-    largest = np.max([_largest(groups, name) for name in (dataset, beyond) if name], axis=0)
+    largest = _largest(groups, dataset)
+    if beyond is not None:
+        largest = np.maximum(largest, _largest(groups, beyond, _outside_layers(file)))
     scale = MEGA if name in STRESSES else 1.0
     column, words, unit = _column(name, component, largest.max(axis=0))
     if snapshot is not None:
@@ -171,9 +173,14 @@ def read_field(file: h5py.File, name: FieldName, component: str | None, snapshot
     )
 
 
-def _largest(groups: Sequence[h5py.Group], dataset: str) -> np.ndarray:
-    """Largest size (g, columns) of a dataset in each of some snapshots."""
-    return np.array([np.abs(group[dataset][:]).max(axis=0) for group in groups])
+def _largest(groups: Sequence[h5py.Group], dataset: str, chosen: slice | np.ndarray = slice(None)) -> np.ndarray:
+    """Largest size (g, columns) of a dataset, or of its chosen rows, in each of some snapshots."""
+    return np.array([np.abs(group[dataset][:][chosen]).max(axis=0, initial=0.0) for group in groups])
+
+
+def _outside_layers(file: h5py.File) -> np.ndarray:
+    """Nodes (m,) of the continuum outside the layers that absorb: the motion within these is none of the ground."""
+    return ~file[f"{GROUP}/absorbs"][:].astype(bool)
 
 
 def _column(name: str, component: str | None, largest: np.ndarray) -> tuple[int, str, str]:
@@ -194,13 +201,14 @@ def _peak(file: h5py.File, snapshot: int | None) -> Field:
     if "peak_velocity" not in file["particles"]:
         raise CaseError([f"{file.filename}: holds no peaks; complete runs with output.peaks = true do"])
     values = file["particles/peak_velocity"][:]
-    beyond = file[f"{GROUP}/peak_velocity"][:] if GROUP in file and not is_scattered(file) else np.zeros(0)
+    beyond = file[f"{GROUP}/peak_velocity"][:] if GROUP in file and not is_scattered(file) else None
+    largest = [values.max()] if beyond is None else [values.max(), beyond[_outside_layers(file)].max(initial=0.0)]
     return Field(
         captions=[f"t = 0 to {file.attrs['steps'] * file.attrs['time_step']:.3g} s"],
         values=values[None],
         cracks=[cracks_until(file, np.inf)],
-        beyond=beyond[None] if len(beyond) > 0 else None,
-        limits=(0.0, float(np.max([values.max(), beyond.max(initial=0.0)])) or 1.0),
+        beyond=None if beyond is None else beyond[None],
+        limits=(0.0, float(max(largest)) or 1.0),
         name="largest speed",
         unit="m/s",
     )

@@ -29,15 +29,16 @@ class Arrays(Mapping[str, np.ndarray]):
     attributes : attributes of the group, such as ``time`` of a snapshot in s.
     """
 
-    def __init__(self, record: Path, group: h5py.Group) -> None:
-        self._record, self._group = record, group.name
-        self._names = list(datasets_in(group))
-        self.attributes: dict[str, Any] = {name: _plain(value) for name, value in group.attrs.items()}
+    def __init__(self, record: Path, name: str, group: h5py.Group | None) -> None:
+        self._record, self._group = record, name
+        self._names = [] if group is None else list(datasets_in(group))
+        attributes = {} if group is None else group.attrs
+        self.attributes: dict[str, Any] = {name: _plain(value) for name, value in attributes.items()}
 
     def __getitem__(self, name: str) -> np.ndarray:
         """The array of a name, in SI units; raises KeyError with the existing names."""
         if name not in self._names:
-            raise KeyError(f"{self._group} has no {name}; it has {', '.join(self._names)}")
+            raise KeyError(f"{self._group} has no {name}; it has {', '.join(self._names) or 'nothing'}")
         with reading(self._record) as file:
             return file[self._group][name][:]
 
@@ -67,7 +68,7 @@ class Results:
     ----------
     folder : path of the folder.
     attributes : name, kind, time_step, steps, size … of the run, see docs/results.md.
-    particles : reference positions and the like, one row per particle (of a bar, node).
+    particles : reference positions and the like, one row per particle (of a bar, node); none of exact histories.
     histories : of every monitor ``time`` (k,), ``displacement`` and ``velocity`` (k, 3), of a bar ``stress`` (k,).
     boundaries : of every side its particles and their peak velocities, and of the side as a whole ``time`` (k,), mean
     ``displacement`` (k, 3) and ``force`` (k, 2).
@@ -83,11 +84,11 @@ class Results:
         self.folder = self._record.parent
         with open_record(self._record) as file:
             self.attributes: dict[str, Any] = {name: _plain(value) for name, value in file.attrs.items()}
-            self.particles = Arrays(self._record, file["particles"])
+            self.particles = self._array(file, "particles")
             self.histories = self._arrays(file, "histories")
             self.boundaries = self._arrays(file, "boundaries")
-            self.snapshots = [Arrays(self._record, group) for group in snapshots_of(file)]
-            self.cracks = Arrays(self._record, file["cracks"])
+            self.snapshots = [Arrays(self._record, group.name, group) for group in snapshots_of(file)]
+            self.cracks = self._array(file, "cracks")
             self.laws: list[tuple[str, float]] = laws_of(file)
 
     def __repr__(self) -> str:
@@ -127,9 +128,13 @@ class Results:
         with open_record(self._record) as file:
             return side_energies_of(file)
 
+    def _array(self, file: h5py.File, name: str) -> Arrays:
+        """A group of the record, without arrays if it does not have it, as one of exact histories."""
+        return Arrays(self._record, f"/{name}", file.get(name))
+
     def _arrays(self, file: h5py.File, name: str) -> dict[str, Arrays]:
         """The groups within a group of the record."""
-        return {key: Arrays(self._record, group) for key, group in file.get(name, {}).items()}
+        return {key: Arrays(self._record, group.name, group) for key, group in file.get(name, {}).items()}
 
 
 def _plain(value: Any) -> Any:

@@ -40,23 +40,22 @@ def test_axes_cover_the_grid_with_equal_scales(surrounded_run) -> None:
     ],
 )
 def test_nodes_have_the_colours_of_disks_with_the_same_value(surrounded_run, field, name, column) -> None:
-    """In one scale up to the largest of both."""
+    """In one scale up to the largest of both outside the layers that absorb, in which motion is that of no ground."""
     more = {} if field in ("peak", "stress_yy") else {"component": "x"}
     figure = plot_scene(surrounded_run, field=field, snapshot=None if field == "peak" else 1, **more)
     panel, bar = figure.axes
     disks, nodes = only(EllipseCollection, panel), only(TriMesh, panel)
     with h5py.File(surrounded_run) as file:
-        cell, position = file["continuum/cell"][:], file["continuum/position"][:]
+        cell, position, absorbs = (file[f"continuum/{name}"][:] for name in ("cell", "position", "absorbs"))
         group = file if field == "peak" else file["snapshots/0001"]
         own = group["particles" if field == "peak" else "."][name][:]
         values = group[f"continuum/{name}"][:]
         if column is not None:
             own, values = own[:, column], values[:, column]
-            everywhere = [
-                each[path][:, column] for each in file["snapshots"].values() for path in (name, f"continuum/{name}")
-            ]
+            everywhere = [each[name][:, column] for each in file["snapshots"].values()]
+            everywhere += [each[f"continuum/{name}"][~absorbs, column] for each in file["snapshots"].values()]
         else:
-            everywhere = [own, values]
+            everywhere = [own, values[~absorbs]]
     unit = 1e6 if field == "stress_yy" else 1.0
     np.testing.assert_array_equal(disks.get_array(), own / unit)
     np.testing.assert_array_equal(nodes.get_array(), (values / unit)[cell.ravel()])

@@ -10,6 +10,7 @@ from dembound.disks.scene import build
 from dembound.errors import CaseError
 from dembound.exact import Solid, cavity_motion
 from dembound.kinds import loads, with_changes
+from dembound.results.results import Results
 from dembound.studies import exact as module
 from dembound.studies.exact import exact_motions, problem_of, write_exact
 
@@ -81,6 +82,11 @@ def test_record_has_all_monitors_and_the_name_of_the_problem(tmp_path) -> None:
     with h5py.File(tmp_path / "new" / "run.h5") as file:
         assert list(file["histories"]) == ["right", "below"]
         np.testing.assert_allclose(file["histories/right/time"][-1], 0.15)
+    results = Results(tmp_path / "new")
+    assert list(results.histories) == ["right", "below"]
+    assert len(results.particles) == len(results.cracks) == len(results.snapshots) == 0
+    with pytest.raises(KeyError, match="/particles has no radius; it has nothing"):
+        results.particles["radius"]
 
 
 def test_below_a_free_surface_it_is_garvins_problem_or_the_cavitys_until_the_echo(monkeypatch) -> None:
