@@ -5,7 +5,7 @@ from dembound.disks.outcome import disk_outcome
 
 def test_only_what_applies_is_told() -> None:
     elastic = {"static": None, "has_history": False, "laws": [{"law": "elastic", "from": 0.0}]}
-    elastic |= {"reduced": [], "not_reduced": []}
+    elastic |= {"reduced": [], "not_reduced": [], "load_factor": None}
     quiet = {"has_history": True, "cracks": {"tension": 0, "shear": 0}, "energy": {"relative_error": 0.0}}
     settled = {"steps": 3100, "ratio": 9.84e-6, "cracks": 0, "before": None, "asked": None, "column": None}
     stage = "settled in 3,100 steps to a force ratio of 9.8e-06"
@@ -16,6 +16,10 @@ def test_only_what_applies_is_told() -> None:
         "no half",
     ]
     assert disk_outcome(elastic | {"static": settled}) == [stage]
+    first = {"factor": 1.25, "limit": "slides", "time": 0.5, "position": [3.0, 4.0], "particles": [1, 2]}
+    assert disk_outcome(elastic | {"load_factor": first}) == [
+        "the elastic law holds up to 1.25 times the waves, where the pair at (3, 4) m slides at t = 0.5 s"
+    ]
     assert disk_outcome(elastic | quiet) == ["elastic law all through"]
     broken = {"cracks": {"tension": 1200, "shear": 30}, "static": settled | {"cracks": 1100}}
     assert disk_outcome(elastic | quiet | broken) == [
