@@ -9,10 +9,23 @@ from dembound.cli import (  # each registers its commands with the application
     chart,
     dispersion,
     gauge,
+    hopkinson,
     results,
     stability,
     starting,
 )
 from dembound.cli.app import app, main
 
-__all__ = ["app", "calibration", "cases", "chart", "dispersion", "gauge", "main", "results", "stability", "starting"]
+__all__ = [
+    "app",
+    "calibration",
+    "cases",
+    "chart",
+    "dispersion",
+    "gauge",
+    "hopkinson",
+    "main",
+    "results",
+    "stability",
+    "starting",
+]

@@ -118,7 +118,7 @@ def treatment_of(
 
     if band is not None:
         if low_pass is not None or high_pass is not None:
-            raise CaseError(["--band: is a high and a low pass at once, neither may be given beside it"])
+            raise CaseError(["--band: is a high and a low pass at once, it can have none beside it"])
         high_pass, low_pass = band
     filters = Filters(low_pass, high_pass, tuple(notches or ()))
     treatment = Treatment(not no_baseline, not no_drift, not no_hum, filters)

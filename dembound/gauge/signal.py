@@ -79,7 +79,7 @@ def read_signal(path: Path, reading: Reading | None = None, usual: str = "Pa") -
     _require_sound(columns, time, values)
     time, values, even = _evenly(path, time, values)
     values, measured, notes = _converted(values, unit, reading)
-    name = columns.names[of] or f"column {of + 1}"
+    name = f"column {of + 1}" + (f", {columns.names[of]}" if columns.names[of] else "")
     read = f"{name}{f' ({unit.name})' if unit.name else ''}: {len(time)} samples, one every {_in_words(time)}"
     return Signal(time, values, measured, (read, *even, *notes))
 
