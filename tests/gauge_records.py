@@ -178,7 +178,7 @@ RECORDS = (
     Record("50 µs between samples", (noise(0.003),), sampling=COARSE, refused="the sampling is too coarse"),
     Record("length in mm", (noise(0.003),), length=990.0, refused="in m, not mm"),
     Record(
-        "times in ms without a unit",
+        "times in s, read as ms",
         (noise(0.003),),
         reading=Reading(time_unit="ms"),
         refused="must be 100 to 10000 m/s",

@@ -2,7 +2,8 @@
 
 It is fitted by least squares to the *quiet* samples: those before the trigger and between passages of the pulse. As
 these are known only once the baseline is, the first fit is one of least absolute deviations to all samples, which
-passages hardly change as long as they take less than half of the time; after it quiet samples and fit take turns.
+passages hardly change as long as they take less than half of the time; after it quiet samples and fit take turns. A
+record of a longer wave has an offset alone, that of its beginning.
 """
 
 from dataclasses import dataclass
@@ -42,6 +43,9 @@ SPREAD = 0.5
 ROUNDS = 4
 """Turns of fit and quiet samples; the second changes little already."""
 
+BEGINNING = 20
+"""Part of the record, one in so many, whose median is the offset where it has no other quiet samples."""
+
 TRIED = 4000
 """Samples of the first fit, which are enough for a few terms."""
 
@@ -59,7 +63,7 @@ class Baseline:
 
     quiet : (k,) where no wave passes. before : number of quiet samples before the first wave. values : (k,) the fit,
     whether it is worth removing or not. worthwhile : whether it is. names : of its terms. functions : (k, m) and
-    covariance : (m, m) of its uncertainty. noise : standard deviation of what is left at the quiet samples.
+    covariance : (m, m) of its uncertainty.
     """
 
     quiet: np.ndarray
@@ -69,7 +73,6 @@ class Baseline:
     names: tuple[str, ...]
     functions: np.ndarray
     covariance: np.ndarray
-    noise: float
 
 
 def find_baseline(
@@ -84,28 +87,36 @@ def find_baseline(
     ----------
     time, values : (k,) s, evenly spaced, and any unit. drift : whether a drift may be fitted. mains : frequencies, Hz.
     """
-    scaled = np.linspace(-1.0, 1.0, len(time))
     offset = Terms("offset", np.ones((len(time), 1)))
-    possible = [Terms("drift", scaled[:, None])] if drift else []
+    possible = [Terms("drift", np.linspace(-1.0, 1.0, len(time))[:, None])] if drift else []
     hums = _hums(time, mains)
     candidates = [[offset, *possible, each] for each in hums] or [[offset, *possible]]
-    possible += hums
     fits = [_absolute_fit(_joined(terms), values) for terms in candidates]
-    fit = min(fits, key=lambda fitted: float(np.abs(values - fitted).sum()))
-    chosen = [offset]
+    best = int(np.argmin([float(np.abs(values - fitted).sum()) for fitted in fits]))
+    found = _settled(fits[best], offset, candidates[best][1:], values)
+    if found is None or not found.before:
+        level = float(np.median(values[: max(FEWEST_QUIET, len(values) // BEGINNING)]))
+        found = _settled(np.full(len(values), level), offset, [], values, only_before=True) or found
+    return found
+
+
+def _settled(
+    fit: np.ndarray, offset: Terms, possible: list[Terms], values: np.ndarray, *, only_before: bool = False
+) -> Baseline | None:
+    """The baseline of a signal (k,) from a first fit (k,); only_before: from its beginning alone."""
     for _ in range(ROUNDS):
         quiet = quiet_samples(values - fit)
+        before = int(np.argmin(quiet)) if not quiet.all() else len(quiet)
+        if only_before:
+            quiet[before:] = False
         if quiet.sum() < FEWEST_QUIET:
             return None
         chosen = _significant(offset, possible if _is_spread(quiet) else [], quiet, values)
         fit, functions, covariance = _fit(chosen, quiet, values)
-    before = int(np.argmin(quiet)) if not quiet.all() else len(quiet)
-    left = (values - fit)[quiet]
     size = float(np.abs(fit).max())
     error = float(np.sqrt(np.einsum("km,mn,kn->k", functions, covariance, functions).max()))
     worthwhile = size > max(LEAST * np.abs(values - fit).max(), SIGNIFICANT * error)
-    names = tuple(terms.name for terms in chosen)
-    return Baseline(quiet, before, fit, bool(worthwhile), names, functions, covariance, float(left.std()))
+    return Baseline(quiet, before, fit, bool(worthwhile), tuple(terms.name for terms in chosen), functions, covariance)
 
 
 def quiet_samples(values: np.ndarray) -> np.ndarray:

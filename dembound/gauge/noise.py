@@ -57,9 +57,8 @@ def noise_of(values: np.ndarray, baseline: Baseline) -> Noise:
     """
     quiet = np.flatnonzero(baseline.quiet)
     residuals = values[: baseline.before] if baseline.before >= 100 else values[quiet]
-    root = np.linalg.cholesky(
-        baseline.covariance + 1e-30 * np.trace(baseline.covariance) * np.eye(len(baseline.covariance))
-    )
+    sizes, directions = np.linalg.eigh(baseline.covariance)
+    root = directions * np.sqrt(np.maximum(sizes, 0.0))
     functions = baseline.functions
     if not baseline.worthwhile:
         functions = np.column_stack([functions, baseline.values])

@@ -46,9 +46,11 @@ def _in_words(found: Baseline | None, signal: Signal) -> str:
     largest = float(np.abs(signal.values - found.values).max())
     if not found.worthwhile:
         return f"baseline: nothing to remove, {100.0 * np.abs(found.values).max() / largest:.2g} % of the signal"
-    before = signal.time[found.before - 1] if found.before else signal.time[0]
     parts = ", ".join(found.names)
-    size = f"from {found.values.min():.4g} to {found.values.max():.4g} {signal.unit}".rstrip()
-    there = f"{found.quiet.sum()} quiet samples, {found.before} of them before {before:.6g} s"
+    ends = dict.fromkeys(f"{value:.4g}" for value in (found.values.min(), found.values.max()))
+    size = f"{' to '.join(ends)} {signal.unit}".rstrip()
+    there = f"{found.quiet.sum()} quiet samples"
+    if found.before:
+        there += f", {found.before} of them before {signal.time[found.before - 1]:.6g} s"
     share = 100.0 * float(np.abs(found.values).max()) / largest
     return f"baseline: removed {parts}, {size}, {share:.3g} % of the signal ({there})"

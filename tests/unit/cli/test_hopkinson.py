@@ -86,7 +86,7 @@ def test_a_gauge_has_its_columns_units_and_filters(dembound, tmp_path) -> None:
     told = dembound("gauge", "scope.csv", *bar, "--column", 3, "--low-pass", 60e3, "--notch", 318.31e3)
     assert (told.code, told.err) == (0, "")
     assert "column 3, 2 (Volt): 5000 samples, one every 1 µs" in told.out
-    assert "baseline: removed offset, from 0.3 to 0.3 V" in told.out
+    assert "baseline: removed offset, 0.30" in told.out
     assert "filter: low pass at 60000 Hz" in told.out
     assert "filter: notch at 318310 Hz" in told.out
     speed, decay = (line.split(")")[1].split() for line in told.out.splitlines() if "m)" in line or "m/s)" in line)
