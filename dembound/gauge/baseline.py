@@ -120,14 +120,14 @@ def _settled(
 
 
 def quiet_samples(values: np.ndarray) -> np.ndarray:
-    """Where (k,) a signal without baseline is as quiet as its noise, half the width of a passage away from any."""
+    """Where (k,) a signal without baseline is as quiet as its noise, a quarter of the width of a passage away from any."""
     sizes = np.abs(values)
     width = max(2, width_of(sizes))
     reach = max(1, round(CREST * width))
     smoothed = np.abs(smooth(values, reach)) if 2 * reach + 1 < len(values) else sizes
     noise = white_noise(values) * noise_left(reach)
     loud = smoothed > max(QUIET * smoothed.max(), MOST_QUIET_NOISE * noise)
-    around = np.convolve(loud, np.ones(width), mode="same") > 0.5
+    around = np.convolve(loud, np.ones(max(1, width // 2)), mode="same") > 0.5
     return ~around
 
 

@@ -85,8 +85,8 @@ def read_gauge(
     path : the file.
     monitor : its name in the record; may be left out if there is only one between the ends. position, length, density,
     modulus : as for `Gauge`; the first three by default those of the record. reading : how a text file is read.
-    treatment : what is removed from its signal, by default its baseline; of a record only if given. may_be_clipped :
-    accept a text file's signal with a plateau.
+    treatment : what is removed from its signal, by default its baseline; from a record only what filters take out.
+    may_be_clipped : accept a text file's signal with a plateau.
 
     Raises CaseError for a file that cannot be read, an unknown monitor, a bar that is not loaded at one end, a gauge
     that is not on the bar, and a signal that is clipped or too coarse.
@@ -113,8 +113,10 @@ def read_gauge(
     assert place is not None
     assert long is not None
     noise = None
-    if treatment is not None or not is_record(path):
+    if not is_record(path):
         signal, noise = treated(signal, treatment)
+    elif treatment is not None:
+        signal, _ = treated(signal, replace(treatment, baseline=False))
     known_bar = (place, long, dense, known.metadata)
     return Gauge(signal.time, signal.values, *known_bar, signal.unit, modulus, noise, signal.notes)
 

@@ -1,5 +1,6 @@
 """Signals of a split Hopkinson test: read from text files or records, as strains that are positive under the load."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -35,8 +36,10 @@ def read_strain(
         raise CaseError([f"{path}: the values {said}, needs strains or stresses: --gauge-factor, --unit or --scale"])
     if not recorded and (problems := list(implausible_signal(signal.values, may_be_clipped=may_be_clipped))):
         raise CaseError([f"{path}: {problem}" for problem in problems])
-    if treatment is not None or not recorded:
+    if not recorded:
         signal, _ = treated(signal, treatment)
+    elif treatment is not None:
+        signal, _ = treated(signal, replace(treatment, baseline=False))
     values = signal.values if signal.unit == "strain" else signal.values / modulus
     return Signal(signal.time, values, "strain", signal.notes)
 

@@ -46,7 +46,7 @@ def plot_hopkinson(faces: Faces, found: Specimen) -> Figure:
     curve.set_xlabel("strain (%)")
     curve.set_ylabel("stress (MPa)")
     curve.legend()
-    figure.suptitle("Specimen in a split Hopkinson test", fontsize=11)
+    figure.suptitle("Specimen in a split Hopkinson test; shaded: equilibrium of its forces", fontsize=11)
     return figure
 
 
@@ -54,9 +54,7 @@ def _labelled(panel: Axes, quantity: str, found: Specimen) -> None:
     """Axes of a history, and the shaded time in equilibrium."""
     if found.equilibrium is not None:
         first, end = found.equilibrium
-        panel.axvspan(
-            found.time[first] / MICRO, found.time[end - 1] / MICRO, color="#D3E2F0", label="equilibrium", zorder=0
-        )
+        panel.axvspan(*(found.time[[first, end - 1]] / MICRO), color="#D3E2F0")
     panel.set_xlabel("time since the pulse has reached the specimen (µs)")
     panel.set_ylabel(quantity)
     panel.legend()
