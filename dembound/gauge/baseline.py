@@ -120,7 +120,7 @@ def _settled(
 
 
 def quiet_samples(values: np.ndarray) -> np.ndarray:
-    """Where (k,) a signal without baseline is as quiet as its noise, a quarter of the width of a passage away from any."""
+    """Where (k,) a signal without baseline is as quiet as its noise, a quarter of a passage's width from any."""
     sizes = np.abs(values)
     width = max(2, width_of(sizes))
     reach = max(1, round(CREST * width))
