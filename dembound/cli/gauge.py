@@ -11,10 +11,34 @@ from rich.table import Table
 from dembound.cli.app import PICTURE, PictureTitle, app
 from dembound.cli.console import compact_table, err, out
 from dembound.cli.results import results_file
+from dembound.cli.signal_options import (
+    FILE,
+    Band,
+    BridgeWiring,
+    Clipped,
+    Excitation,
+    Gain,
+    GaugeFactor,
+    HighPass,
+    LowPass,
+    Modulus,
+    NoBaseline,
+    NoDrift,
+    NoHum,
+    Notch,
+    Poisson,
+    Scale,
+    TimeColumn,
+    TimeUnit,
+    ValueUnit,
+    bridge_of,
+    reading_of,
+    treatment_of,
+)
 
 if TYPE_CHECKING:
     from dembound.gauge.estimates import Estimate
-    from dembound.gauge.spalling import Findings
+    from dembound.gauge.findings import Findings
 
 MPA = 1e6
 """Pascals in a megapascal."""
@@ -23,13 +47,12 @@ MPA = 1e6
 @app.command("gauge", rich_help_panel="Results")
 def gauge(
     record: Annotated[
-        Path, typer.Argument(metavar="RECORD", help="Text file of time (s) and stress (Pa), or a run's results.")
+        Path, typer.Argument(metavar="RECORD", help="Text file with columns of time and signal, or a run's results.")
     ],
     monitor: Annotated[str | None, typer.Option(metavar="NAME", help="Monitor of the results.")] = None,
     position: Annotated[float | None, typer.Option(help="Gauge from the loaded end (m).")] = None,
     length: Annotated[float | None, typer.Option(help="Length of the bar (m).")] = None,
-    density: Annotated[float | None, typer.Option(help="Its density (kg/m³), for --free-end.")] = None,
-    scale: Annotated[float, typer.Option(help="Factor that makes the values Pa, positive in tension.")] = 1.0,
+    density: Annotated[float | None, typer.Option(help="Its density (kg/m³), for --free-end and for E = ρc².")] = None,
     spall: Annotated[float | None, typer.Option(help="Where the bar spalled, from the loaded end (m).")] = None,
     free_end: Annotated[
         str | None,
@@ -51,6 +74,28 @@ def gauge(
     ] = None,
     output: Annotated[Path | None, PICTURE] = None,
     title: PictureTitle = None,
+    column: Annotated[
+        str | None,
+        typer.Option(metavar="NAME|NUMBER", help="Column of the signal, if there are several.", rich_help_panel=FILE),
+    ] = None,
+    time_column: TimeColumn = None,
+    time_unit: TimeUnit = None,
+    unit: ValueUnit = None,
+    scale: Scale = 1.0,
+    clipped: Clipped = False,
+    gauge_factor: GaugeFactor = None,
+    bridge: BridgeWiring = "quarter",
+    excitation: Excitation = None,
+    gain: Gain = 1.0,
+    poisson: Poisson = None,
+    youngs_modulus: Modulus = None,
+    no_baseline: NoBaseline = False,
+    no_drift: NoDrift = False,
+    no_hum: NoHum = False,
+    low_pass: LowPass = None,
+    high_pass: HighPass = None,
+    band: Band = None,
+    notch: Notch = None,
 ) -> None:
     """Estimate from a gauge on a bar: wave speed, attenuation, and the stress at which the bar spalled.
 
@@ -60,7 +105,11 @@ def gauge(
     from dembound.gauge.spalling import evaluate
 
     path = results_file(record) if record.is_dir() else record
-    gauge = read_gauge(path, monitor, position, length, density, scale)
+    wired = bridge_of(gauge_factor, bridge, excitation, gain, poisson)
+    reading = reading_of(column, time_column, time_unit, unit, wired, scale)
+    treatment = treatment_of(no_baseline, no_drift, no_hum, low_pass, high_pass, band, notch)
+    bar = (position, length, density)
+    gauge = read_gauge(path, monitor, *bar, reading, treatment, youngs_modulus, may_be_clipped=clipped)
     found = evaluate(
         gauge,
         spall=spall,
@@ -73,6 +122,10 @@ def gauge(
     )
     if peaks is not None and found.peaks is not None and len(found.peaks.time) < peaks:
         err.print(f"--peaks: asks for {peaks} tension peaks, there are {len(found.peaks.time)}")
+    for warning in found.warnings:
+        err.print(f"warning: {warning}")
+    for note in gauge.notes:
+        out.print(note)
     out.print(_overview(found, *("results" if given is None else "given" for given in (wave_speed, attenuation))))
     if output is not None:
         from dembound.plot.gauge import plot_gauge
@@ -90,10 +143,12 @@ def _overview(found: Findings, speed_from: str, attenuation_from: str) -> Table:
         overview.add_row("attenuation α (1/m)", *_fitted(found.attenuation, "heights", attenuation_from))
     if (strength := found.strength) is not None:
         source = f"image at {strength.position:g} m"
-        overview.add_row("nominal strength (MPa)", f"{strength.nominal / MPA:.4g}", "", source)
+        error = _error(strength.nominal_error / MPA)
+        overview.add_row("nominal strength (MPa)", f"{strength.nominal / MPA:.4g}", error, source)
         if strength.attenuated is not None:
             source = f"way of {strength.way:.3g} m"
-            overview.add_row("attenuated strength (MPa)", f"{strength.attenuated / MPA:.4g}", "", source)
+            error = _error(strength.attenuated_error / MPA)
+            overview.add_row("attenuated strength (MPa)", f"{strength.attenuated / MPA:.4g}", error, source)
     if found.pull_back is not None:
         overview.add_row("pull-back strength (MPa)", f"{found.pull_back / MPA:.4g}", "", "free end")
     return overview
@@ -103,5 +158,9 @@ def _fitted(estimate: Estimate, what: str, source: str) -> tuple[str, str, str]:
     """Value, standard error and source of an estimate; source : the one given if it was not fitted."""
     if not estimate.points:
         return f"{estimate.value:.5g}", "", source
-    error = f"{estimate.error:.2g}" if estimate.points > 2 else ""
-    return f"{estimate.value:.5g}", error, f"{what} of {estimate.points} peaks"
+    return f"{estimate.value:.5g}", _error(estimate.error), f"{what} of {estimate.points} peaks"
+
+
+def _error(error: float) -> str:
+    """A standard error; empty if it is not known."""
+    return "" if error != error else f"{error:.2g}"

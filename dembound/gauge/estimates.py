@@ -18,6 +18,9 @@ ONSET = 0.01
 ENDED = 0.2
 """Share of its largest compression below which a pulse has ended when its reflection returns."""
 
+LARGEST_OF_NOISE = 3.0
+"""Standard deviations of noise that the largest of some tens of values has: of so many a strength is the largest."""
+
 FEWEST = 3
 """Samples of a history from which its noise is estimated."""
 
@@ -109,7 +112,7 @@ def incident_pulse(
     count = int(np.searchsorted(time, end, side="right"))
     if count < FEWEST:
         raise CaseError([f"--pulse-end: leaves {count} samples of the incident pulse, must leave three or more"])
-    return time[:count], denoised(stress[:count])
+    return time[:count], denoised(stress[:count], LARGEST_OF_NOISE)
 
 
 def near_free_end(

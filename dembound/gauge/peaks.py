@@ -44,22 +44,25 @@ def positive_peaks(time: np.ndarray, values: np.ndarray, count: int | None = Non
     """
     if not values.max() > 0.0:
         return Peaks(np.empty(0), np.empty(0))
-    width = _width(values)
+    width = width_of(values)
     reach = max(1, round(CREST * width))
-    smooth = _smooth(values, reach)
-    least = max(SMALLEST * smooth.max(), NOISE_FACTOR * _noise(values) * _noise_left(reach))
-    places = _summits(np.maximum(smooth, 0.0), prominence=least, width=0.5 * width, distance=width)[:count]
-    before, here, after = (smooth[places + shift] for shift in (-1, 0, 1))
+    smoothed = smooth(values, reach)
+    least = max(SMALLEST * smoothed.max(), NOISE_FACTOR * white_noise(values) * noise_left(reach))
+    places = _summits(np.maximum(smoothed, 0.0), prominence=least, width=0.5 * width, distance=width)[:count]
+    before, here, after = (smoothed[places + shift] for shift in (-1, 0, 1))
     bend = before - 2.0 * here + after
     offset = np.divide(0.5 * (before - after), bend, out=np.zeros(len(places)), where=bend != 0.0)
     times = np.interp(places + offset, np.arange(len(time)), time)
     return Peaks(times, here - 0.25 * (before - after) * offset)
 
 
-def denoised(values: np.ndarray) -> np.ndarray:
-    """A history (k,) smoothed by parabolas over a range chosen by its noise; without noise it is not changed."""
+def denoised(values: np.ndarray, deviations: float = 1.0) -> np.ndarray:
+    """A history (k,) smoothed by parabolas over a range chosen by its noise; without noise it is not changed.
+
+    deviations : of the noise that the loss of a crest equals. Where a largest value is taken, noise adds more than one.
+    """
     sizes = np.abs(values)
-    return _smooth(values, _worthwhile_reach(_noise(values) / sizes.max(), _width(sizes)))
+    return smooth(values, _worthwhile_reach(deviations * white_noise(values) / sizes.max(), width_of(sizes)))
 
 
 def first_fall(values: np.ndarray) -> float:
@@ -68,15 +71,15 @@ def first_fall(values: np.ndarray) -> float:
     The prominence of both must be at least `DIP` of the range and twice `NOISE_FACTOR` times the noise. The history is
     then smoothed by parabolas over a range chosen by its noise.
     """
-    noise = _noise(values)
+    noise = white_noise(values)
     least = max(DIP * float(np.ptp(values)), 2.0 * NOISE_FACTOR * noise)
     turns = _turns(values, least) if least > 0.0 else []
     if len(turns) < 2:
         return np.nan
     top, bottom = turns[:2]
     reach = _worthwhile_reach(noise / (values[top] - values[bottom]), bottom - top)
-    smooth = _smooth(values, reach)
-    highest, lowest = (smooth[max(place - reach, 0) : place + reach + 1] for place in (top, bottom))
+    smoothed = smooth(values, reach)
+    highest, lowest = (smoothed[max(place - reach, 0) : place + reach + 1] for place in (top, bottom))
     return float(highest.max() - lowest.min())
 
 
@@ -103,14 +106,14 @@ def _summits(values: np.ndarray, **limits: float) -> np.ndarray:
     return find_peaks(values, **limits)[0]
 
 
-def _width(values: np.ndarray) -> int:
+def width_of(values: np.ndarray) -> int:
     """Number of samples around the largest that are above half of it."""
     crest = int(values.argmax())
     low = np.flatnonzero(values < 0.5 * values[crest])
     return int(low[low > crest].min(initial=len(values)) - low[low < crest].max(initial=-1)) - 1
 
 
-def _noise(values: np.ndarray) -> float:
+def white_noise(values: np.ndarray) -> float:
     """Standard deviation of white noise: from the median second difference, which is small for a smooth history."""
     return float(1.4826 * np.median(np.abs(np.diff(values, 2))) / np.sqrt(6.0))
 
@@ -124,7 +127,7 @@ def _worthwhile_reach(noise: float, width: int) -> int:
     return max(1, round((np.sqrt(32.0) * noise * width) ** (2.0 / 3.0)))
 
 
-def _smooth(values: np.ndarray, reach: int) -> np.ndarray:
+def smooth(values: np.ndarray, reach: int) -> np.ndarray:
     """Each value from a parabola fitted to all samples up to `reach` away; with a reach of one nothing changes."""
     if reach == 1:
         return values
@@ -133,6 +136,6 @@ def _smooth(values: np.ndarray, reach: int) -> np.ndarray:
     return savgol_filter(values, 2 * reach + 1, 2)
 
 
-def _noise_left(reach: int) -> float:
-    """Share of white noise that remains after `_smooth`: the root of its middle coefficient (least squares)."""
+def noise_left(reach: int) -> float:
+    """Share of white noise that remains after `smooth`: the root of its middle coefficient (least squares)."""
     return float(np.sqrt(3.0 * (3 * reach**2 + 3 * reach - 1) / ((2 * reach - 1) * (2 * reach + 1) * (2 * reach + 3))))

@@ -1,7 +1,9 @@
 """A spalling test on a bar: estimates from its gauge and the velocity of its free end (L section 3.3)."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,42 +19,34 @@ from dembound.gauge.estimates import (
     tension_peaks,
     wave_speed,
 )
+from dembound.gauge.findings import Findings, Strength
 from dembound.gauge.gauge_io import FREE, Gauge, not_above_zero, not_on_bar
-from dembound.gauge.peaks import Peaks
+from dembound.gauge.matching import matched
+from dembound.gauge.noise import Noise
+from dembound.gauge.peaks import Peaks, width_of
+from dembound.gauge.plausibility import (
+    FAR,
+    FEW,
+    contradicting_speeds,
+    first_return,
+    raised_by_noise,
+    uncertain,
+    unlikely_speed,
+)
+from dembound.gauge.uncertainty import with_errors
 
 AGREEMENT = 0.05
 """Largest relative difference between estimated and recorded wave speed; coarse nodes change it less."""
 
 
-@dataclass(frozen=True)
-class Strength:
-    """The strength of a bar where it has spalled.
+class Given(NamedTuple):
+    """What is given with a gauge, see `evaluate`; first : its `count`."""
 
-    position : from the loaded end, m; nominal : largest tension there without attenuation, Pa, reached at `time`, s;
-    way : path length from the gauge via the free end to there, m; attenuated : nominal strength attenuated over this
-    path, Pa, None without a coefficient; pulse : times (p,) s and stresses (p,) Pa of the incident pulse alone.
-    """
-
-    position: float
-    nominal: float
-    time: float
-    way: float
-    attenuated: float | None
-    pulse: tuple[np.ndarray, np.ndarray]
-
-
-@dataclass(frozen=True)
-class Findings:
-    """Estimates from a gauge: wave speed in m/s, attenuation in 1/m, strengths in Pa; None where not estimated.
-
-    `peaks` are the tension peaks from which speed or attenuation are estimated, None if both were given.
-    """
-
-    peaks: Peaks | None
-    speed: Estimate
-    attenuation: Estimate | None
-    strength: Strength | None
-    pull_back: float | None
+    spall: float | None
+    pulse_end: float | None
+    speed: float | None
+    coefficient: float | None
+    first: int | None
 
 
 def evaluate(
@@ -90,10 +84,49 @@ def evaluate(
         problems.append("--density: is missing, must be that of the bar (kg/m³)")
     if problems:
         raise CaseError(problems)
-    peaks, found, decay = _waves(gauge, speed, coefficient, count)
-    strength = None if spall is None else _strength(gauge, found.value, decay, spall, pulse_end)
-    pull_back = None if free_end is None else _pull_back(gauge, found.value, free_end)
-    return Findings(peaks, found, decay, strength, pull_back)
+    given = Given(spall, pulse_end, speed, coefficient, count)
+    found = _estimated(gauge, given)
+    if free_end is not None:
+        found = replace(found, pull_back=_pull_back(gauge, found.speed.value, free_end))
+    if gauge.metadata is not None:
+        return found
+    if gauge.noise is not None:
+        same = given if found.peaks is None else given._replace(first=len(found.peaks.time))
+        found = with_errors(found, list(_replicates(gauge, gauge.noise, same)))
+    return replace(found, warnings=tuple(_doubts(gauge, found)))
+
+
+def _estimated(gauge: Gauge, given: Given) -> Findings:
+    """All estimates from one signal."""
+    peaks, speed, decay = _waves(gauge, given.speed, given.coefficient, given.first)
+    if given.spall is None:
+        return Findings(peaks, speed, decay, None, None)
+    strength = _strength(gauge.in_pascals(speed.value), speed.value, decay, given.spall, given.pulse_end)
+    return Findings(peaks, speed, decay, strength, None)
+
+
+def _replicates(gauge: Gauge, noise: Noise, given: Given) -> Iterator[Findings]:
+    """The estimates from the signal with errors as its noise and baseline may have, where they can be made."""
+    for error in noise.draws():
+        with suppress(CaseError):
+            yield _estimated(replace(gauge, stress=gauge.stress + error), given)
+
+
+def _doubts(gauge: Gauge, found: Findings) -> Iterator[str]:
+    """What is doubtful about estimates from a measured signal; raises CaseError for a speed that cannot be."""
+    if found.speed.points:
+        if problems := list(unlikely_speed(found.speed.value)):
+            raise CaseError(problems)
+        first = first_return(gauge.time, gauge.stress, gauge.position, gauge.length)
+        doubts = list(contradicting_speeds(found.speed, first))
+        if first is not None and doubts and abs(found.speed.value / first.value - 1.0) > FAR:
+            raise CaseError([f"--wave-speed: {doubts[0]}"])
+        yield from doubts
+    if (width := width_of(np.abs(gauge.stress))) < FEW:
+        yield f"the sampling is coarse: {width} samples above half the height of the largest wave"
+    yield from uncertain(found.speed, found.attenuation)
+    if found.strength is not None and gauge.noise is not None:
+        yield from raised_by_noise(float(gauge.noise.residuals.std()), float(np.abs(gauge.stress).max()))
 
 
 def _problems_with_options(
@@ -120,7 +153,7 @@ def _waves(
     """Wave speed and attenuation, given or estimated from tension peaks, and these peaks."""
     if speed is not None and coefficient is not None:
         return None, Estimate(speed), Estimate(coefficient)
-    peaks = tension_peaks(gauge.time, gauge.stress, count)
+    peaks = matched(gauge.time, gauge.stress, tension_peaks(gauge.time, gauge.stress, count))
     _hold_against_break(gauge, peaks)
     decay = None if coefficient is None else Estimate(coefficient)
     if speed is not None and len(peaks.time) < 2:

@@ -7,12 +7,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.gauge.estimates import near_free_end
+from dembound.gauge.findings import Findings, Strength
 from dembound.gauge.gauge_io import Gauge
-from dembound.gauge.spalling import Findings, Strength
 from dembound.plot.style import COLOURS, REFERENCE, line_style, new_figure, outside_legend, styled
 
 MPA = 1e6
 """Pascals in a megapascal."""
+
+MEASURED = {"Pa": ("stress", "MPa", MPA), "strain": ("strain", "µε", 1e-6), "V": ("signal", "V", 1.0)}
+"""Of what a gauge measures: its name, and the name and size of the unit in pictures."""
 
 STEPS = (-1.5, -1.0, -0.5, 0.0, 0.5)
 """Times of the stresses near the free end, relative to that of the spall, in travel times from there to the end."""
@@ -44,20 +47,21 @@ def plot_gauge(gauge: Gauge, findings: Findings) -> Figure:
 
 
 def _history(panel: Axes, gauge: Gauge, findings: Findings) -> None:
-    """Stress against time, its tension peaks, and the exponential through them."""
+    """Stress, strain or voltage against time, its tension peaks, and the exponential through them."""
     peaks, decay = findings.peaks, findings.attenuation
-    panel.plot(1e3 * gauge.time, gauge.stress / MPA, color=REFERENCE, linewidth=1.0, label="stress at the gauge")
+    name, unit, size = MEASURED.get(gauge.unit, ("signal", "unit unknown", 1.0))
+    panel.plot(1e3 * gauge.time, gauge.stress / size, color=REFERENCE, linewidth=1.0, label=f"{name} at the gauge")
     if peaks is not None and len(peaks.time):
-        panel.plot(1e3 * peaks.time, peaks.height / MPA, "o", color=COLOURS[1], label="tension peaks")
+        panel.plot(1e3 * peaks.time, peaks.height / size, "o", color=COLOURS[1], label="tension peaks")
     if peaks is not None and decay is not None and len(peaks.time) > 1:
         time = np.linspace(peaks.time[0], peaks.time[-1], PLACES)
         weights = peaks.height**2  # through the middle of the line that was fitted
         first, middle = (np.average(each, weights=weights) for each in (np.log(peaks.height), peaks.time))
         height = np.exp(first - decay.value * findings.speed.value * (time - middle))
         label = f"exp(−αct), α = {decay.value:.3g} 1/m, c = {findings.speed.value:.4g} m/s"
-        panel.plot(1e3 * time, height / MPA, color=COLOURS[0], linestyle="--", label=label)
+        panel.plot(1e3 * time, height / size, color=COLOURS[0], linestyle="--", label=label)
     panel.set_xlabel("time (ms)")
-    panel.set_ylabel("stress, tension positive (MPa)")
+    panel.set_ylabel(f"{name}, tension positive ({unit})")
 
 
 def _free_end(panel: Axes, gauge: Gauge, speed: float, strength: Strength) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from dembound.errors import CaseError
 from dembound.gauge.gauge_io import BarMetadata, read_free_end, read_gauge
+from dembound.gauge.signal import Reading
 
 BAR = {"position": 0.6, "length": 0.99}
 VELOCITY = np.interp(np.arange(400), [0, 100, 140, 240, 270], [0.0, 0.0, 10.0, 4.0, 8.0])
@@ -40,7 +41,7 @@ def record(felt, tmp_path):
 
 
 def test_a_text_file_is_told_where_it_was_felt(text, felt):
-    gauge = read_gauge(text, position=0.6, length=0.99, density=2620.0, scale=-1e6)
+    gauge = read_gauge(text, position=0.6, length=0.99, density=2620.0, reading=Reading(scale=-1e6))
     time, stress = felt()
     np.testing.assert_array_equal(gauge.time, time)
     np.testing.assert_allclose(gauge.stress, 1e6 * stress, rtol=1e-15)
@@ -79,8 +80,8 @@ def test_the_only_gauge_needs_no_name_and_a_record_no_density(record):
         (BAR | {"length": -1.0}, ["--length: is -1 m, must be finite and above 0"]),
         (BAR | {"length": np.inf}, ["--length: is inf m, must be finite and above 0"]),
         (BAR | {"density": 0.0}, ["--density: is 0 kg/m³, must be finite and above 0"]),
-        (BAR | {"scale": 0.0}, ["--scale: is 0, must be finite and not 0"]),
-        (BAR | {"scale": np.nan}, ["--scale: is nan, must be finite and not 0"]),
+        (BAR | {"reading": Reading(scale=0.0)}, ["--scale: is 0, must be finite and not 0"]),
+        (BAR | {"reading": Reading(scale=np.nan)}, ["--scale: is nan, must be finite and not 0"]),
         (BAR | {"monitor": "near"}, ["--monitor: is for results of a run, gauge.csv is a text file"]),
         (
             {"position": 0.6, "length": 0.0, "density": np.nan},
@@ -101,7 +102,7 @@ def test_files_that_hold_no_history_are_refused(tmp_path, small_run):
     (tmp_path / "wide.txt").write_text("0 1 2\n1 2 3\n")
     for path, said in (
         (tmp_path / "absent.txt", "no file"),
-        (tmp_path / "wide.txt", r"has 3 columns, must have two: time \(s\), stress \(Pa\)"),
+        (tmp_path / "wide.txt", r"--column: is missing, \S+ has 3 columns; must be a number from 1 to 3"),
         (short, "contains 2 samples, must contain three or more"),
         (small_run, "contains no history of stress between the ends of a bar"),
     ):

@@ -1,0 +1,214 @@
+"""The command hopkinson."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.table import Table
+
+from dembound.cli.app import PICTURE, PictureTitle, app, writable
+from dembound.cli.console import compact_table, err, out
+from dembound.cli.results import results_file
+from dembound.cli.signal_options import (
+    FILE,
+    Band,
+    BridgeWiring,
+    Clipped,
+    Excitation,
+    Gain,
+    GaugeFactor,
+    HighPass,
+    LowPass,
+    Modulus,
+    NoBaseline,
+    NoDrift,
+    NoHum,
+    Notch,
+    Poisson,
+    Scale,
+    TimeColumn,
+    TimeUnit,
+    ValueUnit,
+    bridge_of,
+    reading_of,
+    treatment_of,
+)
+from dembound.errors import CaseError
+
+if TYPE_CHECKING:
+    from dembound.gauge.hopkinson import Specimen
+
+BARS, PULSES = "Bars and specimen", "Pulses"
+"""Panels of the help."""
+
+Window = Annotated[
+    tuple[float, float] | None,
+    typer.Option(metavar="FROM TO", help="Of this pulse at its gauge (s); by default found.", rich_help_panel=PULSES),
+]
+
+
+def _of_bars(words: str) -> typer.models.OptionInfo:
+    """An option about bars and specimen."""
+    return typer.Option(help=words, rich_help_panel=BARS)
+
+
+@app.command("hopkinson", rich_help_panel="Results")
+def hopkinson(
+    incident: Annotated[
+        Path, typer.Argument(metavar="INCIDENT", help="Signal on the incident bar: text file, or a run's results.")
+    ],
+    transmitted: Annotated[
+        Path | None,
+        typer.Argument(metavar="[TRANSMITTED]", help="Signal on the transmission bar; by default the same file."),
+    ] = None,
+    *,
+    wave_speed: Annotated[float, _of_bars("Of the bars (m/s).")],
+    density: Annotated[float, _of_bars("Of the bars (kg/m³).")],
+    bar_diameter: Annotated[float, _of_bars("Of both bars (m).")],
+    incident_gauge: Annotated[float, _of_bars("From the gauge to the specimen (m).")],
+    transmitted_gauge: Annotated[float, _of_bars("From the specimen to the gauge (m).")],
+    specimen_length: Annotated[float, _of_bars("Length of the specimen (m).")],
+    specimen_diameter: Annotated[float | None, _of_bars("Diameter of the specimen (m).")] = None,
+    specimen_area: Annotated[float | None, _of_bars("Or its area (m²).")] = None,
+    bar_length: Annotated[float | None, _of_bars("Of each bar (m), to stop before its end sends waves back.")] = None,
+    attenuation: Annotated[float, _of_bars("Of the bars (1/m).")] = 0.0,
+    dispersion: Annotated[
+        bool,
+        typer.Option("--dispersion-correction", help="Of round bars, with --poisson.", rich_help_panel=BARS),
+    ] = False,
+    incident_column: Annotated[
+        str | None,
+        typer.Option(metavar="NAME|NUMBER", help="Its column, or monitor of results.", rich_help_panel=FILE),
+    ] = None,
+    transmitted_column: Annotated[
+        str | None, typer.Option(metavar="NAME|NUMBER", help="The same.", rich_help_panel=FILE)
+    ] = None,
+    second: Annotated[
+        Path | None,
+        typer.Option(help="Signal of another gauge on the incident bar, if pulses overlap.", rich_help_panel=PULSES),
+    ] = None,
+    second_column: Annotated[
+        str | None, typer.Option(metavar="NAME|NUMBER", help="Its column or monitor.", rich_help_panel=PULSES)
+    ] = None,
+    second_gauge: Annotated[
+        float | None, typer.Option(help="From it to the specimen (m).", rich_help_panel=PULSES)
+    ] = None,
+    incident_window: Window = None,
+    reflected_window: Window = None,
+    transmitted_window: Window = None,
+    opposite: Annotated[
+        bool,
+        typer.Option("--opposite", help="The transmission bar's gauge has the other sign.", rich_help_panel=PULSES),
+    ] = False,
+    equilibrium: Annotated[float, typer.Option(help="Largest difference of the forces over their mean.")] = 0.05,
+    output: Annotated[Path | None, PICTURE] = None,
+    title: PictureTitle = None,
+    table: Annotated[
+        Path | None, typer.Option(help="Table of the histories to write (CSV).", callback=writable)
+    ] = None,
+    time_column: TimeColumn = None,
+    time_unit: TimeUnit = None,
+    unit: ValueUnit = None,
+    scale: Scale = 1.0,
+    clipped: Clipped = False,
+    gauge_factor: GaugeFactor = None,
+    bridge: BridgeWiring = "quarter",
+    excitation: Excitation = None,
+    gain: Gain = 1.0,
+    poisson: Poisson = None,
+    youngs_modulus: Modulus = None,
+    no_baseline: NoBaseline = False,
+    no_drift: NoDrift = False,
+    no_hum: NoHum = False,
+    low_pass: LowPass = None,
+    high_pass: HighPass = None,
+    band: Band = None,
+    notch: Notch = None,
+) -> None:
+    """Compute stress, strain and strain rate of a specimen in a split Hopkinson test from gauges on its bars.
+
+    By one, two and three waves, with the time in which the specimen is in equilibrium.
+    """
+    from dembound.gauge.hopkinson import specimen
+    from dembound.gauge.hopkinson_io import combined, read_strain
+    from dembound.gauge.pulses import Setup, Windows, at_faces
+    from dembound.gauge.separation import Bar
+
+    if dispersion and (poisson is None or not 0.0 < poisson < 0.5):
+        raise CaseError(["--poisson: is needed by --dispersion-correction, above 0 and below 0.5"])
+    if (second_gauge is None) != (second is None and second_column is None):
+        raise CaseError(["--second-gauge: needs --second or --second-column, and the other way round"])
+    area = _specimen_area(specimen_diameter, specimen_area)
+    modulus = density * wave_speed**2 if youngs_modulus is None else youngs_modulus
+    round_bar = (0.5 * bar_diameter, poisson) if dispersion else (None, None)
+    bar = Bar(wave_speed, attenuation, *round_bar)
+    lengths = (incident_gauge, transmitted_gauge, specimen_length, area, second_gauge, bar_length)
+    setup = Setup(bar, modulus, 0.25 * pi * bar_diameter**2, *lengths)
+    wired = bridge_of(gauge_factor, bridge, excitation, gain, poisson)
+    reading = reading_of(None, time_column, time_unit, unit, wired, scale)
+    treatment = treatment_of(no_baseline, no_drift, no_hum, low_pass, high_pass, band, notch)
+    strains = []
+    for path, column in (
+        (incident, incident_column),
+        (transmitted or incident, transmitted_column),
+        (second, second_column),
+    ):
+        if path is None and column is None:
+            continue
+        source = path or incident
+        file = results_file(source) if source.is_dir() else source
+        strains.append(read_strain(file, replace(reading, column=column), treatment, modulus, may_be_clipped=clipped))
+        for note in strains[-1].notes:
+            out.print(note)
+    signals = combined(*strains, opposite=opposite)
+    faces = at_faces(signals, setup, Windows(incident_window, reflected_window, transmitted_window))
+    found = specimen(faces, setup, equilibrium)
+    if found.equilibrium is None:
+        said = f"the forces on the specimen never agree to {100.0 * equilibrium:g} %"
+        err.print(f"warning: {said}: stress over strain is no law of it")
+    out.print(_overview(found, equilibrium))
+    if output is not None:
+        from dembound.plot.hopkinson import plot_hopkinson
+        from dembound.plot.style import save
+
+        save(plot_hopkinson(faces, found), output, title)
+        out.print(f"wrote {output}")
+    if table is not None:
+        from dembound.gauge.specimen_table import write_specimen
+
+        write_specimen(found, table)
+        out.print(f"wrote {table}")
+
+
+def _specimen_area(diameter: float | None, area: float | None) -> float:
+    """The specimen's area, m², from one of both options."""
+    if (diameter is None) == (area is None):
+        raise CaseError(["--specimen-diameter: is needed, or --specimen-area, but not both"])
+    return area if diameter is None else 0.25 * pi * diameter**2  # type: ignore[return-value]
+
+
+def _overview(found: Specimen, tolerance: float) -> Table:
+    """Largest values by one, two and three waves, and the time in equilibrium."""
+    overview = compact_table("", "three waves", "two waves", "one wave")
+    largest = [f"{stress.max() / 1e6:.5g}" for stress in (found.stress, found.front, found.back)]
+    overview.add_row("largest stress (MPa)", *largest)
+    strains = [f"{100.0 * strain.max():.4g}" for strain in (found.strain, found.one_wave_strain)]
+    overview.add_row("largest strain (%)", strains[0], "", strains[1])
+    if found.equilibrium is None:
+        overview.add_row(f"forces equal to {100.0 * tolerance:g} %", "never", "", "")
+        return overview
+    there = slice(*found.equilibrium)
+    begin, end = 1e6 * found.time[there][[0, -1]]
+    overview.add_row(f"forces equal to {100.0 * tolerance:g} % (µs)", f"{begin:.4g} to {end:.4g}", "", "")
+    overview.add_row("strain there (%)", " to ".join(f"{100.0 * s:.3g}" for s in found.strain[there][[0, -1]]), "", "")
+    rising = slice(there.start, found.largest + 1)
+    rates = [f"{rate[rising].mean():.4g}" for rate in (found.rate, found.one_wave_rate)]
+    overview.add_row("until the largest stress there:", "", "", "")
+    overview.add_row("mean strain rate (1/s)", rates[0], "", rates[1])
+    if found.slope == found.slope:
+        overview.add_row("stress over strain (GPa)", f"{found.slope / 1e9:.4g}", "", "")
+    return overview

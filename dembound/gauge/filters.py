@@ -1,0 +1,68 @@
+"""Filters that shift no phase: forwards and backwards, so that a wave stays where it is in time."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from dembound.errors import CaseError
+
+ORDER = 4
+"""Order of the Butterworth filters in one direction; both together have 3 dB twice at the corner, 6 dB."""
+
+QUALITY = 10.0
+"""Frequency of a notch over its width at 3 dB."""
+
+PERIODS = 3.0
+"""Periods that a record must have at least of every frequency of a filter."""
+
+
+@dataclass(frozen=True)
+class Filters:
+    """Corners in Hz of the filters of a signal; None and empty for none.
+
+    low_pass, high_pass : of the lower and the upper range that remains. notches : frequencies that are taken out.
+    """
+
+    low_pass: float | None = None
+    high_pass: float | None = None
+    notches: tuple[float, ...] = ()
+
+    def apply(self, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
+        """The filtered signal (k,) at even times (k,) s, and what was done.
+
+        Raises CaseError for corners above the Nyquist frequency or of waves too long for the record.
+        """
+        from scipy.signal import butter, iirnotch, sosfiltfilt, tf2sos
+
+        rate = (len(time) - 1) / float(time[-1] - time[0])
+        if problems := list(self._problems(rate, len(time))):
+            raise CaseError(problems)
+        notes = []
+        for corner, kind in ((self.high_pass, "highpass"), (self.low_pass, "lowpass")):
+            if corner is not None:
+                values = _padded(sosfiltfilt, butter(ORDER, corner, kind, fs=rate, output="sos"), values, rate / corner)
+                words = f"{kind.removesuffix('pass')} pass at {corner:g} Hz (6 dB)"
+                notes.append(f"filter: {words}, Butterworth of order {ORDER} forwards and backwards")
+        for notch in self.notches:
+            sections = tf2sos(*iirnotch(notch, QUALITY, fs=rate))
+            values = _padded(sosfiltfilt, sections, values, QUALITY * rate / notch)
+            notes.append(f"filter: notch at {notch:g} Hz, {notch / QUALITY:g} Hz wide, forwards and backwards")
+        return values, notes
+
+    def _problems(self, rate: float, count: int) -> Iterator[str]:
+        """Corners that this record does not have."""
+        corners = [("--low-pass", self.low_pass), ("--high-pass", self.high_pass)]
+        corners += [("--notch", notch) for notch in self.notches]
+        for option, corner in corners:
+            if corner is not None and not PERIODS * rate / count <= corner < 0.5 * rate:
+                least, most = PERIODS * rate / count, 0.5 * rate
+                yield f"{option}: is {corner:g} Hz, must be from {least:.3g} to below {most:.3g} Hz in this record"
+        low, high = self.low_pass, self.high_pass
+        if low is not None and high is not None and not high < low:
+            yield f"--high-pass: is {high:g} Hz, must be below the low pass, {low:g} Hz"
+
+
+def _padded(filtfilt, sections: np.ndarray, values: np.ndarray, length: float) -> np.ndarray:  # type: ignore[no-untyped-def]
+    """A signal filtered both ways, continued at its ends by its mirror images over the length of the response."""
+    return filtfilt(sections, values, padlen=min(len(values) - 1, int(3.0 * length)))

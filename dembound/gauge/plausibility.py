@@ -1,0 +1,127 @@
+"""Mistakes that a measured signal shows: clipped, sampled too coarsely, or in other units than assumed."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dembound.gauge.estimates import Estimate
+from dembound.gauge.peaks import positive_peaks, width_of
+
+LONGEST = 100.0
+"""Length of a bar, m, above which millimetres were meant."""
+
+SLOWEST, FASTEST = 100.0, 10_000.0
+"""Wave speeds of solids, m/s: rubber is slower, no bar is faster but one of diamond or beryllium."""
+
+COARSE, FEW = 5, 10
+"""Samples of the largest wave, at half its height, below which it is refused, and below which a warning is due."""
+
+SHARE_CLIPPED, LEAST_CLIPPED = 0.1, 5
+"""Equal samples at a largest value from which they are taken for clipped, over the wave's width, and their number."""
+
+ABRUPT = 8.0
+"""Fall beside a crest, in steps of the digitiser, that clips: a crest that bends by itself falls by four."""
+
+SCATTER = 10.0
+"""Largest difference of two estimates of the wave speed in their standard errors."""
+
+CLOSE, FAR = 0.01, 0.2
+"""Relative differences of two wave speeds that are never too large, and that are refused."""
+
+NOISY = 0.015
+"""Noise over the height of a wave from which strengths get a warning: it has raised them by 2 to 3 % there."""
+
+UNCERTAIN_SPEED, UNCERTAIN_DECAY = 0.01, 0.2
+"""Relative standard errors of wave speed and attenuation from which a warning is due."""
+
+
+def implausible_length(length: float) -> Iterator[str]:
+    """Message about a length, m, that is one in mm."""
+    if LONGEST < length < np.inf:
+        yield f"--length: is {length:g} m, must be at most {LONGEST:g} m; positions and lengths are in m, not mm"
+
+
+def implausible_signal(values: np.ndarray, *, may_be_clipped: bool = False) -> Iterator[str]:
+    """Messages about a signal (k,) that is clipped, or sampled too coarsely for its shortest wave."""
+    if (width := width_of(np.abs(values))) < COARSE:
+        yield f"the sampling is too coarse: the largest wave has {width} samples above half its height, needs {COARSE}"
+    for sense, extreme in ((1.0, "largest"), (-1.0, "smallest")):
+        if not may_be_clipped and (count := clipped(sense * values)):
+            value = sense * float((sense * values).max())
+            yield (
+                f"the signal is clipped: {count} samples in a row have its {extreme} value, {value:.4g}; record it "
+                "with a larger range, or allow it with --clipped if it is the wave's own plateau"
+            )
+
+
+def clipped(values: np.ndarray) -> int:
+    """Number of equal samples at the largest value of a signal (k,) whose slope breaks off there; 0 if it does not."""
+    top = float(values.max())
+    at = np.flatnonzero(np.diff(np.concatenate([[0], values == top, [0]])))
+    starts, ends = at[::2], at[1::2]
+    longest = int((ends - starts).argmax())
+    first, count = int(starts[longest]), int(ends[longest] - starts[longest])
+    if top <= 0.0 or count < max(LEAST_CLIPPED, SHARE_CLIPPED * width_of(np.maximum(values, 0.0))):
+        return 0
+    levels = np.unique(values)
+    step = float(np.diff(levels[-50:]).min())
+    fall = top - float(values[max(first - count // 2, 0)])
+    return count if fall > ABRUPT * step else 0
+
+
+def unlikely_speed(speed: float) -> Iterator[str]:
+    """Message about a wave speed, m/s, of no solid bar, with the unit that would explain it."""
+    if SLOWEST <= speed <= FASTEST:
+        return
+    hints = {
+        1e-3: "is the length in mm, or is a unit of time too small?",
+        1e-6: "is a unit of time too small?",
+        1e3: "are the times in ms? --time-unit ms",
+        1e6: "are the times in µs? --time-unit us",
+    }
+    fitting = [hint for factor, hint in hints.items() if SLOWEST <= factor * speed <= FASTEST]
+    said = f"the tension peaks give {speed:.4g} m/s, must be {SLOWEST:g} to {FASTEST:g} m/s"
+    yield f"--wave-speed: {said}" + (f"; {fitting[0]}" if fitting else "")
+
+
+def first_return(time: np.ndarray, values: np.ndarray, position: float, length: float) -> Estimate | None:
+    """Wave speed from the first passages, 2(L − x_g)/Δt; None where the first wave is not followed by its reflection.
+
+    time, values : (k,) s and any unit; position, length : m. The error is that of half a sample at either crest.
+    """
+    out, back = positive_peaks(time, -values, 1), positive_peaks(time, values, 1)
+    if not len(out.time) or not len(back.time) or not back.time[0] > out.time[0]:
+        return None
+    way, between = 2.0 * (length - position), float(back.time[0] - out.time[0])
+    return Estimate(way / between, way / between * np.sqrt(0.5) * float(time[1] - time[0]) / between, 2)
+
+
+def contradicting_speeds(speed: Estimate, first: Estimate | None) -> Iterator[str]:
+    """Message if the wave speed from the returns differs from that of the first passages by more than both scatter."""
+    if first is None:
+        yield "the first wave is no compression with its reflection behind it: --scale -1 changes the sign"
+        return
+    off = abs(speed.value / first.value - 1.0)
+    allowed = max(SCATTER * np.hypot(np.nan_to_num(speed.error), first.error) / first.value, CLOSE)
+    if off > allowed:
+        yield (
+            f"the returns give {speed.value:.5g} m/s, the first passages {first.value:.5g} m/s: {100.0 * off:.2g} % "
+            f"apart, must be within {100.0 * allowed:.2g} %; check --position and --length"
+        )
+
+
+def raised_by_noise(noise: float, crest: float) -> Iterator[str]:
+    """Message if noise of this standard deviation raises a strength, a largest value, of a wave of this height."""
+    if noise > NOISY * crest:
+        yield (
+            f"the noise is {100.0 * noise / crest:.2g} % of the wave and makes the strength too large, by about as "
+            "much: use --low-pass"
+        )
+
+
+def uncertain(speed: Estimate, decay: Estimate | None) -> Iterator[str]:
+    """Messages about estimates with large standard errors."""
+    if speed.points and not speed.error <= UNCERTAIN_SPEED * speed.value and not np.isnan(speed.error):
+        yield f"the wave speed is uncertain, its standard error is {100.0 * speed.error / speed.value:.2g} %"
+    if decay is not None and decay.points and decay.error > UNCERTAIN_DECAY * abs(decay.value):
+        yield f"the attenuation is uncertain, its standard error is {decay.error:.2g} of {decay.value:.2g} 1/m"

@@ -1,0 +1,190 @@
+"""The pulses of a split Hopkinson test: cut from the signals of gauges, and moved to the faces of the specimen.
+
+The incident pulse passes its gauge, d_i before the specimen, at t_0; the reflected one 2d_i/c later; the transmitted
+one passes its gauge, d_t behind the specimen, (d_i + d_t)/c later. Each is cut over the same time, which is over when
+the reflected one begins: a longer pulse needs a second gauge on the incident bar.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.gauge.peaks import CREST, noise_left, smooth, white_noise, width_of
+from dembound.gauge.separation import Bar, moved, separated
+
+ONSET = 0.02
+"""Share of its largest value at which the incident pulse begins; with noise five standard deviations of it."""
+
+MARGIN = 0.1
+"""Time before that which still belongs to the pulse, over its width at half its height."""
+
+FADE = 0.08
+"""Time in which a pulse is faded out behind its window, over the window's length."""
+
+ENDED = 0.05
+"""Share of its largest value below which the incident pulse has ended when the reflected one begins."""
+
+Window = tuple[float, float]
+"""First and last time of a pulse at its gauge, s."""
+
+
+@dataclass(frozen=True)
+class Setup:
+    """Bars, gauges and specimen of a test.
+
+    bar : of what both bars are; modulus : E, Pa; area : of the bars, m²; incident_gauge, transmitted_gauge : distances
+    d_i and d_t of the gauges from the specimen, m; specimen_length : m; specimen_area : m²; second_gauge : distance of
+    another gauge on the incident bar from the specimen, m, smaller than the first; bar_length : of each bar, m, if the
+    pulses are to be cut before the bars' ends send them back.
+    """
+
+    bar: Bar
+    modulus: float
+    area: float
+    incident_gauge: float
+    transmitted_gauge: float
+    specimen_length: float
+    specimen_area: float
+    second_gauge: float | None = None
+    bar_length: float | None = None
+
+    def __post_init__(self) -> None:
+        if problems := list(self._problems()):
+            raise CaseError(problems)
+
+    def _problems(self) -> Iterator[str]:
+        """Data that are no lengths, areas or speeds."""
+        values = {
+            "--wave-speed": self.bar.speed,
+            "--density": self.modulus,
+            "--bar-diameter": self.area,
+            "--incident-gauge": self.incident_gauge,
+            "--transmitted-gauge": self.transmitted_gauge,
+            "--specimen-length": self.specimen_length,
+            "--specimen-diameter": self.specimen_area,
+        }
+        for option, value in values.items():
+            if not 0.0 < value < np.inf:
+                yield f"{option}: must be finite and above 0"
+        for option, value in (
+            ("--incident-gauge", self.incident_gauge),
+            ("--transmitted-gauge", self.transmitted_gauge),
+        ):
+            if self.bar_length is not None and not value < self.bar_length:
+                yield f"{option}: is {value:g} m, must be below the length of the bar, {self.bar_length:g} m"
+            elif 50.0 < value < np.inf:
+                yield f"{option}: is {value:g} m, must be at most 50 m; lengths are in m, not mm"
+        if self.specimen_length > 1.0:
+            yield f"--specimen-length: is {self.specimen_length:g} m, must be at most 1 m; lengths are in m, not mm"
+        if self.second_gauge is not None and not 0.0 <= self.second_gauge < self.incident_gauge:
+            yield "--second-gauge: must be between the first one and the specimen"
+
+
+class Signals(NamedTuple):
+    """Strains at the gauges at the same even times (k,) s, loads positive; second : of the second gauge, or None."""
+
+    time: np.ndarray
+    incident: np.ndarray
+    transmitted: np.ndarray
+    second: np.ndarray | None = None
+
+
+class Faces(NamedTuple):
+    """Strains (n,) of the pulses at the faces of the specimen, loads positive; time : s from when the pulse arrives."""
+
+    time: np.ndarray
+    incident: np.ndarray
+    reflected: np.ndarray
+    transmitted: np.ndarray
+
+
+class Windows(NamedTuple):
+    """Windows of the pulses at their gauges, s; None: found."""
+
+    incident: Window | None = None
+    reflected: Window | None = None
+    transmitted: Window | None = None
+
+
+def at_faces(signals: Signals, setup: Setup, windows: Windows | None = None) -> Faces:
+    """The pulses at the faces of the specimen.
+
+    windows : times given for some of them; others follow from the first and from travel times.
+
+    Raises CaseError for a signal without a load, a pulse that is not over when its reflection arrives and has no second
+    gauge, and windows outside the record.
+    """
+    time, bar = signals.time, setup.bar
+    cuts = found_windows(signals, setup, windows or Windows())
+    if signals.second is not None and setup.second_gauge is not None:
+        between = setup.incident_gauge - setup.second_gauge
+        incident, reflected = separated(time, signals.incident, signals.second, between, bar)
+    else:
+        incident, reflected = _cut(time, signals.incident, cuts[0]), _cut(time, signals.incident, cuts[1])
+    transmitted = _cut(time, signals.transmitted, cuts[2])
+    begin = cuts[0][0] + setup.incident_gauge / bar.speed
+    # windows that are given move their pulses to where travel times would have them
+    late = (
+        cuts[1][0] - begin - setup.incident_gauge / bar.speed,
+        cuts[2][0] - begin - setup.transmitted_gauge / bar.speed,
+    )
+    length = min(last - first for first, last in cuts)
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    since = step * np.arange(int(length / step))
+    pulses = (
+        np.interp(begin + delay + since, time, moved(time, values, way, bar))
+        for values, way, delay in (
+            (incident, setup.incident_gauge, 0.0),
+            (reflected, -setup.incident_gauge, late[0]),
+            (transmitted, -setup.transmitted_gauge, late[1]),
+        )
+    )
+    return Faces(since, *pulses)
+
+
+def found_windows(signals: Signals, setup: Setup, given: Windows) -> tuple[Window, Window, Window]:
+    """The windows of incident, reflected and transmitted pulse at their gauges, s; errors as of `at_faces`."""
+    time, speed = signals.time, setup.bar.speed
+    begin = given.incident[0] if given.incident else _onset(time, signals.incident)
+    ways = 0.0, 2.0 * setup.incident_gauge, setup.incident_gauge + setup.transmitted_gauge
+    starts = [begin + way / speed if window is None else window[0] for way, window in zip(ways, given, strict=True)]
+    length = min(time[-1] - start for start in starts)
+    if signals.second is None:
+        length = min(length, 2.0 * setup.incident_gauge / speed)
+    if setup.bar_length is not None:
+        ends = setup.bar_length - setup.incident_gauge, setup.bar_length - setup.transmitted_gauge
+        length = min(length, 2.0 * min(ends) / speed)
+    length = min([length, *(window[1] - window[0] for window in given if window is not None)])
+    if not (min(starts) >= time[0] and length > 3.0 * (time[1] - time[0])):
+        said = f"the pulses begin at {', '.join(f'{start:.6g}' for start in starts)} s"
+        raise CaseError([f"--incident-window: {said}, the record is from {time[0]:.6g} to {time[-1]:.6g} s"])
+    end = begin + length
+    largest = float(np.abs(signals.incident).max())
+    if signals.second is None and abs(np.interp(end, time, signals.incident)) > ENDED * largest:
+        said = f"the incident pulse has not ended at {end:.6g} s, when its reflection is back or the window ends"
+        raise CaseError([f"--second-gauge: is needed, {said}; or give --incident-window"])
+    return (begin, end), (starts[1], starts[1] + length), (starts[2], starts[2] + length)
+
+
+def _onset(time: np.ndarray, values: np.ndarray) -> float:
+    """Time at which a load begins, s."""
+    width = max(2, width_of(values))
+    reach = max(1, round(0.5 * CREST * width))
+    smoothed = smooth(values, reach)
+    least = max(ONSET * float(smoothed.max()), 5.0 * white_noise(values) * noise_left(reach))
+    if not smoothed.max() > least:
+        raise CaseError(["--incident-window: is needed, the incident gauge shows no load above its noise"])
+    crest = int(smoothed.argmax())
+    before = np.flatnonzero(smoothed[: crest + 1] < least)
+    first = int(before[-1]) if len(before) else 0
+    return float(time[max(0, first - round(MARGIN * width))])
+
+
+def _cut(time: np.ndarray, values: np.ndarray, window: Window) -> np.ndarray:
+    """A signal (k,) within its window, 0 before, and behind it faded, as a step would spread by dispersion."""
+    first, last = window
+    behind = np.clip((time - last) / (FADE * (last - first)), 0.0, 1.0)
+    return np.where(time >= first, values * np.cos(0.5 * np.pi * behind) ** 2, 0.0)

@@ -1,0 +1,121 @@
+"""A gauge and its bar in the record of a run."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import h5py
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.gauge.estimates import FEWEST
+from dembound.results.reader import history_of, open_record, text_of
+
+ROUNDING = 1e-9
+"""Share of a bar's length within which two positions are equal."""
+
+
+@dataclass(frozen=True)
+class BarMetadata:
+    """Data of the bar in the record of a run.
+
+    speed : of waves, m/s; attenuation : 1/m; ends : types of the loaded end and of the other end; broken : time at
+    which the first bond broke, s, infinite for an unbroken bar.
+    """
+
+    speed: float
+    attenuation: float
+    ends: tuple[str, str]
+    broken: float
+
+
+class GaugeMetadata(NamedTuple):
+    """Data of a gauge from a record; see `Gauge`, None where it is missing."""
+
+    position: float | None = None
+    length: float | None = None
+    density: float | None = None
+    metadata: BarMetadata | None = None
+
+
+def is_record(path: Path) -> bool:
+    """Whether a file is a record by its name or contents; else it is a text."""
+    return path.suffix == ".h5" or h5py.is_hdf5(path)
+
+
+def recorded_gauge(path: Path, name: str | None) -> tuple[np.ndarray, np.ndarray, GaugeMetadata]:
+    """Time, stress and metadata of a monitor in a record."""
+    with open_record(path) as file:
+        group = _gauge(file, name)
+        time, stress = history_of(group, "stress")
+        _enough(time, path)
+        if "range" in group.attrs:
+            raise CaseError([f"{path}: has a bar of several ranges, must have one without interfaces"])
+        density = file.attrs.get("density")
+        known = GaugeMetadata(
+            position=_from_loaded_end(file, group),
+            length=bar_length(file),
+            density=None if density is None else float(density),
+            metadata=bar_metadata(file),
+        )
+        return time, stress, known
+
+
+def _gauge(file: h5py.File, name: str | None) -> h5py.Group:
+    """The history of a monitor between the ends of a recorded bar, by its name or as the only one."""
+    signals = {
+        each: group
+        for each, group in file.get("histories", {}).items()
+        if "stress" in group and not is_at(file, group, 0.0) and not is_at(file, group, bar_length(file))
+    }
+    if not signals:
+        raise CaseError([f"{file.filename}: contains no history of stress between the ends of a bar"])
+    if name is None and len(signals) > 1:
+        raise CaseError([f"--monitor: is not named, must be one of {', '.join(signals)}"])
+    if name is not None and name not in signals:
+        raise CaseError([f"--monitor: is {name}, must be between the bar's ends, which is {' or '.join(signals)}"])
+    return signals[next(iter(signals)) if name is None else name]
+
+
+def bar_metadata(file: h5py.File) -> BarMetadata | None:
+    """Data of the bar in a record; None if it has no wave speed."""
+    if "wave_speed" not in file.attrs:
+        return None
+    left, right = map(text_of, file.attrs["ends"])
+    return BarMetadata(
+        speed=float(file.attrs["wave_speed"]),
+        attenuation=float(file.attrs["attenuation"]),
+        ends=(left, right) if loaded_end(file) == "left" else (right, left),
+        broken=float(np.min(file["cracks/time"][:], initial=np.inf)),
+    )
+
+
+def bar_length(file: h5py.File) -> float:
+    """Length of a recorded bar, m."""
+    return float(np.ravel(file.attrs["size"])[0])
+
+
+def loaded_end(file: h5py.File) -> str:
+    """The end of a recorded bar from which all positions are measured."""
+    loaded = text_of(file.attrs.get("loaded", ""))
+    if loaded not in ("left", "right"):
+        where = {"both": "both ends", "none": "neither end"}.get(loaded, "an end that the record does not name")
+        raise CaseError([f"{file.filename}: has a bar loaded at {where}, must be loaded at the left or the right"])
+    return loaded
+
+
+def _from_loaded_end(file: h5py.File, group: h5py.Group) -> float:
+    """Distance of a recorded monitor from the loaded end, m."""
+    x = float(np.ravel(group.attrs["position"])[0])
+    return x if loaded_end(file) == "left" else bar_length(file) - x
+
+
+def is_at(file: h5py.File, group: h5py.Group, place: float) -> bool:
+    """Whether a recorded monitor is at a position, m from the loaded end."""
+    return abs(_from_loaded_end(file, group) - place) < ROUNDING * bar_length(file)
+
+
+def _enough(time: np.ndarray, path: Path) -> None:
+    """Raise CaseError for a history (k,) of too few samples."""
+    if len(time) < FEWEST:
+        raise CaseError([f"{path}: contains {len(time)} samples, must contain three or more"])

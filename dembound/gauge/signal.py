@@ -1,0 +1,171 @@
+"""A measured signal: its columns read from a text file, at even times, in known units."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from dembound.errors import CaseError
+from dembound.gauge.estimates import FEWEST
+from dembound.gauge.scope import Columns, read_columns
+from dembound.gauge.units import (
+    AS_THEY_ARE,
+    Bridge,
+    Unit,
+    required_time_unit,
+    required_value_unit,
+    time_unit,
+    value_unit,
+)
+
+EVEN = 1e-6
+"""Deviation of times from even ones, in steps, that changes nothing."""
+
+ROUNDED = 0.75
+"""Deviation of rounded times from even ones, in steps: written with few digits, two may even be equal."""
+
+LARGEST_GAP = 3.0
+"""Largest step over the median one of times that are resampled."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How a text file is read: its columns by name or number, and units where the header is silent or wrong."""
+
+    column: str | None = None
+    time_column: str | None = None
+    time_unit: str | None = None
+    unit: str | None = None
+    bridge: Bridge | None = None
+    scale: float = 1.0
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A signal at even times.
+
+    time : (k,) s; values : (k,) in `unit` (Pa, V, strain, m/s; empty if unknown); notes : what was done to read it.
+    """
+
+    time: np.ndarray
+    values: np.ndarray
+    unit: str
+    notes: tuple[str, ...] = ()
+
+
+def read_signal(path: Path, reading: Reading | None = None, usual: str = "Pa") -> Signal:
+    """Read a column of a text file against its times.
+
+    Parameters
+    ----------
+    path : the file, see `scope.read_columns`. reading : how. usual : the unit of values in a file without any names.
+
+    With a bridge, voltages become strains. A scale other than ±1 makes the values Pa. Times are those of the file if
+    they are even. If they are rounded they are replaced by even ones, and else the signal is resampled at the median
+    step, by straight lines.
+
+    Raises CaseError for a file that cannot be read, missing columns, unknown units, values that are not finite, times
+    that do not increase or have gaps, and fewer than three samples.
+    """
+    reading = reading or Reading()
+    if not np.isfinite(reading.scale) or reading.scale == 0.0:
+        raise CaseError([f"--scale: is {reading.scale:g}, must be finite and not 0"])
+    columns = read_columns(path)
+    at, of = _chosen(columns, reading)
+    seconds = required_time_unit(reading.time_unit) if reading.time_unit else _unit_of_time(columns, at)
+    unit = required_value_unit(reading.unit) if reading.unit else _unit_of_values(columns, of, usual)
+    time = seconds * np.array(columns.values(at))
+    values = unit.size * np.array(columns.values(of))
+    _require_sound(columns, time, values)
+    time, values, even = _evenly(path, time, values)
+    values, measured, notes = _converted(values, unit, reading)
+    name = f"column {of + 1}" + (f", {columns.names[of]}" if columns.names[of] else "")
+    read = f"{name}{f' ({unit.name})' if unit.name else ''}: {len(time)} samples, one every {_in_words(time)}"
+    return Signal(time, values, measured, (read, *even, *notes))
+
+
+def _chosen(columns: Columns, reading: Reading) -> tuple[int, int]:
+    """Indices of the columns of times and of values; the first, and the other one of two, by default."""
+    at = 0 if reading.time_column is None else columns.find("--time-column", reading.time_column)
+    if reading.column is not None:
+        return at, columns.find("--column", reading.column)
+    others = [index for index in range(len(columns.places)) if index != at]
+    if len(others) > 1:
+        known = [name for name in (columns.names[index] for index in others) if name]
+        allowed = ", ".join(known) if known else f"a number from 1 to {len(columns.places)}"
+        raise CaseError([f"--column: is missing, {columns.path} has {len(columns.places)} columns; must be {allowed}"])
+    return at, others[0]
+
+
+def _unit_of_time(columns: Columns, column: int) -> float:
+    """Size in s of the unit of times in the header; 1 by default."""
+    return next((size for size in map(time_unit, columns.units(column)) if size is not None), 1.0)
+
+
+def _unit_of_values(columns: Columns, column: int, usual: str) -> Unit:
+    """The unit of values in the header; the usual one in a file without names, or by a name that says the quantity."""
+    for unit in map(value_unit, columns.units(column)):
+        if unit is not None:
+            return unit
+    name = columns.names[column].lower()
+    assumed = not any(columns.names) or (usual == "Pa" and "stress" in name) or (usual == "m/s" and "velocity" in name)
+    return Unit(usual, usual, 1.0) if assumed else AS_THEY_ARE
+
+
+def _require_sound(columns: Columns, time: np.ndarray, values: np.ndarray) -> None:
+    """Raise CaseError for too few samples, values that are not finite, constant values, and times that go back."""
+    if len(time) < FEWEST:
+        raise CaseError([f"{columns.path}: contains {len(time)} samples, must contain three or more"])
+    for what, numbers in (("time", time), ("value", values)):
+        if not np.isfinite(numbers).all():
+            line = columns.numbers[int(np.argmin(np.isfinite(numbers)))]
+            said = "an overdriven channel?" if what == "value" else "must be a number"
+            raise CaseError([f"{columns.path}: the {what} of line {line} is not finite: {said}"])
+    if (np.diff(time) < 0.0).any() or time[0] == time[-1]:
+        line = columns.numbers[int(np.argmax(np.diff(time) < 0.0)) + 1]
+        raise CaseError(
+            [f"{columns.path}: must have increasing times; that of line {line} does not follow the one before"]
+        )
+    if np.ptp(values) == 0.0:
+        raise CaseError([f"{columns.path}: has no signal, all values are {values[0]:g}"])
+
+
+def _evenly(path: Path, time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[str]]:
+    """Times and values (k,) at even times, and what was done for it."""
+    even = np.linspace(time[0], time[-1], len(time))
+    step = float(even[1] - even[0])
+    off = float(np.abs(time - even).max()) / step
+    if off < EVEN:
+        return time, values, []
+    if off < ROUNDED:
+        return even, values, [f"times: rounded by up to {off:.2g} steps, replaced by even ones"]
+    steps = np.diff(time)
+    if not (steps > 0.0).all():
+        raise CaseError([f"{path}: must have increasing times, two are {time[int(steps.argmin())]:.6g} s"])
+    step = float(np.median(steps))
+    worst = int(steps.argmax())
+    if not steps[worst] <= LARGEST_GAP * step:
+        said = f"{steps[worst]:.4g} s at {time[worst]:.6g} s, others are {step:.4g} s"
+        raise CaseError([f"{path}: must have even times, there is a gap of {said}"])
+    even = time[0] + step * np.arange(int((time[-1] - time[0]) / step) + 1)
+    return even, np.interp(even, time, values), [f"times: uneven, resampled every {step:.4g} s by straight lines"]
+
+
+def _converted(values: np.ndarray, unit: Unit, reading: Reading) -> tuple[np.ndarray, str, list[str]]:
+    """Values in Pa, strain or as they are, what they measure now, and what was done."""
+    measured, notes = unit.of, []
+    if reading.bridge is not None:
+        if unit.of not in ("V", ""):
+            raise CaseError([f"--gauge-factor: is for voltages, the values are in {unit.name}"])
+        values, measured = reading.bridge.strain(values), "strain"
+        notes.append(f"strain: {reading.bridge.wiring} bridge, gauge factor {reading.bridge.gauge_factor:g}")
+    if abs(reading.scale) != 1.0:
+        notes.append(f"stress: 1 {measured or 'unit'} is {reading.scale:g} Pa")
+        measured = "Pa"
+    return reading.scale * values, measured, notes
+
+
+def _in_words(time: np.ndarray) -> str:
+    """The step of even times, in words."""
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    return f"{1e6 * step:.4g} µs" if step < 1e-3 else f"{step:.4g} s"

@@ -1,0 +1,86 @@
+"""Signals that cannot be what they are taken for."""
+
+import numpy as np
+import pytest
+
+from dembound.gauge.estimates import Estimate
+from dembound.gauge.plausibility import (
+    clipped,
+    contradicting_speeds,
+    first_return,
+    implausible_length,
+    implausible_signal,
+    raised_by_noise,
+    uncertain,
+    unlikely_speed,
+)
+
+TIME = np.arange(1000.0)
+BELL = np.exp(-(((TIME - 500.0) / 80.0) ** 2))
+TRIANGLE = np.clip(1.0 - np.abs(TIME - 500.0) / 100.0, 0.0, None)
+
+
+@pytest.mark.parametrize("levels", [16, 256, 4096])
+@pytest.mark.parametrize("wave", [BELL, TRIANGLE], ids=["bell", "triangle"])
+def test_what_a_digitiser_makes_of_a_crest_is_not_clipped(wave, levels):
+    assert clipped(np.round(wave * levels) / levels) == 0
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.003])
+def test_what_is_cut_is_clipped(noise):
+    wave = TRIANGLE + noise * np.random.default_rng(1).standard_normal(1000)
+    assert clipped(np.minimum(wave, 0.8)) == pytest.approx(41, abs=2)  # a fifth of both slopes
+    assert clipped(np.minimum(wave, 0.97)) == 0  # seven samples of a width of a hundred do not matter
+    (said,) = implausible_signal(-np.minimum(wave, 0.8))
+    assert "have its smallest value, -0.8" in said
+    assert not list(implausible_signal(-np.minimum(wave, 0.8), may_be_clipped=True))
+
+
+def test_few_samples_are_too_coarse():
+    assert "the largest wave has 1 samples" in next(implausible_signal(TRIANGLE[::100]))
+    assert not list(implausible_signal(TRIANGLE[::10]))
+
+
+@pytest.mark.parametrize(("length", "count"), [(0.99, 0), (100.0, 0), (990.0, 1), (np.inf, 0), (np.nan, 0)])
+def test_millimetres_are_seen(length, count):
+    assert len(list(implausible_length(length))) == count
+
+
+@pytest.mark.parametrize(
+    ("speed", "hint"),
+    [
+        (2.74e6, "length in mm"),
+        (2.74e9, "unit of time too small"),
+        (2.74, "--time-unit ms"),
+        (2.74e-3, "--time-unit us"),
+    ],
+)
+def test_units_are_guessed_from_the_speed(speed, hint):
+    assert hint in next(unlikely_speed(speed))
+    assert not list(unlikely_speed(2740.0))
+
+
+def test_first_passages_give_the_speed():
+    values = -TRIANGLE + np.roll(0.6 * TRIANGLE, 300)
+    first = first_return(TIME, values, 0.4, 1.0)
+    assert first.value == pytest.approx(2.0 * 0.6 / 300.0, rel=1e-12)
+    assert first.error == pytest.approx(first.value * np.sqrt(0.5) / 300.0, rel=1e-12)
+    assert first_return(TIME, -values, 0.4, 1.0) is None
+
+
+def test_speeds_agree_within_ten_of_their_errors():
+    first = Estimate(1000.0, 2.0, 2)
+    assert not list(contradicting_speeds(Estimate(1019.0, 0.0, 3), first))
+    assert "2.1 % apart, must be within 2 %" in next(contradicting_speeds(Estimate(1021.0, 0.0, 3), first))
+    assert not list(contradicting_speeds(Estimate(1021.0, 1.0, 3), first))
+    assert not list(contradicting_speeds(Estimate(1009.0, np.nan, 2), Estimate(1000.0, 0.0, 2)))
+    assert "changes the sign" in next(contradicting_speeds(Estimate(1000.0), None))
+
+
+def test_large_errors_are_told():
+    good, bad = Estimate(1000.0, 9.0, 3), Estimate(1000.0, 11.0, 3)
+    assert not list(uncertain(good, Estimate(0.5, 0.09, 3)))
+    assert len(list(uncertain(bad, Estimate(0.5, 0.11, 3)))) == 2
+    assert not list(uncertain(Estimate(1000.0), Estimate(0.5)))
+    assert len(list(raised_by_noise(0.016, 1.0))) == 1
+    assert not list(raised_by_noise(0.014, 1.0))
