@@ -92,7 +92,9 @@ def test_the_summary_of_disks_is_plain_json(bar, law: str) -> None:
     simulation.advance(60)
     found = json.loads(json.dumps(summarise_disks(planned.scene, simulation), allow_nan=False))
 
-    assert set(found) == {"particles", "has_history", "contacts", "loose_disks_left_out", "packing", "boundaries"}
+    of_scene = {"particles", "has_history", "contacts", "loose_disks_left_out", "packing", "boundaries"}
+    assert set(found) == of_scene | {"load_factor"}
+    assert found["load_factor"] is None
     assert (found["particles"], found["contacts"], found["loose_disks_left_out"]) == (40, 2 * 19 + 20, 0)
     assert found["has_history"] == (law == "linearpbond")
     assert found["boundaries"]["right"]["peak_velocity"][0] > 0.4  # of a pulse of 0.5 m/s
