@@ -13,8 +13,7 @@ from rich.table import Table
 
 from dembound.cli.app import PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing, writable
 from dembound.cli.calibration import OneCase
-from dembound.cli.console import compact_table, err, out
-from dembound.cli.progress import INTERVAL
+from dembound.cli.console import INTERVAL, compact_table, err, out
 
 if TYPE_CHECKING:
     import numpy as np

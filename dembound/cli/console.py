@@ -13,6 +13,9 @@ from rich.text import Text
 
 from dembound.errors import visible
 
+INTERVAL = 10.0
+"""Seconds between two lines of progress where there is no terminal."""
+
 
 class PlainConsole(Console):
     """Prints texts of users: nothing in them is markup, an emoji code or a command to the terminal."""

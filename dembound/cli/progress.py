@@ -7,12 +7,9 @@ from contextlib import contextmanager
 from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as RichProgress
 
-from dembound.cli.console import err
+from dembound.cli.console import INTERVAL, err
 from dembound.motion.trackers import Run
 from dembound.running import Progress
-
-INTERVAL = 10.0
-"""Seconds between two lines."""
 
 
 @contextmanager

@@ -11,9 +11,8 @@ from typing import Annotated
 import typer
 
 from dembound.cli.app import app, writable
-from dembound.cli.console import err, out
+from dembound.cli.console import INTERVAL, err, out
 from dembound.cli.plotted import SceneField
-from dembound.cli.progress import INTERVAL
 from dembound.cli.results import results_file
 from dembound.errors import CaseError
 

@@ -14,7 +14,7 @@ from rich.table import Column, Table
 
 from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case
 from dembound.cli.calibration import CalibrationMethod
-from dembound.cli.console import compact_table, err, out
+from dembound.cli.console import INTERVAL, compact_table, err, out
 from dembound.errors import CaseError
 from dembound.results.interrupts import exit_code_of
 
@@ -123,8 +123,6 @@ def sweep(
 @contextmanager
 def _shown(name: str) -> Iterator[Report]:
     """Shows how far a sweep is: a bar on a terminal, else a line every ten seconds."""
-    from dembound.cli.progress import INTERVAL
-
     began = said = time.monotonic()
 
     def say(standing: Standing) -> None:

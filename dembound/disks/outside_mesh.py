@@ -237,7 +237,9 @@ def _refuse_thin(gap: float, least: float) -> None:
 
 
 def _refuse_low(rim: Rim, least: float) -> None:
-    """Raise CaseError for ground beside a body between whose heights no useful element (m) fits."""
+    """Raise CaseError for ground beside a body, lower beyond a side, between whose heights no useful element (m) fits."""
+    if not rim.levels:
+        return
     surfaces = {f"the surface beyond the {side} side": level.surface for side, level in rim.levels.items()}
     highest = max(rim.tops) if rim.tops else rim.box[3]
     heights = {"the lower side of the disks": rim.box[1], **surfaces}
