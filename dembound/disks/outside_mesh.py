@@ -237,7 +237,7 @@ def _refuse_thin(gap: float, least: float) -> None:
 
 
 def _refuse_low(rim: Rim, least: float) -> None:
-    """Raise CaseError for ground beside a body, lower beyond a side, between whose heights no useful element (m) fits."""
+    """Raise CaseError for ground lower beyond a side if no useful element (m) fits between its heights."""
     if not rim.levels:
         return
     surfaces = {f"the surface beyond the {side} side": level.surface for side, level in rim.levels.items()}
