@@ -31,6 +31,12 @@ if TYPE_CHECKING:
 NOTHING = 0.05
 """Share of the strength that the largest tension must reach; oscillations behind a pulse reach some per cent of it."""
 
+LIKELY = (100.0, 10_000.0)
+"""Slowest and fastest waves (m/s) of bars of solids; those of soft rubber and of hard ceramics are within it."""
+
+ALIKE = 1e-3
+"""Relative difference of Δx/c up to which it is the same."""
+
 LONGEST = 0.25
 """Horizon over EG_f/σ_t² up to which a crack opens at one plane: at 0.2 it takes 1.00 to 1.04 of its fracture energy,
 at 0.4 up to 1.3, at 0.8 up to 1.8 under a pulse of 2.6 strengths."""
@@ -46,7 +52,40 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
         *_dashpots_at_soft_ends(case),
         *_long_bonds_across_cracks(case),
         *stress_beside_strength(case),
+        *_unlikely_speeds(case),
+        *_impacts(case, time_step),
     ]
+
+
+def _unlikely_speeds(case: BarCase) -> Iterator[str]:
+    """Wave speeds of no rock, metal or plastic: density or stiffness is probably in another unit."""
+    for number, part in enumerate(case.bar.parts, start=1):
+        if not LIKELY[0] <= part.speed <= LIKELY[1]:
+            place = f"bar.range[{number}]" if case.bar.range else "bar"
+            yield (
+                f"{place}: its wave speed is {part.speed:.4g} m/s, of solids {LIKELY[0]:g} to {LIKELY[1]:,g}; is the "
+                "density in kg/m³ and the stiffness in Pa?"
+            )
+
+
+def _impacts(case: BarCase, time_step: float) -> Iterator[str]:
+    """Impacts: their fronts of one step swing unless the time step is the Δx/c of all ranges."""
+    if not any(each.velocity for each in case.bar.range):
+        return
+    steps = np.array([part.length / part.cells / part.speed for part in case.bar.parts])
+    if np.ptp(steps) < ALIKE * steps.max():
+        if time_step < (1.0 - ALIKE) * steps.max():
+            yield (
+                f"run.courant: is {time_step / steps.max():.3g}, so fronts of impacts overshoot by some 20 % of the "
+                "stress; as Δx/c is alike in all ranges, courant = 1.0 has none of it"
+            )
+        return
+    listed = ", ".join(f"{1e6 * step:.3g}" for step in steps)
+    yield (
+        f"bar.range: Δx/c differs, {listed} µs, so fronts of impacts swing from step to step, by some 20 % of the "
+        "stress, which can break bonds though the stress at nodes does not show it; choose spacings with one Δx/c, and "
+        "run.courant = 1.0"
+    )
 
 
 def _too_few_cells(scene: BarScene, time_step: float) -> Iterator[str]:

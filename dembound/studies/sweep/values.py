@@ -23,16 +23,29 @@ MOST_SHOWN = 6
 COMPONENTS = ("x", "y", "xy")
 """Names of the entries of lists of two or three numbers."""
 
+ENDS = ("from", "to")
+"""Names of those of the ranges of a bar in which a spall is."""
+
+ENERGY = "J/m, of bars J"
+
 UNITS = {
     "m/s": ("peak_velocity", "rms_velocity", "p_wave_speed", "s_wave_speed", "wave_speed", "outgoing", "incident"),
-    "m": ("position", "peak_displacement", "length", "diameter", "mean_diameter", "start", "end", "spacing"),
-    "s": ("time_step", "step_limit", "duration", "peak_time", "arrival", "time"),
-    "Pa": ("stress", "emod", "pb_emod", "C11", "C22", "C12", "C66", "youngs_modulus", "strength", "tension"),
-    "J/m": ("absorbed", "came_in", "stored"),
+    "m": (
+        *("position", "peak_displacement", "length", "diameter", "mean_diameter", "start", "end", "spacing"),
+        *("diameter_min", "diameter_mean", "diameter_max", "crack_opening", "characteristic_length"),
+    ),
+    "m²": ("section",),
+    "s": ("time_step", "step_limit", "duration", "peak_time", "arrival", "time", "began"),
+    "kg/m³": ("density",),
+    "Pa·s/m": ("impedance",),
+    "1/m": ("attenuation",),
+    "J/m²": ("fracture_energy",),
+    "Pa": ("stress", "emod", "pb_emod", "C11", "C22", "C12", "C66", "youngs_modulus", "strength"),
+    ENERGY: ("absorbed", "came_in", "stored"),
 }
 """Units of the last part of a name, without component; all others are pure numbers, but for the next."""
 
-WITHIN = {"energy": "J/m", "stress": "Pa", "pull_back_strength": "Pa"}
+WITHIN = {"energy": ENERGY, "stress": "Pa", "pull_back_strength": "Pa"}
 """Units of all numbers within an entry of the summary."""
 
 
@@ -48,7 +61,9 @@ def _numbers(entry: Any, place: str) -> Iterator[tuple[str, float]]:
             if name not in LEFT_OUT:
                 yield from _numbers(inner, f"{place}.{name}" if place else name)
     elif isinstance(entry, list):
-        names = COMPONENTS if len(entry) in (2, 3) and not isinstance(entry[0], Mapping) else range(1, len(entry) + 1)
+        names: Sequence[str] | range = range(1, len(entry) + 1)
+        if len(entry) in (2, 3) and not isinstance(entry[0], Mapping):
+            names = ENDS if place.startswith("spalls.") else COMPONENTS
         for name, inner in zip(names, entry, strict=False):
             yield from _numbers(inner, f"{place}.{name}")
     elif isinstance(entry, bool | int | float):
@@ -79,9 +94,10 @@ def values_of_calibration(found: Sequence[Calibration]) -> dict[str, float]:
 def unit_of(name: str) -> str:
     """The unit of the values of a name; 1 for pure numbers."""
     first, *parts = name.split(".")
-    last = next((part for part in reversed(parts) if part not in COMPONENTS), first)
-    known = next((unit for unit, names in UNITS.items() if last in names), None)
-    return known or (WITHIN.get(first, "1") if last != "relative_error" else "1")
+    last = next((part for part in reversed(parts) if part not in (*COMPONENTS, *ENDS)), first)
+    if first in WITHIN and last != "relative_error":
+        return WITHIN[first]
+    return next((unit for unit, names in UNITS.items() if last in names), "1")
 
 
 def shown_by_default(names: Sequence[str], action: Action) -> list[str]:

@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from small_cases import SPALLING, small
 
 from dembound.bar.facts import cells_of_waves
 from dembound.bar.scene import build_bar
+from dembound.bar.stability import choose_step
 from dembound.bar.warnings import bar_warnings, ends_too_soon, stress_beside_strength
 from dembound.boundaries import ViscousInput
 from dembound.exact.bar import triangle_spall
@@ -273,3 +275,36 @@ def test_long_bonds_across_cracks_are_warned_of(spalling, energy: float, warned:
     # δ = 3·25 mm; a quarter of EG_f/σ_t², 2.5 GPa·G_f/(8 MPa)², is as long at 7.68 kJ/m²
     found = of_key("method.horizon", bar_warnings(build_bar(spalling({"bar.fracture_energy": energy})), 2e-5))
     assert len(found) == warned
+
+
+STRIKER = [
+    {"name": "striker", "length": 0.2, "velocity": 5.0},
+    {"name": "rod", "length": 0.4, "interface": "contact"},
+]
+
+
+def struck(spacing: float, courant: float):
+    """A striker on a rod of the same stone, with its own spacing."""
+    bar = {key: value for key, value in SPALLING["bar"].items() if key != "length"}
+    ranges = [STRIKER[0], STRIKER[1] | {"spacing": spacing}]
+    run = {"duration": 4e-4, "courant": courant}
+    method = {"type": "finite_difference"}
+    return small({"bar": bar | {"range": ranges}, "method": method, "monitor": SPALLING["monitor"], "run": run})
+
+
+@pytest.mark.parametrize(
+    ("spacing", "courant", "key"), [(0.025, 1.0, None), (0.025, 0.9, "run.courant"), (0.02, 0.8, "bar.range:")]
+)
+def test_fronts_of_impacts_need_one_step_for_a_spacing(spacing: float, courant: float, key: str | None) -> None:
+    scene = build_bar(struck(spacing, courant))
+    found = [line for line in bar_warnings(scene, choose_step(scene)[0]) if "impacts" in line]
+    assert len(found) == (key is not None)
+    assert key is None or found[0].startswith(key)
+
+
+@pytest.mark.parametrize(("density", "warned"), [(2.5, True), (2500.0, False)])
+def test_a_density_in_another_unit_is_warned_of(density: float, warned: bool) -> None:
+    bar = {key: value for key, value in SPALLING["bar"].items() if key != "wave_speed"}
+    scene = build_bar(small(SPALLING | {"bar": bar | {"youngs_modulus": 30e9, "density": density}}))
+    found = of_key("bar", bar_warnings(scene, choose_step(scene)[0]))
+    assert any("wave speed" in line for line in found) == warned

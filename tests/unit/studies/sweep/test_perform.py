@@ -14,7 +14,7 @@ from dembound.running import job, run_case
 from dembound.studies.all_sides import calibrate_all
 from dembound.studies.sweep.members import changes_of, members_of
 from dembound.studies.sweep.perform import ALONE, MEMBERS, Outcome, forget_replaced, outcome_in, perform
-from dembound.studies.sweep.values import unit_of
+from dembound.studies.sweep.values import ENERGY, unit_of
 
 
 def test_values_are_those_of_the_run_alone(rods, task, tmp_path) -> None:
@@ -26,7 +26,7 @@ def test_values_are_those_of_the_run_alone(rods, task, tmp_path) -> None:
     assert (tmp_path / "begun").is_file()
     values, summary = outcome.values, alone.summary
     assert values["spalls.1.time"] == summary["spalls"][0]["time"]
-    assert values["spalls.1.end.y"] == summary["spalls"][0]["end"][1]
+    assert values["spalls.1.end.to"] == summary["spalls"][0]["end"][1]
     assert values["energy.kinetic"] == summary["energy"]["kinetic"]
     velocity = alone.histories["gauge"]["velocity"][:, 0]
     assert values["monitors.gauge.peak_velocity.x"] == np.abs(velocity).max()
@@ -41,11 +41,16 @@ def test_units_are_those_of_the_last_part() -> None:
         "monitors.end.peak_velocity.x": "m/s",
         "monitors.end.peak_displacement.y": "m",
         "boundary.right.beta_p": "1",
-        "energy.kinetic": "J/m",
+        "energy.kinetic": ENERGY,
         "energy.relative_error": "1",
-        "sides.left.absorbed": "J/m",
+        "sides.left.absorbed": ENERGY,
         "sides.left.absorbed_share": "1",
         "stress.gauge.tension": "Pa",
+        "cracks.tension": "1",
+        "pull_back_strength.end": "Pa",
+        "spalls.1.start.from": "m",
+        "spalls.1.began": "s",
+        "bar.section": "m²",
         "steps": "1",
     }
     assert {name: unit_of(name) for name in found} == found

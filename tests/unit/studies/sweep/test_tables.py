@@ -12,6 +12,7 @@ from dembound.plot.sweep import plot_sweep
 from dembound.studies.sweep.members import Member
 from dembound.studies.sweep.perform import Outcome
 from dembound.studies.sweep.tables import Swept, write_tables
+from dembound.studies.sweep.values import ENERGY
 
 SIDE = {"type": "free"}
 
@@ -54,7 +55,7 @@ def test_statistics_are_rows_of_groups(swept, tmp_path) -> None:
     rows = rows_of(tmp_path / "statistics.csv")
     assert [(row["run.safety"], row["quantity"], row["unit"], row["count"], row["mean"]) for row in rows] == [
         ("0.5", "monitors.end.peak_velocity", "m/s", "2", "2.0"),
-        ("0.5", "energy.kinetic", "J/m", "2", "4.0"),
+        ("0.5", "energy.kinetic", ENERGY, "2", "4.0"),
         ("0.9", "monitors.end.peak_velocity", "m/s", "1", "5.0"),
     ]
     # of 1 and 3: √2, and t(0.975) of one degree, tan(0.475π) = 12.70620, times √2/√2
@@ -70,7 +71,7 @@ def test_the_record_has_the_same_with_units(swept, tmp_path) -> None:
         assert [text.decode() for text in file["members/name"][:]] == ["m0", "m1", "m2", "m3", "m4"]
         assert json.loads(file["members/changes"][4]) == {"packing.seed": 1, "boundary.right": SIDE}
         assert np.array_equal(file["values/energy.kinetic"][:], [2.0, 6.0, *[np.nan] * 3], equal_nan=True)
-        assert file["values/energy.kinetic"].attrs["unit"] == b"J/m"
+        assert file["values/energy.kinetic"].attrs["unit"].decode() == ENERGY
         inner = file["statistics/monitors.end.peak_velocity"]
         assert inner["mean"][:].tolist() == [2.0, 5.0]
         assert inner["count"][:].tolist() == [2, 1]
