@@ -9,7 +9,7 @@ Where waves enter through an artificial side it stays, too: farther away it woul
 disperse, or the same too late. What it reflects is then in the reference as in the case, and the sentence gives it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -35,6 +35,7 @@ from dembound.errors import CaseError
 from dembound.holes import Hole, Rectangle
 from dembound.motion.paths import Front, Source, plane_needed
 from dembound.motion.silence import monitored
+from dembound.packings import Packing
 from dembound.packings.tiling import count_disks
 from dembound.table import Box, shifted_box, shifted_place
 
@@ -98,21 +99,41 @@ def _extended_disks(case: DiskCase, most: int) -> Extended:
         raise CaseError([f"incident: the scene cannot be extended, as {reason}"], case.name)
     moving = _moving(case, set(case.driving))
     scene = build(case)
-    front = front_of(scene.ground, case.run.safety)
-    sources = sources_of(case, scene.ground)
-    bricks = {side: _bricks_beyond(scene, side, sources, front) for side in moving}
-    added = [[bricks.get(side, 0) for side in pair] for pair in (("left", "right"), ("bottom", "top"))]
-    copies = tuple(count + sum(more) for count, more in zip(case.packing.copies, added, strict=True))
-    count = _particles(scene, (copies[0], copies[1]))
-    packing = case.packing.with_copies(copies[0], copies[1])
+    bricks = bricks_needed(scene, moving)
+    packing = _with_more(case, bricks)
+    count = _particles(scene, packing.copies)
     size = "{:g} m × {:g} m".format(*packing.extent)
     _must_not_exceed(count, most, size, case)
-    what = f"the same scene {size}, {count:,} particles"
-    sentence = _sentence(case, what, moving)
+    sentence = _sentence(case, f"the same scene {size}, {count:,} particles", moving)
+    larger, inside = enlarged(scene, bricks)
+    return Extended(larger, sentence, inside)
+
+
+def movable_sides(case: DiskCase) -> list[str]:
+    """The artificial sides that can move; raises CaseError if there are some, and none can."""
+    return _moving(case, set(case.driving))
+
+
+def bricks_needed(scene: DiskScene, moving: Sequence[str]) -> dict[str, int]:
+    """By side that moves, the number of bricks beyond it with which nothing returns to any monitor within the run."""
+    case = scene.case
+    front = front_of(scene.ground, case.run.safety)
+    sources = sources_of(case, scene.ground)
+    return {side: _bricks_beyond(scene, side, sources, front) for side in moving}
+
+
+def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> tuple[DiskCase, Box]:
+    """The case of a scene with so many more bricks beyond its sides, and where (m) the scene lies in it.
+
+    Raises CaseError where a hole reaches beyond a side that moves.
+    """
+    case = scene.case
+    inside = (0.0, 0.0, *case.packing.extent)
     if not any(bricks.values()):
-        return Extended(case, sentence, (0.0, 0.0, *case.packing.extent))
+        return case, inside
+    packing = _with_more(case, bricks)
     wide, high = case.packing.brick_size
-    by = added[0][0] * wide, added[1][0] * high
+    by = bricks.get("left", 0) * wide, bricks.get("bottom", 0) * high
     _holes_must_end(case, bricks)
     at_places = _at_places(case, scene, by, packing.extent)
     larger = replace(
@@ -120,10 +141,16 @@ def _extended_disks(case: DiskCase, most: int) -> Extended:
         packing=packing,
         hole=(*at_places.hole, *_floors_beyond(case, by, packing.extent)),
         boundary={side: table.shifted(by) for side, table in case.boundary.items()},
-        run=_same_step(case.run, choose_step(scene)[0]),
+        run=case.run if case.outside_sides else _same_step(case.run, choose_step(scene)[0]),  # ties have limits of theirs
         name=f"{case.name}_extended",
     )
-    return Extended(larger, sentence, shifted_box((0.0, 0.0, *case.packing.extent), by))
+    return larger, shifted_box(inside, by)
+
+
+def _with_more(case: DiskCase, bricks: Mapping[str, int]) -> Packing:
+    """The packing with so many more bricks beyond its sides."""
+    (across, up), more = case.packing.copies, {side: bricks.get(side, 0) for side in SIDES}
+    return case.packing.with_copies(across + more["left"] + more["right"], up + more["bottom"] + more["top"])
 
 
 def _moving(case: Case, staying: set[str]) -> list[str]:

@@ -1,0 +1,175 @@
+"""A case of disks with larger particles: the same ground, sides, loads, holes and monitors on a coarser lattice.
+
+What artificial sides do to a run, echoes, drift and waves along the surface, hardly depends on the particles as long as
+they resolve the waves. Their error is therefore found from two runs with larger ones, which cost a small share of the
+run itself: k times larger disks are k² times fewer, with steps k times longer.
+
+The coarser packing is always a square lattice. That of a random packing has its wave speeds along x, its density, and
+dashpots and springs that match it as well, or as badly, as those of the case match the random packing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from dembound.boundaries import SIDES, normal_axis
+from dembound.boundaries.boundary import Boundary
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.disks.ground import Ground
+from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.material import Material
+from dembound.disks.loads import forces_of
+from dembound.disks.matching import homogenised_beta
+from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.scene import DiskScene, boundary_medium, build
+from dembound.packings.square import Square
+from dembound.table import shifted_place
+
+CELLS = 4
+"""Smallest number of particles across a hole."""
+
+TRIED = 60
+"""Numbers of columns that are tried for the one whose rows fit the height best."""
+
+
+def largest_diameter(case: DiskCase, scene: DiskScene, shortest: float) -> float:
+    """Largest diameter (m) of disks that resolve the holes and the shortest wave (m) of a case, and fit its sides."""
+    holes = [min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1]) / CELLS for hole in case.hole]
+    return min([shortest, *holes, *(length / CELLS for length in case.size)])
+
+
+def coarser(case: DiskCase, scene: DiskScene, diameter: float) -> DiskCase:
+    """The case with a square lattice of about this diameter (m); scene : of the case.
+
+    Places move with the sides, by less than half a diameter, as the scene then is whole cells wide and high. Nothing
+    but histories is recorded.
+
+    Raises the errors of building a scene.
+    """
+    columns, rows, cell = _cells(case.size, diameter)
+    packing = Square(pattern="A", radius=0.5 * cell, bricks=(columns, rows))
+    stretch = columns * cell / case.size[0], rows * cell / case.size[1]
+    larger = replace(
+        case,
+        packing=packing,
+        ground=Ground(),
+        material=_material(case, scene.ground),
+        hole=tuple(hole.shifted(_moved(_middle(hole.box), stretch)) for hole in case.hole),
+        load=tuple(_load(load, scene, cell, stretch) for load in case.load),
+        monitor=tuple(
+            monitor.model_copy(update={"position": _at(scene.monitored[monitor.name], stretch)})
+            for monitor in case.monitor
+        ),
+        static=None if case.static is None else case.static.model_copy(update={"from_": None}),
+        run=_run(case),
+        output=case.output.model_copy(update={"snapshots": 0, "history_interval": 0.0, "load_factor": False}),
+        name=f"{case.name}_coarser",
+    )
+    return _with_equal_sides(larger, scene)
+
+
+def _cells(size: tuple[float, float], diameter: float) -> tuple[int, int, float]:
+    """Columns, rows and width (m) of the cells, at most this diameter wide, whose rows fit the height best."""
+    fewest = math.ceil(size[0] / diameter - 1e-9)
+    most = max(fewest + 1, min(fewest + TRIED, int(1.15 * fewest)))
+    tried = [(columns, size[1] * columns / size[0]) for columns in range(fewest, most + 1)]
+    columns, rows = min(tried, key=lambda each: (round(abs(each[1] - round(each[1])) / each[1], 4), each[0]))
+    return columns, max(1, round(rows)), size[0] / columns
+
+
+def _middle(box: tuple[float, float, float, float]) -> np.ndarray:
+    return np.array([0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])])
+
+
+def _moved(place: np.ndarray, stretch: tuple[float, float]) -> tuple[float, float]:
+    """How far (m) a place moves with the sides."""
+    return float(place[0] * (stretch[0] - 1.0)), float(place[1] * (stretch[1] - 1.0))
+
+
+def _at(place: np.ndarray, stretch: tuple[float, float]) -> tuple[float, float]:
+    """A place after it has moved with the sides."""
+    return shifted_place((float(place[0]), float(place[1])), _moved(place, stretch))
+
+
+def _run(case: DiskCase) -> Any:
+    """The ``[run]`` table: its own time step, to the same end, without files."""
+    ended = {"until": type(case.run).model_fields["until"].default}
+    return case.run.model_copy(update={"time_step": "auto", "checkpoint": 0.0, **ended})
+
+
+def _material(case: DiskCase, ground: PackedMaterial) -> Material:
+    """The material, by which the lattice has the wave speeds along x of the ground."""
+    if isinstance(case.packing, Square):
+        return case.material
+    tensor, density = ground.material_tensor, ground.density
+    p, s = math.sqrt(tensor[0, 0] / density), math.sqrt(tensor[3, 3] / density)
+    moduli = ground.moduli
+    ratio = 0.5 * (p / s) ** 2  # a square lattice whose disks turn freely has G = k_s/2
+    given = case.material.model_dump(exclude_unset=True, exclude={"emod", "pb_emod", "match", "kratio", "pb_kratio"})
+    given |= {
+        "p_wave_speed": p,
+        "contact_share": moduli.emod / (moduli.emod + moduli.pb_emod),
+        "kratio": ratio,
+        "pb_kratio": ratio,
+        "s_wave_speed": None,
+    }
+    return Material.model_validate({key: value for key, value in given.items() if value is not None})
+
+
+def _load(load: Load, scene: DiskScene, cell: float, stretch: tuple[float, float]) -> Load:
+    """A load with the same force in all, on the disks of a region at least one cell wide and high."""
+    if load.pressure is not None or load.is_everywhere:
+        return load
+    update: dict[str, Any] = {}
+    if load.acceleration is not None:
+        total = forces_of(load, scene)[1].sum(axis=0)
+        update |= {"acceleration": None, "force": (float(total[0]), float(total[1]))}
+    if load.position is not None:
+        (node,), _ = forces_of(load, scene)
+        return load.model_copy(update=update | {"position": _at(scene.positions[node], stretch)})
+    assert load.region is not None
+    box = np.array(load.region) * np.tile(stretch, 2)
+    middle, half = 0.5 * (box[:2] + box[2:]), np.maximum(0.5 * (box[2:] - box[:2]), 0.5 * cell * (1.0 + 1e-9))
+    size = np.array(scene.case.size) * stretch
+    low, high = np.maximum(middle - half, 0.0), np.minimum(middle + half, size)
+    return load.model_copy(update=update | {"region": (*low.tolist(), *high.tolist())})
+
+
+def _with_equal_sides(case: DiskCase, scene: DiskScene) -> DiskCase:
+    """The case with dashpots and springs as large beside those of perfect sides as in the scene of the finer case."""
+    if isinstance(scene.case.packing, Square):
+        return case
+    own = build(case)
+    boundary = {side: _equal_side(table, side, own, scene) for side, table in case.boundary.items()}
+    return replace(case, boundary=boundary)
+
+
+def _equal_side(table: Boundary, side: str, own: DiskScene, finer: DiskScene) -> Boundary:
+    """A side with other factors."""
+    update: dict[str, float] = {}
+    for motion, factor in table.factors.items():
+        ratio = homogenised_beta(own, side, motion) / homogenised_beta(finer, side, motion)
+        if math.isfinite(ratio):
+            update[f"beta_{motion}"] = factor * ratio
+    if hasattr(table, "stiffnesses"):
+        update |= _equal_springs(table, side, own, finer)
+    return table.model_copy(update=update) if update else table
+
+
+def _equal_springs(table: Any, side: str, own: DiskScene, finer: DiskScene) -> Mapping[str, float]:
+    """Factors α of springs that are as stiff per length of the side."""
+    axis = normal_axis(side)
+    per_length = [
+        table.shear_modulus(boundary_medium(scene.case, scene.ground, axis)) * scene.edges[side].diameter_sum_ratio
+        for scene in (own, finer)
+    ]
+    ratio = per_length[1] / per_length[0]
+    return {"alpha_n": table.alpha_n * ratio, "alpha_s": table.alpha_s * ratio}
+
+
+__all__ = ["SIDES", "coarser", "largest_diameter"]

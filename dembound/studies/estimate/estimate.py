@@ -1,0 +1,115 @@
+"""The error of a run: what its sides, its grid and its time step add to the motion of its monitors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from dembound.studies.estimate.causes import QUANTITIES, Cause, Recorded
+
+LEAST = 1e-3
+"""Smallest error that is given as a number."""
+
+SIDES = "sides"
+"""Name of the cause that is found from a pair of runs."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The error of a run.
+
+    Attributes
+    ----------
+    recorded : monitor -> what the run has recorded.
+    causes : what contributes to the error. missing : what is not estimated, and why, a line each.
+    cost : work of all that was run for the estimate, over that of the run.
+    echo_free : whether the larger run of the pair is free of echoes, so that histories can be corrected.
+    """
+
+    recorded: Mapping[str, Recorded]
+    causes: Sequence[Cause]
+    missing: Sequence[str] = ()
+    cost: float = 0.0
+    echo_free: bool = False
+    notes: Sequence[str] = field(default=())
+
+    def shares(self, monitor: str, quantity: str) -> dict[str, float]:
+        """RMS errors over the RMS of the recorded values, by cause; only those that are known."""
+        own = self.recorded[monitor]
+        found = {cause.name: cause.share(monitor, quantity, own) for cause in self.causes}
+        return {name: share for name, share in found.items() if math.isfinite(share)}
+
+    def total(self, monitor: str, quantity: str) -> float:
+        """The root of the sum of their squares; nan if none is known."""
+        shares = list(self.shares(monitor, quantity).values())
+        return math.sqrt(sum(share**2 for share in shares)) if shares else math.nan
+
+    def quantities(self, monitor: str) -> list[str]:
+        """Quantities of a monitor that has any."""
+        return [name for name in QUANTITIES if name in self.recorded[monitor].values]
+
+    @property
+    def worst(self) -> float:
+        """Largest total of velocities and displacements at all monitors; nan if nothing is known."""
+        found = [self.total(name, quantity) for name in self.recorded for quantity in self.quantities(name)]
+        known = [share for share in found if math.isfinite(share)]
+        return max(known, default=math.nan)
+
+    def correction(self, monitor: str, quantity: str) -> np.ndarray | None:
+        """What the sides add (k, c), to be subtracted; None if it is not known without echoes."""
+        cause = next((cause for cause in self.causes if cause.name == SIDES), None)
+        if cause is None or not self.echo_free:
+            return None
+        error = cause.errors.get(monitor, {}).get(quantity)
+        return error if isinstance(error, np.ndarray) else None
+
+    def summary(self) -> dict[str, Any]:
+        """Plain JSON values: shares by monitor, quantity and cause, and how they were found."""
+        monitors = {
+            name: {
+                quantity: {"total": self.total(name, quantity), **self.shares(name, quantity)}
+                for quantity in self.quantities(name)
+                if math.isfinite(self.total(name, quantity))
+            }
+            for name in self.recorded
+        }
+        how = {cause.name: cause.words for cause in self.causes}
+        return {
+            "monitors": monitors,
+            "found": how,
+            "not_estimated": list(self.missing),
+            "notes": list(self.notes),
+            "cost": self.cost,
+        }
+
+    def lines(self) -> list[str]:
+        """A line for each monitor, then how the errors were found."""
+        found = []
+        for name in self.recorded:
+            parts = [
+                f"{quantity} {in_words(self.total(name, quantity))} ({_split(self.shares(name, quantity))})"
+                for quantity in self.quantities(name)
+                if math.isfinite(self.total(name, quantity))
+            ]
+            if parts:
+                found.append(f"error at {name}: {'; '.join(parts)}")
+        how = [f"{cause.name} {cause.words}" for cause in self.causes]
+        return [*found, *([f"errors are RMS over RMS, estimated: {'; '.join(how)}"] if found else []), *self.notes,
+                *(f"not estimated: {line}" for line in self.missing)]  # fmt: skip
+
+
+def in_words(share: float) -> str:
+    """A share in per cent with two digits, from `LEAST` on."""
+    if share < LEAST:
+        return f"< {100.0 * LEAST:g} %"
+    return f"{100.0 * share:.2g} %" if share < 9.95 else f"{100.0 * share:.0f} %"
+
+
+def _split(shares: Mapping[str, float]) -> str:
+    """Shares by cause, the largest first."""
+    ordered = sorted(shares.items(), key=lambda each: -each[1])
+    return ", ".join(f"{name} {in_words(share)}" for name, share in ordered)
