@@ -20,7 +20,7 @@ from dembound.disks.outside_settings import (
     margin_below_surface,
     signals_of,
 )
-from dembound.disks.packing_errors import in_percent, packing_facts
+from dembound.disks.packing_errors import in_percent, lattice_errors, packing_facts
 from dembound.disks.scene import DiskScene
 from dembound.disks.surroundings import Surroundings
 from dembound.outside import choice
@@ -123,6 +123,17 @@ def _as_small(scene: DiskScene, error: float) -> str:
         return ""
     least = least_element(scene.case, scene.ground.brick.mean_diameter)
     return f", above outside.accuracy, as elements smaller than {least:.3g} m shorten the time step"
+
+
+def expected_error(scene: DiskScene) -> float | None:
+    """Error of velocities by the elements, layers and ties of a scene's continuum, RMS over RMS; None where it jumps."""
+    outside, signals = scene.outside, signals_of(scene.case)
+    if outside is None or not signals or any(choice.jumps(signal) for signal in signals):
+        return None
+    settings = outside.settings
+    elements = choice.element_error(signals, outside.body.medium, settings.order, _largest(outside))
+    parts = elements, _near_error(scene, outside), choice.layer_error(settings.order, settings.layers)
+    return math.hypot(*parts, lattice_errors(scene, signals)[0])
 
 
 def _largest(outside: Surroundings) -> float:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+SIDES, GRID, STEP = "sides", "grid", "time step"
+"""Names of causes that all kinds of bodies have."""
 
 QUANTITIES = ("velocity", "displacement", "stress")
 """Quantities whose errors are estimated; stress of bars only."""
@@ -48,3 +51,28 @@ class Cause:
         column = recorded.component(quantity)
         size = float(np.linalg.norm(recorded.values[quantity][:, column]))
         return float(np.linalg.norm(error[:, column])) / size if size > 0.0 else np.nan
+
+
+@dataclass(frozen=True)
+class Causes:
+    """Causes, and what is said about them.
+
+    missing : what is not estimated, and why, a line each. notes : what limits them, a line each. cost : work that was
+    spent, over that of the run. echo_free : whether what `SIDES` adds is known without echoes of the larger run.
+    """
+
+    found: Sequence[Cause]
+    missing: Sequence[str] = ()
+    notes: Sequence[str] = ()
+    cost: float = 0.0
+    echo_free: bool = False
+
+    def __add__(self, other: Causes) -> Causes:
+        """Both."""
+        return Causes(
+            [*self.found, *other.found],
+            [*self.missing, *other.missing],
+            [*self.notes, *other.notes],
+            self.cost + other.cost,
+            self.echo_free or other.echo_free,
+        )

@@ -5,7 +5,7 @@ they resolve the waves. Their error is therefore found from two runs with larger
 run itself: k times larger disks are k² times fewer, with steps k times longer.
 
 The coarser packing is always a square lattice. That of a random packing has its wave speeds along x, its density, and
-dashpots and springs that match it as well, or as badly, as those of the case match the random packing.
+dashpots that reflect as much of plane waves along their normal as those of the case, and as stiff springs.
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from dembound.boundaries import SIDES, normal_axis
+from dembound.boundaries import normal_axis
 from dembound.boundaries.boundary import Boundary
+from dembound.boundaries.viscoelastic import Springs
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.load import Load
@@ -28,6 +29,7 @@ from dembound.disks.matching import homogenised_beta
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, boundary_medium, build
 from dembound.packings.square import Square
+from dembound.studies.estimate.matched_sides import factor_for, reflected
 from dembound.table import shifted_place
 
 CELLS = 4
@@ -37,14 +39,14 @@ TRIED = 60
 """Numbers of columns that are tried for the one whose rows fit the height best."""
 
 
-def largest_diameter(case: DiskCase, scene: DiskScene, shortest: float) -> float:
-    """Largest diameter (m) of disks that resolve the holes and the shortest wave (m) of a case, and fit its sides."""
+def largest_diameter(case: DiskCase, shortest: float) -> float:
+    """Largest diameter (m) of disks: at most `shortest` (m), and `CELLS` across every hole and the scene itself."""
     holes = [min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1]) / CELLS for hole in case.hole]
     return min([shortest, *holes, *(length / CELLS for length in case.size)])
 
 
-def coarser(case: DiskCase, scene: DiskScene, diameter: float) -> DiskCase:
-    """The case with a square lattice of about this diameter (m); scene : of the case.
+def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float) -> DiskCase:
+    """The case with a square lattice of about this diameter (m); scene, time_step (s) : of the case.
 
     Places move with the sides, by less than half a diameter, as the scene then is whole cells wide and high. Nothing
     but histories is recorded.
@@ -70,7 +72,7 @@ def coarser(case: DiskCase, scene: DiskScene, diameter: float) -> DiskCase:
         output=case.output.model_copy(update={"snapshots": 0, "history_interval": 0.0, "load_factor": False}),
         name=f"{case.name}_coarser",
     )
-    return _with_equal_sides(larger, scene)
+    return _with_equal_sides(larger, scene, time_step)
 
 
 def _cells(size: tuple[float, float], diameter: float) -> tuple[int, int, float]:
@@ -140,28 +142,29 @@ def _load(load: Load, scene: DiskScene, cell: float, stretch: tuple[float, float
     return load.model_copy(update=update | {"region": (*low.tolist(), *high.tolist())})
 
 
-def _with_equal_sides(case: DiskCase, scene: DiskScene) -> DiskCase:
-    """The case with dashpots and springs as large beside those of perfect sides as in the scene of the finer case."""
-    if isinstance(scene.case.packing, Square):
-        return case
+def _with_equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> DiskCase:
+    """The case with dashpots that reflect as much, and springs as stiff, as those of the scene of the finer case."""
     own = build(case)
-    boundary = {side: _equal_side(table, side, own, scene) for side, table in case.boundary.items()}
+    boundary = {side: _equal_side(table, side, own, scene, time_step) for side, table in case.boundary.items()}
     return replace(case, boundary=boundary)
 
 
-def _equal_side(table: Boundary, side: str, own: DiskScene, finer: DiskScene) -> Boundary:
-    """A side with other factors."""
-    update: dict[str, float] = {}
-    for motion, factor in table.factors.items():
-        ratio = homogenised_beta(own, side, motion) / homogenised_beta(finer, side, motion)
-        if math.isfinite(ratio):
-            update[f"beta_{motion}"] = factor * ratio
-    if hasattr(table, "stiffnesses"):
+def _equal_side(table: Boundary, side: str, own: DiskScene, finer: DiskScene, time_step: float) -> Boundary:
+    """A side with other factors, its disks half cells."""
+    if not table.factors:
+        return table
+    shares = reflected(finer, side, time_step)
+    update: dict[str, Any] = {
+        f"beta_{motion}": homogenised_beta(own, side, motion) * factor_for(share) for motion, share in shares.items()
+    }
+    if "half_mass" in type(table).model_fields:
+        update["half_mass"] = True
+    if isinstance(table, Springs):
         update |= _equal_springs(table, side, own, finer)
-    return table.model_copy(update=update) if update else table
+    return table.model_copy(update=update)
 
 
-def _equal_springs(table: Any, side: str, own: DiskScene, finer: DiskScene) -> Mapping[str, float]:
+def _equal_springs(table: Springs, side: str, own: DiskScene, finer: DiskScene) -> Mapping[str, float]:
     """Factors α of springs that are as stiff per length of the side."""
     axis = normal_axis(side)
     per_length = [
@@ -170,6 +173,3 @@ def _equal_springs(table: Any, side: str, own: DiskScene, finer: DiskScene) -> M
     ]
     ratio = per_length[1] / per_length[0]
     return {"alpha_n": table.alpha_n * ratio, "alpha_s": table.alpha_s * ratio}
-
-
-__all__ = ["SIDES", "coarser", "largest_diameter"]

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from dembound.studies.estimate.causes import QUANTITIES, Cause, Recorded
+from dembound.studies.estimate.causes import QUANTITIES, SIDES, Causes, Recorded
 
 LEAST = 1e-3
 """Smallest error that is given as a number."""
-
-SIDES = "sides"
-"""Name of the cause that is found from a pair of runs."""
 
 
 @dataclass(frozen=True)
@@ -24,23 +21,17 @@ class Estimate:
 
     Attributes
     ----------
-    recorded : monitor -> what the run has recorded.
-    causes : what contributes to the error. missing : what is not estimated, and why, a line each.
-    cost : work of all that was run for the estimate, over that of the run.
-    echo_free : whether the larger run of the pair is free of echoes, so that histories can be corrected.
+    recorded : monitor -> what the run has recorded, up to the time from which on nothing is estimated.
+    causes : what contributes to the error.
     """
 
     recorded: Mapping[str, Recorded]
-    causes: Sequence[Cause]
-    missing: Sequence[str] = ()
-    cost: float = 0.0
-    echo_free: bool = False
-    notes: Sequence[str] = field(default=())
+    causes: Causes
 
     def shares(self, monitor: str, quantity: str) -> dict[str, float]:
         """RMS errors over the RMS of the recorded values, by cause; only those that are known."""
         own = self.recorded[monitor]
-        found = {cause.name: cause.share(monitor, quantity, own) for cause in self.causes}
+        found = {cause.name: cause.share(monitor, quantity, own) for cause in self.causes.found}
         return {name: share for name, share in found.items() if math.isfinite(share)}
 
     def total(self, monitor: str, quantity: str) -> float:
@@ -61,8 +52,8 @@ class Estimate:
 
     def correction(self, monitor: str, quantity: str) -> np.ndarray | None:
         """What the sides add (k, c), to be subtracted; None if it is not known without echoes."""
-        cause = next((cause for cause in self.causes if cause.name == SIDES), None)
-        if cause is None or not self.echo_free:
+        cause = next((cause for cause in self.causes.found if cause.name == SIDES), None)
+        if cause is None or not self.causes.echo_free:
             return None
         error = cause.errors.get(monitor, {}).get(quantity)
         return error if isinstance(error, np.ndarray) else None
@@ -77,13 +68,13 @@ class Estimate:
             }
             for name in self.recorded
         }
-        how = {cause.name: cause.words for cause in self.causes}
+        how = {cause.name: cause.words for cause in self.causes.found}
         return {
             "monitors": monitors,
             "found": how,
-            "not_estimated": list(self.missing),
-            "notes": list(self.notes),
-            "cost": self.cost,
+            "not_estimated": list(self.causes.missing),
+            "notes": list(self.causes.notes),
+            "cost": self.causes.cost,
         }
 
     def lines(self) -> list[str]:
@@ -97,9 +88,9 @@ class Estimate:
             ]
             if parts:
                 found.append(f"error at {name}: {'; '.join(parts)}")
-        how = [f"{cause.name} {cause.words}" for cause in self.causes]
-        return [*found, *([f"errors are RMS over RMS, estimated: {'; '.join(how)}"] if found else []), *self.notes,
-                *(f"not estimated: {line}" for line in self.missing)]  # fmt: skip
+        how = [f"{cause.name} {cause.words}" for cause in self.causes.found]
+        return [*found, *([f"errors are RMS over RMS, estimated: {'; '.join(how)}"] if found else []), *self.causes.notes,
+                *(f"not estimated: {line}" for line in self.causes.missing)]  # fmt: skip
 
 
 def in_words(share: float) -> str:

@@ -1,0 +1,63 @@
+"""How dashpots reflect plane waves along the normal of a side, on the packing of a case: measured without a run.
+
+A coarser lattice with dashpots of half cells reflects (β0 − β)/(β0 + β) of such waves, next to nothing at β0. It has
+the β with which it reflects as much as the side of the case does, which random packings, single rows of whole cells,
+and factors that are not calibrated decide.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from dembound.boundaries import Motion
+from dembound.disks.matching import homogenised_beta
+from dembound.disks.scene import DiskScene, with_boundaries
+from dembound.errors import CaseError
+from dembound.studies.reflection.arrivals import frequencies_of
+from dembound.studies.reflection.bricks import end_scene
+from dembound.studies.reflection.meter import Meter
+
+FREQUENCIES = 3
+"""Number of frequencies of the case's waves, of equal energy each, over which energies are averaged."""
+
+
+def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, float]:
+    """Reflected over incident velocity of P and S waves along the normal of a side with dashpots, springs left out.
+
+    Positive where dashpots are too soft. Waves that cannot run are left out; where the packing has no such wave at the
+    frequencies of the case, what its homogenised stiffness makes of it.
+    """
+    case = scene.case
+    table = case.side(side).dashpots_alone()
+    end = end_scene(replace(case, boundary={**case.boundary, side: table}), side)
+    matched, wide = ({m: homogenised_beta(each, side, m) for m in table.factors} for each in (scene, end))
+    known = {motion: factor for motion, factor in table.factors.items() if math.isfinite(matched[motion])}
+    # sides of narrow bodies have more disks for their length than those of a periodic one
+    equal = {f"beta_{motion}": factor * wide[motion] / matched[motion] for motion, factor in known.items()}
+    end = with_boundaries(end, replace(end.case, boundary={**end.case.boundary, side: table.model_copy(update=equal).at_rest()}))
+    measured = _energies(scene, end, side, time_step)
+    found: dict[Motion, float] = {}
+    for motion, factor in known.items():
+        simple = (matched[motion] - factor) / (matched[motion] + factor)
+        size = math.sqrt(measured[motion]) if motion in measured else abs(simple)
+        found[motion] = math.copysign(min(size, 1.0), simple)
+    return found
+
+
+def _energies(scene: DiskScene, end: DiskScene, side: str, time_step: float) -> dict[Motion, float]:
+    """Shares of the energy that come back, means over the case's frequencies; those that are known."""
+    try:
+        frequencies = frequencies_of(scene.case, scene.ground, FREQUENCIES)
+        found = Meter(side, time_step, end).measure(frequencies, [0.0])[0]
+    except CaseError:
+        return {}
+    means = {kind: float(np.nanmean(found.total(kind))) for kind in found.kinds if np.isfinite(found.total(kind)).any()}
+    return {kind: share for kind, share in means.items() if math.isfinite(share)}
+
+
+def factor_for(share: float) -> float:
+    """β over that of matched dashpots that reflects this share of the velocity."""
+    return (1.0 - share) / (1.0 + share)

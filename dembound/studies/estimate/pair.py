@@ -1,0 +1,132 @@
+"""A pair of runs with larger particles, with the sides of the case and with sides so far away that nothing returns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dembound.boundaries import normal_axis
+from dembound.casefile.disks import DiskCase
+from dembound.disks.outside_settings import signals_of
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import choose_step
+from dembound.disks.wave_front import slowest_speed
+from dembound.errors import CaseError
+from dembound.outside import choice
+from dembound.running import Progress
+from dembound.studies.chart.measure import Gauges, Outcome, measure
+from dembound.studies.estimate.causes import Recorded
+from dembound.studies.estimate.coarser import coarser, largest_diameter
+from dembound.studies.extended import bricks_needed, enlarged, movable_sides
+
+RATIOS = (3.0, 4.0, 5.0, 6.0)
+"""Diameters of the pair over those of the case that are tried, the smallest that can be afforded is taken."""
+
+SHARE, PER_WAVE = 0.1, 7.0
+"""Disks of the pair in the wave above whose frequency there is a share of the energy: five in an S pulse of half a sine.
+"""
+
+FREE_WORK = 5e7
+"""Particle-steps that may be spent on any run: less than a second of one core."""
+
+SMALLER = (4.0, 2.0)
+"""Width and height of the larger scene, over those of the case, where one without echoes cannot be afforded."""
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two runs that differ in their sides.
+
+    own, far : their histories; ratio : their diameter over that of the case. size : width and height (m) of the larger
+    scene. echo_free : whether nothing returns from its sides. work : particle-steps of both.
+    """
+
+    own: Gauges
+    far: Gauges
+    ratio: float
+    size: tuple[float, float]
+    echo_free: bool
+    work: int
+
+    def difference(self, recorded: Recorded, monitor: str, quantity: str) -> np.ndarray:
+        """What the sides add to a recorded quantity (k, 2): own less far, at the times of the record."""
+        from scipy.interpolate import CubicSpline
+
+        own, far = self.own[monitor], self.far[monitor]
+        values = own.of(quantity)[:, :2] - far.of(quantity)[:, :2]  # type: ignore[arg-type]
+        inside = np.minimum(recorded.time, own.time[-1])
+        return np.asarray(CubicSpline(own.time, values)(inside))
+
+
+def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> Pair:
+    """The pair of a case that costs at most so many particle-steps, if this is possible; else the cheapest one.
+
+    scene, time_step (s) : of the case. Raises CaseError if no side can move, and the errors of runs.
+    """
+    best = None
+    for ratio in _ratios(case, scene):
+        smaller, larger, echo_free = _scenes(case, scene, time_step, ratio, most)
+        best = ratio, smaller, larger, echo_free
+        if _work(smaller) + _work(larger) <= most:
+            break
+    assert best is not None
+    ratio, smaller, larger, echo_free = best
+    step = min(choose_step(each)[0] for each in (smaller, larger))
+    own, far = (_measured(each.case, step) for each in (smaller, larger))
+    return Pair(own.gauges, far.gauges, ratio, larger.case.packing.extent, echo_free, own.work + far.work)
+
+
+def _ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
+    """Ratios of diameters, the smallest first, with which the pair still resolves waves and holes."""
+    finest = scene.ground.brick.mean_diameter
+    frequencies = [choice.cutoff(signal, SHARE) for signal in signals_of(case)]
+    highest = max((each for each in frequencies if math.isfinite(each)), default=0.0)
+    shortest = slowest_speed(scene.ground) / highest / PER_WAVE if highest > 0.0 else math.inf
+    largest = max(1.0, largest_diameter(case, shortest) / finest)
+    return [ratio for ratio in RATIOS if ratio <= largest] or [min(largest, RATIOS[0])]
+
+
+def _scenes(
+    case: DiskCase, scene: DiskScene, time_step: float, ratio: float, most: float
+) -> tuple[DiskScene, DiskScene, bool]:
+    """Both scenes, and whether the larger one is free of echoes; it is smaller where they would cost too much."""
+    smaller = build(coarser(case, scene, time_step, ratio * scene.ground.brick.mean_diameter))
+    bricks = bricks_needed(smaller, movable_sides(smaller.case))
+    steps = case.run.duration / choose_step(smaller)[0]
+    allowed = most / steps - smaller.disk_count
+    for times in (math.inf, *SMALLER):
+        limited = {side: min(count, _limit(smaller.case, side, times)) for side, count in bricks.items()}
+        if _count(smaller.case, limited) <= allowed:
+            break
+    larger, _ = enlarged(smaller, limited)
+    return smaller, build(larger), limited == bricks
+
+
+def _limit(case: DiskCase, side: str, times: float) -> float:
+    """Most bricks beyond a side of a scene that becomes that many times as long as it is."""
+    axis = normal_axis(side)
+    return math.inf if math.isinf(times) else math.ceil((times - 1.0) * case.packing.copies[axis])
+
+
+def _count(case: DiskCase, bricks: Mapping[str, float]) -> float:
+    """Number of disks of a lattice with more of them beyond its sides."""
+    across, up = case.packing.copies
+    across += int(bricks.get("left", 0) + bricks.get("right", 0))
+    return across * (up + bricks.get("bottom", 0) + bricks.get("top", 0))
+
+
+def _work(scene: DiskScene) -> float:
+    """Particle-steps of a run."""
+    return scene.disk_count * scene.case.run.duration / choose_step(scene)[0]
+
+
+def _measured(case: DiskCase, step: float) -> Outcome:
+    """The outcome of a run at this step, s."""
+    run = case.run.model_copy(update={"time_step": step})
+    return measure(replace(case, run=run), Progress())[0]
+
+
+__all__ = ["CaseError", "Pair", "run_pair"]
