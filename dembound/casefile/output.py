@@ -27,4 +27,5 @@ class Output(Table):
     load_factor: bool = quantity(
         False, unit="1", help="whether the factor of the waves is found up to which the elastic law of disks holds"
     )
+    estimate: bool = quantity(False, unit="1", help="whether the errors of the run are estimated when it is over")
     pictures: bool = quantity(True, unit="1", help="whether pictures are drawn when the run is over")

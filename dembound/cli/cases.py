@@ -28,6 +28,7 @@ from dembound.cli.app import (
     prepare_computing,
 )
 from dembound.cli.console import compact_table, err, out
+from dembound.cli.estimate import Budget, print_estimate
 from dembound.errors import CaseError
 from dembound.results.interrupts import exit_code_of
 from dembound.version import IMPORT_BEGAN
@@ -65,6 +66,8 @@ def run(
     changes: Settings = None,
     name: Name = None,
     threads: Threads = None,
+    estimate: Annotated[bool, typer.Option("--estimate", help="Estimate the errors of each run afterwards.")] = False,
+    budget: Budget = None,
 ) -> None:
     """Run cases one after another; each writes its folder of results.
 
@@ -89,6 +92,8 @@ def run(
         if number > 0:
             gc.collect()  # the arrays of the run before, whose objects refer to each other
         _run(case, output, spent)
+        if estimate or case.output.estimate:
+            print_estimate(Folder(output, case.name).final, budget)
         spent = {}  # counted for the first case only
 
 

@@ -21,7 +21,7 @@ REPLACED = ".replaced"
 LOCK = "run.lock"
 
 OWN = re.compile(
-    r"run\.(h5|h5\.new|h5\.log|h5\.log\.part|lock)|checkpoint\.npz(\.part)?|settled/[a-z.]+\.npz(\.part)?|summary\.json(\.part)?"
+    r"run\.(h5|h5\.new|h5\.log|h5\.log\.part|lock)|checkpoint\.npz(\.part)?|settled/[a-z.]+\.npz(\.part)?|(summary\.json|estimate\.h5)(\.part)?"
     r"|(scene|histories|histories_stress)\.png(\.part)?"
     r"|paraview/((particles|contacts|bar|continuum)(_\d{4,}\.vtu|\.pvd|\.vtkhdf)|cracks\.vtu|view\.py)(\.part)?"
 )

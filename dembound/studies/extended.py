@@ -141,7 +141,9 @@ def enlarged(scene: DiskScene, bricks: Mapping[str, int]) -> tuple[DiskCase, Box
         packing=packing,
         hole=(*at_places.hole, *_floors_beyond(case, by, packing.extent)),
         boundary={side: table.shifted(by) for side, table in case.boundary.items()},
-        run=case.run if case.outside_sides else _same_step(case.run, choose_step(scene)[0]),  # ties have limits of theirs
+        run=case.run
+        if case.outside_sides
+        else _same_step(case.run, choose_step(scene)[0]),  # ties have limits of theirs
         name=f"{case.name}_extended",
     )
     return larger, shifted_box(inside, by)

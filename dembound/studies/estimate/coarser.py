@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -30,7 +30,6 @@ from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, boundary_medium, build
 from dembound.packings.square import Square
 from dembound.studies.estimate.matched_sides import factor_for, reflected
-from dembound.table import shifted_place
 
 CELLS = 4
 """Smallest number of particles across a hole."""
@@ -55,17 +54,17 @@ def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float)
     """
     columns, rows, cell = _cells(case.size, diameter)
     packing = Square(pattern="A", radius=0.5 * cell, bricks=(columns, rows))
-    stretch = columns * cell / case.size[0], rows * cell / case.size[1]
+    size = np.array(packing.extent)
+    sides = _Sides(size / case.size, size)
     larger = replace(
         case,
         packing=packing,
         ground=Ground(),
         material=_material(case, scene.ground),
-        hole=tuple(hole.shifted(_moved(_middle(hole.box), stretch)) for hole in case.hole),
-        load=tuple(_load(load, scene, cell, stretch) for load in case.load),
+        hole=tuple(hole.shifted(sides.moved(_middle(hole.box))) for hole in case.hole),
+        load=tuple(_load(load, scene, cell, sides) for load in case.load),
         monitor=tuple(
-            monitor.model_copy(update={"position": _at(scene.monitored[monitor.name], stretch)})
-            for monitor in case.monitor
+            monitor.model_copy(update={"position": sides.at(scene.monitored[monitor.name])}) for monitor in case.monitor
         ),
         static=None if case.static is None else case.static.model_copy(update={"from_": None}),
         run=_run(case),
@@ -88,14 +87,25 @@ def _middle(box: tuple[float, float, float, float]) -> np.ndarray:
     return np.array([0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])])
 
 
-def _moved(place: np.ndarray, stretch: tuple[float, float]) -> tuple[float, float]:
-    """How far (m) a place moves with the sides."""
-    return float(place[0] * (stretch[0] - 1.0)), float(place[1] * (stretch[1] - 1.0))
+@dataclass(frozen=True)
+class _Sides:
+    """How places move with the sides.
 
+    stretch : of lengths along x and y. size : width and height (m) afterwards, which rounding must not exceed.
+    """
 
-def _at(place: np.ndarray, stretch: tuple[float, float]) -> tuple[float, float]:
-    """A place after it has moved with the sides."""
-    return shifted_place((float(place[0]), float(place[1])), _moved(place, stretch))
+    stretch: np.ndarray
+    size: np.ndarray
+
+    def moved(self, place: np.ndarray) -> tuple[float, float]:
+        """How far (m) a place moves."""
+        x, y = (place * (self.stretch - 1.0)).tolist()
+        return x, y
+
+    def at(self, place: np.ndarray) -> tuple[float, float]:
+        """Where (m) a place is afterwards."""
+        x, y = np.clip(place * self.stretch, 0.0, self.size).tolist()
+        return x, y
 
 
 def _run(case: DiskCase) -> Any:
@@ -123,7 +133,7 @@ def _material(case: DiskCase, ground: PackedMaterial) -> Material:
     return Material.model_validate({key: value for key, value in given.items() if value is not None})
 
 
-def _load(load: Load, scene: DiskScene, cell: float, stretch: tuple[float, float]) -> Load:
+def _load(load: Load, scene: DiskScene, cell: float, sides: _Sides) -> Load:
     """A load with the same force in all, on the disks of a region at least one cell wide and high."""
     if load.pressure is not None or load.is_everywhere:
         return load
@@ -133,12 +143,11 @@ def _load(load: Load, scene: DiskScene, cell: float, stretch: tuple[float, float
         update |= {"acceleration": None, "force": (float(total[0]), float(total[1]))}
     if load.position is not None:
         (node,), _ = forces_of(load, scene)
-        return load.model_copy(update=update | {"position": _at(scene.positions[node], stretch)})
+        return load.model_copy(update=update | {"position": sides.at(scene.positions[node])})
     assert load.region is not None
-    box = np.array(load.region) * np.tile(stretch, 2)
+    box = np.array(load.region) * np.tile(sides.stretch, 2)
     middle, half = 0.5 * (box[:2] + box[2:]), np.maximum(0.5 * (box[2:] - box[:2]), 0.5 * cell * (1.0 + 1e-9))
-    size = np.array(scene.case.size) * stretch
-    low, high = np.maximum(middle - half, 0.0), np.minimum(middle + half, size)
+    low, high = np.maximum(middle - half, 0.0), np.minimum(middle + half, sides.size)
     return load.model_copy(update=update | {"region": (*low.tolist(), *high.tolist())})
 
 
@@ -157,7 +166,7 @@ def _equal_side(table: Boundary, side: str, own: DiskScene, finer: DiskScene, ti
     update: dict[str, Any] = {
         f"beta_{motion}": homogenised_beta(own, side, motion) * factor_for(share) for motion, share in shares.items()
     }
-    if "half_mass" in type(table).model_fields:
+    if "half_mass" in type(table).model_fields and not table.needs_column:
         update["half_mass"] = True
     if isinstance(table, Springs):
         update |= _equal_springs(table, side, own, finer)

@@ -20,21 +20,21 @@ from dembound.exact.dispersion import Lattice
 from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.delays import Delay, error_of_delay
 from dembound.studies.estimate.matched_sides import reflected
-from dembound.studies.estimate.pair import FREE_WORK, Pair, run_pair
+from dembound.studies.estimate.pair import Pair, run_pair
 
 MOTIONS = ("velocity", "displacement")
 """Quantities of disks."""
 
 
 def causes_of_disks(
-    case: DiskCase, recorded: Mapping[str, Recorded], time_step: float, work: float, budget: float
+    case: DiskCase, recorded: Mapping[str, Recorded], time_step: float, work: float, most: float
 ) -> Causes:
     """The causes of the error of a run, with histories at the recorded times.
 
-    case : to the end of the run. recorded : by monitor. time_step (s), work (particle-steps) : of the run. budget :
-    share of that work that may be spent.
+    case : to the end of the run. recorded : by monitor. time_step (s), work (particle-steps) : of the run. most :
+    particle-steps that may be spent.
     """
-    return _Disks(case, build(case), recorded, time_step, work, budget).causes()
+    return _Disks(case, build(case), recorded, time_step, work, most).causes()
 
 
 @dataclass
@@ -46,7 +46,7 @@ class _Disks:
     recorded: Mapping[str, Recorded]
     time_step: float
     work: float
-    budget: float
+    most: float
 
     def causes(self) -> Causes:
         """All causes."""
@@ -54,14 +54,16 @@ class _Disks:
 
     def _pair(self) -> Causes:
         """The errors of sides that absorb, from a pair of runs."""
-        artificial = [side for side, table in self.case.boundary.items() if table.is_artificial and not table.is_outside]
+        artificial = [
+            side for side, table in self.case.boundary.items() if table.is_artificial and not table.is_outside
+        ]
         if not set(artificial) - set(self.case.driving):
             return Causes([])
         if self.case.ground.size is not None or self.case.incident is not None:
             reason = "beside a continuum no pair of runs is made"
             return Causes([], [f"{' and '.join(artificial)}: {reason}"])
         try:
-            pair = run_pair(self.case, self.scene, self.time_step, max(FREE_WORK, self.budget * self.work))
+            pair = run_pair(self.case, self.scene, self.time_step, self.most)
         except DemboundError as error:
             return Causes([], [f"sides: {'; '.join(str(error).splitlines())}"])
         errors = {

@@ -58,6 +58,20 @@ class Estimate:
         error = cause.errors.get(monitor, {}).get(quantity)
         return error if isinstance(error, np.ndarray) else None
 
+    def band(self, monitor: str, quantity: str) -> np.ndarray:
+        """Half the width (k, c) of the band around the recorded values in which the exact ones are expected.
+
+        The sum of the sizes of all errors at every time; of those of which only the size is known, this times the RMS.
+        """
+        values = self.recorded[monitor].values[quantity]
+        wide = np.zeros_like(values)
+        for cause in self.causes.found:
+            error = cause.errors.get(monitor, {}).get(quantity, 0.0)
+            if isinstance(error, float):
+                error = np.full_like(values, error) * np.sqrt(np.mean(values**2, axis=0))
+            wide += np.abs(error)
+        return wide
+
     def summary(self) -> dict[str, Any]:
         """Plain JSON values: shares by monitor, quantity and cause, and how they were found."""
         monitors = {
@@ -80,6 +94,7 @@ class Estimate:
     def lines(self) -> list[str]:
         """A line for each monitor, then how the errors were found."""
         found = []
+        without = ", in part" if self.causes.missing else ""
         for name in self.recorded:
             parts = [
                 f"{quantity} {in_words(self.total(name, quantity))} ({_split(self.shares(name, quantity))})"
@@ -87,7 +102,7 @@ class Estimate:
                 if math.isfinite(self.total(name, quantity))
             ]
             if parts:
-                found.append(f"error at {name}: {'; '.join(parts)}")
+                found.append(f"error at {name}{without}: {'; '.join(parts)}")
         how = [f"{cause.name} {cause.words}" for cause in self.causes.found]
         return [*found, *([f"errors are RMS over RMS, estimated: {'; '.join(how)}"] if found else []), *self.causes.notes,
                 *(f"not estimated: {line}" for line in self.causes.missing)]  # fmt: skip

@@ -37,7 +37,9 @@ def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, flo
     known = {motion: factor for motion, factor in table.factors.items() if math.isfinite(matched[motion])}
     # sides of narrow bodies have more disks for their length than those of a periodic one
     equal = {f"beta_{motion}": factor * wide[motion] / matched[motion] for motion, factor in known.items()}
-    end = with_boundaries(end, replace(end.case, boundary={**end.case.boundary, side: table.model_copy(update=equal).at_rest()}))
+    end = with_boundaries(
+        end, replace(end.case, boundary={**end.case.boundary, side: table.model_copy(update=equal).at_rest()})
+    )
     measured = _energies(scene, end, side, time_step)
     found: dict[Motion, float] = {}
     for motion, factor in known.items():

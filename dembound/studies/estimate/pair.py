@@ -14,7 +14,6 @@ from dembound.disks.outside_settings import signals_of
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.disks.wave_front import slowest_speed
-from dembound.errors import CaseError
 from dembound.outside import choice
 from dembound.running import Progress
 from dembound.studies.chart.measure import Gauges, Outcome, measure
@@ -28,9 +27,6 @@ RATIOS = (3.0, 4.0, 5.0, 6.0)
 SHARE, PER_WAVE = 0.1, 7.0
 """Disks of the pair in the wave above whose frequency there is a share of the energy: five in an S pulse of half a sine.
 """
-
-FREE_WORK = 5e7
-"""Particle-steps that may be spent on any run: less than a second of one core."""
 
 SMALLER = (4.0, 2.0)
 """Width and height of the larger scene, over those of the case, where one without echoes cannot be afforded."""
@@ -127,6 +123,3 @@ def _measured(case: DiskCase, step: float) -> Outcome:
     """The outcome of a run at this step, s."""
     run = case.run.model_copy(update={"time_step": step})
     return measure(replace(case, run=run), Progress())[0]
-
-
-__all__ = ["CaseError", "Pair", "run_pair"]

@@ -1,0 +1,132 @@
+"""The error of a run from its folder of results, to which the estimate is added."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dembound.casefile import Case
+from dembound.errors import CaseError
+from dembound.results.datasets import describe, write
+from dembound.results.histories import FREE_FIELD
+from dembound.results.reader import history_of, open_record, replacing
+from dembound.running.recorded import recorded_case
+from dembound.studies.estimate.causes import Causes, Recorded
+from dembound.studies.estimate.estimate import Estimate
+from dembound.studies.estimate.of_run import causes_of
+
+FILE = "estimate.h5"
+"""Histories of the errors, in the folder of the results."""
+
+UNITS = {"velocity": "m/s", "displacement": "m", "stress": "Pa"}
+"""Units of the histories."""
+
+LEAST_SAMPLES = 8
+"""Fewest samples of a history whose error is estimated."""
+
+
+def estimate_results(folder: Path, budget: float | None = None) -> Estimate:
+    """Estimate the error of a complete run; writes ``estimate.h5`` and the entry ``error_estimate`` of its summary.
+
+    Parameters
+    ----------
+    folder : of the results. budget : share of the run's work that may be spent; None: see `causes_of`.
+
+    Raises CaseError for a run that is not complete or has no monitors, or a budget that is none, and RecordError for a
+    record that cannot be read.
+    """
+    if budget is not None and not 0.0 < budget < np.inf:
+        raise CaseError([f"--budget: is {budget:g}, must be above 0"])
+    summary = _summary(folder)
+    record = folder / "run.h5"
+    case, until = _until(recorded_case(record), summary), _first_break(record)
+    recorded = _recorded(record, until)
+    causes = Causes([]) if case.run.duration < until else Causes([], [_broken(until)])
+    steps_in_time = min(1.0, until / case.run.duration)
+    case = replace(case, run=case.run.model_copy(update={"duration": case.run.duration * steps_in_time}))
+    work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
+    found = Estimate(recorded, causes_of(case, recorded, summary["time_step"], work, budget) + causes)
+    _write(found, folder / FILE)
+    with replacing(folder / "summary.json") as part:
+        part.write_text(json.dumps(summary | {"error_estimate": found.summary()}, indent=2) + "\n", encoding="utf-8")
+    return found
+
+
+def _summary(folder: Path) -> dict[str, Any]:
+    """The summary of a complete run."""
+    path = folder / "summary.json"
+    if not path.is_file():
+        raise CaseError([f"{path}: is missing, the run is not complete"])
+    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return found
+
+
+def _until(case: Case, summary: Mapping[str, Any]) -> Case:
+    """The case to the time at which its run has ended."""
+    return replace(case, run=case.run.model_copy(update={"duration": summary["duration"]}))
+
+
+def _first_break(record: Path) -> float:
+    """The time (s) of the first broken bond, infinite without one; those of a static stage do not count."""
+    with open_record(record) as file:
+        times = file["cracks/time"][:] if "cracks" in file else np.zeros(0)
+    return float(times[times > 0.0].min(initial=np.inf))
+
+
+def _broken(time: float) -> str:
+    """That nothing is known once bonds have broken."""
+    return f"motion after {time:.4g} s, when the first bond broke"
+
+
+def _recorded(record: Path, until: float) -> dict[str, Recorded]:
+    """What the monitors have recorded up to a time (s); raises CaseError where there are none."""
+    found = {}
+    with open_record(record) as file:
+        for name, group in file.get("histories", {}).items():
+            if name.endswith(FREE_FIELD):
+                continue
+            values = {}
+            for quantity in UNITS:
+                if quantity in group:
+                    time, motion = history_of(group, quantity)
+                    kept = time < until
+                    values[quantity] = motion.reshape(len(motion), -1)[kept][:, :2]
+            if values and np.count_nonzero(kept) >= LEAST_SAMPLES:
+                place = np.atleast_1d(group.attrs["position"])
+                found[name] = Recorded(np.array([*place, 0.0][:2]), time[kept], values)
+    if not found:
+        raise CaseError([f"{record}: has no history of a monitor whose error could be estimated"])
+    return found
+
+
+def _write(found: Estimate, path: Path) -> None:
+    """Write the histories of the errors, and those without the error of the sides where it is known."""
+    import h5py
+
+    with replacing(path) as part, h5py.File(part, "w") as file:
+        for name, recorded in found.recorded.items():
+            group = file.create_group(f"histories/{name}")
+            write(group, "time", recorded.time, "s")
+            for quantity in found.quantities(name):
+                _write_quantity(group, found, name, quantity)
+
+
+def _write_quantity(group: Any, found: Estimate, name: str, quantity: str) -> None:
+    """The errors of a quantity by cause, its band, and the corrected history."""
+    recorded, unit = found.recorded[name], UNITS[quantity]
+    inner = group.create_group(quantity)
+    describe(inner, {"total": found.total(name, quantity)})
+    for cause in found.causes.found:
+        error = cause.errors.get(name, {}).get(quantity)
+        if isinstance(error, np.ndarray):
+            write(inner, f"error of {cause.name}", error, unit)
+        elif error is not None:
+            describe(inner, {f"share of {cause.name}": error})
+    write(inner, "band", found.band(name, quantity), unit)
+    if (correction := found.correction(name, quantity)) is not None:
+        write(inner, "corrected", recorded.values[quantity] - correction, unit)
