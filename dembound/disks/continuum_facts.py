@@ -126,7 +126,7 @@ def _as_small(scene: DiskScene, error: float) -> str:
 
 
 def expected_error(scene: DiskScene) -> float | None:
-    """Error of velocities by the elements, layers and ties of a scene's continuum, RMS over RMS; None where it jumps."""
+    """Error of velocities by elements, layers and ties of a continuum, RMS over RMS; None for waves that jump."""
     outside, signals = scene.outside, signals_of(scene.case)
     if outside is None or not signals or any(choice.jumps(signal) for signal in signals):
         return None

@@ -85,8 +85,8 @@ class _Disks:
     def _sides(self) -> Iterator[Cause]:
         """The errors of sides beyond which there is a continuum, and of those that waves enter through."""
         if self.scene.outside is not None and (size := expected_error(self.scene)) is not None:
-            errors = {name: dict.fromkeys(MOTIONS, size) for name in self.recorded}
-            yield Cause("continuum", "by the formulas of its elements, layers and ties", errors)
+            same = {name: dict.fromkeys(MOTIONS, size) for name in self.recorded}
+            yield Cause("continuum", "by the formulas of its elements, layers and ties", same)
         for side, waves in self.case.driving.items():
             table = self.case.side(side)
             if not table.is_artificial or table.is_outside or not table.factors:

@@ -103,9 +103,14 @@ class Estimate:
             ]
             if parts:
                 found.append(f"error at {name}{without}: {'; '.join(parts)}")
-        how = [f"{cause.name} {cause.words}" for cause in self.causes.found]
-        return [*found, *([f"errors are RMS over RMS, estimated: {'; '.join(how)}"] if found else []), *self.causes.notes,
-                *(f"not estimated: {line}" for line in self.causes.missing)]  # fmt: skip
+        return [*found, *self._how(), *self.causes.notes, *(f"not estimated: {line}" for line in self.causes.missing)]
+
+    def _how(self) -> list[str]:
+        """How the errors were found, causes found alike together."""
+        ways: dict[str, list[str]] = {}
+        for cause in self.causes.found:
+            ways.setdefault(cause.words, []).append(cause.name)
+        return [f"{' and '.join(names)} {words}" for words, names in ways.items()]
 
 
 def in_words(share: float) -> str:

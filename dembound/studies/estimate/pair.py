@@ -25,8 +25,7 @@ RATIOS = (3.0, 4.0, 5.0, 6.0)
 """Diameters of the pair over those of the case that are tried, the smallest that can be afforded is taken."""
 
 SHARE, PER_WAVE = 0.1, 7.0
-"""Disks of the pair in the wave above whose frequency there is a share of the energy: five in an S pulse of half a sine.
-"""
+"""Disks of the pair in the wave above whose frequency is a share of the energy: five in an S pulse of half a sine."""
 
 SMALLER = (4.0, 2.0)
 """Width and height of the larger scene, over those of the case, where one without echoes cannot be afforded."""
@@ -94,7 +93,7 @@ def _scenes(
     steps = case.run.duration / choose_step(smaller)[0]
     allowed = most / steps - smaller.disk_count
     for times in (math.inf, *SMALLER):
-        limited = {side: min(count, _limit(smaller.case, side, times)) for side, count in bricks.items()}
+        limited = {side: int(min(count, _limit(smaller.case, side, times))) for side, count in bricks.items()}
         if _count(smaller.case, limited) <= allowed:
             break
     larger, _ = enlarged(smaller, limited)
