@@ -91,9 +91,7 @@ def run(
     for number, case in enumerate(loaded):
         if number > 0:
             gc.collect()  # the arrays of the run before, whose objects refer to each other
-        _run(case, output, spent)
-        if estimate or case.output.estimate:
-            print_estimate(Folder(output, case.name).final, budget)
+        _run(case, output, spent, estimated=estimate, budget=budget)
         spent = {}  # counted for the first case only
 
 
@@ -109,10 +107,14 @@ def resume(
     """
     from dembound.results.folder import Folder
     from dembound.running import resume_case
+    from dembound.running.recorded import recorded_case
 
     prepare_computing(threads)
     for folder in results:
-        _print_results(_watched(Folder.of(folder), partial(resume_case, folder, until)))
+        done = _watched(Folder.of(folder), partial(resume_case, folder, until))
+        _print_results(done)
+        if recorded_case(done / "run.h5").output.estimate:
+            print_estimate(done)
 
 
 @app.command("rerun", rich_help_panel="Cases")
@@ -152,13 +154,26 @@ def _require_another_folder(record: Path, output: Path, name: str) -> None:
         )
 
 
-def _run(case: Case, output: Path, spent: dict[str, float], begun_for: float | None = None) -> None:
-    """Run a case, with its progress, and print its outcome; spent : seconds before, by section; begun_for : s."""
+def _run(
+    case: Case,
+    output: Path,
+    spent: dict[str, float],
+    begun_for: float | None = None,
+    *,
+    estimated: bool = False,
+    budget: float | None = None,
+) -> None:
+    """Run a case, with its progress, and print its outcome; spent : seconds before, by section; begun_for : s.
+
+    estimated : whether its errors are estimated though the case does not ask for it; budget : for that.
+    """
     from dembound.results.folder import Folder
     from dembound.running import run_case
 
     folder = Folder(output, case.name)
     _print_results(_watched(folder, partial(run_case, case, output, seconds=spent, begun_for=begun_for)))
+    if estimated or case.output.estimate:
+        print_estimate(folder.final, budget)
 
 
 def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:

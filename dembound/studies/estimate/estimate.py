@@ -9,10 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from dembound.results.estimates import in_words, split_in_words
 from dembound.studies.estimate.causes import QUANTITIES, SIDES, Causes, Recorded
-
-LEAST = 1e-3
-"""Smallest error that is given as a number."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +95,7 @@ class Estimate:
         without = ", in part" if self.causes.missing else ""
         for name in self.recorded:
             parts = [
-                f"{quantity} {in_words(self.total(name, quantity))} ({_split(self.shares(name, quantity))})"
+                f"{quantity} {in_words(self.total(name, quantity))} ({split_in_words(self.shares(name, quantity))})"
                 for quantity in self.quantities(name)
                 if math.isfinite(self.total(name, quantity))
             ]
@@ -111,16 +109,3 @@ class Estimate:
         for cause in self.causes.found:
             ways.setdefault(cause.words, []).append(cause.name)
         return [f"{' and '.join(names)} {words}" for words, names in ways.items()]
-
-
-def in_words(share: float) -> str:
-    """A share in per cent with two digits, from `LEAST` on."""
-    if share < LEAST:
-        return f"< {100.0 * LEAST:g} %"
-    return f"{100.0 * share:.2g} %" if share < 9.95 else f"{100.0 * share:.0f} %"
-
-
-def _split(shares: Mapping[str, float]) -> str:
-    """Shares by cause, the largest first."""
-    ordered = sorted(shares.items(), key=lambda each: -each[1])
-    return ", ".join(f"{name} {in_words(share)}" for name, share in ordered)
