@@ -1,0 +1,144 @@
+"""The motion of a linear bar at its monitors: as it is stepped, without its ends, in exact time, and exact.
+
+All are sums over complex frequencies (window.py) of what loads and waves do at each (chain.py, rods.py).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dembound.bar.layers import ENDS, EndLayer
+from dembound.bar.scene import BarScene, build_bar
+from dembound.boundaries.layer import Layer
+from dembound.boundaries.matched_layer import MatchedLayer
+from dembound.boundaries.signals import Signal
+from dembound.casefile.bar import BarCase
+from dembound.studies.estimate.chain import Chain, Clock, Response, observed_near
+from dembound.studies.estimate.rods import Rods
+from dembound.studies.estimate.window import Window, needed
+
+FINER = 4
+"""Samples in a step of the waves of the exact motion, which need not arrive at whole steps."""
+
+BATCH = 256
+"""Number of frequencies that are computed together."""
+
+Histories = Mapping[str, Mapping[str, np.ndarray]]
+"""Monitor -> quantity -> values (k,) at the times of its record."""
+
+
+@dataclass(frozen=True)
+class Motions:
+    """The motions of a case at its monitors; times : of the records, by monitor."""
+
+    case: BarCase
+    scene: BarScene
+    window: Window
+    times: Mapping[str, np.ndarray]
+
+    @property
+    def absorbing(self) -> list[str]:
+        """The ends that stand in for more of the bar."""
+        return [side for side in ENDS if self.case.side(side).is_artificial]
+
+    @property
+    def nodes(self) -> dict[str, int]:
+        """The node of every monitor."""
+        return {name: self.scene.monitors[name] for name in self.times}
+
+    def own(self) -> Histories:
+        """That of the bar as it is."""
+        return self._in_nodes(self.scene, self.scene.layers, self.window.step, [])
+
+    def endless(self, step: float) -> Histories:
+        """That of the bar without ends that absorb; step : Δt, s, 0 for exact time."""
+        if not self.absorbing:
+            return self._in_nodes(self.scene, self.scene.layers, step, [])
+        least = max(4, 2 * self.case.method.horizon_beyond)
+        layered = {side: MatchedLayer(type="matched_layer", nodes=least) for side in self.absorbing}
+        scene = build_bar(replace(self.case, boundary={**self.case.boundary, **layered}))
+        layers = {side: self._endless(layer) for side, layer in scene.layers.items()}
+        return self._in_nodes(scene, layers, step, [side for side in self.absorbing if self.case.side(side).waves])
+
+    def _endless(self, layer: EndLayer) -> EndLayer:
+        """Nodes in which nothing decays, so many that nothing returns within the window."""
+        count = 100 + math.ceil(self.window.samples * self.window.step * layer.speed / layer.spacing)
+        return replace(layer, layer=Layer(count, power=1.0, reflection=1.0))
+
+    def _in_nodes(
+        self, scene: BarScene, layers: Mapping[str, EndLayer], step: float, entering: Iterable[str]
+    ) -> Histories:
+        """That of a chain of nodes; entering : ends at which the wave enters an endless bar."""
+        window, supports = self.window, scene.supports
+        chain = Chain(scene, layers, window.step)
+        fixed = supports.node[supports.prescribed & (supports.component == 0)]
+        clock = Clock.of(window.s, step)
+        push: dict[int, np.ndarray] = {}
+        for row, drive, number in zip(supports.drive_row, supports.drive, supports.drive_signal, strict=True):
+            node = int(supports.node[row])
+            ahead = 0.5 * step if node in fixed else 0.0
+            transform = drive * window.transform(supports.signals[number], ahead) * np.exp(-ahead * window.s)
+            push[node] = push.get(node, 0.0) + transform * (chain.rigid * clock.mean if node in fixed else 1.0)
+        enter = {side: window.transform(self._wave(side)) / clock.mean for side in entering}
+        count = needed([*push.values(), *enter.values()]) if push or enter else 1
+        ends = {side: 0 if side == "left" else scene.count - 1 for side in ENDS}
+        response = Response(chain, [*observed_near(chain, list(self.nodes.values())), *push, *(ends[e] for e in enter)])
+        found: dict[str, list[np.ndarray]] = {name: [] for name in self.nodes}
+        for start in range(0, count, BATCH):
+            chosen = slice(start, min(start + BATCH, count))
+            now = clock.part(chosen)
+            forces = {node: values[chosen] for node, values in push.items()}
+            for side, wave in enter.items():
+                forces[ends[side]] = forces.get(ends[side], 0.0) + wave[chosen] / chain.mobility(side, now)
+            moved = response.velocities(now, forces)
+            for name, node in self.nodes.items():
+                velocity = response.at(moved, chain.first + node)
+                stress = _stress(scene, response, moved, now, node)
+                found[name].append(np.stack([velocity * now.mean, velocity / now.change, stress]))
+        return {name: self._history(window, np.concatenate(values, axis=1), name) for name, values in found.items()}
+
+    def exact(self) -> Histories:
+        """That of rods."""
+        finer = self.window.finer(FINER)
+        pushed: dict[str, np.ndarray] = {}
+        for load in self.case.load:
+            inwards = 1.0 if load.side == "left" else -1.0
+            force = inwards * load.pressure * self.scene.rod.end(load.side).section
+            transform = force * finer.transform(self.case.wave[load.wave].velocity)
+            pushed[load.side] = pushed.get(load.side, 0.0) + transform
+        waves = {side: finer.transform(self._wave(side)) for side in ENDS if self.case.side(side).waves}
+        count = needed([*pushed.values(), *waves.values()]) if pushed or waves else 1
+        pushed, waves = ({side: values[:count] for side, values in each.items()} for each in (pushed, waves))
+        s, count = finer.s[:count], len(self.nodes)
+        place = self.scene.positions[list(self.nodes.values()), 0]
+        left, right = (self.scene.rod.end(side) for side in ENDS)
+        plane = np.clip(place, 0.5 * left.spacing, right.end - 0.5 * right.spacing)
+        velocity, stress = Rods(self.case, self.scene.rod, np.concatenate([place, plane]), s).motion(pushed, waves)
+        found = np.stack([velocity[:, :count], velocity[:, :count] / s[:, None], stress[:, count:]])
+        return {name: self._history(finer, found[:, :, k], name) for k, name in enumerate(self.nodes)}
+
+    def _wave(self, side: str) -> Signal:
+        """The velocity of the wave of an end along the bar."""
+        return self.case.wave[self.case.side(side).waves["p"]].velocity
+
+    def _history(self, window: Window, transforms: np.ndarray, name: str) -> dict[str, np.ndarray]:
+        """Velocity, displacement and stress at the times of a record, from their transforms (3, f); 0 afterwards."""
+        from scipy.interpolate import CubicSpline
+
+        grid, time = window.time, self.times[name]
+        found = {}
+        for quantity, values in zip(("velocity", "displacement", "stress"), transforms, strict=True):
+            spline = CubicSpline(grid, window.history(values))
+            found[quantity] = np.where(time <= grid[-1] + 0.5 * window.step, spline(time), 0.0)
+        return found
+
+
+def _stress(scene: BarScene, response: Response, moved: np.ndarray, clock: Clock, node: int) -> np.ndarray:
+    """Stress (f,) Pa at a node, as kernels/bar.node_stress computes it."""
+    planes = [plane for plane in (node - 1, node) if 0 <= plane < scene.count - 1]
+    tension = sum(response.tension(moved, clock, response.chain.first + plane) for plane in planes)
+    return np.asarray(tension / scene.rod.sections[planes].sum())

@@ -1,0 +1,74 @@
+"""Blocks of unknowns in a row, each joined to its neighbours only, at many frequencies at once.
+
+A link joins two blocks: with their velocities v₁ and v₂ it needs the forces F₁ = A v₁ + B v₂ and F₂ = C v₁ + D v₂. All
+between two blocks can be eliminated, which leaves one link; a uniform row of N equal blocks takes log₂N eliminations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Link(NamedTuple):
+    """The matrices A, B, C and D (f, b, b) of a link, at f frequencies, of blocks of b unknowns."""
+
+    a: np.ndarray
+    b: np.ndarray
+    c: np.ndarray
+    d: np.ndarray
+
+
+def joined(first: Link, middle: np.ndarray, second: Link) -> Link:
+    """Two links as one, without the block between them, whose own matrix is middle (f, b, b)."""
+    answer = solve(middle + first.d + second.a, np.concatenate([first.c, second.b], axis=2))
+    by_left, by_right = np.split(answer, 2, axis=2)
+    return Link(
+        first.a - first.b @ by_left,
+        -first.b @ by_right,
+        -second.c @ by_left,
+        second.d - second.c @ by_right,
+    )
+
+
+def repeated(link: Link, middle: np.ndarray, count: int) -> Link:
+    """So many equal links, at least 1, as one, without the equal blocks between them, middle (f, b, b)."""
+    found: Link | None = None
+    power = link
+    while True:
+        if count % 2:
+            found = power if found is None else joined(found, middle, power)
+        count //= 2
+        if count == 0:
+            assert found is not None
+            return found
+        power = joined(power, middle, power)
+
+
+def velocities(own: Sequence[np.ndarray], links: Sequence[Link], force: np.ndarray) -> np.ndarray:
+    """Velocities (f, k, b) of the k blocks of a row under forces (f, k, b).
+
+    own : the matrices (f, b, b) of the blocks without links; links : of each with the next one.
+    """
+    whole = [np.array(matrix) for matrix in own]
+    for k, link in enumerate(links):
+        whole[k] += link.a
+        whole[k + 1] += link.d
+    rest = force.copy()
+    for k, link in enumerate(links):  # eliminate from the left
+        answer = solve(whole[k], np.concatenate([link.b, rest[:, k, :, None]], axis=2))
+        whole[k + 1] -= link.c @ answer[:, :, :-1]
+        rest[:, k + 1] -= (link.c @ answer[:, :, -1:])[:, :, 0]
+    moved = np.empty_like(rest)
+    moved[:, -1] = solve(whole[-1], rest[:, -1, :, None])[:, :, 0]
+    for k in range(len(links) - 1, -1, -1):
+        left = rest[:, k] - (links[k].b @ moved[:, k + 1, :, None])[:, :, 0]
+        moved[:, k] = solve(whole[k], left[:, :, None])[:, :, 0]
+    return moved
+
+
+def solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Solutions (f, b, c) of f systems; matrix (f, b, b), right (f, b, c)."""
+    return right / matrix if matrix.shape[-1] == 1 else np.linalg.solve(matrix, right)
