@@ -21,7 +21,7 @@ from dembound.studies.estimate.chain import Chain, Clock, Response, observed_nea
 from dembound.studies.estimate.rods import Rods
 from dembound.studies.estimate.window import Window, needed
 
-FINER = 4
+FINER = 8
 """Samples in a step of the waves of the exact motion, which need not arrive at whole steps."""
 
 BATCH = 256

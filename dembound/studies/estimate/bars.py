@@ -13,7 +13,8 @@ Own less endless is the error of the ends, endless less exact time that of the t
 all ways of a wave, there and back, are included, and so are ends that are softer than the bar, and what is lost at
 interfaces between ranges.
 
-Whether the bar is linear is seen in the record itself: at a monitor whose record is not that of `own`, nothing is said.
+Whether the bar was linear is seen in the record itself: at a monitor whose record is not that of `own`, as a method has
+changed the bonds, nothing is said.
 """
 
 from __future__ import annotations
@@ -25,10 +26,9 @@ import numpy as np
 
 from dembound.bar.layer_echo import WIDEST
 from dembound.bar.scene import build_bar
-from dembound.bar.stability import choose_step
 from dembound.casefile.bar import BarCase
 from dembound.studies.estimate.bar_motions import Motions
-from dembound.studies.estimate.causes import Cause, Recorded
+from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.window import Window
 
 UNEXPLAINED = 1.0 / 3.0
@@ -37,83 +37,83 @@ UNEXPLAINED = 1.0 / 3.0
 SMALLEST = 1e-3
 """RMS of this difference over that of the record below which it does not matter."""
 
+QUIET = 1e-6
+"""RMS of a record over the largest motion that sources make, below which it is rounding errors and far precursors."""
+
 HOW = "from the waves of the linear bar at each frequency"
 """How its errors are found."""
 
 
-def causes_of_bar(
-    case: BarCase, recorded: Mapping[str, Recorded], budget: float = 0.1, until: float = math.inf
-) -> tuple[list[Cause], list[str], float]:
-    """Causes of the errors of a bar, a line for everything that is not estimated, and their cost.
+def causes_of_bar(case: BarCase, recorded: Mapping[str, Recorded], time_step: float) -> Causes:
+    """The causes of the errors of a bar, whose cost is 0, as nothing is run.
 
-    recorded : of the run, by monitor. budget : share of the run's work that may be spent; nothing is run for a bar, and
-    the cost is 0. until : s, first break or change of the bar: later errors are not estimated, and are 0 here.
+    recorded : of the run, by monitor, up to the first break. time_step : s, of the run.
+
+    Raises the errors of building a scene.
     """
     refused = _refused(case)
     if refused or not recorded:
-        return [], refused, 0.0
+        return Causes([], refused)
     times = {name: each.time for name, each in recorded.items()}
-    scene = build_bar(case)
-    step = choose_step(scene)[0]
-    last = min(until, max(float(time[-1]) for time in times.values()))
-    window = Window.up_to(last, step)
-    motion = Motions(case, scene, window, times)
-    own, endless, exact_time, exact = motion.own(), motion.endless(step), motion.endless(0.0), motion.exact()
-    parts = {"grid": (exact_time, exact), "time step": (endless, exact_time)}
-    if motion.absorbing:
-        parts["sides"] = (own, endless)
-    lines = [_after(until)] if until < max(float(time[-1]) for time in times.values()) else []
-    known = []
-    for name, each in recorded.items():
-        line = _differs(name, each, own[name], exact[name], until)
-        lines += [line] if line else []
-        known += [] if line else [name]
-    causes = [
-        Cause(cause, HOW, {name: _errors(recorded[name], of[name], less[name], until) for name in known})
+    window = Window.up_to(max(float(time[-1]) for time in times.values()), time_step)
+    motions = Motions(case, build_bar(case), window, times)
+    own, endless = motions.own(), motions.endless(time_step)
+    exact_time, exact = motions.endless(0.0), motions.exact()
+    parts = {GRID: (exact_time, exact), STEP: (endless, exact_time)}
+    if motions.absorbing:
+        parts[SIDES] = (own, endless)
+    lines = {name: _unknown(case, each, own[name], exact[name]) for name, each in recorded.items()}
+    known = [name for name, line in lines.items() if not line]
+    found = [
+        Cause(cause, HOW, {name: _errors(recorded[name], of[name], less[name]) for name in known})
         for cause, (of, less) in parts.items()
     ]
-    return (causes if known else []), lines, 0.0
+    missing = [f"{name}: {line}" for name, line in lines.items() if line]
+    return Causes(found if known else [], missing, echo_free=bool(motions.absorbing))
 
 
 def _refused(case: BarCase) -> list[str]:
     """Why nothing can be estimated; empty if something can."""
     bar = case.bar
     if any(given.interface == "contact" for given in bar.range):
-        return ["errors of a bar with contacts, which open and close"]
+        return ["bars with contacts, which open and close"]
     if any(given.velocity for given in bar.range):
-        return ["errors of a bar whose ranges move at the start"]
+        return ["bars whose ranges move at the start"]
     if case.method.largest_horizon > WIDEST:
-        return [f"errors of a bar with a horizon above {WIDEST} spacings"]
+        return [f"bars with a horizon of more than {WIDEST} spacings"]
     return []
 
 
-def _after(until: float) -> str:
-    return f"errors after {until:g} s, when the bar breaks or changes; a break depends on the nodes near it"
-
-
-def _differs(
-    name: str, recorded: Recorded, own: Mapping[str, np.ndarray], exact: Mapping[str, np.ndarray], until: float
-) -> str:
-    """A line if the record is not that of a linear bar; empty otherwise."""
-    worst, before = 0.0, recorded.time <= until
+def _unknown(case: BarCase, recorded: Recorded, own: Mapping[str, np.ndarray], exact: Mapping[str, np.ndarray]) -> str:
+    """Why nothing is known at a monitor: its record is that of no linear bar, or of rest; empty otherwise."""
+    worst, largest = 0.0, _largest(case, float(recorded.time[-1]))
     for quantity, values in recorded.values.items():
-        seen = values[before, 0]
+        seen = values[:, 0]
         size = float(np.linalg.norm(seen))
-        rest = float(np.linalg.norm(seen - own[quantity][before]))
-        error = float(np.linalg.norm((own[quantity] - exact[quantity])[before]))
+        if size <= QUIET * largest[quantity] * math.sqrt(len(seen)):
+            return "hardly moves"
+        rest = float(np.linalg.norm(seen - own[quantity]))
+        error = float(np.linalg.norm(own[quantity] - exact[quantity]))
         if rest > max(SMALLEST * size, UNEXPLAINED * error):
-            worst = max(worst, rest / size if size > 0.0 else math.inf)
-    if worst == 0.0:
-        return ""
-    return f"errors at {name}, whose record differs by {100.0 * worst:.2g} % from that of a bar that does not change"
+            worst = max(worst, rest / size)
+    return (
+        f"its record differs by {100.0 * worst:.2g} % from that of a bar whose bonds stay as they are" if worst else ""
+    )
 
 
-def _errors(
-    recorded: Recorded, of: Mapping[str, np.ndarray], less: Mapping[str, np.ndarray], until: float
-) -> dict[str, np.ndarray]:
-    """Quantity -> error (k, c), along the bar, 0 later than `until`."""
+def _largest(case: BarCase, last: float) -> dict[str, float]:
+    """By quantity the sum of the largest motions that the sources make, up to a time (s)."""
+    impedance = max(part.density * part.speed for part in case.bar.parts)
+    waves = [case.wave[name].peak() for driven in case.driving.values() for name in driven.values()]
+    loads = [abs(load.pressure) * case.wave[load.wave].peak() / impedance for load in case.load]
+    velocity = math.fsum([*waves, *loads])
+    return {"velocity": velocity, "displacement": velocity * last, "stress": velocity * impedance}
+
+
+def _errors(recorded: Recorded, of: Mapping[str, np.ndarray], less: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Quantity -> error (k, c), along the bar."""
     errors = {}
     for quantity, values in recorded.values.items():
         errors[quantity] = np.zeros_like(values, dtype=float)
-        errors[quantity][:, 0] = np.where(recorded.time <= until, of[quantity] - less[quantity], 0.0)
+        errors[quantity][:, 0] = of[quantity] - less[quantity]
     return errors

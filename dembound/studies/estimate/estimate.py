@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from dembound.results.estimates import in_words, split_in_words
-from dembound.studies.estimate.causes import QUANTITIES, SIDES, Causes, Recorded
+from dembound.studies.estimate.causes import QUANTITIES, SIDES, Cause, Causes, Recorded
 
 
 @dataclass(frozen=True)
@@ -33,9 +33,23 @@ class Estimate:
         return {name: share for name, share in found.items() if math.isfinite(share)}
 
     def total(self, monitor: str, quantity: str) -> float:
-        """The root of the sum of their squares; nan if none is known."""
-        shares = list(self.shares(monitor, quantity).values())
-        return math.sqrt(sum(share**2 for share in shares)) if shares else math.nan
+        """RMS of all errors over that of the recorded values; nan if none is known.
+
+        Histories add up, as those of the grid and of the time step have opposite signs; where only the size of an error
+        is known, squares do.
+        """
+        own = self.recorded[monitor]
+        histories, sizes = self._errors(monitor, quantity)
+        if not histories and not sizes:
+            return math.nan
+        together = Cause("", "", {monitor: {quantity: sum(histories, np.zeros_like(own.values[quantity]))}})
+        return math.hypot(together.share(monitor, quantity, own), *sizes)
+
+    def _errors(self, monitor: str, quantity: str) -> tuple[list[np.ndarray], list[float]]:
+        """The errors of all causes: histories (k, c), and where only they are known sizes."""
+        found = [cause.errors.get(monitor, {}).get(quantity, math.nan) for cause in self.causes.found]
+        sizes = [error for error in found if isinstance(error, float) and math.isfinite(error)]
+        return [error for error in found if not isinstance(error, float)], sizes
 
     def quantities(self, monitor: str) -> list[str]:
         """Quantities of a monitor that has any."""
@@ -59,16 +73,12 @@ class Estimate:
     def band(self, monitor: str, quantity: str) -> np.ndarray:
         """Half the width (k, c) of the band around the recorded values in which the exact ones are expected.
 
-        The sum of the sizes of all errors at every time; of those of which only the size is known, this times the RMS.
+        The size of the sum of all errors at every time; of those of which only the size is known, this times the RMS.
         """
         values = self.recorded[monitor].values[quantity]
-        wide = np.zeros_like(values)
-        for cause in self.causes.found:
-            error = cause.errors.get(monitor, {}).get(quantity, 0.0)
-            if isinstance(error, float):
-                error = np.full_like(values, error) * np.sqrt(np.mean(values**2, axis=0))
-            wide += np.abs(error)
-        return wide
+        histories, sizes = self._errors(monitor, quantity)
+        usual = np.sqrt(np.mean(values**2, axis=0))
+        return np.asarray(np.abs(sum(histories, np.zeros_like(values))) + sum(sizes) * usual)
 
     def summary(self) -> dict[str, Any]:
         """Plain JSON values: shares by monitor, quantity and cause, and how they were found."""

@@ -27,7 +27,9 @@ def causes_of(
     """
     most = max(SHORT, BUDGET * work) if budget is None else budget * work
     if isinstance(case, BarCase):
-        return Causes([], ["bars"])
+        from dembound.studies.estimate.bars import causes_of_bar
+
+        return causes_of_bar(case, recorded, time_step)
     from dembound.studies.estimate.disks import causes_of_disks
 
     assert isinstance(case, DiskCase)

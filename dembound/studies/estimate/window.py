@@ -13,14 +13,14 @@ import numpy as np
 
 from dembound.boundaries.signals import Signal
 
-LONGER = 1.6
+LONGER = 2.0
 """Length of the window over that of the history."""
 
-DAMPING = math.log(1e8)
-"""ηW; rounding errors grow by at most e to this power divided by `LONGER`, 1e5."""
+DAMPING = math.log(1e4)
+"""ηW; what rounding, and delays by parts of a step, leave at the end of the window grows by e^{ηW/2} = 100."""
 
 LEFT_OUT = 1e-22
-"""Part of the energy of the signals that the frequencies left out, the highest ones, may have: 1e-11 of the motion."""
+"""Part of the energy of the signals that the frequencies left out, the highest ones, may have: 1e-9 of the motion, after growing."""
 
 
 @dataclass(frozen=True)
