@@ -27,6 +27,12 @@ FINER = 8
 BATCH = 256
 """Number of frequencies that are computed together."""
 
+NEAR = 20
+"""Nodes between a push and a monitor beyond which waves that do not run have no effect."""
+
+ABOVE = 1.1
+"""Largest frequency that counts then, over that of the shortest wave; those above decay by e in a spacing or less."""
+
 Histories = Mapping[str, Mapping[str, np.ndarray]]
 """Monitor -> quantity -> values (k,) at the times of its record."""
 
@@ -73,33 +79,46 @@ class Motions:
         self, scene: BarScene, layers: Mapping[str, EndLayer], step: float, entering: Iterable[str]
     ) -> Histories:
         """That of a chain of nodes; entering : ends at which the wave enters an endless bar."""
-        window, supports = self.window, scene.supports
-        chain = Chain(scene, layers, window.step)
-        fixed = supports.node[supports.prescribed & (supports.component == 0)]
-        clock = Clock.of(window.s, step)
-        push: dict[int, np.ndarray] = {}
-        for row, drive, number in zip(supports.drive_row, supports.drive, supports.drive_signal, strict=True):
-            node = int(supports.node[row])
-            ahead = 0.5 * step if node in fixed else 0.0
-            transform = drive * window.transform(supports.signals[number], ahead) * np.exp(-ahead * window.s)
-            push[node] = push.get(node, 0.0) + transform * (chain.rigid * clock.mean if node in fixed else 1.0)
-        enter = {side: window.transform(self._wave(side)) / clock.mean for side in entering}
-        count = needed([*push.values(), *enter.values()]) if push or enter else 1
-        ends = {side: 0 if side == "left" else scene.count - 1 for side in ENDS}
-        response = Response(chain, [*observed_near(chain, list(self.nodes.values())), *push, *(ends[e] for e in enter)])
+        chain, clock = Chain(scene, layers, self.window.step), Clock.of(self.window.s, step)
+        forces = self._forces(scene, chain, clock)
+        ends = {"left": 0, "right": scene.count - 1}
+        waves = {side: self.window.transform(self._wave(side)) / clock.mean for side in entering}
+        pushed = [*forces, *(ends[side] for side in waves)]
+        response = Response(chain, [*observed_near(chain, list(self.nodes.values())), *pushed])
+        count = min(needed([*forces.values(), *waves.values()]), self._running(clock, pushed, chain.wide))
         found: dict[str, list[np.ndarray]] = {name: [] for name in self.nodes}
         for start in range(0, count, BATCH):
             chosen = slice(start, min(start + BATCH, count))
-            now = clock.part(chosen)
-            forces = {node: values[chosen] for node, values in push.items()}
-            for side, wave in enter.items():
-                forces[ends[side]] = forces.get(ends[side], 0.0) + wave[chosen] / chain.mobility(side, now)
-            moved = response.velocities(now, forces)
+            now, push = clock.part(chosen), {node: values[chosen] for node, values in forces.items()}
+            for side, wave in waves.items():
+                push[ends[side]] = push.get(ends[side], 0.0) + wave[chosen] / chain.mobility(side, now)
+            moved = response.velocities(now, push)
             for name, node in self.nodes.items():
                 velocity = response.at(moved, chain.first + node)
                 stress = _stress(scene, response, moved, now, node)
                 found[name].append(np.stack([velocity * now.mean, velocity / now.change, stress]))
-        return {name: self._history(window, np.concatenate(values, axis=1), name) for name, values in found.items()}
+        return {name: self._history(self.window, np.concatenate(each, axis=1), name) for name, each in found.items()}
+
+    def _forces(self, scene: BarScene, chain: Chain, clock: Clock) -> dict[int, np.ndarray]:
+        """Node -> transform of the force on it (f,) N; where a velocity is prescribed that on its dashpot."""
+        supports, forces = scene.supports, dict[int, np.ndarray]()
+        for row, drive, number in zip(supports.drive_row, supports.drive, supports.drive_signal, strict=True):
+            node, rigid = int(supports.node[row]), bool(supports.prescribed[row])
+            ahead = 0.5 * clock.step if rigid else 0.0  # velocities are those of half steps
+            transform = drive * self.window.transform(supports.signals[number], ahead) * np.exp(-ahead * clock.s)
+            forces[node] = forces.get(node, 0.0) + transform * (chain.rigid * clock.mean if rigid else 1.0)
+        return forces
+
+    def _running(self, clock: Clock, pushed: Iterable[int], wide: int) -> int:
+        """How many of the frequencies, from the lowest on, count: above that of the shortest wave nothing runs.
+
+        It moves the nodes near those that are pushed; of monitors there all frequencies count.
+        """
+        near = max(NEAR, 4 * wide)
+        if any(abs(node - push) <= near for node in self.nodes.values() for push in pushed):
+            return len(clock.s)
+        highest = 2.0 / self.scene.step_limit()
+        return max(1, int(np.count_nonzero(np.abs(clock.change) <= ABOVE * highest)))
 
     def exact(self) -> Histories:
         """That of rods."""

@@ -28,8 +28,9 @@ RIGID = 1e12
 
 @dataclass(frozen=True)
 class Clock:
-    """Complex frequencies s (f,) rad/s, and the δ and μ (f,) of steps in time."""
+    """Complex frequencies s (f,) rad/s, and their δ and μ (f,) in steps of so many s; 0 stands for exact time."""
 
+    step: float
     s: np.ndarray
     change: np.ndarray
     mean: np.ndarray
@@ -38,13 +39,13 @@ class Clock:
     def of(cls, s: np.ndarray, step: float) -> Clock:
         """For steps of so many seconds; 0 stands for exact time."""
         if step == 0.0:
-            return cls(s, s, np.ones_like(s))
+            return cls(step, s, s, np.ones_like(s))
         half = 0.5 * step * s
-        return cls(s, 2.0 / step * np.sinh(half), np.cosh(half))
+        return cls(step, s, 2.0 / step * np.sinh(half), np.cosh(half))
 
     def part(self, chosen: slice) -> Clock:
         """Some of the frequencies."""
-        return Clock(self.s[chosen], self.change[chosen], self.mean[chosen])
+        return Clock(self.step, self.s[chosen], self.change[chosen], self.mean[chosen])
 
 
 class Chain:
