@@ -78,8 +78,8 @@ def test_the_tension_at_rest_is_the_same_everywhere() -> None:
     [("input by a matched layer, m = 3", "left"), ("matched layer", "right"), ("attenuation", "right")],
 )
 def test_mobility_is_that_of_two_endless_halves(name: str, side: str) -> None:
-    # Two impedances ρcA √(1 + γ/s) of long waves, with kΔx = 0.02 within (m² + 2)(kΔx)²/24 of it for m = 3, 2e-4; beside
-    # that the bonds at the push give way like a spring, by some kΔx of the motion, a quarter of a period late.
+    # Two impedances ρcA √(1 + γ/s) of long waves, with kΔx = 0.02 within (m² + 2)(kΔx)²/24 of it for m = 3, 2e-4;
+    # beside that the bonds at the push give way like a spring, by some kΔx of the motion, a quarter of a period late.
     case = with_changes(scene(name), {f"boundary.{side}": LAYER} if name == "attenuation" else {})
     built, s = build_bar(case), np.array([30.0 + 5e3j])
     layer = built.layers[side]
