@@ -265,7 +265,7 @@ def replacing(path: Path) -> Iterator[Path]:
         part.replace(path)
     except BaseException as error:
         if isinstance(error, OSError) and error.filename is None:
-            error.filename = str(path)  # a failed write does not know which file it was
+            error.filename = str(path)  # errors of writing have no file name
         with suppress(OSError):
             part.unlink(missing_ok=True)
         raise
