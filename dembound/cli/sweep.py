@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Column, Table
 
-from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case
+from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, load_case
 from dembound.cli.calibration import CalibrationMethod
 from dembound.cli.console import INTERVAL, compact_table, err, out
 from dembound.errors import CaseError
@@ -41,13 +41,7 @@ class SweepAction(StrEnum):
 @app.command("sweep", rich_help_panel="Cases")
 def sweep(
     case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")],
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="KEY=A,B,…",
-            help="Values of a key, or a range, e.g. packing.seed=1:20. May be repeated: all combinations are members.",
-        ),
-    ] = None,
+    vary: Vary = None,
     together: Annotated[
         bool | None,
         typer.Option(
