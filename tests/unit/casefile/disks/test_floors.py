@@ -53,7 +53,10 @@ def test_waves_that_need_a_half_space_are_refused() -> None:
     ]
 
 
-@pytest.mark.parametrize("changes", [WEIGHT, {"load": [WEIGHT["load"][0] | {"wave": "w"}]} | STAGE], ids=["no stage", "wave"])
+SHAKEN = {"load": [WEIGHT["load"][0] | {"wave": "w"}]} | STAGE
+
+
+@pytest.mark.parametrize("changes", [WEIGHT, SHAKEN], ids=["no stage", "wave"])
 def test_loads_on_all_disks_need_a_stage(changes: Tables) -> None:
     line = f"load[1, weight]: acts on all disks, which needs a [static] stage and no wave, {WHY}"
     assert line in problems(changes)
