@@ -182,8 +182,14 @@ def compare_histories(
 
 
 def results_file(path: Path) -> Path:
-    """The HDF5 file of a results argument."""
+    """The HDF5 file of a results argument; raises CaseError for a folder without one."""
     for candidate in (path, path / "run.h5", path / "calibration.h5"):
         if candidate.is_file():
             return candidate
+    if (path / "sweep.h5").is_file():
+        from dembound.studies.sweep.perform import MEMBERS
+
+        members = path / MEMBERS
+        advice = f"name runs in {members}" if members.is_dir() else "its numbers are in sweep.csv"
+        raise CaseError([f"{path}: is a sweep, not results of a single run; {advice}"])
     raise CaseError([f"{path}: contains no results, must be a folder with run.h5 or calibration.h5"])
