@@ -74,6 +74,15 @@ SURROUNDED: Tables = {
 }
 """A lattice of 12 × 6 disks in a continuum of 40 elements, whose outer ones absorb."""
 
+GROUND: Tables = {
+    "packing": {"pattern": "A", "size": [30.0, 20.0], "radius": 0.5},
+    "material": {"density": 2500.0, "p_wave_speed": 1000.0},
+    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom")},
+    "wave": {"w": {"type": "cosine", "amplitude": 1.0, "period": 0.1}},
+    "run": {"duration": 0.1},
+}
+"""A lattice of 30 × 20 disks in a continuum, wide enough for a slope, and a wave that nothing follows."""
+
 
 def small(tables: Tables, name: str = "small", changes: Mapping[str, Any] | None = None) -> Case:
     """The case of tables, with some keys changed; its name has no other characters than a folder may have."""

@@ -40,6 +40,7 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
         "spalls": [spall.describe() for spall in found],
         "breaks_at_ends": {side: spall.describe() for side, spall in at_ends.items()},
         "spalls_note": _note(scene) if len(found) > 1 else None,
+        "open_contacts": _open_contacts(scene, bar),
         "crack_strain_rates": crack_strain_rates(bar.bonds),
         "bar": describe_bar(scene),
         "boundaries": {side: describe_end(scene, side) for side in scene.edges},
@@ -51,6 +52,12 @@ def summarise_bar(scene: BarScene, run: Run, record: Path) -> dict[str, Any]:
 def _note(scene: BarScene) -> str:
     """Whether spalls after the first converge."""
     return AT_ONE_HORIZON if scene.case.bar.opens else LATER_SPALLS
+
+
+def _open_contacts(scene: BarScene, bar: BarPart) -> list[str]:
+    """Names of the ranges whose contact with the one on their left has never been closed."""
+    right = [given.name for given in scene.case.bar.range if given.interface == "contact"]
+    return [name for name, closed in zip(right, bar.bonds.closed, strict=True) if not closed]
 
 
 def spalls_of(scene: BarScene, run: Run) -> tuple[list[Spall], dict[str, Spall]]:

@@ -54,7 +54,21 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
         *stress_beside_strength(case),
         *_unlikely_speeds(case),
         *_impacts(case, time_step),
+        *_monitors_in_gaps(scene),
     ]
+
+
+def _monitors_in_gaps(scene: BarScene) -> Iterator[str]:
+    """Monitors that are where no bar is: between two ranges that do not touch yet."""
+    for monitor in scene.case.monitor:
+        for left, right in scene.rod.touching:
+            margin = ROUNDING * right.end
+            if left.end + margin < monitor.position < right.start - margin:
+                place = scene.positions[scene.monitors[monitor.name], 0]
+                yield (
+                    f"monitor.{monitor.name}: is at {monitor.position:g} m, in the gap from {left.end:g} to "
+                    f"{right.start:g} m between two ranges; it records the node at {place:g} m"
+                )
 
 
 def _unlikely_speeds(case: BarCase) -> Iterator[str]:
@@ -199,10 +213,22 @@ def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path
     with open_record(record) as file:
         return [
             *still_moving(scene, summary["duration"], file, pieces),
+            *_open_contacts(scene.case, summary),
             *_torn_by_the_load(scene.case, summary),
             *_outside_the_rates(scene.case, summary),
             *_no_tension(scene.case, file),
         ]
+
+
+def _open_contacts(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:
+    """Contacts between ranges that have never been closed, so that nothing has passed them."""
+    for number, (left, right) in enumerate(zip(case.bar.range[:-1], case.bar.range[1:], strict=True), start=2):
+        if right.name in summary["open_contacts"]:
+            gap = f", {right.gap:g} m wide at the start," if right.gap > 0.0 else ""
+            yield (
+                f"bar.range[{number}, {right.name}]: its contact with {left.name}{gap} has never closed until the end "
+                f"of the run at {summary['duration']:.4g} s, so nothing has passed it"
+            )
 
 
 def _outside_the_rates(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:

@@ -102,6 +102,14 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change a key, e.g. boundary.right.beta_p=0.8. May be repeated."),
 ]
+Vary = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="KEY=A,B,…",
+        help="Values of a key, or a range, e.g. packing.radius=0.25,0.5 or packing.seed=1:20. May be repeated: all "
+        "combinations are run.",
+    ),
+]
 Name = Annotated[str | None, typer.Option(help="Name of the results folder; by default the case file's.")]
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Column
 
-from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case, prepare_computing
+from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, load_case, prepare_computing
 from dembound.cli.console import compact_table, err, out
 from dembound.results.interrupts import exit_code_of
 
@@ -47,13 +47,7 @@ class ChartReference(StrEnum):
 @app.command("chart", rich_help_panel="Cases")
 def chart(
     case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")],
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="KEY=A,B,…",
-            help="Values of a key, e.g. packing.radius=0.25,0.5. May be repeated: all combinations are run.",
-        ),
-    ] = None,
+    vary: Vary = None,
     reference: Annotated[
         ChartReference | None,
         typer.Option(

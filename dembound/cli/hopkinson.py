@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -41,6 +41,9 @@ from dembound.errors import CaseError
 
 if TYPE_CHECKING:
     from dembound.gauge.hopkinson import Specimen
+    from dembound.gauge.pulses import Faces
+    from dembound.gauge.signal import Reading, Signal
+    from dembound.gauge.treatment import Treatment
 
 BARS, PULSES = "Bars and specimen", "Pulses"
 """Panels of the help."""
@@ -134,61 +137,80 @@ def hopkinson(
     By one, two and three waves, with the time in which the specimen is in equilibrium.
     """
     from dembound.gauge.hopkinson import specimen
-    from dembound.gauge.hopkinson_io import combined, read_strain
+    from dembound.gauge.hopkinson_io import combined
     from dembound.gauge.pulses import Setup, Windows, at_faces
-    from dembound.gauge.separation import Bar
 
-    if dispersion and (poisson is None or not 0.0 < poisson < 0.5):
-        raise CaseError(["--poisson: is needed by --dispersion-correction, above 0 and below 0.5"])
     if (second_gauge is None) != (second is None and second_column is None):
         raise CaseError(["--second-gauge: needs --second or --second-column, and the other way round"])
     area = _specimen_area(specimen_diameter, specimen_area)
-    modulus = density * wave_speed**2 if youngs_modulus is None else youngs_modulus
-    round_bar = (0.5 * bar_diameter, poisson) if dispersion else (None, None)
-    bar = Bar(wave_speed, attenuation, *round_bar)
-    lengths = (incident_gauge, transmitted_gauge, specimen_length, area, second_gauge, bar_length)
-    setup = Setup(bar, modulus, 0.25 * pi * bar_diameter**2, *lengths)
+    setup = Setup.of_round_bars(
+        *(wave_speed, density, bar_diameter, incident_gauge, transmitted_gauge, specimen_length, area),
+        attenuation=attenuation,
+        poisson=poisson,
+        modulus=youngs_modulus,
+        disperse=dispersion,
+        second_gauge=second_gauge,
+        bar_length=bar_length,
+    )
     wired = bridge_of(gauge_factor, bridge, excitation, gain, poisson)
     reading = reading_of(None, time_column, time_unit, unit, wired, scale)
     treatment = treatment_of(no_baseline, no_drift, no_hum, low_pass, high_pass, band, notch)
-    strains = []
-    for path, column in (
-        (incident, incident_column),
-        (transmitted or incident, transmitted_column),
-        (second, second_column),
-    ):
-        if path is None and column is None:
-            continue
-        source = path or incident
-        file = results_file(source) if source.is_dir() else source
-        strains.append(read_strain(file, replace(reading, column=column), treatment, modulus, may_be_clipped=clipped))
-        for note in strains[-1].notes:
-            out.print(note)
-    signals = combined(*strains, opposite=opposite)
-    faces = at_faces(signals, setup, Windows(incident_window, reflected_window, transmitted_window))
+    sources = [(incident, incident_column), (transmitted or incident, transmitted_column)]
+    if second_gauge is not None:
+        sources.append((second or incident, second_column))
+    strains = _strains(sources, reading, treatment, setup.modulus, clipped)
+    faces = at_faces(
+        combined(*strains, opposite=opposite), setup, Windows(incident_window, reflected_window, transmitted_window)
+    )
     found = specimen(faces, setup, equilibrium)
     if found.equilibrium is None:
         said = f"the forces on the specimen never agree to {100.0 * equilibrium:g} %"
         err.print(f"warning: {said}: stress over strain is no law of it")
     out.print(_overview(found, equilibrium))
-    if output is not None:
+    _write(faces, found, output, title, table)
+
+
+def _specimen_area(diameter: float | None, area: float | None) -> float:
+    """The specimen's area, m², from one of both options."""
+    from dembound.gauge.pulses import circle_area
+
+    if (diameter is None) == (area is None):
+        raise CaseError(["--specimen-diameter: is needed, or --specimen-area, but not both"])
+    return area if diameter is None else circle_area(diameter)  # type: ignore[return-value]
+
+
+def _strains(
+    sources: Sequence[tuple[Path, str | None]],
+    reading: Reading,
+    treatment: Treatment | None,
+    modulus: float,
+    clipped: bool,
+) -> list[Signal]:
+    """The strains of gauges from files, or folders of results, and columns; prints the notes on them."""
+    from dembound.gauge.hopkinson_io import read_strain
+
+    strains = []
+    for path, column in sources:
+        file = results_file(path) if path.is_dir() else path
+        strains.append(read_strain(file, replace(reading, column=column), treatment, modulus, may_be_clipped=clipped))
+        for note in strains[-1].notes:
+            out.print(note)
+    return strains
+
+
+def _write(faces: Faces, found: Specimen, picture: Path | None, title: str | None, table: Path | None) -> None:
+    """Write the picture and the table, where there are names for them."""
+    if picture is not None:
         from dembound.plot.hopkinson import plot_hopkinson
         from dembound.plot.style import save
 
-        save(plot_hopkinson(faces, found), output, title)
-        out.print(f"wrote {output}")
+        save(plot_hopkinson(faces, found), picture, title)
+        out.print(f"wrote {picture}")
     if table is not None:
         from dembound.gauge.specimen_table import write_specimen
 
         write_specimen(found, table)
         out.print(f"wrote {table}")
-
-
-def _specimen_area(diameter: float | None, area: float | None) -> float:
-    """The specimen's area, m², from one of both options."""
-    if (diameter is None) == (area is None):
-        raise CaseError(["--specimen-diameter: is needed, or --specimen-area, but not both"])
-    return area if diameter is None else 0.25 * pi * diameter**2  # type: ignore[return-value]
 
 
 def _overview(found: Specimen, tolerance: float) -> Table:

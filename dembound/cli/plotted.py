@@ -1,4 +1,4 @@
-"""What the command plot shows: its options, what does not go together, and the picture."""
+"""Options of commands that draw histories; what the command plot shows: what does not go together, and the picture."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from dembound.cli.app import Side
 
@@ -36,6 +38,26 @@ class Component(StrEnum):
     y = "y"
     both = "both"
     rotation = "rotation"
+
+
+QuantityOfMonitors = Annotated[
+    Quantity | None,
+    typer.Option(
+        "--quantity",
+        metavar="QUANTITY",
+        help=f"Quantity of the monitors: {', '.join(Quantity)}; by default velocity; acceleration is that of central "
+        "differences of the velocity, stress of bars alone.",
+    ),
+]
+ComponentOfMotion = Annotated[
+    Component | None,
+    typer.Option(
+        "--component", help="Component of the motion, by default x or y, whichever is larger; both: side by side."
+    ),
+]
+Monitors = Annotated[
+    list[str] | None, typer.Option("--monitor", metavar="NAME", help="Show this monitor only. May be repeated.")
+]
 
 
 class SceneField(StrEnum):

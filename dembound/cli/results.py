@@ -12,7 +12,15 @@ from rich.table import Column
 
 from dembound.cli.app import PICTURE, PictureTitle, Side, app, png, writable
 from dembound.cli.console import compact_table, out
-from dembound.cli.plotted import CALIBRATIONS, Component, Plotted, Quantity, SceneField
+from dembound.cli.plotted import (
+    CALIBRATIONS,
+    ComponentOfMotion,
+    Monitors,
+    Plotted,
+    Quantity,
+    QuantityOfMonitors,
+    SceneField,
+)
 from dembound.errors import CaseError
 
 
@@ -28,21 +36,9 @@ def plot(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Result folders or HDF5 files.")],
     output: Annotated[Path, PICTURE] = Path("plot.png"),
     title: PictureTitle = None,
-    quantity: Annotated[
-        Quantity | None,
-        typer.Option(
-            metavar="QUANTITY",
-            help=f"Quantity of the monitors: {', '.join(Quantity)}; by default velocity; acceleration is that of "
-            "central differences of the velocity, stress of bars alone.",
-        ),
-    ] = None,
-    component: Annotated[
-        Component | None,
-        typer.Option(help="Component of the motion, by default x or y, whichever is larger; both: side by side."),
-    ] = None,
-    monitor: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Show this monitor only. May be repeated.")
-    ] = None,
+    quantity: QuantityOfMonitors = None,
+    component: ComponentOfMotion = None,
+    monitor: Monitors = None,
     boundary: Annotated[
         Side | None,
         typer.Option(
@@ -186,8 +182,14 @@ def compare_histories(
 
 
 def results_file(path: Path) -> Path:
-    """The HDF5 file of a results argument."""
+    """The HDF5 file of a results argument; raises CaseError for a folder without one."""
     for candidate in (path, path / "run.h5", path / "calibration.h5"):
         if candidate.is_file():
             return candidate
+    if (path / "sweep.h5").is_file():
+        from dembound.studies.sweep.perform import MEMBERS
+
+        members = path / MEMBERS
+        advice = f"name runs in {members}" if members.is_dir() else "its numbers are in sweep.csv"
+        raise CaseError([f"{path}: is a sweep, not results of a single run; {advice}"])
     raise CaseError([f"{path}: contains no results, must be a folder with run.h5 or calibration.h5"])

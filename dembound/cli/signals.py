@@ -11,7 +11,7 @@ import typer
 
 from dembound.cli.app import PICTURE, PictureTitle, app
 from dembound.cli.console import out
-from dembound.cli.plotted import Component, Quantity
+from dembound.cli.plotted import Component, ComponentOfMotion, Monitors, Quantity, QuantityOfMonitors
 from dembound.cli.results import results_file
 from dembound.errors import CaseError
 
@@ -43,17 +43,9 @@ def signals(
     ] = Shown.fourier,
     output: Annotated[Path, PICTURE] = Path("signals.png"),
     title: PictureTitle = None,
-    quantity: Annotated[
-        Quantity | None,
-        typer.Option(metavar="QUANTITY", help=f"Quantity: {', '.join(Quantity)}; by default velocity."),
-    ] = None,
-    component: Annotated[
-        Component | None,
-        typer.Option(help="Component of the motion, by default x or y, whichever is larger; both: side by side."),
-    ] = None,
-    monitor: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Show this monitor only. May be repeated.")
-    ] = None,
+    quantity: QuantityOfMonitors = None,
+    component: ComponentOfMotion = None,
+    monitor: Monitors = None,
     reference: Annotated[
         str | None, typer.Option(metavar="NAME", help="With --show transfer: monitor that is the input.")
     ] = None,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Column, Table
 
-from dembound.cli.app import Name, Output, PictureTitle, Settings, app, load_case
+from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, load_case
 from dembound.cli.calibration import CalibrationMethod
 from dembound.cli.console import INTERVAL, compact_table, err, out
 from dembound.errors import CaseError
@@ -30,6 +30,9 @@ FAILED = 3
 MOST_ROWS = 40
 """Rows of the table that is printed."""
 
+MOST_WARNINGS = 10
+"""Distinct warnings of members that are printed."""
+
 
 class SweepAction(StrEnum):
     """What is done with every member."""
@@ -41,13 +44,7 @@ class SweepAction(StrEnum):
 @app.command("sweep", rich_help_panel="Cases")
 def sweep(
     case: Annotated[Path, typer.Argument(metavar="CASE", help="A case file (TOML).")],
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="KEY=A,B,…",
-            help="Values of a key, or a range, e.g. packing.seed=1:20. May be repeated: all combinations are members.",
-        ),
-    ] = None,
+    vary: Vary = None,
     together: Annotated[
         bool | None,
         typer.Option(
@@ -158,12 +155,13 @@ def _duration(seconds: float) -> str:
 
 
 def _print(swept: Swept) -> bool:
-    """Print failed members, and means of the shown quantities; returns whether any has failed."""
+    """Print failed members, warnings, and means of the shown quantities; returns whether any has failed."""
     from dembound.studies.sweep.statistics import statistics
 
     failed = [(m.name, state) for m, state in zip(swept.members, swept.states, strict=True) if state != "done"]
     for member, state in failed:
         err.print(f"{swept.case.name}: {member}: failed, {state}")
+    _print_warnings(swept)
     found = [each for each in statistics(swept.members, swept.outcomes) if each.quantity in swept.shown]
     if found:
         out.print(_table(swept.case.name, found[:MOST_ROWS]))
@@ -171,6 +169,16 @@ def _print(swept: Swept) -> bool:
         out.print(f"{len(found) - MOST_ROWS} more rows are in statistics.csv")
     out.print(f"{swept.case.name}: {len(swept.members) - len(failed)} of {len(swept.members)} members done")
     return bool(failed)
+
+
+def _print_warnings(swept: Swept) -> None:
+    """Print each distinct warning of the members once, with the numbers of the first."""
+    warnings = swept.warnings
+    for text, count in list(warnings.items())[:MOST_WARNINGS]:
+        err.print(f"{swept.case.name}: warning: {text} ({count} of {len(swept.members)} members)")
+    if len(warnings) > MOST_WARNINGS:
+        left = len(warnings) - MOST_WARNINGS
+        err.print(f"{swept.case.name}: {left} more warnings are in summary.json of the members")
 
 
 def _table(title: str, statistics: Sequence[Statistic]) -> Table:

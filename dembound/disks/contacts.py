@@ -6,18 +6,17 @@ import numpy as np
 
 from dembound.casefile.disks.material import Material
 from dembound.disks.constants import brick_constants, limits_of, shared_constants
-from dembound.disks.contact_arrays import History, Pairs, in_places
+from dembound.disks.contact_arrays import History, Pairs
 from dembound.disks.contact_forces import acting
-from dembound.disks.neighbours import cells_of, near_pairs, pair_keys
+from dembound.disks.neighbours import near_pairs, pair_keys
 from dembound.disks.packed_material import PackedMaterial
+from dembound.disks.pair_list import PairList
 from dembound.disks.pair_rows import PairPlan
 from dembound.disks.row_plan import RowPlan
 from dembound.kernels import contacts as kernel
 from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS
-from dembound.kernels.contact_measures import slack
-from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION, UPDATED
-from dembound.kernels.tables import PairRows
+from dembound.kernels.contacts import INTACT, NONE, REFERENCE, SHEAR, TENSION
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.layout import Layout
 from dembound.motion.state import Arrays
@@ -33,7 +32,7 @@ _KEPT = ("first", "second", "contact_type", "state", "shear", "slip", "cracked")
 """The arrays of the pairs, beside their forces, that memory() returns."""
 
 
-class ContactList:
+class ContactList(PairList):
     """All pairs of a part that are in contact or may soon be, with their history.
 
     Displacements (3, n) are those of all nodes of the scene.
@@ -52,14 +51,9 @@ class ContactList:
 
     Attributes
     ----------
-    arrays : the pairs for the kernels, by slots. In rows of copies some places hold no pair; these have no stiffness.
-    live : (b,) the places of the pairs in `arrays`, ascending; `pairs`, `image` and `of` have these alone.
-    rows : the pairs in rows of copies, which come first in `arrays`; None: there are none. With rows, strays : slots of
-        the disks (k,) that have ends of other pairs, where each one's begin (k + 1,), and these ends (e,); extra :
-        (3, slots) work space of the kernels.
+    Beside those of `PairList`:
+
     limits : strengths and friction.
-    origin : (2, m) m, displacements of the part's m slots at which the list was made.
-    cells : of the particles there.
     skin : m, gap up to which it is complete.
     keeps_slip : whether the elastic law is used again after contacts have slid, which keep their slip.
     arms : (slots,) m, the longest arm of the contacts and bonds of the particle in each slot of the part, else 0.
@@ -76,13 +70,8 @@ class ContactList:
         layout: Layout | None = None,
         plan: tuple[RowPlan, int] | None = None,
     ) -> None:
+        super().__init__(assembly, periods, begin, layout)
         self.ground = ground
-        self.assembly = assembly
-        self.periods = periods
-        self.nodes = slice(begin, begin + len(assembly.radii))
-        self.layout = Layout.plain(self.nodes.stop) if layout is None else layout
-        self._slot = self.layout.slot[self.nodes]
-        self._slots = slice(int(self._slot.min()), int(self._slot.max()) + 1)
         self.limits = limits_of(material)
         self.locked_in = 0.0 if material.locked_in is None else material.locked_in / ground.packed_pressure
         self.searches = self.limits.geometry != REFERENCE
@@ -90,8 +79,6 @@ class ContactList:
         self._set_origin(np.zeros((2, len(assembly.radii))))
         self.keeps_slip = False
         self.bonds = brick_constants(ground, gaps_close=self.searches, locked_in=self.locked_in)
-        self._plan: PairPlan | None = None
-        self.rows: PairRows | None = None
         first, second = assembly.pairs.T.astype(np.int64)
         images = self.images(first, second, self.bonds[assembly.contact_type, :2])
         pairs = Pairs(first, second, images, assembly.contact_type)
@@ -113,38 +100,12 @@ class ContactList:
             self._plan = PairPlan.of(first, second, pairs.contact_type, len(self.bonds), *plan)
             self._list(pairs, History(*(self.of(name) for name in ("state", "shear", "slip", "cracked"))))
 
-    def _spread(self, displacement: np.ndarray) -> np.ndarray:
-        """Displacements (3, n) of all nodes as those (3, slots) of the particles."""
-        return self.layout.spread(displacement[:, : len(self.layout.slot)])
-
     def start_from_displacements(self, displacement: np.ndarray) -> None:
         """Set the pairs to the state of the elastic law at displacements (3, n), without any slip or with that kept."""
-        kernel.start_from_displacements(self._spread(displacement), self.arrays, self.keeps_slip)
-
-    def settled_slip(self, displacement: np.ndarray) -> np.ndarray | str:
-        """The slip, in the places of `arrays`, with which the elastic law holds again at displacements (3, n).
-
-        The reason in words where it does not: a contact that was closed at the start is open or slides, one that was
-        open is closed, or a bond is broken. Where shear is counted along the path, its difference from that of small
-        displacements becomes slip.
-        """
-        state, own = self.of("state"), self.of("contact_type") < 2 * len(self.ground.brick.pairs)
-        if ((state == TENSION) | (state == SHEAR)).any():
-            return "a bond broke in the static stage"
-        if np.count_nonzero(own) < len(self.assembly.pairs):
-            return "disks that touched at the start are far apart"
-        now, u = self.arrays, self._spread(displacement)
-        small = now._replace(shear=now.shear.copy(), slip=now.slip.copy())
-        kernel.start_from_displacements(u, small, True)
-        along_path = (self.limits.geometry == UPDATED) | (now.state != INTACT)
-        touch, rest = now.constants[now.contact_type][:, [3, 2]].T
-        small.slip[:] += np.where(along_path & (touch >= rest), small.shear - now.shear, 0.0)
-        if slack(u, small, self.limits, True) > 0.0:
-            return small.slip
-        return "after the static stage a contact has opened or closed or slides, or a bond is at its strength"
+        kernel.start_from_displacements(self.spread(displacement), self.arrays, self.keeps_slip)
 
     def use_elastic_law_with(self, slip: np.ndarray) -> None:
-        """Keep a slip, see `settled_slip`, under the elastic law."""
+        """Keep a slip (places of `arrays`), see `elastic_again.settled_slip`, under the elastic law."""
         self.arrays.slip[:] = slip
         self.keeps_slip = True
 
@@ -155,7 +116,7 @@ class ContactList:
         """
         elastic = self.limits._replace(geometry=REFERENCE, tension=np.inf, cohesion=np.inf)
         limits = elastic if reference else self.limits
-        u = self._spread(displacement)
+        u = self.spread(displacement)
         still = np.zeros_like(u)
         if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 2))) > 0:
             kernel.note_places(u, 0, self.arrays)
@@ -168,7 +129,7 @@ class ContactList:
 
     def is_old(self, displacement: np.ndarray) -> bool:
         """Whether at displacements (3, n) a particle has moved so far that pairs may be missing."""
-        u = self._spread(displacement)
+        u = self.spread(displacement)
         return self.skin - approach(u, self._slots.start, self.origin, self.cells) < 0.0
 
     def search(self, displacement: np.ndarray) -> None:
@@ -259,18 +220,6 @@ class ContactList:
         pairs.place[self.live] = 0.5 * (moved[first] + moved[second])
         self.note_cracks()
 
-    def find(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Find pairs (b,) of particles with vectors (b, 2) m between them in this list.
-
-        Returns whether they are listed (b,), and their indices (b,), for either order of the two particles.
-        """
-        count = len(self.assembly.radii)
-        listed = pair_keys(*self.pairs, self.image, count)
-        order = np.argsort(listed)
-        keys = pair_keys(first, second, self.images(first, second, vectors), count)
-        at = order[np.minimum(np.searchsorted(listed, keys, sorter=order), len(order) - 1)]
-        return listed[at] == keys, at
-
     def note_cracks(self) -> None:
         """Record the bonds that broke since the last call, with their positions."""
         if not (self.arrays.cracked >= 0).any():
@@ -292,28 +241,6 @@ class ContactList:
         noted, self._cracks = self._cracks, []
         return joined(noted)
 
-    @property
-    def pairs(self) -> tuple[np.ndarray, np.ndarray]:
-        """First and second particle (b,) int64 of every pair, numbered from the part's first one."""
-        begin, node = self.nodes.start, self.layout.node
-        return node[self.of("first")] - begin, node[self.of("second")] - begin
-
-    def of(self, name: str) -> np.ndarray:
-        """A column of `arrays` for the pairs alone, (b,) or (b, …)."""
-        return getattr(self.arrays, name)[self.live]
-
-    @property
-    def force(self) -> np.ndarray:
-        """Last forces (b, 4) of the pairs, see kernels/contacts.py."""
-        return self.arrays.force[:, self.live].T
-
-    def images(self, first: np.ndarray, second: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-        """Whole periods (b, 2) int8 that a pair's vector goes beyond the difference of its positions."""
-        inside = self.assembly.positions[second] - self.assembly.positions[first]
-        periods = np.broadcast_to([length or 0.0 for length in self.periods], inside.shape)
-        wraps = np.divide(vectors - inside, periods, out=np.zeros_like(inside), where=periods > 0.0)
-        return np.rint(wraps).astype(np.int8)
-
     def freshly_torn(self) -> np.ndarray:
         """Particles (m,) bool with a bond that has broken since cracks were last recorded."""
         return self._counted(self.of("cracked") >= 0) > 0
@@ -321,11 +248,6 @@ class ContactList:
     def coordination(self, geometry: int) -> np.ndarray:
         """Number (m,) of intact bonds and closed contacts of every particle, see `contact_forces.acting`."""
         return self._counted(acting(self.arrays, geometry)[self.live])
-
-    def _counted(self, chosen: np.ndarray) -> np.ndarray:
-        """Number (m,) of the chosen pairs (b,) that each particle has."""
-        ends = np.concatenate([particles[chosen] for particles in self.pairs])
-        return np.bincount(ends, minlength=len(self.assembly.radii))
 
     def memory(self) -> Arrays:
         """The pairs with their history, and cracks not yet recorded."""
@@ -347,19 +269,3 @@ class ContactList:
         self._list(pairs, History(*(memory[name] for name in ("state", "shear", "slip", "cracked"))))
         self.arrays.force[:, self.live] = memory["force"].T
         self._cracks = [Cracks(*(memory[f"crack_{field.name}"] for field in fields(Cracks)))]
-
-    def _set_origin(self, displacement: np.ndarray) -> None:
-        """Count from displacements (2, m) m of the part's particles."""
-        self.origin = np.zeros((2, self._slots.stop - self._slots.start))
-        slot = self._slot - self._slots.start
-        self.origin[:, slot] = displacement
-        self.cells = cells_of(self.assembly.positions + displacement.T, self.assembly.radii, slot, self.periods)
-
-    def _list(self, pairs: Pairs, history: History) -> None:
-        """Give the pairs their places, and list the contact ends of each particle."""
-        placed = in_places(pairs, history, self._slot, self._constants, self._plan)
-        self.arrays, self.live, self.image = placed.arrays, placed.live, placed.image
-        if self._plan is not None:
-            assert placed.strays is not None
-            self.rows, self.strays = self._plan.rows(placed.in_rows, self.bonds), placed.strays
-            self.extra = np.zeros((3, self.layout.count))

@@ -1,6 +1,6 @@
 """The elastic law after a static stage in which contacts opened or slid (`reduce.settled`), and why it may not be used.
 
-The body is elastic about its settled state if its stiffness there is that of the start, see `ContactList.settled_slip`.
+The body is elastic about its settled state if its stiffness there is that of the start, see `settled_slip`.
 """
 
 from collections.abc import Collection
@@ -10,6 +10,9 @@ import numpy as np
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
 from dembound.disks.contacts import ContactList
+from dembound.kernels import contacts as kernel
+from dembound.kernels.contact_measures import slack
+from dembound.kernels.contacts import INTACT, SHEAR, TENSION, UPDATED
 
 
 def never_elastic_again(case: DiskCase) -> str:
@@ -28,13 +31,36 @@ def never_elastic_again(case: DiskCase) -> str:
 
 def elastic_again(parts: Collection[ContactList], datum: np.ndarray) -> str:
     """Use the elastic law again, in all parts at rest at the datum (3, n); returns why not, empty if it is used."""
-    found = [(pairs, pairs.settled_slip(datum)) for pairs in parts]
+    found = [(pairs, settled_slip(pairs, datum)) for pairs in parts]
     if reasons := [slip for _, slip in found if isinstance(slip, str)]:
         return reasons[0]
     for pairs, slip in found:
         assert isinstance(slip, np.ndarray)
         pairs.use_elastic_law_with(slip)
     return ""
+
+
+def settled_slip(pairs: ContactList, displacement: np.ndarray) -> np.ndarray | str:
+    """The slip, in the places of the pairs' `arrays`, with which the elastic law holds again at displacements (3, n).
+
+    The reason in words where it does not: a contact that was closed at the start is open or slides, one that was
+    open is closed, or a bond is broken. Where shear is counted along the path, its difference from that of small
+    displacements becomes slip.
+    """
+    state, own = pairs.of("state"), pairs.of("contact_type") < 2 * len(pairs.ground.brick.pairs)
+    if ((state == TENSION) | (state == SHEAR)).any():
+        return "a bond broke in the static stage"
+    if np.count_nonzero(own) < len(pairs.assembly.pairs):
+        return "disks that touched at the start are far apart"
+    now, u = pairs.arrays, pairs.spread(displacement)
+    small = now._replace(shear=now.shear.copy(), slip=now.slip.copy())
+    kernel.start_from_displacements(u, small, True)
+    along_path = (pairs.limits.geometry == UPDATED) | (now.state != INTACT)
+    touch, rest = now.constants[now.contact_type][:, [3, 2]].T
+    small.slip[:] += np.where(along_path & (touch >= rest), small.shear - now.shear, 0.0)
+    if slack(u, small, pairs.limits, True) > 0.0:
+        return small.slip
+    return "after the static stage a contact has opened or closed or slides, or a bond is at its strength"
 
 
 def settled_refused(reason: str) -> tuple[str, ...]:

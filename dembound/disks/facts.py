@@ -14,7 +14,7 @@ from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.smallest_box import box_facts
 from dembound.disks.summary import describe_packing, describe_side
-from dembound.disks.warnings import particles_per_wavelength, strong_waves
+from dembound.disks.wave_warnings import particles_per_wavelength, strong_waves
 
 BALANCED = 1e-9
 """Part of the forces of a pressure below which their sum is a rounding error."""

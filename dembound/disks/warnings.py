@@ -7,22 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from dembound.boundaries import SIDES, Motion, axis_of_motion
+from dembound.boundaries import SIDES, Motion
 from dembound.casefile.disks.load import Load
-from dembound.casefile.magnitudes import grip_stress, is_quasi_static, stress_in_words, stress_warnings, time_warnings
+from dembound.casefile.magnitudes import stress_in_words
 from dembound.casefile.messages import numbered
 from dembound.disks.continuum_facts import continuum_warnings
-from dembound.disks.incident_facts import arrival
 from dembound.disks.matching import homogenised_beta, reflected
 from dembound.disks.near_ties import near_tie_warnings
-from dembound.disks.scene import DiskScene, boundary_medium
+from dembound.disks.scene import DiskScene
+from dembound.disks.wave_front import slowest_speed
+from dembound.disks.wave_warnings import wave_warnings
 from dembound.results.reader import cracks_until, open_record
 from dembound.results.warnings import still_moving
-from dembound.waves.constant import Constant
-from dembound.waves.spectrum import HANN_FADE
-
-FEWEST_PER_WAVELENGTH = 20.0
-"""Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
 
 REFLECTED = 0.02
 """Share of a wave that a side with default factors may reflect without a warning.
@@ -40,17 +36,10 @@ times that (three bricks, radius ratio 1.5).
 SPEED_ERROR = 0.1
 """Share by which the P-wave speed of the packing may differ from the given one without a warning."""
 
-
 AT_REST = 1e-14
 """Velocity over that of waves, so strain, below which the motion of a settled body is rounding.
 
 Settled strains of 1e-6 to 1e-2 are known to 1e-16 of themselves; slopes under their weight move by 1e-17.
-"""
-
-LARGE_STRAIN = 0.03
-"""Strain of a wave, velocity over that of the wave, or stress over stiffness, above which the elastic law is not valid.
-
-Its error is of the order of the strain. Rock and soil break at a tenth of this, so larger ones are mostly wrong units.
 """
 
 
@@ -61,12 +50,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *_steady_without_static(scene),
         *_locked_in(scene),
         *_settles_in_tension(scene),
-        *_tension(scene),
-        *_too_few_per_wavelength(scene),
-        *_never_arrives(scene),
-        *time_warnings(scene.case, time_step, _travel_time(scene)),
-        *_stress_beside_strength(scene),
-        *_large_strains(scene),
+        *wave_warnings(scene, time_step),
         *_default_factors(scene),
         *_speed_of_the_packing(scene),
         *continuum_warnings(scene, scene.case.run.duration / time_step),
@@ -95,13 +79,6 @@ def _steady_without_static(scene: DiskScene) -> Iterator[str]:
     for load in scene.case.load:
         if load.wave is None:
             yield f"load.{load.name}: is steady, and without [static] acts suddenly at t = 0{_gives_way(scene, load)}"
-
-
-def _never_arrives(scene: DiskScene) -> Iterator[str]:
-    """A wave at an angle that is not in the body before the run ends."""
-    duration = scene.case.run.duration
-    if scene.ground_waves is not None and (begin := arrival(scene, scene.ground_waves)) >= duration:
-        yield f"incident: its wave reaches the disks at {begin:.4g} s only, after the end of the run at {duration:g} s"
 
 
 def _gives_way(scene: DiskScene, load: Load) -> str:
@@ -141,118 +118,6 @@ def _settles_in_tension(scene: DiskScene) -> Iterator[str]:
             f"static.stress: has a tension of {stress_in_words(largest)}, above material.pb_ten = "
             f"{stress_in_words(strength)}; bonds break in the static stage"
         )
-
-
-def _tension(scene: DiskScene) -> Iterator[str]:
-    """Waves that would open real contacts, where the elastic law keeps them closed."""
-    if scene.has_history or not _confinement(scene):  # a lattice is packed without stress; see the docs
-        return
-    for name, stress in strong_waves(scene).items():
-        yield (
-            f"wave.{name}: has a stress ρcv of {stress}; real contacts would open in tension, "
-            "the elastic law keeps them closed"
-        )
-
-
-def _too_few_per_wavelength(scene: DiskScene) -> Iterator[str]:
-    """Waves that are too short for the size of the particles, except for those of a slow grip."""
-    travel = _travel_time(scene)
-    for name, count in particles_per_wavelength(scene).items():
-        if count < FEWEST_PER_WAVELENGTH and not is_quasi_static(scene.case, name, travel):
-            wave = scene.case.wave[name]
-            words = _too_sudden(scene, wave) if isinstance(wave, Constant) else _too_short(count)
-            yield f"wave.{name}: {words}; the packing will disperse it"
-
-
-def _too_short(count: float) -> str:
-    """What is wrong with a wave with this number of particles in its shortest wavelength."""
-    if count < 1.0:
-        return "has a shortest wavelength below the diameter of a particle"
-    return f"has {count:.1f} particles in its shortest wavelength, fewer than {FEWEST_PER_WAVELENGTH:g}"
-
-
-def _too_sudden(scene: DiskScene, wave: Constant) -> str:
-    """What is wrong with a constant that rises too fast for the particles, and which rise is long enough."""
-    least = FEWEST_PER_WAVELENGTH * HANN_FADE * scene.ground.brick.mean_diameter / _slowest(scene)
-    rise = f"rises within {wave.rise:g} s" if wave.rise > 0.0 else "is a step (rise = 0)"
-    return f"{rise}, which is shorter than the particles can follow, {least:.2g} s"
-
-
-def _stress_beside_strength(scene: DiskScene) -> Iterator[str]:
-    """Waves and loads whose stress is a very small part, or a large multiple, of the bonds' tensile strength."""
-    strength, static = scene.case.material.pb_ten, scene.case.static
-    if strength is None:
-        return
-    stresses: dict[str, tuple[str, float]] = {}
-    for name, what, stress in _wave_stresses(scene, strength):
-        if stress > stresses.get(name, ("", 0.0))[1]:  # a wave may drive several sides
-            stresses[name] = (what, stress)
-    for load in scene.case.load:
-        stresses[f"load.{load.name}"] = _load_stress(scene, load)
-    if static is not None and static.stress is not None:
-        stresses["static.stress"] = ("its largest component", max(map(abs, static.stress)))
-    yield from stress_warnings(stresses, strength, "material.pb_ten")
-
-
-def _large_strains(scene: DiskScene) -> Iterator[str]:
-    """Waves and loads whose strains are far beyond those that the elastic law is for."""
-    if scene.has_history:
-        return
-    modulus = float(np.diag(scene.ground.material_tensor)[:2].min())
-    stresses = [(f"load.{load.name}", *_load_stress(scene, load)) for load in scene.case.load]
-    slowest = _slowest(scene)
-    for name in sorted(scene.case.entering):
-        peak = scene.case.wave[name].peak()
-        if peak > LARGE_STRAIN * slowest:
-            yield (
-                f"wave.{name}: its velocity, {peak:.3g} m/s, is {100.0 * peak / slowest:.2g} % of that of waves, "
-                f"{slowest:.4g} m/s, and so are strains; {_TOO_LARGE}"
-            )
-    for where, what, stress in stresses:
-        if stress > LARGE_STRAIN * modulus:
-            yield (
-                f"{where}: {what}, {stress_in_words(stress)}, is {100.0 * stress / modulus:.2g} % of the stiffness, "
-                f"{stress_in_words(modulus)}, and so are strains; {_TOO_LARGE}"
-            )
-
-
-_TOO_LARGE = "the elastic law is for small ones, are the units right?"
-
-
-def _wave_stresses(scene: DiskScene, strength: float) -> Iterator[tuple[str, str, float]]:
-    """For every wave on every side it drives: its table, description and value (Pa) of its largest stress."""
-    for edge in scene.edges.values():
-        table = scene.case.side(edge.side)
-        grips = set(table.prescribed(edge.axis))
-        medium, length = boundary_medium(scene.case, scene.ground, edge.axis), float(scene.size[edge.axis])
-        for motion, name in table.waves.items():
-            wave, speed = scene.case.wave[name], medium.p_wave_speed if motion == "p" else medium.s_wave_speed
-            if axis_of_motion(edge.side, motion) in grips:
-                yield (
-                    f"wave.{name}",
-                    *grip_stress(wave, medium.density, speed, length, scene.case.run.duration, strength),
-                )
-            else:
-                yield f"wave.{name}", "its stress ρcv", medium.density * speed * wave.peak()
-    if (incident := scene.case.incident) is not None:
-        speed = scene.ground.wave_speeds(1)[0 if incident.type == "p" else 1]
-        peak = scene.case.wave[incident.wave].peak()
-        yield f"wave.{incident.wave}", "its stress ρcv", scene.ground.density * speed * peak
-
-
-def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
-    """Description and value (Pa) of the stress of a load: ρaL, a pressure, or the force over the width it acts on."""
-    factor = 1.0 if load.wave is None else scene.case.wave[load.wave].peak()
-    if load.pressure is not None:
-        return "its pressure", abs(load.pressure) * factor
-    low, high = np.zeros(2), scene.size
-    if load.region is not None:
-        low, high = np.array(load.region[:2]), np.array(load.region[2:])
-    extent = np.abs(load.vector) * factor
-    if load.acceleration is not None:
-        return "its stress ρaL", float(scene.ground.density * (extent * (high - low)).max())
-    widths = (high - low)[::-1] if load.region is not None else np.full(2, scene.ground.brick.mean_diameter)
-    return "its force over the width it acts on", float((extent / widths).max())
 
 
 def _default_factors(scene: DiskScene) -> Iterator[str]:
@@ -311,58 +176,11 @@ def _axes_in_use(scene: DiskScene) -> list[int]:
     return [0, 1] if vertical or scene.case.load or scene.case.incident else [0]
 
 
-def _travel_time(scene: DiskScene) -> float:
-    """Time (s) the fastest wave takes along the scene's longer side; nan if no motion along it is possible."""
-    axis = int(np.argmax(scene.size))
-    speeds = [speed for speed in scene.ground.wave_speeds(axis) if not math.isnan(speed)]
-    return float(scene.size[axis]) / max(speeds, default=math.nan)
-
-
-def particles_per_wavelength(scene: DiskScene) -> dict[str, float]:
-    """Shortest wavelength of every wave, at its highest frequency and the scene's slowest speed, in diameters."""
-    speed = _slowest(scene)
-    spacing = scene.ground.brick.mean_diameter
-    return {
-        name: speed / wave.highest_frequency() / spacing if np.isfinite(speed) else np.inf
-        for name, wave in scene.case.wave.items()
-    }
-
-
-def _slowest(scene: DiskScene) -> float:
-    """Lowest wave speed of the scene along x or y, m/s; inf if no motion is possible."""
-    speeds = [speed for axis in (0, 1) for speed in scene.ground.wave_speeds(axis) if np.isfinite(speed)]
-    return min(speeds, default=np.inf)
-
-
-def strong_waves(scene: DiskScene) -> dict[str, str]:
-    """Waves of boundaries whose stress ρcv exceeds the pressure on the contacts; both in words."""
-    pressure = _confinement(scene)
-    if pressure is None:
-        return {}
-    entering = scene.case.entering
-    medium = boundary_medium(scene.case, scene.ground, axis=0)
-    impedance = medium.density * medium.p_wave_speed
-    stresses = {name: impedance * wave.peak() for name, wave in scene.case.wave.items() if name in entering}
-    return {
-        name: f"{stress / 1e6:.3g} MPa, above the confining stress of {pressure / 1e6:.3g} MPa"
-        for name, stress in stresses.items()
-        if stress > pressure
-    }
-
-
-def _confinement(scene: DiskScene) -> float | None:
-    """Pressure (Pa) on contacts at the start of the run; None if it results from the static stage."""
-    static = scene.case.static
-    if static is not None:
-        return None if static.stress is None else 0.0 - 0.5 * (static.stress[0] + static.stress[1])
-    return 0.0 if scene.has_history else scene.ground.packed_pressure
-
-
 def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: Path) -> list[str]:
     """Warnings from the summary and record of a run of disks, one line each."""
     with open_record(record) as file:
         cracks = cracks_until(file, np.inf)
-        at_rest = 0.0 if scene.case.static is None else AT_REST * _slowest(scene)
+        at_rest = 0.0 if scene.case.static is None else AT_REST * slowest_speed(scene.ground)
         moving = still_moving(scene, summary["duration"], file, _pieces(scene, cracks["particles"]), at_rest)
         return [*moving, *near_tie_warnings(scene, summary, cracks)]
 

@@ -101,7 +101,7 @@ def incident_pulse(
     """
     largest = -stress.min()
     if not largest > 0.0:
-        raise CaseError(["--scale: gives no compression, which must be negative; a negative scale changes the sign"])
+        raise CaseError(["--scale: gives no compression, which must be negative; try its other sign"])
     begun, risen = _rise(-stress)
     if end is None:
         end = float(time[begun]) + 2.0 * (length - gauge) / speed

@@ -1,11 +1,11 @@
-"""Mistakes that a measured signal shows: clipped, sampled too coarsely, or in other units than assumed."""
+"""Mistakes that a measured signal shows: noise alone, clipped, sampled too coarsely, or in other units than assumed."""
 
 from collections.abc import Iterator
 
 import numpy as np
 
 from dembound.gauge.estimates import Estimate
-from dembound.gauge.peaks import positive_peaks, width_of
+from dembound.gauge.peaks import NOISE_FACTOR, positive_peaks, white_noise, width_of
 
 LONGEST = 100.0
 """Length of a bar, m, above which millimetres were meant."""
@@ -42,7 +42,11 @@ def implausible_length(length: float) -> Iterator[str]:
 
 
 def implausible_signal(values: np.ndarray, *, may_be_clipped: bool = False) -> Iterator[str]:
-    """Messages about a signal (k,) that is clipped, or sampled too coarsely for its shortest wave."""
+    """Messages about a signal (k,) that is noise, clipped, or sampled too coarsely for its shortest wave."""
+    sizes, noise = np.abs(values - np.median(values)), white_noise(values)
+    if width_of(sizes) < COARSE and sizes.max() < NOISE_FACTOR * noise:
+        yield f"the signal is noise: its largest value is {sizes.max() / noise:.2g} standard deviations, and no wave"
+        return
     if (width := width_of(np.abs(values))) < COARSE:
         yield f"the sampling is too coarse: the largest wave has {width} samples above half its height, needs {COARSE}"
     for sense, extreme in ((1.0, "largest"), (-1.0, "smallest")):
@@ -99,7 +103,7 @@ def first_return(time: np.ndarray, values: np.ndarray, position: float, length: 
 def contradicting_speeds(speed: Estimate, first: Estimate | None) -> Iterator[str]:
     """Message if the wave speed from the returns differs from that of the first passages by more than both scatter."""
     if first is None:
-        yield "the first wave is no compression with its reflection behind it: --scale -1 changes the sign"
+        yield "the first wave is no compression with its reflection behind it: has --scale the wrong sign?"
         return
     off = abs(speed.value / first.value - 1.0)
     allowed = max(SCATTER * np.hypot(np.nan_to_num(speed.error), first.error) / first.value, CLOSE)

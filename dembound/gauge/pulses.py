@@ -5,6 +5,7 @@ one passes its gauge, d_t behind the specimen, (d_i + d_t)/c later. Each is cut 
 the reflected one begins: a longer pulse needs a second gauge on the incident bar.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -31,11 +32,16 @@ Window = tuple[float, float]
 """First and last time of a pulse at its gauge, s."""
 
 
+def circle_area(diameter: float) -> float:
+    """Area of a circle, m², from its diameter, m."""
+    return 0.25 * math.pi * diameter**2
+
+
 @dataclass(frozen=True)
 class Setup:
     """Bars, gauges and specimen of a test.
 
-    bar : of what both bars are; modulus : E, Pa; area : of the bars, m²; incident_gauge, transmitted_gauge : distances
+    bar : both bars; modulus : E, Pa; area : of the bars, m²; incident_gauge, transmitted_gauge : distances
     d_i and d_t of the gauges from the specimen, m; specimen_length : m; specimen_area : m²; second_gauge : distance of
     another gauge on the incident bar from the specimen, m, smaller than the first; bar_length : of each bar, m, if the
     pulses are to be cut before the bars' ends send them back.
@@ -50,6 +56,40 @@ class Setup:
     specimen_area: float
     second_gauge: float | None = None
     bar_length: float | None = None
+
+    @classmethod
+    def of_round_bars(
+        cls,
+        speed: float,
+        density: float,
+        diameter: float,
+        incident_gauge: float,
+        transmitted_gauge: float,
+        specimen_length: float,
+        specimen_area: float,
+        *,
+        attenuation: float = 0.0,
+        poisson: float | None = None,
+        modulus: float | None = None,
+        disperse: bool = False,
+        second_gauge: float | None = None,
+        bar_length: float | None = None,
+    ) -> "Setup":
+        """The setup with two equal round bars.
+
+        speed : of long waves, m/s; density : kg/m³; diameter : m; attenuation : α, 1/m; poisson : ν; modulus : E, Pa,
+        by default ρc²; disperse : whether waves disperse as in a round bar, see `Bar`, which needs ν; others : as the
+        attributes.
+
+        Raises CaseError for data that are no lengths, areas or speeds, and for waves that disperse with ν not within
+        0 to 0.5.
+        """
+        if disperse and (poisson is None or not 0.0 < poisson < 0.5):
+            raise CaseError(["--poisson: is needed by --dispersion-correction, above 0 and below 0.5"])
+        bar = Bar(speed, attenuation, 0.5 * diameter, poisson) if disperse else Bar(speed, attenuation)
+        modulus = density * speed**2 if modulus is None else modulus
+        lengths = incident_gauge, transmitted_gauge, specimen_length, specimen_area, second_gauge, bar_length
+        return cls(bar, modulus, circle_area(diameter), *lengths)
 
     def __post_init__(self) -> None:
         if problems := list(self._problems()):

@@ -1,4 +1,4 @@
-"""Waves in a bar between its gauges: moved from place to place, and told apart by their direction.
+"""Waves in a bar between its gauges: moved from place to place, and separated by their direction.
 
 A wave to the right is e(x, t) = ∫ ê(ω) exp i(ωt − k x) dω with the complex wave number k = ω/c − iα, or with that of
 the first mode of a round bar in place of ω/c (`exact.pochhammer`). Spectra are taken of the signal times exp(−ηt),

@@ -32,6 +32,7 @@ def close_contacts(u_next, v, mobility, mean, step, contacts):
         overlap = u_next[i] - u_next[i + 1] - contacts.gap[c]
         contacts.push[c] = 0.0
         if overlap > 0.0:
+            contacts.closed[c] = True
             push = overlap / (step * (mobility[i] + mobility[i + 1]))
             contacts.push[c] = push
             for k, force in ((i, -push), (i + 1, push)):

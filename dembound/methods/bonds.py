@@ -21,7 +21,7 @@ from dembound.methods.rod import Range, Rod
 if TYPE_CHECKING:
     from dembound.kernels.tables import BarBonds
 
-_EVOLVING = ("spring", "bond", "spring_broken", "bond_broken", "spring_limit", "triggers")
+_EVOLVING = ("spring", "bond", "spring_broken", "bond_broken", "spring_limit", "triggers", "closed")
 """The arrays of bonds that change."""
 
 TINY = 1e-12
@@ -42,8 +42,9 @@ class Bonds:
     Attributes
     ----------
     spring, spring_limit, triggers, spring_broken : (n − 1,) of local springs, bond, bond_broken : (m, n) of bonds; they
-    are the arrays of kernels.tables.BarBonds. opening : the bonds that open, in a bar with a fracture energy. zones :
-    (first, one beyond last) node of every zone, from left to right.
+    are the arrays of kernels.tables.BarBonds. closed : (c,) whether each contact has ever been closed. opening : the
+    bonds that open, in a bar with a fracture energy. zones : (first, one beyond last) node of every zone, from left to
+    right.
     """
 
     def __init__(
@@ -70,6 +71,7 @@ class Bonds:
         self.bond_broken = np.full(self.bond.shape, -1)
         self.spring_limit = np.zeros(planes)
         self.triggers = np.ones(planes, dtype=np.bool_)
+        self.closed = np.zeros(len(rod.touching), dtype=np.bool_)
         self._most_carried = self._carried_share(self._rows)
         self._set_limits(np.zeros(planes))
 
@@ -248,6 +250,7 @@ class Bonds:
         contacts = BarContacts(
             left=np.array([left.last for left, _ in touching], dtype=np.int64),
             gap=np.array([right.gap for _, right in touching], dtype=np.float64),
+            closed=self.closed,
             before=np.zeros(len(touching)),
             push=np.zeros(len(touching)),
         )

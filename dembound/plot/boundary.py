@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from dembound.errors import CaseError
 from dembound.plot.style import new_figure, outside_legend, point_style, styled
 from dembound.results.histories import UNITS
-from dembound.results.reader import COMPONENTS, is_line, open_record, record_names
+from dembound.results.reader import COMPONENTS, is_line, open_record, record_names, require_run
 
 # The axes show at least ± this part of the middle value, so that small differences are not magnified.
 LEAST_SPAN = 0.1
@@ -91,6 +91,7 @@ def read_side(path: Path, side: str) -> Side:
     with open_record(path) as file:
         if is_line(file.attrs["size"]):
             raise CaseError([f"{path}: is a bar, each end of which is one node; monitors there show its motion"])
+        require_run(file)
         sides = file.get("boundaries", {})
         if side not in sides:
             there = ", ".join(sides) or "none (the run is not complete, or the scene is periodic)"

@@ -12,7 +12,16 @@ from dembound.errors import CaseError
 from dembound.plot.continuum import GROUP, Continuum, is_scattered, read_continuum
 from dembound.plot.disks import Window
 from dembound.results.histories import FREE_FIELD, UNITS
-from dembound.results.reader import COMPONENTS, cracks_until, laws_in_words, laws_of, snapshot_of, snapshots_of, text_of
+from dembound.results.reader import (
+    COMPONENTS,
+    cracks_until,
+    laws_in_words,
+    laws_of,
+    require_run,
+    snapshot_of,
+    snapshots_of,
+    text_of,
+)
 
 FieldName = Literal["velocity", "displacement", "stress_xx", "stress_yy", "stress_xy", "peak", "unbalanced"]
 
@@ -108,7 +117,8 @@ class Field:
 
 
 def read_disks(file: h5py.File) -> Disks:
-    """The disks of an open record."""
+    """The disks of an open record; raises CaseError for one of histories alone."""
+    require_run(file)
     laws = laws_of(file)
     places = {name: group.attrs["position"] for name, group in file.get("histories", {}).items()}
     twins = [

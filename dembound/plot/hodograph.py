@@ -46,5 +46,6 @@ def plot_hodograph(
         panel.set_title(monitor_title(name, [run[name] for run in histories if name in run]), loc="left", fontsize=8)
         panel.set_xlabel(f"{quantity} along x ({unit})", fontsize=8)
         panel.set_ylabel(f"{quantity} along y ({unit})", fontsize=8)
+    figure.suptitle(f"Paths of the {quantity} at the monitors, dots at their ends", fontsize=11)
     outside_legend(figure, list(np.ravel(panels)), columns=3)
     return figure

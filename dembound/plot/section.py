@@ -26,6 +26,7 @@ def plot_section(
 ) -> Figure:
     """Histories of monitors, each drawn at its distance from the first one, with one scale for all, which is given.
 
+    Their names stand beside them on the right, at the distances in the first run.
     The distances are those of the true positions of their particles. Parameters as of `plot_histories`; the order of
     the monitors is free, the first of them is where distances begin.
 
@@ -52,11 +53,15 @@ def plot_section(
         for (name, history), distance in zip(run.items(), along, strict=True):
             raised = distance + scale * history.values[:, column]
             panel.plot(history.time / unit.seconds, raised, label=run_name, gid=name, linewidth=0.9, **style)
+    for name, distance in zip(common, distances[0], strict=True):
+        beside = (1.0, distance), (4.0, 0.0), ("axes fraction", "data"), "offset points"
+        panel.annotate(name, *beside, va="center", fontsize=8)
     panel.set_xlabel(unit.label)
     where = "" if quantity == "stress" else f" {direction(column)}"
     panel.set_ylabel(f"distance from {common[0]} (m), {quantity}{where} upwards", fontsize=9)
     size = f"{gap:.3g} m upwards is {gap / scale:.3g} {UNITS[quantity][column]}"
     panel.set_title(size, loc="left", fontsize=9)
+    figure.suptitle(f"Section of the {quantity} at the monitors", fontsize=11)
     outside_legend(figure, [panel], columns=3)
     return figure
 

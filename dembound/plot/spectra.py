@@ -20,7 +20,7 @@ from dembound.plot.histories import (
     shown_columns,
     twin_of,
 )
-from dembound.plot.style import line_style, new_figure, outside_legend, styled
+from dembound.plot.style import REFERENCE, line_style, new_figure, outside_legend, styled
 from dembound.results.histories import UNITS, History, Quantity, read_histories
 from dembound.results.reader import record_names
 from dembound.spectra.fourier import fourier_spectrum, shown_frequencies, smoothed
@@ -31,13 +31,19 @@ DECADES = 1e-4
 """Smallest amplitude shown, over the largest."""
 
 FEW_DECADES = 300.0
-"""Largest over smallest amplitude below which also twice and five times the powers of ten have numbers."""
+"""End of an axis over its begin below which not only powers of ten have numbers, but also their multiples."""
+
+NUMBERED = (1.0, 2.0, 5.0)
+"""These multiples."""
 
 FEWEST = 16
 """Samples that a spectrum needs at least."""
 
 FAINT: dict[str, Any] = {"linewidth": 0.5, "alpha": 0.3, "zorder": 1.8}
 """Line style of spectra that are not smoothed."""
+
+LEGEND_OF_FAINT: dict[str, Any] = {"linewidth": 0.5, "color": REFERENCE, "label": "thin: not smoothed"}
+"""Line in the legend for those of all runs."""
 
 
 class Curve(NamedTuple):
@@ -59,7 +65,7 @@ def plot_fourier(
     quantity: Quantity = "velocity",
     monitors: Sequence[str] | None = None,
 ) -> Figure:
-    """Fourier amplitude spectra of the monitors, a panel each, smoothed, over what they were before.
+    """Fourier amplitude spectra of the monitors, a panel each, smoothed, over thin ones that are not.
 
     Twins in a free-field column are dashed. Parameters and errors as of `plot_histories`.
     """
@@ -74,7 +80,8 @@ def plot_fourier(
         return Curve(centre, np.sqrt(smoothed(frequency, power, centre)), (frequency[1:], np.sqrt(power[1:])))
 
     return _figure(
-        runs, quantity, monitors, component, curve, "frequency (Hz)",
+        runs, quantity, monitors, component, curve, f"Fourier spectra of the {quantity} at the monitors",
+        "frequency (Hz)",
         lambda column: f"Fourier amplitude of the {quantity}{_along(quantity, column)} ({UNITS[quantity][column]}·s)",
     )  # fmt: skip
 
@@ -119,7 +126,8 @@ def plot_transfer(
 
     below = "their free-field twins" if reference is None else reference
     return _figure(
-        runs, quantity, shown, component, curve, "frequency (Hz)",
+        runs, quantity, shown, component, curve, f"Transfer functions of the {quantity} to the monitors",
+        "frequency (Hz)",
         lambda column: f"amplitude over that of {below}, {quantity}{_along(quantity, column)}",
     )  # fmt: skip
 
@@ -141,7 +149,7 @@ def plot_response(
         return Curve(found.period, found.pseudo_acceleration)
 
     return _figure(
-        runs, "acceleration", monitors, component, curve, "period (s)",
+        runs, "acceleration", monitors, component, curve, "Response spectra of the monitors", "period (s)",
         lambda column: f"pseudo-acceleration {direction(column)}, 5 % damping (m/s²)",
     )  # fmt: skip
 
@@ -152,6 +160,7 @@ def _figure(
     monitors: Sequence[str] | None,
     component: Component | None,
     curve: CurveOf,
+    title: str,
     along: str,
     label: Callable[[int], str],
 ) -> Figure:
@@ -167,16 +176,19 @@ def _figure(
         for row, name in zip(panels, shown, strict=True):
             for panel, column in zip(row, columns, strict=True):
                 _draw(panel, curve, run, name, column, run_name, line_style(index))
+    if any(line.get_gid() is None for panel in panels.flat for line in panel.lines):
+        panels.flat[-1].plot([], [], **LEGEND_OF_FAINT)
     _on_logarithmic_axes(panels)
     for row, name in zip(panels, shown, strict=True):
-        title = monitor_title(name, [run[name] for run in histories if name in run])
-        row[0].set_title(title, loc="left", fontsize=9, pad=3)
+        place = monitor_title(name, [run[name] for run in histories if name in run])
+        row[0].set_title(place, loc="left", fontsize=9, pad=3)
     for panel, column in zip(panels[-1], columns, strict=True):
         panel.set_xlabel(along)
         if len(columns) > 1:
             panel.set_title(label(column), loc="right", fontsize=8)
     if len(columns) == 1:
         figure.supylabel(label(columns[0]), fontsize=10)
+    figure.suptitle(title, fontsize=11)
     outside_legend(figure, panels.flat, columns=3)
     return figure
 
@@ -184,7 +196,7 @@ def _figure(
 def _draw(
     panel: Axes, curve: CurveOf, run: Histories, name: str, column: int, label: str, style: dict[str, Any]
 ) -> None:
-    """The line of a monitor in one run, if it has it, over that before smoothing, and that of its twin, dashed."""
+    """The line of a monitor in one run, if it has it, over a thin one not smoothed, and that of its twin, dashed."""
     if (twin := curve(run, twin_of(name), column)) is not None:
         behind = {"color": style["color"], **BEHIND}
         panel.plot(twin.along, twin.values, label=f"{label}, free field", gid=twin_of(name), **behind)
@@ -211,7 +223,9 @@ def _on_logarithmic_axes(panels: np.ndarray) -> None:
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_formatter(NullFormatter())
         if values.max() < FEW_DECADES * values.min():
-            panel.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            panel.yaxis.set_major_locator(LogLocator(subs=NUMBERED))
+        if np.divide(*panel.get_xlim()[::-1]) < FEW_DECADES:
+            panel.xaxis.set_major_locator(LogLocator(subs=NUMBERED))
         panel.set_ylim(0.7 * max(values.min(), DECADES * values.max()), 1.4 * values.max())
 
 

@@ -2,7 +2,7 @@
 
 import csv
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import zip_longest
 from pathlib import Path
 
@@ -51,12 +51,26 @@ def columns_of(figure: Figure) -> Iterator[Column]:
     heads = [x_label(lines[0][0]) for _, lines in groups]
     names = Counter(_head(figure, panel, line) for _, lines in groups for panel, line in lines)
     for head, (along, lines) in zip(heads, groups, strict=True):
-        of = f" of {lines[0][1].get_label()}" if heads.count(head) > 1 else ""
-        yield f"{head}{of}", along
+        same_head = [others[0][1] for of, (_, others) in zip(heads, groups, strict=True) if of == head]
+        yield f"{head}{_of(lines[0][1], same_head)}", along
         for panel, line in lines:
             name = _head(figure, panel, line)
             against = f", against {head}" if names[name] > 1 and len(set(heads)) > 1 else ""
             yield f"{name}{against}", np.asarray(line.get_ydata(), dtype=float)
+
+
+def _of(line: Line2D, lines: Sequence[Line2D]) -> str:
+    """Of which of several lines x values are: of its run, or if runs have several lines of its name and its run."""
+    if len(lines) == 1:
+        return ""
+    is_only_one = [each.get_label() for each in lines].count(line.get_label()) == 1
+    return f" of {line.get_label()}" if is_only_one else f" of {', '.join(filter(None, _name_and_run(line)))}"
+
+
+def _name_and_run(line: Line2D) -> tuple[str, str]:
+    """A line's name, and its run: empty for matplotlib's label for none, or the name again."""
+    name, label = str(line.get_gid()), str(line.get_label())
+    return name, "" if label.startswith(("_", name)) else label
 
 
 def _lines(figure: Figure) -> Iterator[tuple[Axes, Line2D]]:
@@ -68,9 +82,7 @@ def _lines(figure: Figure) -> Iterator[tuple[Axes, Line2D]]:
 def _head(figure: Figure, panel: Axes, line: Line2D) -> str:
     """A line's name, its run, and what its axis shows with the unit."""
     axis = ", ".join(filter(None, (figure.get_supylabel(), panel.get_ylabel())))
-    name, label = str(line.get_gid()), str(line.get_label())
-    run = "" if label.startswith(("_", name)) else f", {label}"  # matplotlib's label for none, or the name again
-    return f"{name}{run}: {axis}"
+    return f"{', '.join(filter(None, _name_and_run(line)))}: {axis}"
 
 
 def x_label(panel: Axes) -> str:

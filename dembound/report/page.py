@@ -110,7 +110,7 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
     shown = [_shown(run, attempt) for run in runs]
     charts = list(_charts(runs, attempt))
     for run in runs:
-        if not run.summary and not run.is_exact:
+        if not run.summary and not run.has_histories_alone:
             missing.append(f"{run.record.parent}: has no summary, the run is not complete; tables lack it")
     for line in missing:
         say(line)
@@ -139,8 +139,8 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
 
 
 def _shown(run: ReportedRun, attempt: Callable[[Callable[[], Any]], Any]) -> ShownRun:
-    """The pictures of one run alone, none of an exact motion."""
-    if run.is_exact:
+    """The pictures of one run alone, none of histories alone."""
+    if run.has_histories_alone:
         return ShownRun(run, [], None, None)
     scenes = attempt(lambda: [picture_of(figure) for name, figure in run.kind.pictures(run.record) if name == "scene"])
     frames = attempt(lambda: _frames(run))

@@ -29,8 +29,8 @@ class ReportedRun:
     summary: Mapping[str, Any]
 
     @property
-    def is_exact(self) -> bool:
-        """Whether it is the exact motion at monitors, without a body."""
+    def has_histories_alone(self) -> bool:
+        """Whether it is the motion at monitors without a body: exact, or superposed from a library."""
         return len(self.results.particles) == 0
 
     @property

@@ -46,8 +46,9 @@ def overview(runs: Sequence[ReportedRun]) -> Table:
 def _overview(run: ReportedRun) -> Iterator[tuple[str, str]]:
     """Entries of a run."""
     attributes, summary = run.results.attributes, run.summary
-    if run.is_exact:
-        yield "body", "exact motion at monitors"
+    if run.has_histories_alone:
+        library = attributes.get("superposed")
+        yield "body", f"motion at monitors, from the library {library}" if library else "exact motion at monitors"
         return
     size = attributes.get("size", [0.0, 0.0])
     if run.is_bar:

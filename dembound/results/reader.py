@@ -134,11 +134,19 @@ def place_in_words(place: Sequence[float], size: Sequence[float]) -> str:
     return f"{place[0]:.4g} m" if is_line(size) else "({:.2f}, {:.2f}) m".format(*place)
 
 
+def require_run(file: h5py.File) -> None:
+    """Raise CaseError for an open record of histories alone, which were computed without stepping particles."""
+    if "particles" not in file and "histories" in file:
+        raise CaseError([f"{file.filename}: has histories alone, as those of `dembound exact` and `dembound respond`"])
+
+
 def snapshots_of(file: h5py.File, *, required: bool = False) -> list[h5py.Group]:
     """All snapshots of an open record in the order of time, that of their numbers: HDF5 lists 10000 before 1001.
 
     Raises CaseError when one is required and there is none.
     """
+    if required:
+        require_run(file)
     group = file.get("snapshots", {})
     if required and len(group) == 0:
         raise CaseError([f"{file.filename}: has no snapshots, run with output.snapshots above 0"])
@@ -216,6 +224,8 @@ def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
 
     Raises CaseError when there is no entry, and RecordError for the ledger of an earlier version.
     """
+    if "energy" not in file:
+        require_run(file)
     columns = {name: item[:] for name, item in datasets_of(file["energy"]).items()} if "energy" in file else {}
     if not any(map(len, columns.values())):
         raise CaseError([f"{file.filename}: has no entries in its energy ledger"])
@@ -265,7 +275,7 @@ def replacing(path: Path) -> Iterator[Path]:
         part.replace(path)
     except BaseException as error:
         if isinstance(error, OSError) and error.filename is None:
-            error.filename = str(path)  # a failed write does not know which file it was
+            error.filename = str(path)  # errors of writing have no file name
         with suppress(OSError):
             part.unlink(missing_ok=True)
         raise

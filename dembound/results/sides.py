@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.results.reader import is_line, open_record
+from dembound.results.reader import is_line, open_record, require_run
 
 OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 
@@ -35,6 +35,7 @@ class SideHistory:
 def read_side_history(path: Path, side: str) -> SideHistory:
     """The history of a side of a run; raises CaseError if the file cannot be read or has none."""
     with open_record(path) as file:
+        require_run(file)
         there = {name: group for name, group in file.get("boundaries", {}).items() if "force" in group}
         if side not in there:
             raise CaseError([f"{path}: has no history of side {side}, sides there: {', '.join(there) or 'none'}"])

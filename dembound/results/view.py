@@ -16,6 +16,7 @@ from dembound.results.reader import (
     is_line,
     open_record,
     replacing,
+    require_run,
     snapshot_of,
     snapshot_of_largest_motion,
     snapshots_of,
@@ -154,7 +155,8 @@ class Coloured:
 
 
 def meshes_of(file: h5py.File) -> "list[Coloured]":
-    """The disks of an open record, and the continuum around them if there is one."""
+    """The disks of an open record, and the continuum around them if there is one; errors as of `require_run`."""
+    require_run(file)
     disks = disk_mesh(file["particles/position"][:], file["particles/radius"][:])
     meshes = [Coloured(disks, CORNERS, ".")]
     if CONTINUUM in file:

@@ -21,7 +21,7 @@ MOST_SAMPLES = 2**20
 class FileWave(Wave):
     """Velocities from a file, joined by straight lines and zero outside.
 
-    The file is read by `read_samples` and has times (s) and velocities (m/s). Its times are counted from `start`. A
+    The file has times (s) and velocities (m/s) in the format of `samples_of`. Its times are counted from `start`. A
     relative path is taken from the case file's folder, which validation passes as the context ``{"folder": Path}``;
     without one, from the current folder. Texts of files by path that are passed as "files" replace these files.
     """
@@ -112,11 +112,6 @@ class FileWave(Wave):
         time_step = max(usual, length / MOST_SAMPLES)
         evenly = np.arange(times[0], times[-1] + time_step, time_step)
         return amplitude_spectrum(self.velocity(evenly), time_step)
-
-
-def read_samples(path: Path, quantity: str = "values") -> np.ndarray:
-    """Read a two-column text file, see `samples_of`; raises ValueError also if the file is absent."""
-    return samples_of(read_text(path), path, quantity)
 
 
 def read_text(path: Path) -> str:

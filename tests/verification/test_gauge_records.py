@@ -49,4 +49,4 @@ def test_a_wrong_place_of_the_gauge_is_seen(tmp_path):
     assert "check --position and --length" in evaluate(replace(gauge, position=0.59)).warnings[0]
     with pytest.raises(CaseError, match="check --position and --length"):
         evaluate(replace(gauge, position=0.4))
-    assert "--scale -1 changes the sign" in evaluate(replace(gauge, stress=-gauge.stress)).warnings[0]
+    assert "has --scale the wrong sign?" in evaluate(replace(gauge, stress=-gauge.stress)).warnings[0]

@@ -78,12 +78,14 @@ class LaneBonded(NamedTuple):
 class BarContacts(NamedTuple):
     """Contacts between ranges of a bar, see kernels.bar_contacts.
 
-    left : (c,) nodes, each touches the next one; gap : (c,) m between them at rest. before (c,) m/s, push (c,) N : work
-    space, the speed of approach before a step and the force in it.
+    left : (c,) nodes, each touches the next one; gap : (c,) m between them at rest; closed : (c,) bool, whether each
+    has ever been closed. before (c,) m/s, push (c,) N : work space, the speed of approach before a step and the force
+    in it.
     """
 
     left: np.ndarray
     gap: np.ndarray
+    closed: np.ndarray
     before: np.ndarray
     push: np.ndarray
 

@@ -104,8 +104,8 @@ def _record(argument: str, inputs: Sequence[str], clock: Clock) -> Record:
             values[name] = on_spacing(samples_of(text, path), clock)
             files[name] = path, text
         except ValueError as error:
-            told = str(error).removeprefix("path: ")
-            problems.append(told if str(path) in told else f"{path}: {told}")
+            message = str(error).removeprefix("path: ")
+            problems.append(message if str(path) in message else f"{path}: {message}")
     if problems:
         raise CaseError(problems)
     return Record("_".join(dict.fromkeys(path.stem for path in paths.values())), values, files)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import get_args
 
@@ -117,10 +117,3 @@ def _quantiles(signal: Signal, count: int) -> np.ndarray:
     frequencies, energy = choice.energies(signal)
     share = np.concatenate([[0.0], np.cumsum(energy) / energy.sum()])
     return np.interp((np.arange(count) + 0.5) / count, share, np.concatenate([[0.0], frequencies]))
-
-
-def worst(arrivals: Sequence[Arrival], found: Reflections) -> tuple[Arrival, float]:
-    """The arrival of which most is sent back, and this share of its energy."""
-    shares = [(each, each.sent_back(found)) for each in arrivals]
-    known = [each for each in shares if math.isfinite(each[1])] or shares
-    return max(known, key=lambda each: each[1])

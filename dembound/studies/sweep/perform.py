@@ -58,7 +58,7 @@ class Task:
 class Outcome:
     """The results of a member: values by name, or why there are none, and the wall time it took (s).
 
-    folder : name of the folder of its run; empty for a calibration, which has none.
+    folder : name of the folder of its run; empty for a calibration, which has none. warnings : of its run.
     """
 
     name: str
@@ -66,6 +66,7 @@ class Outcome:
     failure: str = ""
     values: dict[str, float] = field(default_factory=dict)
     seconds: float = 0.0
+    warnings: list[str] = field(default_factory=list)
 
     def write(self, folder: Path, key: str) -> None:
         """Write it into the folder of a sweep, completely or not at all."""
@@ -101,7 +102,7 @@ def perform(task: Task) -> Outcome | None:
         began, outcome = time.perf_counter(), Outcome(task.name, task.name if task.action == "run" else "")
         try:
             with chdir(task.current):
-                outcome.values = _ACTIONS[task.action](task)
+                outcome.values, outcome.warnings = _ACTIONS[task.action](task)
         except Stopped:
             return None
         except (DemboundError, OSError, MemoryError) as error:
@@ -137,8 +138,8 @@ class Begun(Progress):
         self.make()
 
 
-def _run(task: Task) -> dict[str, float]:
-    """Run the member, or continue it if it was left unfinished."""
+def _run(task: Task) -> tuple[dict[str, float], list[str]]:
+    """Run the member, or continue it if it was left unfinished; returns its values and warnings."""
     case, results = _case_of(task), task.folder / MEMBERS
     partial = Folder(results, case.name).partial
     shared, progress = Shared(task.folder / SETTLED, task.stop), Begun(task.begun)
@@ -150,7 +151,8 @@ def _run(task: Task) -> dict[str, float]:
         folder = run_case(case, results, progress, shared=shared)
     if case.output.estimate:
         estimate_results(folder)
-    return values_of_run(folder, json.loads((folder / "summary.json").read_text(encoding="utf-8")))
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    return values_of_run(folder, summary), summary["warnings"]
 
 
 def _is_unfinished(case: Case, partial: Path) -> bool:
@@ -163,8 +165,8 @@ def _is_unfinished(case: Case, partial: Path) -> bool:
         return False
 
 
-def _calibrate(task: Task) -> dict[str, float]:
-    """Calibrate all sides of the member that have dashpots."""
+def _calibrate(task: Task) -> tuple[dict[str, float], list[str]]:
+    """Calibrate all sides of the member that have dashpots; returns the factors, and no warnings."""
     from dembound.studies.all_sides import calibrate_all
 
     case = as_kind(_case_of(task), DiskCase, "is the case of a bar; β of disks is calibrated")
@@ -175,11 +177,11 @@ def _calibrate(task: Task) -> dict[str, float]:
         if (number := interrupts.caught) is not None:
             raise Stopped(number)
 
-    return values_of_calibration(calibrate_all(case, method=task.method, report=after_pass))
+    return values_of_calibration(calibrate_all(case, method=task.method, report=after_pass)), []
 
 
 def _case_of(task: Task) -> Case:
     return loads(task.text, task.case_folder, task.name, task.files)
 
 
-_ACTIONS: Mapping[Action, Callable[[Task], dict[str, float]]] = {"run": _run, "calibrate": _calibrate}
+_ACTIONS: Mapping[Action, Callable[[Task], tuple[dict[str, float], list[str]]]] = {"run": _run, "calibrate": _calibrate}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
+import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +30,10 @@ MISSING = "not done"
 
 OF_STATISTICS = ("quantity", "unit", "count", "mean", "spread", "interval", "low", "high")
 """Columns of statistics, after those of the keys: see `Statistic`; low and high are the ends of the interval."""
+
+
+NUMBER = re.compile(r"(?<![\w.\[])[-+]?\d[\d.,]*(e[-+]?\d+)?")
+"""A number in a sentence, but not in a name or a place such as ``hole[2]``."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +69,21 @@ class Swept:
         if names and (missing := [name for name in self.wanted if name not in names]):
             raise CaseError([f"--quantity: is {missing[0]}, must be one of {', '.join(names)}"])
         return [name for name in self.wanted if name in names] or shown_by_default(names, self.action)
+
+    @property
+    def warnings(self) -> dict[str, int]:
+        """Each distinct warning of the members' runs -> number of members with it.
+
+        Warnings that differ in numbers alone are one, with the numbers of the first member.
+        """
+        first: dict[str, str] = {}
+        count: Counter[str] = Counter()
+        for warnings in (each.warnings for each in self.outcomes if each is not None):
+            alike = {line: NUMBER.sub("", line) for line in warnings}
+            for line, words in alike.items():
+                first.setdefault(words, line)
+            count.update(set(alike.values()))
+        return {line: count[words] for words, line in first.items()}
 
     def values(self, quantity: str) -> np.ndarray:
         """The values (n,) of a quantity, nan for members without it."""

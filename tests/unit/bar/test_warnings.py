@@ -302,6 +302,19 @@ def test_fronts_of_impacts_need_one_step_for_a_spacing(spacing: float, courant: 
     assert key is None or found[0].startswith(key)
 
 
+def test_monitors_in_gaps_are_warned_of() -> None:
+    # ranges end at 0.2 m and begin at 0.25 m
+    ranges = [STRIKER[0], STRIKER[1] | {"gap": 0.05}]
+    bar = {key: value for key, value in SPALLING["bar"].items() if key != "length"} | {"range": ranges}
+    places = {"left": 0.2, "inside": 0.21, "right": 0.25}
+    monitors = [{"name": name, "position": place} for name, place in places.items()]
+    scene = build_bar(small(SPALLING | {"bar": bar, "load": [], "wave": {}, "monitor": monitors}))
+    found = [line for line in bar_warnings(scene, choose_step(scene)[0]) if line.startswith("monitor")]
+    assert found == [
+        "monitor.inside: is at 0.21 m, in the gap from 0.2 to 0.25 m between two ranges; it records the node at 0.25 m"
+    ]
+
+
 @pytest.mark.parametrize(("density", "warned"), [(2.5, True), (2500.0, False)])
 def test_a_density_in_another_unit_is_warned_of(density: float, warned: bool) -> None:
     bar = {key: value for key, value in SPALLING["bar"].items() if key != "wave_speed"}

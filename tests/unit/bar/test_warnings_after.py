@@ -7,10 +7,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from small_cases import SPALLING, small
 
 from dembound.bar.scene import build_bar
 from dembound.bar.warnings import warnings_after_bar
-from dembound.running import run_case
+from dembound.running import resume_case, run_case
 
 
 @pytest.fixture
@@ -27,7 +28,13 @@ def run(spalling, tmp_path):
 
 def summary_of(*spalls: dict, duration: float = 1.0) -> dict:
     """What warnings ask of the summary of a run with these spalls."""
-    return {"duration": duration, "spalls": list(spalls), "breaks_at_ends": {}, "crack_strain_rates": None}
+    return {
+        "duration": duration,
+        "spalls": list(spalls),
+        "breaks_at_ends": {},
+        "open_contacts": [],
+        "crack_strain_rates": None,
+    }
 
 
 def _summary(folder: Path) -> dict:
@@ -43,6 +50,25 @@ def blow(pressure: float, nodes: int, side: str = "left") -> dict:
 
 
 SUDDEN = {"wave.hit.rise": 2.5e-5, "wave.hit.fall": 2.5e-4}
+
+
+def test_contacts_that_never_close_are_warned_of(tmp_path) -> None:
+    """At 10 m/s a gap of 2 mm is closed at 0.2 ms; in 2 ms the rod does not come as far as the next one of 0.1 m."""
+    ranges = [
+        {"name": "striker", "length": 0.2, "velocity": 10.0},
+        {"name": "rod", "length": 0.2, "interface": "contact", "gap": 2e-3},
+        {"name": "far", "length": 0.2, "interface": "contact", "gap": 0.1},
+    ]
+    bar = {"spacing": 0.025, "density": 2500.0, "wave_speed": 1000.0, "range": ranges}
+    tables = {"bar": bar, "method": SPALLING["method"], "run": {"duration": 1e-4}, "output": {"pictures": False}}
+    folder = run_case(small(tables), tmp_path)
+    assert _summary(folder)["open_contacts"] == ["rod", "far"]
+    folder = resume_case(folder, until=3e-4)
+    assert _summary(folder)["open_contacts"] == ["far"]
+    folder = resume_case(folder, until=2e-3)  # the striker is back, and its contact open again
+    assert _summary(folder)["open_contacts"] == ["far"]
+    (line,) = (line for line in _summary(folder)["warnings"] if "contact" in line)
+    assert line.startswith("bar.range[3, far]: its contact with rod, 0.1 m wide at the start, has never closed until ")
 
 
 @pytest.mark.parametrize("side", ["left", "right"])

@@ -61,7 +61,8 @@ def test_a_sweep_leaves_a_table_and_lists_what_failed(dembound, rod) -> None:
     rod(sweep={"vary": {"load.hit.pressure": [1e6, 2e6], "run.courant": [0.9]}})
     before = (folder / "members" / rows[0]["member"] / "run.h5").stat().st_mtime_ns
     second = dembound("sweep", "rod.toml")  # the same members, by the table: nothing is left to do
-    assert (second.code, second.err) == (0, "")
+    assert second.code == 0
+    assert "failed" not in second.err
     assert (folder / "members" / rows[0]["member"] / "run.h5").stat().st_mtime_ns == before
 
 
@@ -96,6 +97,38 @@ def test_long_tables_are_cut(dembound, rod, swept) -> None:
     assert "10 more rows are in statistics.csv\nrod: 50 of 50 members done\n" in done.out
     assert "density 2040 " in done.out
     assert "density 2041 " not in done.out
+
+
+def test_each_warning_of_members_is_printed_once_with_their_number(dembound, rod, monkeypatch) -> None:
+    own = [["1.5 cells, short", "1e-3 cells, short"], ["2 cells, short", "long"], [f"w{n}" for n in range(9)]]
+
+    def sweep(members, options, folder, report):
+        folder.mkdir(parents=True, exist_ok=True)
+        return [Outcome(member.name, warnings=each) for member, each in zip(members, own, strict=True)]
+
+    monkeypatch.setattr(study, "sweep", sweep)
+    rod()
+    done = dembound("sweep", "rod.toml", "--vary", "bar.density=2400:2402")
+    lines = [
+        "1.5 cells, short (2 of 3 members)",
+        "long (1 of 3 members)",
+        *(f"w{number} (1 of 3 members)" for number in range(8)),
+    ]
+    expected = [*(f"rod: warning: {line}" for line in lines), "rod: 1 more warnings are in summary.json of the members"]
+    assert done.err.splitlines() == expected
+
+
+def test_the_warnings_of_a_run_are_those_of_its_member(dembound, rod) -> None:
+    rod()
+    done = dembound("sweep", "rod.toml", "--vary", "run.courant=0.9", "-p", 1)
+    (summary,) = Path("results/rod_sweep/members").glob("*/summary.json")
+    warnings = json.loads(summary.read_text(encoding="utf-8"))["warnings"]
+    assert warnings
+    assert done.err.splitlines() == [f"rod: warning: {text} (1 of 1 members)" for text in warnings]
+    named = dembound("report", "results/rod_sweep")
+    folder = Path("results/rod_sweep")
+    said = f"{folder}: is a sweep, not results of a single run; name runs in {folder / 'members'}\n"
+    assert (named.code, named.err) == (2, said)
 
 
 def test_invalid_members_are_named_and_left_out(dembound, rod, swept) -> None:
@@ -150,5 +183,5 @@ def test_outcomes_are_plain_files(tmp_path) -> None:
     (tmp_path / "outcomes").mkdir()
     Outcome("a", values={"x": 1.5}, seconds=2.0).write(tmp_path, "k")
     assert json.loads((tmp_path / "outcomes/k.json").read_text()) == {
-        "name": "a", "folder": "", "failure": "", "values": {"x": 1.5}, "seconds": 2.0,
+        "name": "a", "folder": "", "failure": "", "values": {"x": 1.5}, "seconds": 2.0, "warnings": [],
     }  # fmt: skip

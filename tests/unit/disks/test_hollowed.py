@@ -4,37 +4,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from small_cases import GROUND, small
 
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
-from dembound.kinds import loads, with_changes
 
-CASE = """\
-[packing]
-pattern = "A"
-size = [30.0, 20.0]
-radius = 0.5
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-fric = 0.5
-[outside]
-element = 4.0
-[boundary.left]
-type = "outside"
-[boundary.right]
-type = "outside"
-[boundary.bottom]
-type = "outside"
-[run]
-duration = 0.1
-"""
+CASE = GROUND | {"material": GROUND["material"] | {"fric": 0.5}, "outside": {"element": 4.0}}
 
 
 def scene(*points: tuple[float, float], **changes: Any) -> DiskScene:
     """30 m × 20 m of disks with a hole."""
     hole = {"name": "cut", "type": "polygon", "points": [list(point) for point in points]}
-    return build(with_changes(loads(CASE), {"hole": [hole]} | changes))
+    return build(small(CASE, changes={"hole": [hole]} | changes))
 
 
 def line(*points: tuple[float, float], **changes: Any) -> str:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from small_cases import GROUND, Tables, small
 
 from dembound.casefile import Case
 from dembound.disks.continuum_ties import TwinTie
@@ -15,45 +16,28 @@ from dembound.disks.settled import among, settling_keys
 from dembound.disks.static_scene import without_own_continua
 from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError
-from dembound.kinds import loads, with_changes
+from dembound.kinds import with_changes
 
-CASE = """
-[ground]
-size = [40.0, 30.0]
-[packing]
-pattern = "B"
-size = [12.0, 12.0]
-origin = [14.0, 6.0]
-brick = [6.0, 6.0]
-radius = 0.5
-radius_ratio = 1.5
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-[boundary.left]
-type = "outside"
-[boundary.right]
-type = "outside"
-[boundary.bottom]
-type = "outside"
-[boundary.top]
-type = "outside"
-[outside]
-element = 6.0
-[wave.pulse]
-type = "cosine"
-amplitude = 1.0
-period = 0.1
-[run]
-duration = 0.1
-"""
-WAVE = {"boundary.bottom.wave_s": "pulse"}
+BOX: Tables = GROUND | {
+    "ground": {"size": [40.0, 30.0]},
+    "packing": {
+        "pattern": "B",
+        "size": [12.0, 12.0],
+        "origin": [14.0, 6.0],
+        "brick": [6.0, 6.0],
+        "radius": 0.5,
+        "radius_ratio": 1.5,
+    },
+    "boundary": {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")},
+    "outside": {"element": 6.0},
+}
+WAVE = {"boundary.bottom.wave_s": "w"}
 AT_THE_FOOT = {"packing.origin": [14.0, 0.0]}
 WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -10.0]}], "static.boundary.bottom": {"type": "fixed"}}
 
 
 def case(**changes) -> Case:
-    return with_changes(loads(CASE), changes) if changes else loads(CASE)
+    return small(BOX, changes=changes)
 
 
 def scene(*changes: dict) -> DiskScene:
@@ -70,9 +54,9 @@ def test_there_is_a_column_if_the_ground_moves_by_itself() -> None:
     assert case().column_sides == ()
     assert case(**WAVE).column_sides == sides
     assert case(**WEIGHT).column_sides == sides
-    blow = {"name": "blow", "force": [1e3, 0.0], "position": [20.0, 12.0], "wave": "pulse"}
+    blow = {"name": "blow", "force": [1e3, 0.0], "position": [20.0, 12.0], "wave": "w"}
     assert case(load=[blow]).column_sides == ()
-    assert case(load=[{"name": "all", "acceleration": [1.0, 0.0], "wave": "pulse"}]).column_sides == sides
+    assert case(load=[{"name": "all", "acceleration": [1.0, 0.0], "wave": "w"}]).column_sides == sides
 
 
 def test_the_column_is_as_high_as_the_ground(shaken: DiskScene) -> None:

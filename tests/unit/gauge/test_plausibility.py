@@ -41,6 +41,15 @@ def test_few_samples_are_too_coarse():
     assert not list(implausible_signal(TRIANGLE[::10]))
 
 
+@pytest.mark.parametrize("offset", [0.0, 3.0, 100.0])
+def test_noise_without_a_wave_is_seen(offset):
+    noise = np.random.default_rng(1).standard_normal(1000)
+    (said,) = implausible_signal(offset + noise)
+    assert said.startswith(f"the signal is noise: its largest value is {np.abs(noise - np.median(noise)).max():.1f}")
+    assert not list(implausible_signal(offset + 20.0 * TRIANGLE + noise))
+    assert "too coarse" in next(implausible_signal(20.0 * (TIME == 500.0) + noise))
+
+
 @pytest.mark.parametrize(("length", "count"), [(0.99, 0), (100.0, 0), (990.0, 1), (np.inf, 0), (np.nan, 0)])
 def test_millimetres_are_seen(length, count):
     assert len(list(implausible_length(length))) == count
@@ -74,7 +83,7 @@ def test_speeds_agree_within_ten_of_their_errors():
     assert "2.1 % apart, must be within 2 %" in next(contradicting_speeds(Estimate(1021.0, 0.0, 3), first))
     assert not list(contradicting_speeds(Estimate(1021.0, 1.0, 3), first))
     assert not list(contradicting_speeds(Estimate(1009.0, np.nan, 2), Estimate(1000.0, 0.0, 2)))
-    assert "changes the sign" in next(contradicting_speeds(Estimate(1000.0), None))
+    assert "has --scale the wrong sign" in next(contradicting_speeds(Estimate(1000.0), None))
 
 
 def test_large_errors_are_told():

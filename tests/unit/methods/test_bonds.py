@@ -384,6 +384,7 @@ def test_arrays_for_kernels_are_the_bonds_own() -> None:
 
     for name in ("spring", "spring_limit", "triggers", "bond", "spring_broken", "bond_broken"):
         assert getattr(arrays, name) is getattr(bonds, name)
+    assert arrays.contacts.closed is bonds.closed
     assert arrays.zones.tolist() == [[10, 30]]
     np.testing.assert_allclose(arrays.bond_limit, LIMIT * np.array([[1.0, 2.0, 3.0]]), rtol=2 * EPS)
     # of 4 kg/m³ · 0.5 m² · 0.25 m a node

@@ -65,7 +65,7 @@ def test_the_slowest_wave_at_the_highest_cut_off_counts() -> None:
     assert choice.shortest_wave(both, ROCK) == pytest.approx(500.0 / choice.cutoff(both[1]), rel=1e-9)
 
 
-def test_the_slowest_direction_a_medium_without_symmetry_is_found() -> None:
+def test_the_slowest_direction_of_a_medium_without_symmetry_is_found() -> None:
     medium = Medium(2500.0, 9e9, 7e9, 2e9, 3e9, 0.4e9, -0.3e9)
     slowest = min(medium.plane_waves((math.cos(a), math.sin(a)))[0][0] for a in np.linspace(0.0, math.pi, 721))
     assert choice.slowest(medium) == pytest.approx(slowest, rel=2e-3)

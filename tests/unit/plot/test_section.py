@@ -7,6 +7,8 @@ import pytest
 from dembound.errors import CaseError
 from dembound.plot.hodograph import plot_hodograph
 from dembound.plot.section import plot_section
+from dembound.plot.table import columns_of
+from dembound.results.reader import record_names
 
 
 def test_a_section_has_each_history_at_its_distance(small_run):
@@ -20,6 +22,9 @@ def test_a_section_has_each_history_at_its_distance(small_run):
             expected = begin + 0.9 * distance / largest * group["velocity"][:, 0]
             np.testing.assert_allclose(line.get_ydata(), expected)
             np.testing.assert_allclose(line.get_xdata(), group["time"][:] / 1e-3)
+    names = [(text.get_text(), text.xy) for text in panel.texts]
+    assert names == [("back", (1.0, 0.0)), ("front", (1.0, distance))]
+    assert panel.figure.get_suptitle() == "Section of the velocity at the monitors"
     assert panel.get_ylabel() == "distance from back (m), velocity along x upwards"
     assert panel.get_title("left") == f"{distance:.3g} m upwards is {largest / 0.9:.3g} m/s"
 
@@ -42,6 +47,14 @@ def test_a_hodograph_has_the_motion_along_y_against_that_along_x(small_run, othe
     np.testing.assert_array_equal(panel.lines[1].get_xydata(), moved[-1:, :2])
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("displacement along x (m)", "displacement along y (m)")
     assert panel.get_aspect() == 1.0
+    assert panel.figure.get_suptitle() == "Paths of the displacement at the monitors, dots at their ends"
+
+
+def test_the_table_of_a_hodograph_names_each_path(small_run, other_run):
+    heads = [head for head, _ in columns_of(plot_hodograph([small_run, other_run], "displacement"))]
+    paths = [f"{name}, {run}" for name in ("front", "back") for run in record_names([small_run, other_run])]
+    assert heads[::2] == [f"displacement along x (m) of {path}" for path in paths]
+    assert heads[1::2] == [f"{path}: displacement along y (m)" for path in paths]
 
 
 def test_a_stress_has_no_hodograph(spalled_run):

@@ -73,6 +73,25 @@ def test_response_spectra_are_those_of_accelerations(known_run):
     np.testing.assert_allclose(line.get_ydata()[40:42], expected)
 
 
+def legend_of(figure) -> list[str]:
+    (legend,) = figure.legends
+    return [text.get_text() for text in legend.get_texts()]
+
+
+def test_titles_say_what_is_shown_and_legends_which_lines_are_not_smoothed(known_run):
+    fourier = plot_fourier([known_run], monitors=["front"])
+    transfer = plot_transfer([known_run], reference="front", quantity="acceleration")
+    response = plot_response([known_run])
+    assert fourier.get_suptitle() == "Fourier spectra of the velocity at the monitors"
+    assert transfer.get_suptitle() == "Transfer functions of the acceleration to the monitors"
+    assert response.get_suptitle() == "Response spectra of the monitors"
+    assert legend_of(fourier)[-1] == legend_of(transfer)[-1] == "thin: not smoothed"
+    assert "thin: not smoothed" not in legend_of(response)
+    (panel,) = fourier.axes
+    thin = [line.get_linewidth() for line in panel.lines if line.get_gid() is None]
+    assert thin == [0.5, 0.5]  # that with data, and that of the legend
+
+
 def test_both_components_are_side_by_side(known_run):
     panels = plot_fourier([known_run], "both", monitors=["front"]).axes
     assert [panel.get_title("right") for panel in panels] == [

@@ -3,11 +3,15 @@
 import shutil
 import subprocess
 
+import h5py
 import numpy as np
 import pytest
 from PIL import Image
 
 from dembound.errors import CaseError, DemboundError
+from dembound.plot.boundary import plot_boundary
+from dembound.plot.energy import plot_energy
+from dembound.plot.side import plot_side
 from dembound.report import movie as movie_module
 from dembound.report.movie import movie_of, write_movie
 
@@ -21,6 +25,17 @@ def frames_in(path):
             frames.append(np.asarray(picture.convert("RGB")))
             times.append(picture.info["duration"])
     return np.array(frames), times
+
+
+def test_histories_alone_have_no_movie(pushed_runs, tmp_path):
+    path = tmp_path / "run.h5"
+    with h5py.File(pushed_runs[0]) as run, h5py.File(path, "w") as file:
+        file.attrs.update(name="exact", size=run.attrs["size"])
+        run.copy("histories", file)
+    sides = (lambda run: plot_boundary([run], "left"), lambda run: plot_side([run], "left", "stress"))
+    for draw in (movie_of, plot_energy, *sides):
+        with pytest.raises(CaseError, match=r"run\.h5: has histories alone, as those of `dembound exact` and"):
+            draw(path)
 
 
 @pytest.mark.parametrize(("ending", "fps", "shown"), [("gif", 8.0, 130), ("gif", 80.0, 20), ("webp", 8.0, 125)])

@@ -200,6 +200,10 @@ def test_an_exact_motion_is_a_line_beside_those_of_runs(pushed_runs, tmp_path):
     page = Page(tmp_path / "page.html")
     assert said == []
     assert page.row("body") == ["10 m × 2.5 m, 100 disks", "exact motion at monitors"]
+    with h5py.File(exact, "r+") as file:
+        file.attrs["superposed"] = "shakes"
+    write_report([exact], tmp_path / "superposed.html", said.append)
+    assert Page(tmp_path / "superposed.html").row("body") == ["motion at monitors, from the library shakes"]
     names = [[line["name"] for line in panel["lines"]] for panel in page.live()["chart-0"]["panels"]]
     assert names == [["whole", "front_exact"]] * 2
 

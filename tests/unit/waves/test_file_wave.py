@@ -7,13 +7,18 @@ import pytest
 from pydantic import TypeAdapter
 
 from dembound.waves import FileWave
-from dembound.waves.file_wave import read_samples
+from dembound.waves.file_wave import read_text, samples_of
 
 
 def record(folder: Path, text: str, **keys: float) -> FileWave:
     (folder / "quake.txt").write_text(text, encoding="utf-8")
     table = {"type": "file", "path": "quake.txt", **keys}
     return TypeAdapter(FileWave).validate_python(table, context={"folder": folder})
+
+
+def samples(path: Path, **quantity: str) -> np.ndarray:
+    """The two columns of a file, as waves and records read it."""
+    return samples_of(read_text(path), path, **quantity)
 
 
 TRIANGLE = "# a triangle\n0.0 0.0\n1.0 2.0  # crest\n\n3.0 0.0\n"
@@ -77,7 +82,7 @@ def test_commas_separate_the_columns_of_a_csv_file(tmp_path: Path) -> None:
     path = tmp_path / "gauge.csv"
     path.write_text("# time,stress\n0,0.5\n1, -2\n")
 
-    assert read_samples(path).tolist() == [[0.0, 0.5], [1.0, -2.0]]
+    assert samples(path).tolist() == [[0.0, 0.5], [1.0, -2.0]]
 
 
 @pytest.mark.parametrize(
@@ -94,7 +99,7 @@ def test_commas_separate_the_columns_of_a_csv_file(tmp_path: Path) -> None:
 def test_headers_marks_of_spreadsheets_and_semicolons_are_read(tmp_path: Path, name: str, text: str) -> None:
     (tmp_path / name).write_text(text, encoding="utf-8", newline="")
 
-    assert read_samples(tmp_path / name).tolist() == [[0.0, 0.5], [1.0, -2.0]]
+    assert samples(tmp_path / name).tolist() == [[0.0, 0.5], [1.0, -2.0]]
 
 
 def test_columns_are_called_what_they_are_for(tmp_path: Path) -> None:
@@ -102,7 +107,7 @@ def test_columns_are_called_what_they_are_for(tmp_path: Path) -> None:
     path.write_text("0 0 0\n1 1 1\n")
     for given, called in (({}, "values"), ({"quantity": "stress (Pa)"}, "stress (Pa)")):
         with pytest.raises(ValueError, match="has 3 columns") as caught:
-            read_samples(path, **given)
+            samples(path, **given)
         assert str(caught.value).endswith(f"must have two: time (s), {called}")
 
 
@@ -137,13 +142,13 @@ def test_bad_files_are_refused_with_their_name(tmp_path: Path, text: str, reason
     path.write_text(text, encoding="utf-8")
 
     with pytest.raises(ValueError, match=reason) as caught:
-        read_samples(path)
+        samples(path)
     assert str(caught.value).startswith(f'path: "{path}" ')
 
 
 def test_absent_or_binary_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="no file"):
-        read_samples(tmp_path / "absent.txt")
+        samples(tmp_path / "absent.txt")
     (tmp_path / "binary").write_bytes(b"\xff\xfe\x00\x80")
     with pytest.raises(ValueError, match="is not two columns of numbers"):
-        read_samples(tmp_path / "binary")
+        samples(tmp_path / "binary")

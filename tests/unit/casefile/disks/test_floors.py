@@ -1,91 +1,72 @@
 """Ground that is lower beyond a side: where it is found, and what cannot be there."""
 
 import pytest
+from small_cases import GROUND, Tables, small
 
+from dembound.casefile import Case
 from dembound.errors import CaseError
-from dembound.kinds import loads
 
-CASE = """\
-[packing]
-pattern = "A"
-size = [30.0, 20.0]
-radius = 0.5
-[material]
-density = 2500.0
-p_wave_speed = 1000.0
-[boundary.left]
-type = "outside"
-[boundary.right]
-type = "outside"
-[boundary.bottom]
-type = "outside"
-{bottom}
-[[hole]]
-name = "cut"
-type = "polygon"
-points = [[10.0, 21.0], [18.0, 11.5], [31.0, 11.5], [31.0, 21.0]]
-[wave.w]
-type = "cosine"
-amplitude = 1.0
-period = 0.1
-[run]
-duration = 0.1
-"""
-WEIGHT = '[[load]]\nname = "weight"\nacceleration = [0.0, -9.81]\n'
-STAGE = '[static.boundary.bottom]\ntype = "fixed"\n'
-ROLLERS = '[static.boundary.left]\ntype = "roller"\n[static.boundary.right]\ntype = "fixed"\n'
+CUT = {"name": "cut", "type": "polygon", "points": [[10.0, 21.0], [18.0, 11.5], [31.0, 11.5], [31.0, 21.0]]}
+SLOPE: Tables = GROUND | {"hole": [CUT]}
+WEIGHT = {"load": [{"name": "weight", "acceleration": [0.0, -9.81]}]}
+FIXED, ROLLER = {"type": "fixed"}, {"type": "roller"}
+STAGE = {"static": {"boundary": {"bottom": FIXED, "left": ROLLER, "right": FIXED}}}
 WHY = (
     "as the ground is no half-space, with its surface at y = 11.5 m beyond the right side; end the holes inside the "
     "disks, with the surface at its height at both sides"
 )
 
 
-def case(more: str = "", bottom: str = ""):
-    return loads(CASE.format(bottom=bottom) + more)
-
-
-def problems(more: str = "", bottom: str = "") -> list[str]:
+def problems(changes: Tables) -> list[str]:
     with pytest.raises(CaseError) as caught:
-        case(more, bottom)
+        small(SLOPE, changes=changes)
     return caught.value.problems
 
 
+def staged(**sides: dict[str, str]) -> Case:
+    """The slope settles under its weight, held at these sides."""
+    return small(SLOPE, changes=WEIGHT | {"static": {"boundary": sides}})
+
+
 def test_floors_are_those_of_all_holes() -> None:
-    found = case().floors
+    found = small(SLOPE).floors
     assert found.keys() == {"right"}
     assert found["right"].height == pytest.approx(11.5, abs=1e-12)
-    second = '[[hole]]\nname = "other"\ntype = "rectangle"\ncorners = [-1.0, 14.0, 6.0, 21.0]\nstage = "after"\n'
-    both = case(second + "[static]\n" + STAGE + ROLLERS + WEIGHT)
+    second = {"name": "other", "type": "rectangle", "corners": [-1.0, 14.0, 6.0, 21.0], "stage": "after"}
+    both = small(SLOPE, changes=WEIGHT | STAGE | {"hole": [CUT, second]})
     assert {side: floor.height for side, floor in both.floors.items()} == pytest.approx({"right": 11.5, "left": 14.0})
     assert both.floors_of(both.hole[1:]).keys() == {"left"}
 
 
 def test_below_the_surface_of_the_ground_there_are_none() -> None:
-    deep = CASE.format(bottom="").replace("size = [30.0, 20.0]", "size = [30.0, 20.0]\norigin = [0.0, 10.0]")
-    deep = "[ground]\nsize = [30.0, 40.0]\n" + deep.replace('[boundary.bottom]\ntype = "outside"', "")
-    deep += "".join(f'[boundary.{side}]\ntype = "outside"\n' for side in ("bottom", "top"))
-    assert loads(deep).floors == {}
+    sides = {side: {"type": "outside"} for side in ("left", "right", "bottom", "top")}
+    origin = {"packing": GROUND["packing"] | {"origin": [0.0, 10.0]}}
+    assert small(SLOPE | origin | {"ground": {"size": [30.0, 40.0]}, "boundary": sides}).floors == {}
 
 
 def test_waves_that_need_a_half_space_are_refused() -> None:
-    assert problems('[incident]\ntype = "sv"\nangle = 10.0\nwave = "w"\n') == [
+    assert problems({"incident": {"type": "sv", "angle": 10.0, "wave": "w"}}) == [
         f"incident: what the surface sends back of the wave is not known, {WHY}"
     ]
-    assert problems(bottom='wave_p = "w"') == [
+    assert problems({"boundary.bottom.wave_p": "w"}) == [
         f"boundary.bottom.wave_p: the motion far from the disks is not known, {WHY}"
     ]
 
 
-@pytest.mark.parametrize("more", [WEIGHT, WEIGHT + 'wave = "w"\n[static]\n' + STAGE + ROLLERS])
-def test_loads_on_all_disks_need_a_stage(more: str) -> None:
+SHAKEN = {"load": [WEIGHT["load"][0] | {"wave": "w"}]} | STAGE
+
+
+@pytest.mark.parametrize("changes", [WEIGHT, SHAKEN], ids=["no stage", "wave"])
+def test_loads_on_all_disks_need_a_stage(changes: Tables) -> None:
     line = f"load[1, weight]: acts on all disks, which needs a [static] stage and no wave, {WHY}"
-    assert line in problems(more)
+    assert line in problems(changes)
 
 
 def test_the_stage_holds_both_sides() -> None:
-    settling = case(WEIGHT + "[static]\n" + STAGE + ROLLERS)
+    settling = staged(bottom=FIXED, left=ROLLER, right=FIXED)
     assert settling.column_sides == ()
     line = 'static.boundary.{}: must be "roller" or "fixed", as the ground beyond is no half-space'
-    assert problems(WEIGHT + "[static]\n" + STAGE) == [line.format("left"), line.format("right")]
-    free = ROLLERS.replace('"fixed"', '"free"')
-    assert problems(WEIGHT + "[static]\n" + STAGE + free) == [line.format("right")]
+    for sides, wrong in (({}, ["left", "right"]), ({"left": ROLLER, "right": {"type": "free"}}, ["right"])):
+        with pytest.raises(CaseError) as caught:
+            staged(bottom=FIXED, **sides)
+        assert caught.value.problems == [line.format(side) for side in wrong]

@@ -64,7 +64,7 @@ def test_histories_are_compared_up_to_the_first_spall(compared) -> None:
     assert compared(mine, theirs, until=0.5)[0].rms == pytest.approx(0.1)
 
 
-def test_what_moves_later_does_not_chosen_monitors_and_components(compared) -> None:
+def test_what_moves_later_does_not_choose_monitors_and_components(compared) -> None:
     late = gauge(101, 1.0, after=50.0)  # along y from 0.5 s on
     found = compared({"a": gauge(101, 1.1), "b": gauge(101, 1.2)}, {"a": late, "b": gauge(101)}, until=0.5)
     assert [(each.monitor, each.component) for each in found] == [("b", "x"), ("a", "x")]

@@ -132,7 +132,8 @@ def test_outcomes_of_runs_that_others_replace_are_forgotten(tmp_path) -> None:
 
 def test_one_thread_is_used_and_others_are_given_back(rods, task, monkeypatch) -> None:
     seen = []
-    monkeypatch.setattr("dembound.studies.sweep.perform._ACTIONS", {"run": lambda _: seen.append(threads()) or {}})
+    run = {"run": lambda _: seen.append(threads()) or ({}, [])}
+    monkeypatch.setattr("dembound.studies.sweep.perform._ACTIONS", run)
     threads = numba.get_num_threads
     before = threads()
     perform(task(*rods(12e6)))
@@ -143,8 +144,9 @@ def test_one_thread_is_used_and_others_are_given_back(rods, task, monkeypatch) -
 @pytest.mark.parametrize("text", ["", "{", "[]", '{"name": 1, "more": 2}'])
 def test_damaged_outcomes_are_none(tmp_path, text) -> None:
     (tmp_path / "outcomes").mkdir()
-    Outcome("a", values={"x": 1.0}).write(tmp_path, "k")
-    assert outcome_in(tmp_path, "k") == Outcome("a", values={"x": 1.0})
+    outcome = Outcome("a", values={"x": 1.0}, warnings=["too short"])
+    outcome.write(tmp_path, "k")
+    assert outcome_in(tmp_path, "k") == outcome
     (tmp_path / "outcomes" / "k.json").write_text(text)
     assert outcome_in(tmp_path, "k") is None
 

@@ -1,0 +1,25 @@
+"""Warnings of a case of disks, and changes of a bar about which none are to be expected, for tests."""
+
+from dembound.casefile import Case
+from dembound.disks.warnings import disk_warnings
+from dembound.running import plan
+
+SLOW = {"wave.pulse.period": 0.5, "run.duration": 0.5}
+"""A wave far longer than the bar, nothing about which is to be warned of."""
+
+CALIBRATED = {f"boundary.{side}.beta_{motion}": 1.0 for side in ("left", "right") for motion in "ps"}
+"""Factors that somebody has chosen."""
+
+DENSE = {
+    "packing": {"pattern": "B", "size": [6.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
+    "monitor": [],
+    **SLOW,
+    **CALIBRATED,
+}
+"""A packing with its default of 10 MPa locked in."""
+
+
+def warned(case: Case) -> list[str]:
+    """The warnings about a case before its run."""
+    planned = plan(case)
+    return disk_warnings(planned.scene, planned.time_step)
