@@ -19,8 +19,8 @@ LONGER = 2.0
 DAMPING = math.log(1e4)
 """ηW; what rounding, and delays by parts of a step, leave at the end of the window grows by e^{ηW/2} = 100."""
 
-LEFT_OUT = 1e-22
-"""Part of the energy of the signals that the highest frequencies may have that are left out: 1e-11 of the motion."""
+LEFT_OUT = 1e-14
+"""Part of the energy of the signals that the highest frequencies may have that are left out: 1e-7 of the motion."""
 
 
 @dataclass(frozen=True)
