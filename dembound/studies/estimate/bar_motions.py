@@ -31,7 +31,7 @@ NEAR = 20
 """Nodes between a push and a monitor beyond which waves that do not run have no effect."""
 
 ABOVE = 1.1
-"""Largest frequency that counts then, over that of the shortest wave; those above decay by e in a spacing or less."""
+"""Largest frequency that counts then, over that of the shortest wave; above, motion decays within a few spacings."""
 
 Histories = Mapping[str, Mapping[str, np.ndarray]]
 """Monitor -> quantity -> values (k,) at the times of its record."""
