@@ -63,6 +63,8 @@ SCENES: Mapping[str, Mapping[str, Any]] = {
     "long bar": {"bar.length": 8.0, "run.duration": 3e-3, "monitor.far.position": 7.5},
     "short bar": {"bar.length": 0.2, "monitor.near.position": 0.05, "monitor.far.position": 0.2},
     "fine bar": {"bar.spacing": 0.0025},
+    "fine bar, m = 3": {"bar.spacing": 0.0025, "method": PD3},
+    "fine bar, m = 8": {"bar.spacing": 0.0025, "method": PD8},
     "rare samples": {"output.history_interval": 2e-5},
     "viscous end": {"boundary.right": VISCOUS},
     "viscous end, ν = 0.5": {"boundary.right": VISCOUS, "run.courant": 0.5},

@@ -15,6 +15,7 @@ COMMANDS = (
     "compare_revisions",
     "lammps_bar",
     "bar_rate",
+    "estimate_bars",
     "continuum_rate",
     "pack_rate",
     "memory",

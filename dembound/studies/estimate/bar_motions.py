@@ -24,14 +24,14 @@ from dembound.studies.estimate.window import Window, needed
 FINER = 8
 """Samples in a step of the waves of the exact motion, which need not arrive at whole steps."""
 
-BATCH = 256
-"""Number of frequencies that are computed together."""
+BATCH, LARGE_BATCH = 256, 2**15
+"""Numbers of frequencies that are computed together: of nodes, and of rods."""
 
 NEAR = 20
 """Nodes between a push and a monitor beyond which waves that do not run have no effect."""
 
 ABOVE = 1.1
-"""Largest frequency that counts then, over that of the shortest wave; those above decay by e in a spacing or less."""
+"""Largest frequency that counts then, over that of the shortest wave; above, motion decays within a few spacings."""
 
 Histories = Mapping[str, Mapping[str, np.ndarray]]
 """Monitor -> quantity -> values (k,) at the times of its record."""
@@ -130,15 +130,20 @@ class Motions:
             transform = force * finer.transform(self.case.wave[load.wave].velocity)
             pushed[load.side] = pushed.get(load.side, 0.0) + transform
         waves = {side: finer.transform(self._wave(side)) for side in ENDS if self.case.side(side).waves}
-        count = needed([*pushed.values(), *waves.values()]) if pushed or waves else 1
-        pushed, waves = ({side: values[:count] for side, values in each.items()} for each in (pushed, waves))
-        s, count = finer.s[:count], len(self.nodes)
+        count = needed([*pushed.values(), *waves.values()])
         place = self.scene.positions[list(self.nodes.values()), 0]
         left, right = (self.scene.rod.end(side) for side in ENDS)
         plane = np.clip(place, 0.5 * left.spacing, right.end - 0.5 * right.spacing)
-        velocity, stress = Rods(self.case, self.scene.rod, np.concatenate([place, plane]), s).motion(pushed, waves)
-        found = np.stack([velocity[:, :count], velocity[:, :count] / s[:, None], stress[:, count:]])
-        return {name: self._history(finer, found[:, :, k], name) for k, name in enumerate(self.nodes)}
+        found = []
+        for start in range(0, count, LARGE_BATCH):
+            chosen = slice(start, min(start + LARGE_BATCH, count))
+            rods = Rods(self.case, self.scene.rod, np.concatenate([place, plane]), finer.s[chosen])
+            here = ({side: values[chosen] for side, values in each.items()} for each in (pushed, waves))
+            velocity, stress = rods.motion(*here)
+            velocity, stress = velocity[:, : len(place)], stress[:, len(place) :]
+            found.append(np.stack([velocity, velocity / rods.s[:, None], stress]))
+        motion = np.concatenate(found, axis=1)
+        return {name: self._history(finer, motion[:, :, k], name) for k, name in enumerate(self.nodes)}
 
     def _wave(self, side: str) -> Signal:
         """The velocity of the wave of an end along the bar."""

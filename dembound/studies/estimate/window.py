@@ -16,11 +16,11 @@ from dembound.boundaries.signals import Signal
 LONGER = 2.0
 """Length of the window over that of the history."""
 
-DAMPING = math.log(1e4)
-"""ηW; what rounding, and delays by parts of a step, leave at the end of the window grows by e^{ηW/2} = 100."""
+DAMPING = math.log(1e6)
+"""ηW; what rounding, and delays by parts of a step, leave at the end of the window grows by e^{ηW/2} = 1000."""
 
-LEFT_OUT = 1e-22
-"""Part of the energy of the signals that the highest frequencies may have that are left out: 1e-11 of the motion."""
+LEFT_OUT = 1e-16
+"""Part of the energy of the signals that the highest frequencies may have that are left out: 1e-8 of the motion."""
 
 
 @dataclass(frozen=True)

@@ -44,6 +44,36 @@ def test_estimated_errors_are_the_true_ones(name: str) -> None:
             assert row.estimate < 1.1e-3, row
 
 
+def test_a_bar_and_its_mirror_image_have_the_same_errors() -> None:
+    case = scene("matched layer, m = 3")
+    mirrored = {
+        "load.hit.side": "right",
+        "boundary": {"left": case.boundary["right"].given()},
+        "monitor.near.position": 0.8,
+        "monitor.far.position": 0.2,
+    }
+    own, image = (Estimate(*estimated(each)) for each in (case, with_changes(case, mirrored)))
+
+    for monitor in own.recorded:
+        for quantity in own.quantities(monitor):
+            assert image.shares(monitor, quantity) == pytest.approx(own.shares(monitor, quantity), rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["finite differences, ν = 0.9", "matched layer, m = 3"])
+def test_a_load_that_stays(name: str) -> None:
+    # The body goes on beyond the record, ever faster without an absorbing end, and must not come in again. The exact
+    # motion, from samples an eighth of a step apart, misses each of up to four jumps in 335 steps by half of it for an
+    # eighth of a step: √(4/8/4/335) = 2 %, beside errors of 4.5 % another 10 % of these.
+    case = with_changes(scene(name), {"wave.pulse": {"type": "constant", "amplitude": 1.0}})
+    recorded, causes = estimated(case)
+
+    assert not causes.missing
+    for monitor, own in recorded.items():
+        true, values = exact(case, own)["velocity"], own.values["velocity"][:, 0]
+        error = np.linalg.norm(values - true) / np.linalg.norm(values)
+        assert Estimate(recorded, causes).total(monitor, "velocity") == pytest.approx(error, rel=0.1)
+
+
 def test_references_are_d_alembert_s_solution() -> None:
     case = scene("m = 3, soft ends")
     bar, time = case.bar, np.linspace(0.0, 2e-3, 500)
@@ -57,7 +87,7 @@ def test_references_are_d_alembert_s_solution() -> None:
 
 
 def test_finite_differences_at_courant_number_one_have_no_error() -> None:
-    # grid and time step cancel at every frequency; what remains is rounding, which grows by 100
+    # grid and time step cancel at every frequency; what remains is rounding, which grows by 1000
     recorded, causes = estimated(scene("finite differences, ν = 1"))
     found = Estimate(recorded, causes)
 
@@ -69,8 +99,7 @@ def test_finite_differences_at_courant_number_one_have_no_error() -> None:
 
 @pytest.mark.parametrize("name", EXTENDED)
 def test_the_error_of_ends_is_the_difference_from_a_longer_bar(name: str) -> None:
-    # both are linear bars in the same steps: precursors in the longer one are 1e-9, the window's own echo 1e-4 of the
-    # difference between what is beyond the end of the record and rest, which the window of twice the length has passed
+    # both are linear bars in the same steps: precursors in the longer one are 1e-9, what comes after the window 1e-6
     case = scene(name)
     recorded, causes = estimated(case)
     longer, step = recorded_of(extended(case).case)
@@ -80,7 +109,7 @@ def test_the_error_of_ends_is_the_difference_from_a_longer_bar(name: str) -> Non
         for quantity, values in own.values.items():
             true = values[:, 0] - longer[monitor].values[quantity][:, 0]
             rest = share(causes, SIDES, monitor, quantity) - true
-            assert np.linalg.norm(rest) < 1e-3 * np.linalg.norm(true) + 1e-6 * np.linalg.norm(values)
+            assert np.linalg.norm(rest) < 1e-5 * np.linalg.norm(values)
 
 
 @pytest.mark.parametrize("name", ["m = 3, corrected ends", "m = 8, soft ends", "viscous end, β = 0.7"])
