@@ -164,7 +164,8 @@ def _equal_side(table: Boundary, side: str, own: DiskScene, finer: DiskScene, ti
         return table
     shares = reflected(finer, side, time_step)
     update: dict[str, Any] = {
-        f"beta_{motion}": homogenised_beta(own, side, motion) * factor_for(share) for motion, share in shares.items()
+        f"beta_{motion}": homogenised_beta(own, side, motion) * factor_for(share.signed)
+        for motion, share in shares.items()
     }
     if "half_mass" in type(table).model_fields and not table.needs_column:
         update["half_mass"] = True

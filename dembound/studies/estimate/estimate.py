@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from dembound.studies.estimate.causes import QUANTITIES, SIDES, Causes, Recorded
+from dembound.studies.estimate.causes import GRID, QUANTITIES, SIDES, STEP, Cause, Causes, Recorded
 
 LEAST = 1e-3
 """Smallest error that is given as a number."""
@@ -35,9 +35,18 @@ class Estimate:
         return {name: share for name, share in found.items() if math.isfinite(share)}
 
     def total(self, monitor: str, quantity: str) -> float:
-        """The root of the sum of their squares; nan if none is known."""
-        shares = list(self.shares(monitor, quantity).values())
-        return math.sqrt(sum(share**2 for share in shares)) if shares else math.nan
+        """The root of the sum of their squares, grid and time step as one; nan if none is known.
+
+        Larger steps make waves faster and a coarser grid makes most of them slower, so that their errors cancel in part.
+        """
+        own, shares = self.recorded[monitor], self.shares(monitor, quantity)
+        delays = [cause.errors[monitor][quantity] for cause in self.causes.found if cause.name in (GRID, STEP)
+                  and cause.name in shares]  # fmt: skip
+        if all(isinstance(delay, np.ndarray) for delay in delays):
+            shares = {name: share for name, share in shares.items() if name not in (GRID, STEP)}
+            both = Cause("delays", "", {monitor: {quantity: sum(delays, np.zeros_like(own.values[quantity]))}})
+            shares |= {both.name: both.share(monitor, quantity, own)} if delays else {}
+        return math.sqrt(sum(share**2 for share in shares.values())) if shares else math.nan
 
     def quantities(self, monitor: str) -> list[str]:
         """Quantities of a monitor that has any."""
