@@ -222,7 +222,9 @@ def tunnels() -> Iterator[Scene]:
     for pattern in "BC":
         packing = grains(60.0, 60.0, 1.0, 20.0, pattern=pattern)
         betas = {"beta_p": 0.84, "beta_s": 0.87}
-        yield Scene(f"tunnel {pattern} free field", tunnel(packing, free_field | betas, {"beta_p": 0.76, "beta_s": 0.8}))
+        yield Scene(
+            f"tunnel {pattern} free field", tunnel(packing, free_field | betas, {"beta_p": 0.76, "beta_s": 0.8})
+        )
         yield Scene(f"tunnel {pattern} viscous", tunnel(packing, viscous | betas, {"beta_p": 0.76, "beta_s": 0.8}))
 
 

@@ -9,7 +9,6 @@ from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
 from dembound.studies.estimate.causes import Causes, Recorded
 
-
 BUDGET, SHORT = 0.1, 5e7
 """Share of the work of a run that its estimate may take by default, and work that it may take in any case.
 
