@@ -122,7 +122,11 @@ def lamb(side: Tables, diameter: float = 0.5, size: float = 20.0, duration: floa
         "load": [
             {"name": "hammer", "force": [0.0, -225e3], "region": [0.0, size - d, d, size], "wave": "pulse"},
         ],
-        "monitor": monitors(near=(10.5 * d, size - 0.5 * d), far=(30.5 * d, size - 0.5 * d), deep=(5.5 * d, size / 2.0 + 0.5 * d)),
+        "monitor": monitors(
+            near=(10.5 * d, size - 0.5 * d),
+            far=(30.5 * d, size - 0.5 * d),
+            deep=(5.5 * d, 0.5 * (size + d)),
+        ),
         "run": {"duration": duration},
     }  # fmt: skip
 

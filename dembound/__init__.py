@@ -1,6 +1,6 @@
 """dembound: waves in bonded particles, with artificial boundaries that absorb.
 
-From Python: `load`, `case`, `change`, `run`, `resume`, `calibrate`, `calibrate_all` and `Results`; see
+From Python: `load`, `case`, `change`, `run`, `estimate`, `resume`, `calibrate`, `calibrate_all` and `Results`; see
 `dembound.api` and docs/python.md.
 """
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
         Case,
         CaseError,
         DemboundError,
+        Estimate,
         PackingError,
         Progress,
         RecordError,
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
         calibrate_all,
         case,
         change,
+        estimate,
         load,
         loads,
         resume,
@@ -37,6 +39,7 @@ __all__ = [
     "Case",
     "CaseError",
     "DemboundError",
+    "Estimate",
     "PackingError",
     "Progress",
     "RecordError",
@@ -46,6 +49,7 @@ __all__ = [
     "calibrate_all",
     "case",
     "change",
+    "estimate",
     "load",
     "loads",
     "resume",

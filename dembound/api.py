@@ -19,6 +19,7 @@ from dembound.results.results import Arrays, Results
 from dembound.running import Progress, resume_case, run_case
 from dembound.studies import all_sides, calibration
 from dembound.studies.calibration import Calibration
+from dembound.studies.estimate import Estimate, estimate_results
 from dembound.table import Table, as_toml
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "Case",
     "CaseError",
     "DemboundError",
+    "Estimate",
     "PackingError",
     "Progress",
     "RecordError",
@@ -36,6 +38,7 @@ __all__ = [
     "calibrate_all",
     "case",
     "change",
+    "estimate",
     "load",
     "loads",
     "resume",
@@ -101,7 +104,24 @@ def run(
     """
     chosen = case if isinstance(case, Case) else load(case)
     with _threads(threads):
-        return Results(run_case(chosen, Path(results), progress or _Warns()))
+        folder = run_case(chosen, Path(results), progress or _Warns())
+        if chosen.output.estimate:
+            estimate_results(folder)
+        return Results(folder)
+
+
+def estimate(results: Path | str, budget: float | None = None, *, threads: int | None = None) -> Estimate:
+    """Estimate the errors of a complete run, as ``dembound estimate`` does; see docs/estimates.md.
+
+    Parameters
+    ----------
+    results : folder of the results, to which the estimate is added. budget : share of the run's work that may be spent;
+    by default 0.1, and the work of a second in any case. threads : as for `run`.
+
+    Raises CaseError for a run without monitors, or that is not complete.
+    """
+    with _threads(threads):
+        return estimate_results(Path(results), budget)
 
 
 def resume(

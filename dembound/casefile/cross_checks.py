@@ -40,6 +40,12 @@ def never_silent(run: Run, monitors: Sequence[Any]) -> Iterator[str]:
         yield f"run.silent_for: is {run.silent_for:g}, must be at most run.duration, {run.duration:g} (s)"
 
 
+def never_estimated(output: Output, monitors: Sequence[Any]) -> Iterator[str]:
+    """Errors of monitors that are asked for, where there is none."""
+    if output.estimate and not monitors:
+        yield "output.estimate: is true, but the case has no monitor whose error could be estimated; give a [[monitor]]"
+
+
 def steps_too_long(run: Run, output: Output | None) -> Iterator[str]:
     """Time step and intervals that are longer than the run."""
     if run.time_step != "auto" and run.time_step > run.duration:

@@ -81,6 +81,9 @@ def run(
     loaded = [load_case(path, changes, name) for path in cases]
     if name is not None and len(cases) > 1:
         raise CaseError(["--name: names the results of one case, there are several here"])
+    if estimate and (silent := [case.name for case in loaded if not case.monitor]):
+        needs = "has no monitor whose error could be estimated; give a [[monitor]]"
+        raise CaseError([f"--estimate: {name} {needs}" for name in silent])
     names = [case.name for case in loaded]
     if len(set(names)) < len(names):
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
@@ -91,9 +94,7 @@ def run(
     for number, case in enumerate(loaded):
         if number > 0:
             gc.collect()  # the arrays of the run before, whose objects refer to each other
-        _run(case, output, spent)
-        if estimate or case.output.estimate:
-            print_estimate(Folder(output, case.name).final, budget)
+        _run(case, output, spent, estimated=estimate, budget=budget)
         spent = {}  # counted for the first case only
 
 
@@ -109,10 +110,14 @@ def resume(
     """
     from dembound.results.folder import Folder
     from dembound.running import resume_case
+    from dembound.running.recorded import recorded_case
 
     prepare_computing(threads)
     for folder in results:
-        _print_results(_watched(Folder.of(folder), partial(resume_case, folder, until)))
+        done = _watched(Folder.of(folder), partial(resume_case, folder, until))
+        _print_results(done)
+        if recorded_case(done / "run.h5").output.estimate:
+            print_estimate(done)
 
 
 @app.command("rerun", rich_help_panel="Cases")
@@ -152,13 +157,26 @@ def _require_another_folder(record: Path, output: Path, name: str) -> None:
         )
 
 
-def _run(case: Case, output: Path, spent: dict[str, float], begun_for: float | None = None) -> None:
-    """Run a case, with its progress, and print its outcome; spent : seconds before, by section; begun_for : s."""
+def _run(
+    case: Case,
+    output: Path,
+    spent: dict[str, float],
+    begun_for: float | None = None,
+    *,
+    estimated: bool = False,
+    budget: float | None = None,
+) -> None:
+    """Run a case, with its progress, and print its outcome; spent : seconds before, by section; begun_for : s.
+
+    estimated : whether its errors are estimated though the case does not ask for it; budget : for that.
+    """
     from dembound.results.folder import Folder
     from dembound.running import run_case
 
     folder = Folder(output, case.name)
     _print_results(_watched(folder, partial(run_case, case, output, seconds=spent, begun_for=begun_for)))
+    if estimated or case.output.estimate:
+        print_estimate(folder.final, budget)
 
 
 def _watched(folder: Folder, work: Callable[[Progress], Path]) -> Path:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from dembound.cli.app import Threads, app, prepare_computing
 from dembound.cli.console import err, out
 from dembound.errors import DemboundError
+
+if TYPE_CHECKING:
+    from dembound.studies.estimate import Estimate
 
 Budget = Annotated[
     float | None,
@@ -33,20 +36,26 @@ def estimate(
     prepare_computing(threads)
     for path in results:
         folder = Folder.of(path.parent if path.suffix == ".h5" else path).final
-        _print(folder.name, estimate_results(folder, budget).lines())
+        _show(folder, estimate_results(folder, budget))
 
 
-def print_estimate(folder: Path, budget: float | None) -> None:
+def print_estimate(folder: Path, budget: float | None = None) -> None:
     """Print the estimate of a run that is over; if there can be none, why."""
     from dembound.studies.estimate import estimate_results
 
     try:
-        _print(folder.name, estimate_results(folder, budget).lines())
+        _show(folder, estimate_results(folder, budget))
     except DemboundError as error:
         err.print(f"{folder.name}: errors are not estimated: {error}")
 
 
-def _print(name: str, lines: list[str]) -> None:
-    """One line after the other, with the name of the run."""
-    for line in lines:
-        out.print(f"{name}: {line}")
+def _show(folder: Path, found: Estimate) -> None:
+    """Print an estimate, and draw its band into the picture of the histories if the run has drawn one."""
+    from dembound.plot.histories import plot_histories
+    from dembound.plot.style import save
+
+    for line in found.lines():
+        out.print(f"{folder.name}: {line}")
+    picture = folder / "histories.png"
+    if picture.is_file():
+        save(plot_histories([folder / "run.h5"]), picture)

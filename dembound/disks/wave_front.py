@@ -80,7 +80,8 @@ def plane_wave_frequencies(lattice: PackedMaterial, direction: np.ndarray, phase
     direction : (2,) unit vector. phase : wave numbers (k,) in radians per disk. m : number of components that are free;
     the first that are not held of S and P waves are the translations, the last is the rotation of disks.
     """
-    springs, strain, _ = _strains(*np.outer(direction, phase), lattice)
+    qx, qy = np.outer(direction, phase)
+    springs, strain, _ = _strains(qx, qy, lattice)
     squares = np.linalg.eigvalsh(np.einsum("kca,c,kcb->kab", strain.conj(), springs, strain))
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
 
@@ -88,7 +89,7 @@ def plane_wave_frequencies(lattice: PackedMaterial, direction: np.ndarray, phase
 def _strains(
     qx: np.ndarray, qy: np.ndarray, lattice: PackedMaterial
 ) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]:
-    """Springs (6,) of a lattice's contacts, and their elongations (k, 6, m) by free motions of unit mass, with slopes."""
+    """Springs (6,) of a lattice's contacts, their elongations (k, 6, m) by free motions of unit mass, and slopes."""
     free = [component for component in range(3) if component not in lattice.held]
     springs = np.concatenate([getattr(lattice.stiffness, name) for name in ("normal", "shear", "bending")])
     size = np.sqrt([lattice.mass[0], lattice.mass[0], lattice.inertia[0]])

@@ -9,8 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
+from dembound.plot.bands import draw_band
 from dembound.plot.style import line_style, measured_once, new_figure, outside_legend, styled, time_unit
-from dembound.results.histories import FREE_FIELD, UNITS, History, Quantity, read_histories
+from dembound.results.estimates import read_bands
+from dembound.results.histories import FREE_FIELD, SCALES, UNITS, History, Quantity, read_histories
 from dembound.results.reader import COMPONENTS, record_names
 
 Component = Literal["x", "y", "both", "rotation"]
@@ -40,8 +42,9 @@ def plot_histories(
 ) -> Figure:
     """One panel per monitor, with common axes; several runs are drawn in the same panel.
 
-    With free-field sides the panel of a monitor also has its twin in the free-field column, dashed. The title gives the
-    position of its particle, and the position given in the case if it differs.
+    With free-field sides the panel of a monitor also has its twin in the free-field column, dashed. Runs whose errors
+    have been estimated have a band around their line, and where the error of the sides is known a line without it. The
+    title gives the position of the monitor's particle, and the position given in the case if it differs.
 
     Parameters
     ----------
@@ -68,12 +71,16 @@ def plot_histories(
     height = 1.6 + len(shown) * np.clip(9.0 / len(shown), 0.6, 1.6)
     figure = new_figure(9.0 if len(columns) == 1 else 12.0, height)
     panels = figure.subplots(len(shown), len(columns), sharex=True, sharey=True, squeeze=False)
+    bands = [read_bands(path, quantity) for path in runs]
     twins = any(twin_of(name) in run for run in drawn for name in shown)
-    for index, (label, run) in enumerate(zip(record_names(runs), drawn, strict=True)):
+    for index, (label, run, band) in enumerate(zip(record_names(runs), drawn, bands, strict=True)):
         style = line_style(index) | ({"linestyle": BESIDE_TWINS[index % len(BESIDE_TWINS)]} if twins else {})
         for row, monitor in zip(panels, shown, strict=True):
             for panel, column in zip(row, columns, strict=True):
                 _draw(panel, run, monitor, column, unit.seconds, label, style)
+                if monitor in run and monitor in band and column < band[monitor].half_width.shape[1]:
+                    history, units = run[monitor], (unit.seconds, SCALES[quantity])
+                    draw_band(panel, band[monitor], history.time, history.values[:, column], column, units, label)
     for row, monitor in zip(panels, shown, strict=True):
         row[0].set_title(
             monitor_title(monitor, [run[monitor] for run in drawn if monitor in run]), loc="left", fontsize=9, pad=3

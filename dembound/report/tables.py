@@ -9,6 +9,7 @@ from typing import Any
 from dembound.plot.continuum import GROUP
 from dembound.plot.energy import BAR_COLUMNS, COLUMNS, PREFIXES, power_of_unit
 from dembound.report.runs import ReportedRun
+from dembound.results.estimates import KEY, entries
 from dembound.results.reader import laws_in_words, open_record
 from dembound.results.summary import end_in_words
 
@@ -209,8 +210,14 @@ def versions(runs: Sequence[ReportedRun]) -> Table:
 
 
 def error_estimate(runs: Sequence[ReportedRun]) -> Table | None:
-    """The entry `error_estimate` of summaries, whatever it consists of; None where no run has it."""
-    return _or_none(beside("Error estimate", runs, lambda run: dict(_flat(run.summary.get("error_estimate") or {}))))
+    """Estimated errors, RMS over RMS, of the runs that have them; None where none has."""
+    return _or_none(beside("Estimated errors", runs, lambda run: dict(_estimated(run))))
+
+
+def _estimated(run: ReportedRun) -> Iterator[tuple[str, str]]:
+    """Those of one run."""
+    if KEY in run.summary:
+        yield from entries(run.summary[KEY])
 
 
 def _or_none(table: Table) -> Table | None:

@@ -7,7 +7,14 @@ from dembound.boundaries import normal_axis
 from dembound.casefile.bar.bar import Bar
 from dembound.casefile.bar.load import BarLoad
 from dembound.casefile.bar.run import BarRun
-from dembound.casefile.cross_checks import driving_waves, never_silent, repeated_names, steps_too_long, unknown_waves
+from dembound.casefile.cross_checks import (
+    driving_waves,
+    never_estimated,
+    never_silent,
+    repeated_names,
+    steps_too_long,
+    unknown_waves,
+)
 from dembound.casefile.messages import numbered
 from dembound.methods import Method
 
@@ -38,8 +45,10 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
         yield from _beyond_the_bar(bar, tables)
         if tables["method"]:
             yield from _horizon_too_long(bar, tables["method"])
-    if tables["output"] and tables["output"].load_factor:
-        yield "output.load_factor: is for disks, not for bars"
+    if tables["output"]:
+        yield from never_estimated(tables["output"], tables["monitor"])
+        if tables["output"].load_factor:
+            yield "output.load_factor: is for disks, not for bars"
     if tables["run"]:
         yield from steps_too_long(tables["run"], tables["output"])
         yield from never_silent(tables["run"], tables["monitor"])

@@ -5,7 +5,14 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from dembound.boundaries.boundary import Boundary
-from dembound.casefile.cross_checks import driving_waves, never_silent, repeated_names, steps_too_long, unknown_waves
+from dembound.casefile.cross_checks import (
+    driving_waves,
+    never_estimated,
+    never_silent,
+    repeated_names,
+    steps_too_long,
+    unknown_waves,
+)
 from dembound.casefile.disks.floors import lowered_in, lowered_problems
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.ground_problems import ground_problems
@@ -61,6 +68,8 @@ def problems_between(tables: Mapping[str, Any], given: Collection[str]) -> Itera
     if tables["run"]:
         yield from steps_too_long(tables["run"], tables["output"])
         yield from never_silent(tables["run"], tables["monitor"])
+    if tables["output"]:
+        yield from never_estimated(tables["output"], tables["monitor"])
 
 
 def _loaded_but_held(loads: Sequence[Load | None], motion: Motion) -> Iterator[str]:

@@ -18,7 +18,7 @@ QUANTITIES = ("velocity", "displacement", "stress")
 class Recorded:
     """What a run has recorded at one monitor.
 
-    position : (2,) m, of its particle. time : (k,) s. values : quantity -> (k, c) in SI units, of motions along x and y.
+    position : (2,) m, of its particle. time : (k,) s. values : quantity -> (k, c) in SI units, of motions along x, y.
     """
 
     position: np.ndarray
@@ -34,9 +34,8 @@ class Recorded:
 class Cause:
     """One cause of errors.
 
-    name : "sides", "grid" or "time step". words : how its errors were found. errors : monitor -> quantity -> the part of
-    the recorded values (k, c) that is due to it, or, where only its size is known, a number: its RMS over that of the
-    recorded values.
+    words : how its errors were found. errors : monitor -> quantity -> the part of the recorded values (k, c) that is
+    due to it, or, where only its size is known, a number: its RMS over that of the recorded values.
     """
 
     name: str

@@ -24,10 +24,12 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
+from dembound.casefile.disks.static import Static
 from dembound.disks.loads import forces_of
 from dembound.disks.matching import homogenised_beta
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, boundary_medium, build
+from dembound.laws import Moduli
 from dembound.packings.square import Square
 from dembound.studies.estimate.matched_sides import FREQUENCIES, Reflected, factor_for, reflected
 from dembound.studies.reflection.arrivals import frequencies_of
@@ -86,7 +88,7 @@ def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float)
         monitor=tuple(
             monitor.model_copy(update={"position": sides.at(scene.monitored[monitor.name])}) for monitor in case.monitor
         ),
-        static=None if case.static is None else case.static.model_copy(update={"from_": None}),
+        static=_static(case, scene.ground.moduli),
         run=_run(case),
         output=case.output.model_copy(update={"snapshots": 0, "history_interval": 0.0, "load_factor": False}),
         name=f"{case.name}_coarser",
@@ -142,7 +144,9 @@ def _material(case: DiskCase, ground: PackedMaterial) -> Material:
     p, s = math.sqrt(tensor[0, 0] / density), math.sqrt(tensor[3, 3] / density)
     moduli = ground.moduli
     ratio = 0.5 * (p / s) ** 2  # a square lattice whose disks turn freely has G = k_s/2
-    given = case.material.model_dump(exclude_unset=True, exclude={"emod", "pb_emod", "match", "kratio", "pb_kratio"})
+    given = case.material.model_dump(
+        exclude_unset=True, exclude={"emod", "pb_emod", "match", "kratio", "pb_kratio", "locked_in"}
+    )
     given |= {
         "p_wave_speed": p,
         "contact_share": moduli.emod / (moduli.emod + moduli.pb_emod),
@@ -151,6 +155,18 @@ def _material(case: DiskCase, ground: PackedMaterial) -> Material:
         "s_wave_speed": None,
     }
     return Material.model_validate({key: value for key, value in given.items() if value is not None})
+
+
+def _static(case: DiskCase, moduli: Moduli) -> Static | None:
+    """The static stage; instead of a locked-in stress a given one under which the contacts carry that pressure."""
+    if case.static is None:
+        return None
+    update: dict[str, Any] = {"from_": None}
+    if (pressure := getattr(case.material, "locked_in", None)) is not None:
+        both = pressure * (moduli.emod + moduli.pb_emod) / moduli.emod
+        sxx, syy, sxy = case.static.stress or (0.0, 0.0, 0.0)
+        update["stress"] = (sxx - both, syy - both, sxy)
+    return case.static.model_copy(update=update)
 
 
 def _load(load: Load, scene: DiskScene, cell: float, sides: _Sides) -> Load:

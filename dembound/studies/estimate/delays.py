@@ -19,7 +19,7 @@ TAPER = 0.05
 
 
 def error_of_delay(time: np.ndarray, velocity: np.ndarray, delay: Delay) -> tuple[np.ndarray, np.ndarray]:
-    """What a delay adds to a recorded velocity (k, c) m/s and to its displacement (k, c) m, at evenly spaced times (k,).
+    """What a delay adds to a recorded velocity (k, c) m/s and its displacement (k, c) m, at evenly spaced times (k,).
 
     Frequencies at which no wave runs, whose delay is nan, count as an error as large as themselves.
     """

@@ -84,8 +84,8 @@ class _Disks:
     def _sides(self) -> Iterator[Cause]:
         """The errors of sides beyond which there is a continuum, and of those that waves enter through."""
         if (sizes := expected_errors(self.scene)) is not None:
-            errors = {name: dict(zip(MOTIONS, sizes, strict=True)) for name in self.recorded}
-            yield Cause("continuum", "by the formulas of its elements, layers and ties", errors)
+            same = {name: dict(zip(MOTIONS, sizes, strict=True)) for name in self.recorded}
+            yield Cause("continuum", "by the formulas of its elements, layers and ties", same)
         for side, waves in self.case.driving.items():
             table = self.case.side(side)
             if not table.is_artificial or table.is_outside or not table.factors:
@@ -99,8 +99,9 @@ class _Disks:
     ) -> dict[str, np.ndarray | float]:
         """What a driven side keeps back of its waves, and sends back of what returns to it.
 
-        A side that reflects R lets 1 − R of its wave in. What is sent back is the motion again, after the way to the far
-        side, if that is a free surface or another one that sends back everything; else nothing comes back that counts.
+        A side that reflects R lets 1 − R of its wave in. What is sent back is the motion again, after the way to the
+        far side, if that is a free surface or another one that sends back everything; else nothing comes back that
+        counts.
         """
         axis, far = normal_axis(side), self.case.side(OPPOSITE[side])
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}

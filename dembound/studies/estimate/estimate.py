@@ -9,10 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from dembound.results.estimates import in_words, split_in_words
 from dembound.studies.estimate.causes import GRID, QUANTITIES, SIDES, STEP, Cause, Causes, Recorded
-
-LEAST = 1e-3
-"""Smallest error that is given as a number."""
 
 
 @dataclass(frozen=True)
@@ -37,15 +35,15 @@ class Estimate:
     def total(self, monitor: str, quantity: str) -> float:
         """The root of the sum of their squares, grid and time step as one; nan if none is known.
 
-        Larger steps make waves faster and a coarser grid makes most of them slower, so that their errors cancel in part.
+        Larger steps make waves faster, and a coarser grid makes most of them slower: these errors cancel in part.
         """
         own, shares = self.recorded[monitor], self.shares(monitor, quantity)
-        delays = [cause.errors[monitor][quantity] for cause in self.causes.found if cause.name in (GRID, STEP)
-                  and cause.name in shares]  # fmt: skip
-        if all(isinstance(delay, np.ndarray) for delay in delays):
-            shares = {name: share for name, share in shares.items() if name not in (GRID, STEP)}
-            both = Cause("delays", "", {monitor: {quantity: sum(delays, np.zeros_like(own.values[quantity]))}})
-            shares |= {both.name: both.share(monitor, quantity, own)} if delays else {}
+        delays = [
+            cause.errors[monitor][quantity] for cause in self.causes.found if cause.name in {GRID, STEP} & {*shares}
+        ]
+        if len(delays) == 2 and all(isinstance(delay, np.ndarray) for delay in delays):
+            both = Cause(GRID, "", {monitor: {quantity: np.sum(delays, axis=0)}})
+            shares |= {GRID: both.share(monitor, quantity, own), STEP: 0.0}
         return math.sqrt(sum(share**2 for share in shares.values())) if shares else math.nan
 
     def quantities(self, monitor: str) -> list[str]:
@@ -106,25 +104,17 @@ class Estimate:
         without = ", in part" if self.causes.missing else ""
         for name in self.recorded:
             parts = [
-                f"{quantity} {in_words(self.total(name, quantity))} ({_split(self.shares(name, quantity))})"
+                f"{quantity} {in_words(self.total(name, quantity))} ({split_in_words(self.shares(name, quantity))})"
                 for quantity in self.quantities(name)
                 if math.isfinite(self.total(name, quantity))
             ]
             if parts:
                 found.append(f"error at {name}{without}: {'; '.join(parts)}")
-        how = [f"{cause.name} {cause.words}" for cause in self.causes.found]
-        return [*found, *([f"errors are RMS over RMS, estimated: {'; '.join(how)}"] if found else []), *self.causes.notes,
-                *(f"not estimated: {line}" for line in self.causes.missing)]  # fmt: skip
+        return [*found, *self._how(), *self.causes.notes, *(f"not estimated: {line}" for line in self.causes.missing)]
 
-
-def in_words(share: float) -> str:
-    """A share in per cent with two digits, from `LEAST` on."""
-    if share < LEAST:
-        return f"< {100.0 * LEAST:g} %"
-    return f"{100.0 * share:.2g} %" if share < 9.95 else f"{100.0 * share:.0f} %"
-
-
-def _split(shares: Mapping[str, float]) -> str:
-    """Shares by cause, the largest first."""
-    ordered = sorted(shares.items(), key=lambda each: -each[1])
-    return ", ".join(f"{name} {in_words(share)}" for name, share in ordered)
+    def _how(self) -> list[str]:
+        """How the errors were found, causes found alike together."""
+        ways: dict[str, list[str]] = {}
+        for cause in self.causes.found:
+            ways.setdefault(cause.words, []).append(cause.name)
+        return [f"{' and '.join(names)} {words}" for words, names in ways.items()]

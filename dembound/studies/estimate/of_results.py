@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,17 +11,17 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile import Case
+from dembound.casefile.disks import DiskCase
+from dembound.casefile.types import LAWS
 from dembound.errors import CaseError
 from dembound.results.datasets import describe, write
+from dembound.results.estimates import FILE, KEY
 from dembound.results.histories import FREE_FIELD
 from dembound.results.reader import history_of, open_record, replacing
 from dembound.running.recorded import recorded_case
 from dembound.studies.estimate.causes import Causes, Recorded
 from dembound.studies.estimate.estimate import Estimate
 from dembound.studies.estimate.of_run import causes_of
-
-FILE = "estimate.h5"
-"""Histories of the errors, in the folder of the results."""
 
 UNITS = {"velocity": "m/s", "displacement": "m", "stress": "Pa"}
 """Units of the histories."""
@@ -46,14 +46,15 @@ def estimate_results(folder: Path, budget: float | None = None) -> Estimate:
     record = folder / "run.h5"
     case, until = _until(recorded_case(record), summary), _first_break(record)
     recorded = _recorded(record, until)
-    causes = Causes([]) if case.run.duration < until else Causes([], [_broken(until)])
+    broken = [] if case.run.duration < until else [_broken(until)]
     steps_in_time = min(1.0, until / case.run.duration)
     case = replace(case, run=case.run.model_copy(update={"duration": case.run.duration * steps_in_time}))
     work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
-    found = Estimate(recorded, causes_of(case, recorded, summary["time_step"], work, budget) + causes)
+    causes = causes_of(case, recorded, summary["time_step"], work, budget)
+    found = Estimate(recorded, causes + Causes([], broken, list(_law(case, summary))))
     _write(found, folder / FILE)
     with replacing(folder / "summary.json") as part:
-        part.write_text(json.dumps(summary | {"error_estimate": found.summary()}, indent=2) + "\n", encoding="utf-8")
+        part.write_text(json.dumps(summary | {KEY: found.summary()}, indent=2) + "\n", encoding="utf-8")
     return found
 
 
@@ -81,6 +82,19 @@ def _first_break(record: Path) -> float:
 def _broken(time: float) -> str:
     """That nothing is known once bonds have broken."""
     return f"motion after {time:.4g} s, when the first bond broke"
+
+
+def _law(case: Case, summary: Mapping[str, Any]) -> Iterator[str]:
+    """How near the motion came to the limit of the elastic law of disks."""
+    if not isinstance(case, DiskCase) or LAWS[case.material.law].has_history:
+        return
+    limit = summary.get("load_factor")
+    if limit is None:
+        yield "the elastic law is taken as given; output.load_factor = true finds up to which waves it holds"
+    elif limit["factor"] is None:
+        yield "the elastic law holds under waves of any size"
+    else:
+        yield f"the elastic law holds up to {limit['factor']:.3g} times these waves, then {limit['limit']}"
 
 
 def _recorded(record: Path, until: float) -> dict[str, Recorded]:

@@ -25,8 +25,7 @@ RATIOS = (3.0, 4.0, 5.0, 6.0)
 """Diameters of the pair over those of the case that are tried, the smallest that can be afforded is taken."""
 
 SHARE, PER_WAVE = 0.1, 7.0
-"""Disks of the pair in the wave above whose frequency there is a share of the energy: five in an S pulse of half a sine.
-"""
+"""Disks of the pair in the wave above whose frequency is a share of the energy: five in an S pulse of half a sine."""
 
 SMALLER = (4.0, 2.0)
 """Width and height of the larger scene, over those of the case, where one without echoes cannot be afforded."""
@@ -36,9 +35,9 @@ SMALLER = (4.0, 2.0)
 class Pair:
     """Two runs that differ in their sides.
 
-    own, far : their histories; whole : of a third one, as own, with whole cells at its sides, if their mass is known
-    to matter, and its weight, see `Coarser`; ratio : their diameter over that of the case. size : width and height (m) of the larger
-    scene. echo_free : whether nothing returns from its sides. work : particle-steps of both.
+    own, far : their histories; ratio : their diameter over that of the case. size : width and height (m) of the larger
+    scene. echo_free : whether nothing returns from its sides. work : particle-steps of all runs. whole, weight : if it
+    matters, histories of a third run, as own with whole cells at its sides, and its weight, see `Coarser`.
     """
 
     own: Gauges
@@ -107,7 +106,7 @@ def _scenes(case: DiskCase, given: Coarser, most: float) -> tuple[DiskScene, Dis
     steps = case.run.duration / choose_step(smaller)[0]
     allowed = most / steps - smaller.disk_count
     for times in (math.inf, *SMALLER):
-        limited = {side: min(count, _limit(smaller.case, side, times)) for side, count in bricks.items()}
+        limited = {side: int(min(count, _limit(smaller.case, side, times))) for side, count in bricks.items()}
         if _count(smaller.case, limited) <= allowed:
             break
     larger, _ = enlarged(smaller, limited)

@@ -22,6 +22,7 @@ from dembound.results.interrupts import Stopped
 from dembound.results.reader import replacing
 from dembound.running import Progress, Shared, resume_case, run_case
 from dembound.studies.choices import digest
+from dembound.studies.estimate import estimate_results
 from dembound.studies.sweep.values import values_of_calibration, values_of_run
 
 MEMBERS, OUTCOMES, SETTLED = "members", "outcomes", "settled"
@@ -147,6 +148,8 @@ def _run(task: Task) -> dict[str, float]:
             folder = resume_case(partial, progress=progress, shared=shared)
     if folder is None:
         folder = run_case(case, results, progress, shared=shared)
+    if case.output.estimate:
+        estimate_results(folder)
     return values_of_run(folder, json.loads((folder / "summary.json").read_text(encoding="utf-8")))
 
 

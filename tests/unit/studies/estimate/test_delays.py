@@ -14,8 +14,8 @@ def pulse(t):
 
 
 def test_a_constant_delay_is_taken_out_of_the_record():
-    # The record is late by LATE, so the exact motion is pulse(t), and the error of the record the difference. The FFT of
-    # a pulse that is 5 standard deviations off both ends of the record is exact to its values there, 1e-6.
+    # The record is late by LATE, so the exact motion is pulse(t), and the error of the record the difference. The FFT
+    # of a pulse that is 7 standard deviations off both ends of the record is exact to its values there, below 1e-10.
     record = np.column_stack([pulse(TIME - LATE), 2.0 * pulse(TIME - LATE)])
     velocity, displacement = error_of_delay(TIME, record, lambda omega: np.full_like(omega, LATE))
     expected = pulse(TIME - LATE) - pulse(TIME)

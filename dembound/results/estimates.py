@@ -1,0 +1,78 @@
+"""Estimated errors of a run, as they lie beside its record: histories of the errors, and their sizes in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dembound.results.reader import open_record
+
+FILE = "estimate.h5"
+"""Histories of the errors, in the folder of the results."""
+
+KEY = "error_estimate"
+"""Entry of the summary."""
+
+LEAST = 1e-3
+"""Smallest error that is given as a number."""
+
+
+@dataclass(frozen=True)
+class Band:
+    """The estimated error of a monitor's history.
+
+    time (k,) s. half_width (k, c), in SI units: largest expected error at every time. corrected (k, c): the history
+    without the error of the sides, None where this is not known.
+    """
+
+    time: np.ndarray
+    half_width: np.ndarray
+    corrected: np.ndarray | None
+
+
+def read_bands(record: Path, quantity: str) -> dict[str, Band]:
+    """The bands of a quantity by monitor, of the run whose record this is; none without an estimate.
+
+    Raises RecordError for a file that cannot be read.
+    """
+    path = record.with_name(FILE)
+    if not path.is_file():
+        return {}
+    with open_record(path) as file:
+        return {
+            name: Band(
+                group["time"][:],
+                group[quantity]["band"][:],
+                group[quantity]["corrected"][:] if "corrected" in group[quantity] else None,
+            )
+            for name, group in file["histories"].items()
+            if quantity in group
+        }
+
+
+def in_words(share: float) -> str:
+    """A share in per cent with two digits, from `LEAST` on."""
+    if share < LEAST:
+        return f"< {100.0 * LEAST:g} %"
+    return f"{100.0 * share:.2g} %" if share < 0.995 else f"{100.0 * share:.0f} %"
+
+
+def split_in_words(shares: Mapping[str, float]) -> str:
+    """Shares by cause, the largest first."""
+    ordered = sorted(shares.items(), key=lambda each: -each[1])
+    return ", ".join(f"{name} {in_words(share)}" for name, share in ordered)
+
+
+def entries(estimate: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """The entry of a summary as names and texts: errors at each monitor, how they were found, and what is missing."""
+    for monitor, quantities in estimate["monitors"].items():
+        for quantity, shares in quantities.items():
+            causes = {name: share for name, share in shares.items() if name != "total"}
+            yield f"{monitor}, {quantity}", f"{in_words(shares['total'])} ({split_in_words(causes)})"
+    yield from estimate["found"].items()
+    if lines := [*estimate["notes"], *estimate["not_estimated"]]:
+        yield "not estimated", "; ".join(lines)
