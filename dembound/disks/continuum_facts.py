@@ -125,15 +125,22 @@ def _as_small(scene: DiskScene, error: float) -> str:
     return f", above outside.accuracy, as elements smaller than {least:.3g} m shorten the time step"
 
 
-def expected_error(scene: DiskScene) -> float | None:
-    """Error of velocities by elements, layers and ties of a continuum, RMS over RMS; None for waves that jump."""
+def expected_errors(scene: DiskScene) -> tuple[float, float] | None:
+    """Errors of velocities and displacements by elements, layers and ties of a continuum, RMS over RMS.
+
+    None without a continuum, and for waves that jump. Displacements have longer waves than velocities, of which
+    elements and ties return less; those longer than the run are as one.
+    """
     outside, signals = scene.outside, signals_of(scene.case)
     if outside is None or not signals or any(choice.jumps(signal) for signal in signals):
         return None
-    settings = outside.settings
-    elements = choice.element_error(signals, outside.body.medium, settings.order, _largest(outside))
-    parts = elements, _near_error(scene, outside), choice.layer_error(settings.order, settings.layers)
-    return math.hypot(*parts, lattice_errors(scene, signals)[0])
+    settings, medium = outside.settings, outside.body.medium
+    floor = _near_error(scene, outside), choice.layer_error(settings.order, settings.layers)
+    found = []
+    for lowest in (math.inf, 1.0 / scene.case.run.duration):
+        elements = choice.element_error(signals, medium, settings.order, _largest(outside), lowest)
+        found.append(math.hypot(*floor, elements, lattice_errors(scene, signals, lowest)[0]))
+    return found[0], found[1]
 
 
 def _largest(outside: Surroundings) -> float:

@@ -54,12 +54,13 @@ def _copies(scene: DiskScene, signals: Sequence[Signal]) -> str:
     )
 
 
-def lattice_errors(scene: DiskScene, signals: Sequence[Signal]) -> tuple[float, float]:
+def lattice_errors(scene: DiskScene, signals: Sequence[Signal], lowest: float = math.inf) -> tuple[float, float]:
     """RMS over the energy of velocities of what ties return, and of the lag of waves over the scene's longer side L.
 
     Half of a lattice's bond has the impedance ρc/cos(kD/2), so that a continuum beyond it returns (kD)²/16; the ties'
     dashpots, `damping` times ρc_pD, add (kD)²·(damping/8) c/c_p. Waves on the lattice lag by the phase kL(kD)²/24. For
-    the slowest waves, of the speed c; of signals the largest.
+    the slowest waves, of the speed c; of signals the largest. lowest : Hz, from which on they are those of
+    displacements, see `choice.energies`.
     """
     outside = scene.outside
     assert outside is not None
@@ -68,7 +69,7 @@ def lattice_errors(scene: DiskScene, signals: Sequence[Signal]) -> tuple[float, 
     returned = 1.0 / 16.0 + 0.25 * outside.wall.lag * speed / diameter
     found = []
     for signal in signals:
-        frequency, energy = choice.energies(signal)
+        frequency, energy = choice.energies(signal, lowest)
         k = 2.0 * math.pi * frequency / speed
         square = (k * diameter) ** 2
         errors = [returned * square, k * length * square / 24.0]

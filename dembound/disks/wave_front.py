@@ -63,18 +63,38 @@ def largest_group_speed(lattice: PackedMaterial, safety: float) -> float:
     eigenvalues ω². Its group speed along an axis is ∂ω/∂q = Re(e†B†K ∂B/∂q e)/ω. In time, central differences make
     it faster by 1/√(1 − (ωΔt/2)²).
     """
-    free = [component for component in range(3) if component not in lattice.held]
     wave_numbers = np.pi * (np.arange(-WAVE_NUMBERS, WAVE_NUMBERS) + 0.5) / WAVE_NUMBERS
     qx, qy = (grid.ravel() for grid in np.meshgrid(wave_numbers, wave_numbers))
-    springs = np.concatenate([getattr(lattice.stiffness, name) for name in ("normal", "shear", "bending")])
-    size = np.sqrt([lattice.mass[0], lattice.mass[0], lattice.inertia[0]])
-    strain, *slopes = (matrix[:, :, free] / size[free] for matrix in _elongations(qx, qy, lattice))
+    springs, strain, slopes = _strains(qx, qy, lattice)
     squares, modes = np.linalg.eigh(np.einsum("kca,c,kcb->kab", strain.conj(), springs, strain))
     frequency = np.sqrt(np.maximum(squares, 1e-12 * squares.max()))
     pulled = springs[:, None] * (strain @ modes)
     along = [np.einsum("kcm,kcm->km", pulled.conj(), slope @ modes).real / frequency for slope in slopes]
     stepped = np.sqrt(1.0 - (safety * frequency / frequency.max()) ** 2 + 1e-12)
     return float((np.hypot(*along) / stepped).max())
+
+
+def plane_wave_frequencies(lattice: PackedMaterial, direction: np.ndarray, phase: np.ndarray) -> np.ndarray:
+    """Angular frequencies (k, m) rad/s of plane waves on a square lattice, not stepped in time, the lowest first.
+
+    direction : (2,) unit vector. phase : wave numbers (k,) in radians per disk. m : number of components that are free;
+    the first that are not held of S and P waves are the translations, the last is the rotation of disks.
+    """
+    qx, qy = np.outer(direction, phase)
+    springs, strain, _ = _strains(qx, qy, lattice)
+    squares = np.linalg.eigvalsh(np.einsum("kca,c,kcb->kab", strain.conj(), springs, strain))
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+
+
+def _strains(
+    qx: np.ndarray, qy: np.ndarray, lattice: PackedMaterial
+) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]:
+    """Springs (6,) of a lattice's contacts, their elongations (k, 6, m) by free motions of unit mass, and slopes."""
+    free = [component for component in range(3) if component not in lattice.held]
+    springs = np.concatenate([getattr(lattice.stiffness, name) for name in ("normal", "shear", "bending")])
+    size = np.sqrt([lattice.mass[0], lattice.mass[0], lattice.inertia[0]])
+    strain, *slopes = (matrix[:, :, free] / size[free] for matrix in _elongations(qx, qy, lattice))
+    return springs, strain, tuple(slopes)
 
 
 def _elongations(qx: np.ndarray, qy: np.ndarray, lattice: PackedMaterial) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

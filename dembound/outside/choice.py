@@ -92,11 +92,12 @@ class Signal(NamedTuple):
     is_force: bool
 
 
-def energies(signal: Signal) -> tuple[np.ndarray, np.ndarray]:
+def energies(signal: Signal, lowest: float = math.inf) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (m,) Hz and the energies (m,) of velocities there, of any unit.
 
     Of a force they are the body waves' of a plane medium, whose velocities are √ω times its spectrum. Of a wave that
-    stays constant in the end, only its rise counts.
+    stays constant in the end, only its rise counts. lowest : frequency (Hz) from which on they are those of
+    displacements, smaller by its square over that of the frequency.
     """
     wave = signal.wave
     length = (wave.peak_time() if wave.stays else wave.duration()) - wave.start
@@ -106,7 +107,8 @@ def energies(signal: Signal) -> tuple[np.ndarray, np.ndarray]:
     spectrum = np.abs(np.fft.rfft(np.diff(velocity), LONGER * samples)) ** 2
     frequency = np.fft.rfftfreq(LONGER * samples, step)
     change = 2.0 * np.sin(math.pi * frequency[1:] * step)  # of a step from sample to sample
-    return frequency[1:], spectrum[1:] / change**2 * (frequency[1:] if signal.is_force else 1.0)
+    energy = spectrum[1:] / change**2 * (frequency[1:] if signal.is_force else 1.0)
+    return frequency[1:], energy / (1.0 + (frequency[1:] / lowest) ** 2)
 
 
 def jumps(signal: Signal) -> bool:
@@ -198,12 +200,17 @@ def reflection(accuracy: float) -> float:
     return 0.1 * accuracy
 
 
-def element_error(signals: Sequence[Signal], medium: Medium, order: int, side: float) -> float:
-    """Error of velocities with elements of this side (m), of the worst signal: the reverse of `element_size`."""
+def element_error(
+    signals: Sequence[Signal], medium: Medium, order: int, side: float, lowest: float = math.inf
+) -> float:
+    """Error of velocities with elements of this side (m), of the worst signal: the reverse of `element_size`.
+
+    lowest : Hz, from which on it is that of displacements, see `energies`.
+    """
     passed = order * slowest(medium) / (NODES[order] * side)
     errors = [1.0]
     if not any(jumps(signal) for signal in signals):
-        spectra = [energies(signal) for signal in signals]
+        spectra = [energies(signal, lowest) for signal in signals]
         errors = [math.sqrt(float(energy[f > passed].sum() / energy.sum())) for f, energy in spectra]
     return max(errors)
 

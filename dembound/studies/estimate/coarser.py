@@ -17,19 +17,22 @@ from typing import Any
 
 import numpy as np
 
-from dembound.boundaries import normal_axis
+from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.viscoelastic import Springs
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
+from dembound.casefile.disks.static import Static
 from dembound.disks.loads import forces_of
 from dembound.disks.matching import homogenised_beta
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, boundary_medium, build
+from dembound.laws import Moduli
 from dembound.packings.square import Square
-from dembound.studies.estimate.matched_sides import factor_for, reflected
+from dembound.studies.estimate.matched_sides import FREQUENCIES, Reflected, factor_for, reflected
+from dembound.studies.reflection.arrivals import frequencies_of
 
 CELLS = 4
 """Smallest number of particles across a hole."""
@@ -44,7 +47,26 @@ def largest_diameter(case: DiskCase, shortest: float) -> float:
     return min([shortest, *holes, *(length / CELLS for length in case.size)])
 
 
-def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float) -> DiskCase:
+@dataclass(frozen=True)
+class Coarser:
+    """A case with larger particles.
+
+    weight : of what its sides add as whole cells to what they add as half cells. That is the reflection of a mass too
+    much, out of phase, which cells k times larger have k times; 0 where it need not be known.
+    """
+
+    case: DiskCase
+    weight: float
+
+    @property
+    def with_whole_cells(self) -> DiskCase:
+        """The case with whole cells at its sides."""
+        sides = self.case.boundary.items()
+        whole = {side: table.model_copy(update={"half_mass": False}) for side, table in sides if _can_halve(table)}
+        return replace(self.case, boundary={**self.case.boundary, **whole})
+
+
+def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float) -> Coarser:
     """The case with a square lattice of about this diameter (m); scene, time_step (s) : of the case.
 
     Places move with the sides, by less than half a diameter, as the scene then is whole cells wide and high. Nothing
@@ -66,7 +88,7 @@ def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float)
         monitor=tuple(
             monitor.model_copy(update={"position": sides.at(scene.monitored[monitor.name])}) for monitor in case.monitor
         ),
-        static=None if case.static is None else case.static.model_copy(update={"from_": None}),
+        static=_static(case, scene.ground.moduli),
         run=_run(case),
         output=case.output.model_copy(update={"snapshots": 0, "history_interval": 0.0, "load_factor": False}),
         name=f"{case.name}_coarser",
@@ -122,7 +144,9 @@ def _material(case: DiskCase, ground: PackedMaterial) -> Material:
     p, s = math.sqrt(tensor[0, 0] / density), math.sqrt(tensor[3, 3] / density)
     moduli = ground.moduli
     ratio = 0.5 * (p / s) ** 2  # a square lattice whose disks turn freely has G = k_s/2
-    given = case.material.model_dump(exclude_unset=True, exclude={"emod", "pb_emod", "match", "kratio", "pb_kratio"})
+    given = case.material.model_dump(
+        exclude_unset=True, exclude={"emod", "pb_emod", "match", "kratio", "pb_kratio", "locked_in"}
+    )
     given |= {
         "p_wave_speed": p,
         "contact_share": moduli.emod / (moduli.emod + moduli.pb_emod),
@@ -131,6 +155,18 @@ def _material(case: DiskCase, ground: PackedMaterial) -> Material:
         "s_wave_speed": None,
     }
     return Material.model_validate({key: value for key, value in given.items() if value is not None})
+
+
+def _static(case: DiskCase, moduli: Moduli) -> Static | None:
+    """The static stage; instead of a locked-in stress a given one under which the contacts carry that pressure."""
+    if case.static is None:
+        return None
+    update: dict[str, Any] = {"from_": None}
+    if (pressure := getattr(case.material, "locked_in", None)) is not None:
+        both = pressure * (moduli.emod + moduli.pb_emod) / moduli.emod
+        sxx, syy, sxy = case.static.stress or (0.0, 0.0, 0.0)
+        update["stress"] = (sxx - both, syy - both, sxy)
+    return case.static.model_copy(update=update)
 
 
 def _load(load: Load, scene: DiskScene, cell: float, sides: _Sides) -> Load:
@@ -151,22 +187,66 @@ def _load(load: Load, scene: DiskScene, cell: float, sides: _Sides) -> Load:
     return load.model_copy(update=update | {"region": (*low.tolist(), *high.tolist())})
 
 
-def _with_equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> DiskCase:
+def _with_equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> Coarser:
     """The case with dashpots that reflect as much, and springs as stiff, as those of the scene of the finer case."""
     own = build(case)
-    boundary = {side: _equal_side(table, side, own, scene, time_step) for side, table in case.boundary.items()}
-    return replace(case, boundary=boundary)
-
-
-def _equal_side(table: Boundary, side: str, own: DiskScene, finer: DiskScene, time_step: float) -> Boundary:
-    """A side with other factors, its disks half cells."""
-    if not table.factors:
-        return table
-    shares = reflected(finer, side, time_step)
-    update: dict[str, Any] = {
-        f"beta_{motion}": homogenised_beta(own, side, motion) * factor_for(share) for motion, share in shares.items()
+    shares = {
+        side: reflected(scene, side, time_step) for side, table in case.boundary.items() if table.factors
+    }  # fmt: skip
+    weight = _weight_of_mass(shares, scene, own)
+    boundary = {
+        side: _equal_side(table, side, shares[side], weight > 0.0, own, scene) if side in shares else table
+        for side, table in case.boundary.items()
     }
-    if "half_mass" in type(table).model_fields and not table.needs_column:
+    return Coarser(replace(case, boundary=boundary), weight)
+
+
+def _weight_of_mass(shares: Mapping[str, Mapping[Motion, Reflected]], finer: DiskScene, own: DiskScene) -> float:
+    """What sides of the finer scene reflect out of phase, over what the lattice's whole cells reflect, see `Coarser`.
+
+    These reflect tan(qD/4). The mean over sides and motions; 0 where the dashpots reflect more in phase.
+    """
+    known = [
+        (share, speed)
+        for side, both in shares.items()
+        if _can_halve(own.case.boundary[side])
+        for share, speed in ((both[motion], _speed(finer, side, motion)) for motion in both)
+        if math.isfinite(speed)
+    ]
+    if sum(share.out_of_phase**2 for share, _ in known) <= sum(share.dashpots**2 for share, _ in known):
+        return 0.0
+    omega = 2.0 * np.pi * frequencies_of(finer.case, finer.ground, FREQUENCIES)
+    whole = [np.tan(np.minimum(0.25 * omega / speed * own.ground.brick.mean_diameter, 1.0)) for _, speed in known]
+    return float(
+        np.mean([share.out_of_phase / np.sqrt(np.mean(each**2)) for (share, _), each in zip(known, whole, strict=True)])
+    )
+
+
+def _speed(scene: DiskScene, side: str, motion: Motion) -> float:
+    """Speed (m/s) of waves along the normal of a side."""
+    return scene.ground.wave_speeds(normal_axis(side))[0 if motion == "p" else 1]
+
+
+def _can_halve(table: Boundary) -> bool:
+    """Whether a side may have half cells."""
+    return "half_mass" in type(table).model_fields and not table.needs_column
+
+
+def _equal_side(
+    table: Boundary,
+    side: str,
+    shares: Mapping[Motion, Reflected],
+    mass_apart: bool,
+    own: DiskScene,
+    finer: DiskScene,
+) -> Boundary:
+    """A side with other factors, its disks half cells; mass_apart : whether what is out of phase is found apart."""
+    update: dict[str, Any] = {
+        f"beta_{motion}": homogenised_beta(own, side, motion)
+        * factor_for(share.dashpots if mass_apart and _can_halve(table) else share.signed)
+        for motion, share in shares.items()
+    }
+    if _can_halve(table):
         update["half_mass"] = True
     if isinstance(table, Springs):
         update |= _equal_springs(table, side, own, finer)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,15 +11,14 @@ import numpy as np
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.boundaries.sides import OPPOSITE
 from dembound.casefile.disks import DiskCase
-from dembound.disks.continuum_facts import expected_error
+from dembound.disks.continuum_facts import expected_errors
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
-from dembound.disks.wave_front import slowest_speed
 from dembound.errors import DemboundError
-from dembound.exact.dispersion import Lattice
 from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
-from dembound.studies.estimate.delays import Delay, error_of_delay
-from dembound.studies.estimate.matched_sides import reflected
+from dembound.studies.estimate.delays import error_of_delay
+from dembound.studies.estimate.dispersion import AXES, DIAGONAL, Direction, delay_of
+from dembound.studies.estimate.matched_sides import Reflected, reflected
 from dembound.studies.estimate.pair import Pair, run_pair
 
 MOTIONS = ("velocity", "displacement")
@@ -84,8 +83,8 @@ class _Disks:
 
     def _sides(self) -> Iterator[Cause]:
         """The errors of sides beyond which there is a continuum, and of those that waves enter through."""
-        if self.scene.outside is not None and (size := expected_error(self.scene)) is not None:
-            same = {name: dict.fromkeys(MOTIONS, size) for name in self.recorded}
+        if (sizes := expected_errors(self.scene)) is not None:
+            same = {name: dict(zip(MOTIONS, sizes, strict=True)) for name in self.recorded}
             yield Cause("continuum", "by the formulas of its elements, layers and ties", same)
         for side, waves in self.case.driving.items():
             table = self.case.side(side)
@@ -96,25 +95,26 @@ class _Disks:
             yield Cause(f"{side} side", "by the reflection of its dashpots at normal incidence", errors)
 
     def _returned(
-        self, own: Recorded, side: str, waves: Mapping[Motion, str], shares: Mapping[Motion, float]
+        self, own: Recorded, side: str, waves: Mapping[Motion, str], shares: Mapping[Motion, Reflected]
     ) -> dict[str, np.ndarray | float]:
-        """What a driven side sends back of its own waves: the recorded motion again, after the way to the far side.
+        """What a driven side keeps back of its waves, and sends back of what returns to it.
 
-        Behind that is a free surface or another one that sends back everything, else nothing comes back that counts.
+        A side that reflects R lets 1 − R of its wave in. What is sent back is the motion again, after the way to the
+        far side, if that is a free surface or another one that sends back everything; else nothing comes back that
+        counts.
         """
-        axis, opposite = normal_axis(side), self.case.side(OPPOSITE[side])
+        axis, far = normal_axis(side), self.case.side(OPPOSITE[side])
         errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
-        if opposite.is_artificial:
-            return dict(errors)
         for motion in waves:
             column = axis_of_motion(side, motion)
             speed = self.scene.ground.wave_speeds(axis)[0 if motion == "p" else 1]
             if motion not in shares or not math.isfinite(speed):
                 continue
             later = own.time - 2.0 * self.case.size[axis] / speed
-            for quantity, error in errors.items():
-                values = own.values[quantity][:, column]
-                error[:, column] = shares[motion] * np.interp(later, own.time, values, left=0.0)
+            sent = reflected_motion(own, column, shares[motion])
+            for quantity, values in sent.items():
+                back = 0.0 if far.is_artificial else np.interp(later, own.time, values, left=0.0)
+                errors[quantity][:, column] = back - values
         return dict(errors)
 
     def _delays(self) -> Iterator[Cause]:
@@ -132,44 +132,75 @@ class _Disks:
 
     def _delayed(self, own: Recorded, step: float) -> dict[str, np.ndarray]:
         """What dispersion adds with steps of this length (s)."""
-        found = [self._with_delay(own, column, step) for column in (0, 1)]
-        return {quantity: np.stack([each[k] for each in found], axis=1) for k, quantity in enumerate(MOTIONS)}
+        errors = {quantity: np.zeros_like(own.values[quantity]) for quantity in MOTIONS}
+        for way in self._ways(own):
+            if not math.isfinite(way.path * way.speed):
+                continue
+            delay = delay_of(self.scene.ground, way.motion, way.directions, way.path, way.speed, step)
+            parts = error_of_delay(own.time, (own.values["velocity"] @ way.moves)[:, None], delay)
+            for quantity, part in zip(MOTIONS, parts, strict=True):
+                errors[quantity] += part * way.moves
+        return errors
 
-    def _with_delay(self, own: Recorded, column: int, step: float) -> tuple[np.ndarray, np.ndarray]:
-        """The same of one component."""
-        path, speed = self._way(own, column)
-        if not math.isfinite(path * speed):
-            return np.zeros_like(own.time), np.zeros_like(own.time)
-        delay = delay_on(Lattice(1, self.scene.ground.brick.mean_diameter, step, speed), path)
-        velocity, displacement = error_of_delay(own.time, own.values["velocity"][:, [column]], delay)
-        return velocity[:, 0], displacement[:, 0]
-
-    def _way(self, own: Recorded, column: int) -> tuple[float, float]:
-        """Length (m) of the way to a monitor, and speed (m/s) of the waves that move it along x or y."""
+    def _ways(self, own: Recorded) -> list[_Way]:
+        """The ways of P and S waves to a monitor: from a driven side, or from the nearest load or hole."""
         sources, ground = sources_of(self.case, self.scene.ground), self.scene.ground
-        driven = [side for side in self.case.driving]
-        if driven and not any(load.wave for load in self.case.load):
-            axis = normal_axis(driven[0])
-            speed = ground.wave_speeds(axis)[0 if column == axis else 1]
-            return max(float(each.distance(own.position[None])[0]) for each in sources if not each.is_local), speed
-        ways = [float(each.distance(own.position[None])[0]) for each in sources]
-        return min(ways, default=math.nan), slowest_speed(ground)
+        driving = list(self.case.driving)
+        if driving and not any(load.wave for load in self.case.load):
+            axis = normal_axis(driving[0])
+            path = max(float(each.distance(own.position[None])[0]) for each in sources if not each.is_local)
+            if not self.case.side(OPPOSITE[driving[0]]).is_artificial:
+                path = self.case.size[axis]  # the mean of the ways there, and back from the other side
+            return _both_ways(np.eye(2)[axis], path, ground.wave_speeds(axis), [AXES[axis]])
+        places = [np.clip(own.position, each.box[:2], each.box[2:]) for each in sources]
+        rays = [own.position - place for place in places]
+        if not rays:
+            return []
+        ray = min(rays, key=lambda each: float(np.hypot(*each)))
+        path, axis = float(np.hypot(*ray)), int(np.argmax(np.abs(ray)))
+        along = ray / path if path > 0.0 and not {0, 1} & set(ground.held) else np.eye(2)[axis]
+        return _both_ways(along, path, ground.wave_speeds(axis), [AXES[0], DIAGONAL])
 
 
-def delay_on(lattice: Lattice, path: float) -> Delay:
-    """Delay (s) of waves of given angular frequencies (rad/s) on a row of particles over a path (m)."""
+@dataclass(frozen=True)
+class _Way:
+    """The way of a kind of waves.
 
-    def delay(omega: np.ndarray) -> np.ndarray:
-        highest = lattice.shortest
-        wavenumber = np.linspace(0.0, highest, 4001)[1:]
-        frequency = lattice.frequency(wavenumber)
-        known = np.isfinite(frequency)
-        slowness = np.concatenate([[1.0 / lattice.wave_speed], wavenumber[known] / frequency[known]])
-        at = np.concatenate([[0.0], frequency[known]])
-        found = np.interp(omega, at, slowness, right=np.nan)
-        return np.asarray(path * (found - 1.0 / lattice.wave_speed))
+    motion : of the waves. moves : (2,) unit vector along which they move disks. path : m. speed : m/s, of long waves.
+    directions : in which they may run.
+    """
 
-    return delay
+    motion: Motion
+    moves: np.ndarray
+    path: float
+    speed: float
+    directions: Sequence[Direction]
+
+
+def _both_ways(
+    along: np.ndarray, path: float, speeds: tuple[float, float], directions: Sequence[Direction]
+) -> list[_Way]:
+    """The ways of P and S waves, of these speeds (m/s), along a unit vector."""
+    across = np.array([-along[1], along[0]])
+    p, s = speeds
+    return [_Way("p", along, path, p, directions), _Way("s", across, path, s, directions)]
+
+
+def reflected_motion(own: Recorded, column: int, share: Reflected) -> dict[str, np.ndarray]:
+    """Velocity and displacement (k,) that a side reflects of a recorded motion along x or y (column 0 or 1).
+
+    In phase R/(1 − R) of the motion, as 1 − R of it has come in; what is out of phase has the shape of a mass's force,
+    the acceleration, and no lasting displacement.
+    """
+    velocity, displacement = (own.values[quantity][:, column] for quantity in MOTIONS)
+    acceleration = np.gradient(velocity, own.time)
+    size = float(np.linalg.norm(acceleration))
+    lag = -share.out_of_phase * float(np.linalg.norm(velocity)) / size if size > 0.0 else 0.0
+    in_phase = share.dashpots / (1.0 - share.dashpots)
+    return {
+        "velocity": in_phase * velocity + lag * acceleration,
+        "displacement": in_phase * displacement + lag * velocity,
+    }
 
 
 def _size(pair: Pair) -> str:

@@ -8,7 +8,7 @@ and factors that are not calibrated decide.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,11 +24,33 @@ FREQUENCIES = 3
 """Number of frequencies of the case's waves, of equal energy each, over which energies are averaged."""
 
 
-def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, float]:
-    """Reflected over incident velocity of P and S waves along the normal of a side with dashpots, springs left out.
+@dataclass(frozen=True)
+class Reflected:
+    """Reflected over incident velocity of plane waves along the normal of a side.
 
-    Positive where dashpots are too soft. Waves that cannot run are left out; where the packing has no such wave at the
-    frequencies of the case, what its homogenised stiffness makes of it.
+    size : RMS over the frequencies of the case. dashpots : the part in phase, by the stiffness of dashpots alone,
+    positive where they are too soft.
+    """
+
+    size: float
+    dashpots: float
+
+    @property
+    def signed(self) -> float:
+        """The size with the sign of the part in phase."""
+        return math.copysign(self.size, self.dashpots)
+
+    @property
+    def out_of_phase(self) -> float:
+        """The rest, as of a mass too much at the side, in quadrature."""
+        return math.sqrt(max(self.size**2 - self.dashpots**2, 0.0))
+
+
+def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, Reflected]:
+    """What a side with dashpots reflects of P and S waves along its normal, springs left out.
+
+    Waves that cannot run are left out; where the packing has no such wave at the frequencies of the case, what its
+    homogenised stiffness makes of it.
     """
     case = scene.case
     table = case.side(side).dashpots_alone()
@@ -41,11 +63,11 @@ def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, flo
         end, replace(end.case, boundary={**end.case.boundary, side: table.model_copy(update=equal).at_rest()})
     )
     measured = _energies(scene, end, side, time_step)
-    found: dict[Motion, float] = {}
+    found: dict[Motion, Reflected] = {}
     for motion, factor in known.items():
         simple = (matched[motion] - factor) / (matched[motion] + factor)
         size = math.sqrt(measured[motion]) if motion in measured else abs(simple)
-        found[motion] = math.copysign(min(size, 1.0), simple)
+        found[motion] = Reflected(min(size, 1.0), simple)
     return found
 
 

@@ -18,7 +18,7 @@ from dembound.outside import choice
 from dembound.running import Progress
 from dembound.studies.chart.measure import Gauges, Outcome, measure
 from dembound.studies.estimate.causes import Recorded
-from dembound.studies.estimate.coarser import coarser, largest_diameter
+from dembound.studies.estimate.coarser import Coarser, coarser, largest_diameter
 from dembound.studies.extended import bricks_needed, enlarged, movable_sides
 
 RATIOS = (3.0, 4.0, 5.0, 6.0)
@@ -36,7 +36,8 @@ class Pair:
     """Two runs that differ in their sides.
 
     own, far : their histories; ratio : their diameter over that of the case. size : width and height (m) of the larger
-    scene. echo_free : whether nothing returns from its sides. work : particle-steps of both.
+    scene. echo_free : whether nothing returns from its sides. work : particle-steps of all runs. whole, weight : if it
+    matters, histories of a third run, as own with whole cells at its sides, and its weight, see `Coarser`.
     """
 
     own: Gauges
@@ -45,6 +46,8 @@ class Pair:
     size: tuple[float, float]
     echo_free: bool
     work: int
+    whole: Gauges | None = None
+    weight: float = 0.0
 
     def difference(self, recorded: Recorded, monitor: str, quantity: str) -> np.ndarray:
         """What the sides add to a recorded quantity (k, 2): own less far, at the times of the record."""
@@ -52,6 +55,8 @@ class Pair:
 
         own, far = self.own[monitor], self.far[monitor]
         values = own.of(quantity)[:, :2] - far.of(quantity)[:, :2]  # type: ignore[arg-type]
+        if self.whole is not None:
+            values += self.weight * (self.whole[monitor].of(quantity) - own.of(quantity))[:, :2]  # type: ignore[arg-type]
         inside = np.minimum(recorded.time, own.time[-1])
         return np.asarray(CubicSpline(own.time, values)(inside))
 
@@ -63,15 +68,25 @@ def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) ->
     """
     best = None
     for ratio in _ratios(case, scene):
-        smaller, larger, echo_free = _scenes(case, scene, time_step, ratio, most)
-        best = ratio, smaller, larger, echo_free
-        if _work(smaller) + _work(larger) <= most:
+        given = coarser(case, scene, time_step, ratio * scene.ground.brick.mean_diameter)
+        best = ratio, given, *_scenes(case, given, most)
+        if _work(best[2]) + _work(best[3]) <= most:
             break
     assert best is not None
-    ratio, smaller, larger, echo_free = best
-    step = min(choose_step(each)[0] for each in (smaller, larger))
-    own, far = (_measured(each.case, step) for each in (smaller, larger))
-    return Pair(own.gauges, far.gauges, ratio, larger.case.packing.extent, echo_free, own.work + far.work)
+    ratio, given, smaller, larger, echo_free = best
+    scenes = [smaller, larger, *([build(given.with_whole_cells)] if given.weight > 0.0 else [])]
+    step = min(choose_step(each)[0] for each in scenes)
+    own, far, *whole = (_measured(each.case, step) for each in scenes)
+    return Pair(
+        own.gauges,
+        far.gauges,
+        ratio,
+        larger.case.packing.extent,
+        echo_free,
+        own.work + far.work + sum(each.work for each in whole),
+        whole[0].gauges if whole else None,
+        given.weight,
+    )
 
 
 def _ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
@@ -84,11 +99,9 @@ def _ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
     return [ratio for ratio in RATIOS if ratio <= largest] or [min(largest, RATIOS[0])]
 
 
-def _scenes(
-    case: DiskCase, scene: DiskScene, time_step: float, ratio: float, most: float
-) -> tuple[DiskScene, DiskScene, bool]:
+def _scenes(case: DiskCase, given: Coarser, most: float) -> tuple[DiskScene, DiskScene, bool]:
     """Both scenes, and whether the larger one is free of echoes; it is smaller where they would cost too much."""
-    smaller = build(coarser(case, scene, time_step, ratio * scene.ground.brick.mean_diameter))
+    smaller = build(given.case)
     bricks = bricks_needed(smaller, movable_sides(smaller.case))
     steps = case.run.duration / choose_step(smaller)[0]
     allowed = most / steps - smaller.disk_count

@@ -1,0 +1,228 @@
+"""How near estimates of errors are to the true ones, on some seventy small scenes of disks.
+
+    python benchmarks/estimates.py [--scenes lamb "bar A" ...] [--json FILE] [--markdown]
+
+Each scene is run, its error is estimated, and measured with its reference: the same disks with sides so far away that
+nothing returns, which gives the error of the sides alone, disks three times smaller, or an exact solution. Errors are
+RMS over RMS, of the component with the largest value. `corrected` is the error that is left when the estimated history
+is subtracted, `gained` the one before over it, bracketed where the larger companion has echoes of its own, for which no
+corrected history is offered.
+"""
+
+import argparse
+import os
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from estimate_scenes import FINER, Scene, scenes
+from timing import in_one_line, machine, show, write
+
+os.environ["NUMBA_NUM_THREADS"] = "1"  # before numba is imported
+
+LEAST = 1e-3
+"""Largest error over the largest value from which on a monitor counts."""
+
+COLUMNS = {
+    "scene": "{scene}",
+    "monitor": "{monitor}",
+    "quantity": "{quantity}",
+    "truth, %": "{truth}",
+    "estimate, %": "{estimate}",
+    "ratio": "{ratio}",
+    "diameters": "{diameters}",
+    "work": "{cost}",
+    "corrected, %": "{corrected}",
+    "gained": "{gained}",
+}
+
+
+def reference_of(scene: Scene, case: Any, recorded: Mapping[str, Any]) -> dict[str, dict[str, np.ndarray]]:
+    """The reference's velocities and displacements (k, 2) at the monitors and at the times of the run."""
+    from scipy.interpolate import CubicSpline
+
+    if scene.reference == "layer":
+        return {name: in_layer(case, own) for name, own in recorded.items()}
+    gauges = _gauges(scene, case)
+    times = next(iter(recorded.values())).time
+    return {
+        name: {
+            quantity: CubicSpline(gauge.time, gauge.of(quantity)[:, :2])(np.minimum(times, gauge.time[-1]))
+            for quantity in ("velocity", "displacement")
+        }
+        for name, gauge in gauges.items()
+        if name in recorded
+    }
+
+
+def _gauges(scene: Scene, case: Any) -> Mapping[str, Any]:
+    """What the monitors of the reference record."""
+    from dembound.kinds import with_changes
+    from dembound.running import Progress
+    from dembound.studies.chart.measure import measure
+    from dembound.studies.extended import extended
+
+    if scene.reference == "finer":
+        case = with_changes(case, {"packing.radius": case.packing.radius / FINER})
+    larger = with_changes(case, dict(scene.changes)) if scene.reference == "changed" else extended(case).case
+    return measure(larger, Progress())[0].gauges
+
+
+def in_layer(case: Any, own: Any) -> dict[str, np.ndarray]:
+    """Exact motion of a layer with a free top under the wave of its bottom: upwards and back again.
+
+    Half cells end in the middle of their disks.
+    """
+    from dembound.boundaries import axis_of_motion
+    from dembound.disks.scene import build
+
+    ((motion, name),) = case.driving["bottom"].items()
+    wave, height = case.wave[name], case.packing.extent[1]
+    speed = build(case).ground.wave_speeds(1)[0 if motion == "p" else 1]
+    below = case.packing.radius if case.side("bottom").half_mass else 0.0
+    found = {quantity: np.zeros((len(own.time), 2)) for quantity in ("velocity", "displacement")}
+    column = axis_of_motion("bottom", motion)
+    for way in (own.position[1], 2.0 * height - own.position[1]):
+        found["velocity"][:, column] += wave.velocity(own.time - (way - below) / speed)
+        found["displacement"][:, column] += wave.displacement(own.time - (way - below) / speed)
+    return found
+
+
+def measured(scene: Scene) -> tuple[list[dict[str, Any]], list[str]]:
+    """Rows of the table of one scene, and what its estimate says that it has not estimated."""
+    import tomli_w
+
+    from dembound.kinds import loads
+    from dembound.running import Progress
+    from dembound.studies.chart.measure import measure
+    from dembound.studies.estimate import Estimate, Recorded, causes_of
+
+    case = loads(tomli_w.dumps(scene.tables), name="scene")
+    run, stepping, _ = measure(case, Progress())
+    recorded = {
+        name: Recorded(
+            gauge.position,
+            gauge.time,
+            {"velocity": gauge.velocity[:, :2], "displacement": gauge.displacement[:, :2]},
+        )
+        for name, gauge in run.gauges.items()
+    }
+    causes = causes_of(case, recorded, run.time_step, run.work)
+    if scene.reference == "extended":  # which has the same grid, step, and sides through which waves enter
+        alike = ("grid", "time step", *(f"{side} side" for side in case.driving))
+        causes = replace(causes, found=[cause for cause in causes.found if cause.name not in alike])
+    found = Estimate(recorded, causes)
+    wanted = reference_of(scene, case, recorded)
+    rows = [_row(scene, found, name, quantity, wanted[name][quantity]) for name in wanted for quantity in wanted[name]]
+    return [row | {"stepping": stepping} for row in rows], list(causes.missing)
+
+
+def _row(scene: Scene, found: Any, monitor: str, quantity: str, wanted: np.ndarray) -> dict[str, Any]:
+    """One row."""
+    own = found.recorded[monitor]
+    column = own.component(quantity)
+    values, wanted = own.values[quantity][:, column], wanted[:, column]
+    size = float(np.linalg.norm(values))
+    truth = float(np.linalg.norm(values - wanted)) / size
+    estimate = found.total(monitor, quantity)
+    row = {
+        "scene": scene.name,
+        "family": scene.family,
+        "monitor": monitor,
+        "quantity": quantity,
+        "truth": truth,
+        "peak": float(np.abs(values - wanted).max() / np.abs(values).max()),
+        "estimate": estimate,
+        "ratio": estimate / truth if truth > 0.0 else np.nan,
+        "cost": found.causes.cost,
+        "how": {cause.name: cause.words for cause in found.causes.found},
+        "shares": found.shares(monitor, quantity),
+        "echo_free": found.causes.echo_free,
+    }
+    sides = next((cause for cause in found.causes.found if cause.name == "sides"), None)
+    error = sides.errors.get(monitor, {}).get(quantity) if sides else None
+    if isinstance(error, np.ndarray):
+        row["corrected"] = float(np.linalg.norm(values - error[:, column] - wanted)) / size
+        row["gained"] = truth / row["corrected"]
+    return row
+
+
+def counts(row: Mapping[str, Any]) -> bool:
+    """Whether an error is large enough to be judged."""
+    return bool(row["peak"] >= LEAST)
+
+
+def in_words(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row as it is printed."""
+    words = dict(row)
+    words |= {key: f"{100.0 * row[key]:.2g}" if key in row else "–" for key in ("truth", "estimate", "corrected")}
+    words |= {"ratio": f"{row['ratio']:.2f}", "cost": f"{100.0 * row['cost']:.2g} %"}
+    words["diameters"] = next((text.split("×")[0].split()[-1] for text in row["how"].values() if "×" in text), "–")
+    gained = f"{row['gained']:.1f}" if "gained" in row else "–"
+    words["gained"] = gained if row["echo_free"] or gained == "–" else f"({gained})"
+    return words
+
+
+def families(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """A summary of each family of scenes."""
+    found = []
+    for family in [*dict.fromkeys(row["family"] for row in rows), "all"]:
+        own = [row for row in rows if family in (row["family"], "all") and counts(row)]
+        if not own:
+            continue
+        ratios = np.array([row["ratio"] for row in own])
+        known = ratios[np.isfinite(ratios)]
+        gained = [row["gained"] for row in own if "gained" in row and row["echo_free"]]
+        within = np.mean((ratios >= 1.0 / 3.0) & (ratios <= 3.0))
+        found.append(
+            {
+                "family": family,
+                "scenes": len({row["scene"] for row in own}),
+                "rows": len(own),
+                "least": f"{known.min():.2f}" if len(known) else "–",
+                "median": f"{np.median(known):.2f}" if len(known) else "–",
+                "most": f"{known.max():.2f}" if len(known) else "–",
+                "within": f"{100.0 * within:.0f} %",
+                "gained": f"{np.median(gained):.1f} ({min(gained):.1f} to {max(gained):.1f})" if gained else "–",
+            }
+        )
+    return found
+
+
+def main() -> None:
+    """Measure all, print and write."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--scenes", nargs="+", default=[], help="those whose names begin so; by default all")
+    parser.add_argument("--json", type=Path, default=Path("results/benchmarks/estimates.json"))
+    options = parser.parse_args()
+    rows: list[dict[str, Any]] = []
+    missing: list[str] = []
+    for scene in scenes():
+        if options.scenes and not scene.name.startswith(tuple(options.scenes)):
+            continue
+        began = time.process_time()
+        try:
+            own, lacking = measured(scene)
+        except Exception as error:
+            missing.append(f"{scene.name}: {error!r}")
+            print(missing[-1], file=sys.stderr, flush=True)
+            continue
+        rows += own
+        missing += [f"{scene.name}: {line}" for line in lacking]
+        ratios = [f"{row['ratio']:.2f}" for row in own if counts(row)]
+        print(f"{scene.name}: {', '.join(ratios)}; {time.process_time() - began:.0f} s", file=sys.stderr, flush=True)
+    facts = machine()
+    print(in_one_line(facts))
+    show("all monitors whose error is at least 0.1 % of the peak", COLUMNS, map(in_words, filter(counts, rows)))
+    show("families", {key: f"{{{key}}}" for key in (families(rows) or [{}])[0]}, families(rows))
+    for line in missing:
+        print(f"- {line}")
+    write(options.json, {"machine": facts, "rows": rows, "missing": missing})
+
+
+if __name__ == "__main__":
+    main()
