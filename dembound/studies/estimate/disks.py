@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from dembound.disks.sources import sources_of
 from dembound.disks.wave_front import slowest_speed
 from dembound.errors import DemboundError
 from dembound.exact.dispersion import Lattice
+from dembound.motion.paths import Source
 from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.delays import Delay, error_of_delay
 from dembound.studies.estimate.matched_sides import reflected
@@ -37,6 +39,16 @@ def causes_of_disks(
     return _Disks(case, build(case), recorded, time_step, work, most).causes()
 
 
+def causes_by_formula(
+    case: DiskCase, scene: DiskScene, recorded: Mapping[str, Recorded], time_step: float
+) -> list[Cause]:
+    """The same but for sides that are compared by runs; the recorded run may be another one than that of the case.
+
+    scene, time_step (s) : of the case.
+    """
+    return _Disks(case, scene, recorded, time_step, 0.0, 0.0).by_formula()
+
+
 @dataclass
 class _Disks:
     """The estimate of one run."""
@@ -50,7 +62,11 @@ class _Disks:
 
     def causes(self) -> Causes:
         """All causes."""
-        return Causes([*self._sides(), *self._delays()]) + self._pair()
+        return Causes(self.by_formula()) + self._pair()
+
+    def by_formula(self) -> list[Cause]:
+        """Those without the sides that are compared by runs."""
+        return [*self._sides(), *self._delays()]
 
     def _pair(self) -> Causes:
         """The errors of sides that absorb, from a pair of runs."""
@@ -144,9 +160,14 @@ class _Disks:
         velocity, displacement = error_of_delay(own.time, own.values["velocity"][:, [column]], delay)
         return velocity[:, 0], displacement[:, 0]
 
+    @cached_property
+    def _sources(self) -> list[Source]:
+        """Where waves start."""
+        return sources_of(self.case, self.scene.ground)
+
     def _way(self, own: Recorded, column: int) -> tuple[float, float]:
         """Length (m) of the way to a monitor, and speed (m/s) of the waves that move it along x or y."""
-        sources, ground = sources_of(self.case, self.scene.ground), self.scene.ground
+        sources, ground = self._sources, self.scene.ground
         driven = [side for side in self.case.driving]
         if driven and not any(load.wave for load in self.case.load):
             axis = normal_axis(driven[0])

@@ -61,20 +61,44 @@ def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) ->
 
     scene, time_step (s) : of the case. Raises CaseError if no side can move, and the errors of runs.
     """
+    pair = scenes_of_pair(case, scene, time_step, most)
+    own, far = (measured(each.case, pair.step) for each in (pair.smaller, pair.larger))
+    return Pair(
+        own.gauges, far.gauges, pair.ratio, pair.larger.case.packing.extent, pair.echo_free, own.work + far.work
+    )
+
+
+@dataclass(frozen=True)
+class PairScenes:
+    """The scenes of a pair before their runs, see `Pair`.
+
+    smaller, larger : with the sides of the case, and far ones. step : s, of both runs.
+    """
+
+    smaller: DiskScene
+    larger: DiskScene
+    ratio: float
+    echo_free: bool
+
+    @property
+    def step(self) -> float:
+        """The smaller one of their time steps, s."""
+        return min(choose_step(each)[0] for each in (self.smaller, self.larger))
+
+
+def scenes_of_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> PairScenes:
+    """The scenes of `run_pair`."""
     best = None
-    for ratio in _ratios(case, scene):
+    for ratio in ratios(case, scene):
         smaller, larger, echo_free = _scenes(case, scene, time_step, ratio, most)
-        best = ratio, smaller, larger, echo_free
+        best = PairScenes(smaller, larger, ratio, echo_free)
         if _work(smaller) + _work(larger) <= most:
             break
     assert best is not None
-    ratio, smaller, larger, echo_free = best
-    step = min(choose_step(each)[0] for each in (smaller, larger))
-    own, far = (_measured(each.case, step) for each in (smaller, larger))
-    return Pair(own.gauges, far.gauges, ratio, larger.case.packing.extent, echo_free, own.work + far.work)
+    return best
 
 
-def _ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
+def ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
     """Ratios of diameters, the smallest first, with which the pair still resolves waves and holes."""
     finest = scene.ground.brick.mean_diameter
     frequencies = [choice.cutoff(signal, SHARE) for signal in signals_of(case)]
@@ -118,7 +142,7 @@ def _work(scene: DiskScene) -> float:
     return scene.disk_count * scene.case.run.duration / choose_step(scene)[0]
 
 
-def _measured(case: DiskCase, step: float) -> Outcome:
+def measured(case: DiskCase, step: float) -> Outcome:
     """The outcome of a run at this step, s."""
     run = case.run.model_copy(update={"time_step": step})
     return measure(replace(case, run=run), Progress())[0]
