@@ -28,6 +28,12 @@ FACTORS = (5.0, 4.0, 3.0, 2.5, 2.0, 5 / 3, 1.5, 4 / 3, 1.25, 1.0, 0.8, 2 / 3, 0.
 WIDER = (0.25, 0.5, 1.0, 2.0)
 """How much farther away sides with dashpots may be, over the length of the scene across them."""
 
+NARROW = 10.0
+"""Fewest larger disks across a body between free edges."""
+
+ROTATION = 2
+"""Of the motions that are held."""
+
 EQUAL = 1e-6
 """Relative difference of forces that count as equal."""
 
@@ -76,6 +82,8 @@ def with_diameter(companions: Companions, factor: float) -> Plan | None:
     except DemboundError:
         return None
     assert isinstance(planned.scene, DiskScene)
+    if factor > 1.0 and _is_narrow(planned.scene):
+        return None
     return planned if _same_forces(companions.scene, planned.scene) else None
 
 
@@ -108,6 +116,14 @@ def _larger(case: DiskCase, factor: float) -> dict[str, Any]:
     packing: dict[str, Any] = {key: value for key, value in case.packing.given().items() if key != "bricks"}
     size = [round(length, 10) for length in case.packing.extent]
     return packing | {"size": size, "radius": float(f"{factor * case.packing.radius:.12g}")}
+
+
+def _is_narrow(scene: DiskScene) -> bool:
+    """Whether a body is so narrow that its stiffness depends on its disks: those of free edges turn more easily."""
+    if ROTATION in scene.ground.held:
+        return False
+    across = [length for axis, length in enumerate(scene.case.size) if not scene.case.periodic[axis]]
+    return min(across, default=np.inf) < NARROW * scene.ground.brick.mean_diameter
 
 
 def _same_forces(given: DiskScene, scene: DiskScene) -> bool:

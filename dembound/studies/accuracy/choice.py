@@ -28,8 +28,9 @@ from dembound.studies.accuracy.companions import Companions
 from dembound.studies.accuracy.differences import differences, in_toml, value_at
 from dembound.studies.accuracy.expected import Expected, expected, of_ground, of_sides
 
-SAFETY = 1.25
-"""Expected errors are below the bound by this factor, as true ones are 0.9 to 1.2 times what companions have shown."""
+SAFETY = 1.4
+"""Expected errors are below the bound by this factor: true ones were up to 1.33 times as large
+(benchmarks/error_bound.py)."""
 
 WORK = 5e7
 """Particle-steps of the companions that are first run: less than a second."""

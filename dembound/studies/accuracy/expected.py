@@ -106,13 +106,20 @@ def _constant(delay: float, omega: np.ndarray) -> np.ndarray:
 
 
 def _moved(given: DiskScene, scene: DiskScene, name: str) -> float:
-    """How far (m) the particle of a monitor is elsewhere than in the given scene, seen from the loads."""
-    places = [_seen_from_loads(each, name) for each in (given, scene)]
-    moved = places[1] - places[0]
-    if scene.case.driving and not any(load.wave for load in scene.case.load):
-        axis = normal_axis(next(iter(scene.case.driving)))
-        return float(np.abs(moved[:, axis]).max())
+    """How far (m) the particle of a monitor is elsewhere than in the given scene, seen from where waves start."""
+    if given.case.driving and not any(load.wave for load in given.case.load):
+        return max(abs(_beyond(scene, side, name) - _beyond(given, side, name)) for side in given.case.driving)
+    moved = _seen_from_loads(scene, name) - _seen_from_loads(given, name)
     return float(np.hypot(*moved.T).max())
+
+
+def _beyond(scene: DiskScene, side: str, name: str) -> float:
+    """Distance (m) of the particle of a monitor from those of a driven side, or from its plane beside a continuum."""
+    axis, place = normal_axis(side), scene.monitored[name]
+    plane = scene.case.size[axis] if side in ("right", "top") else 0.0
+    if not scene.case.side(side).is_outside:
+        plane = float(scene.edges[side].positions[:, axis].mean())
+    return abs(float(place[axis]) - plane)
 
 
 def _seen_from_loads(scene: DiskScene, name: str) -> np.ndarray:
