@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from dembound.cli.accuracy import Error, Keep, bound_of, chosen
 from dembound.cli.app import (
     PICTURE,
     Cases,
@@ -42,13 +43,21 @@ if TYPE_CHECKING:
 
 
 @app.command("check", rich_help_panel="Cases")
-def check_cases(cases: Cases, changes: Settings = None, threads: Threads = None) -> None:
-    """Print the facts of a run: particles, bonds, time step, memory, time, resolution. Writes nothing."""
+def check_cases(
+    cases: Cases, changes: Settings = None, threads: Threads = None, error: Error = None, keep: Keep = None
+) -> None:
+    """Print the facts of a run: particles, bonds, time step, memory, time, resolution. Writes nothing.
+
+    With --error it prints the cheapest choice that is as accurate, see docs/error_bound.md, and the facts of its run.
+    """
     from dembound.check import check
     from dembound.cli.progress import print_warning
 
+    bound = bound_of(error, keep)
     prepare_computing(threads)
     for case in [load_case(path, changes) for path in cases]:
+        if bound is not None:
+            case = chosen(case, bound, keep, changes)
         facts, warnings = check(case)
         table = compact_table(title=f"{case.name}: {case.title}" if case.title else case.name, show_header=False)
         for name, value in facts.items():
@@ -68,15 +77,21 @@ def run(
     threads: Threads = None,
     estimate: Annotated[bool, typer.Option("--estimate", help="Estimate the errors of each run afterwards.")] = False,
     budget: Budget = None,
+    error: Error = None,
+    keep: Keep = None,
 ) -> None:
     """Run cases one after another; each writes its folder of results.
 
     All case files are read before the first is run, so a mistake in the last one is found at once.
+
+    With --error each is run with the cheapest choice that is as accurate, see docs/error_bound.md, and its errors are
+    estimated afterwards.
     """
     from dembound.results.folder import Folder
     from dembound.running import preflight
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
+    bound = bound_of(error, keep)
     prepare_computing(threads)
     loaded = [load_case(path, changes, name) for path in cases]
     if name is not None and len(cases) > 1:
@@ -89,12 +104,14 @@ def run(
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])
     for case in loaded:
         Folder(output, case.name).check()
+    if bound is not None:
+        loaded = [chosen(case, bound, keep, changes) for case in loaded]
     for case in loaded[1:]:  # the first is planned below, before anything is written
         preflight(case)
     for number, case in enumerate(loaded):
         if number > 0:
             gc.collect()  # the arrays of the run before, whose objects refer to each other
-        _run(case, output, spent, estimated=estimate, budget=budget)
+        _run(case, output, spent, estimated=estimate or bound is not None, budget=budget)
         spent = {}  # counted for the first case only
 
 

@@ -89,7 +89,7 @@ def _in_words(scene: DiskScene, best: Candidate) -> str:
 
 def cheapest_box(scene: DiskScene) -> Candidate | None:
     """The cheapest box of disks in place of a scene that `may_be_boxed`; None if it would gain little."""
-    best = min(_candidates(scene), key=lambda each: each.cost, default=None)
+    best = min(boxes(scene), key=lambda each: each.cost, default=None)
     return None if best is None or best.cost > WORTH * _cost(scene) else best
 
 
@@ -133,8 +133,8 @@ def _reaches(hole: Box, side: str, left: float, right: float) -> bool:
     return hole[0] <= left if side == "left" else hole[2] >= right
 
 
-def _candidates(scene: DiskScene) -> Iterator[Candidate]:
-    """Boxes with elements of different sizes round them."""
+def boxes(scene: DiskScene) -> Iterator[Candidate]:
+    """Boxes of disks with elements of different sizes round them, in place of a scene that `may_be_boxed`."""
     case, medium, diameter = scene.case, medium_of(scene.ground), scene.ground.brick.mean_diameter
     order, accuracy = case.outside.order, case.outside.accuracy
     side = choice.element_size(signals_of(case), medium, order, accuracy)

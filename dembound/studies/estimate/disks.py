@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from dembound.disks.continuum_facts import expected_errors
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.errors import DemboundError
+from dembound.motion.paths import Source
 from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.delays import error_of_delay
 from dembound.studies.estimate.dispersion import AXES, DIAGONAL, Direction, delay_of
@@ -36,6 +38,16 @@ def causes_of_disks(
     return _Disks(case, build(case), recorded, time_step, work, most).causes()
 
 
+def causes_by_formula(
+    case: DiskCase, scene: DiskScene, recorded: Mapping[str, Recorded], time_step: float
+) -> list[Cause]:
+    """The same but for sides that are compared by runs; the recorded run may be another one than that of the case.
+
+    scene, time_step (s) : of the case.
+    """
+    return _Disks(case, scene, recorded, time_step, 0.0, 0.0).by_formula()
+
+
 @dataclass
 class _Disks:
     """The estimate of one run."""
@@ -49,7 +61,11 @@ class _Disks:
 
     def causes(self) -> Causes:
         """All causes."""
-        return Causes([*self._sides(), *self._delays()]) + self._pair()
+        return Causes(self.by_formula()) + self._pair()
+
+    def by_formula(self) -> list[Cause]:
+        """Those without the sides that are compared by runs."""
+        return [*self._sides(), *self._delays()]
 
     def _pair(self) -> Causes:
         """The errors of sides that absorb, from a pair of runs."""
@@ -142,9 +158,14 @@ class _Disks:
                 errors[quantity] += part * way.moves
         return errors
 
+    @cached_property
+    def _sources(self) -> list[Source]:
+        """Where waves start."""
+        return sources_of(self.case, self.scene.ground)
+
     def _ways(self, own: Recorded) -> list[_Way]:
         """The ways of P and S waves to a monitor: from a driven side, or from the nearest load or hole."""
-        sources, ground = sources_of(self.case, self.scene.ground), self.scene.ground
+        sources, ground = self._sources, self.scene.ground
         driving = list(self.case.driving)
         if driving and not any(load.wave for load in self.case.load):
             axis = normal_axis(driving[0])

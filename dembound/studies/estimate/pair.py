@@ -66,30 +66,60 @@ def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) ->
 
     scene, time_step (s) : of the case. Raises CaseError if no side can move, and the errors of runs.
     """
+    pair = scenes_of_pair(case, scene, time_step, most)
+    own, far, *whole = (measured(each.case, pair.step) for each in pair.scenes)
+    return Pair(
+        own.gauges,
+        far.gauges,
+        pair.ratio,
+        pair.larger.case.packing.extent,
+        pair.echo_free,
+        own.work + far.work + sum(each.work for each in whole),
+        whole[0].gauges if whole else None,
+        pair.weight,
+    )
+
+
+@dataclass(frozen=True)
+class PairScenes:
+    """The scenes of a pair before their runs, see `Pair`.
+
+    smaller, larger : with the sides of the case, and far ones. whole : with whole cells at the sides, if it is run.
+    """
+
+    smaller: DiskScene
+    larger: DiskScene
+    whole: DiskScene | None
+    weight: float
+    ratio: float
+    echo_free: bool
+
+    @property
+    def scenes(self) -> list[DiskScene]:
+        """Those that are run."""
+        return [self.smaller, self.larger, *([] if self.whole is None else [self.whole])]
+
+    @property
+    def step(self) -> float:
+        """The smallest of their time steps, s."""
+        return min(choose_step(each)[0] for each in self.scenes)
+
+
+def scenes_of_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> PairScenes:
+    """The scenes of `run_pair`."""
     best = None
-    for ratio in _ratios(case, scene):
+    for ratio in ratios(case, scene):
         given = coarser(case, scene, time_step, ratio * scene.ground.brick.mean_diameter)
         best = ratio, given, *_scenes(case, given, most)
         if _work(best[2]) + _work(best[3]) <= most:
             break
     assert best is not None
     ratio, given, smaller, larger, echo_free = best
-    scenes = [smaller, larger, *([build(given.with_whole_cells)] if given.weight > 0.0 else [])]
-    step = min(choose_step(each)[0] for each in scenes)
-    own, far, *whole = (_measured(each.case, step) for each in scenes)
-    return Pair(
-        own.gauges,
-        far.gauges,
-        ratio,
-        larger.case.packing.extent,
-        echo_free,
-        own.work + far.work + sum(each.work for each in whole),
-        whole[0].gauges if whole else None,
-        given.weight,
-    )
+    whole = build(given.with_whole_cells) if given.weight > 0.0 else None
+    return PairScenes(smaller, larger, whole, given.weight, ratio, echo_free)
 
 
-def _ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
+def ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
     """Ratios of diameters, the smallest first, with which the pair still resolves waves and holes."""
     finest = scene.ground.brick.mean_diameter
     frequencies = [choice.cutoff(signal, SHARE) for signal in signals_of(case)]
@@ -131,7 +161,7 @@ def _work(scene: DiskScene) -> float:
     return scene.disk_count * scene.case.run.duration / choose_step(scene)[0]
 
 
-def _measured(case: DiskCase, step: float) -> Outcome:
+def measured(case: DiskCase, step: float) -> Outcome:
     """The outcome of a run at this step, s."""
     run = case.run.model_copy(update={"time_step": step})
     return measure(replace(case, run=run), Progress())[0]

@@ -1,0 +1,91 @@
+"""The options --error and --keep of check and run: the cheapest choice that is accurate enough."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from dembound.cli.console import out
+from dembound.errors import CaseError, NotAccurateError
+
+if TYPE_CHECKING:
+    from dembound.casefile import Case
+    from dembound.studies.accuracy import Choice
+
+Error = Annotated[
+    str | None,
+    typer.Option(
+        "--error",
+        metavar="ERROR",
+        help="Largest error of velocity and displacement at all monitors, RMS over RMS, such as 1% or 0.01. "
+        "Sides, their distance, the box of disks, the diameter of a lattice, elements beyond it and [reduce] are "
+        "chosen as cheaply as this allows; waves, material, loads, holes, monitors and duration remain.",
+    ),
+]
+Keep = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--keep",
+        metavar="KEY",
+        help="With --error: a key or table that is not changed, e.g. packing.radius or boundary. May be repeated; keys "
+        "given by --set are not changed either.",
+    ),
+]
+
+
+def bound_of(error: str | None, keep: Sequence[str] | None) -> float | None:
+    """The bound that ``--error`` gives, None without it.
+
+    Raises CaseError for a text that is no share between 0 and 1, and for ``--keep`` without ``--error``.
+    """
+    if error is None:
+        if keep:
+            raise CaseError(["--keep: needs --error, without which nothing is changed"])
+        return None
+    text = error.strip()
+    try:
+        bound = 0.01 * float(text[:-1]) if text.endswith("%") else float(text)
+    except ValueError:
+        bound = 0.0
+    if not 0.0 < bound < 1.0:
+        raise CaseError([f"--error: is {error}, must be above 0 and below 1, such as 1% or 0.01"])
+    return bound
+
+
+def chosen(case: Case, bound: float, keep: Sequence[str] | None, changes: Sequence[str] | None) -> Case:
+    """The case with the cheapest choice that keeps an error bound, which is printed.
+
+    keep : as of the option; changes : those of ``--set``, whose keys are kept, too.
+
+    Raises NotAccurateError if no choice keeps the bound, with the best one; and the errors of `choose`.
+    """
+    from dembound.studies.accuracy import choose
+
+    kept = [*(keep or ()), *(text.partition("=")[0].strip() for text in changes or ())]
+    choice = choose(case, bound, kept)
+    lines = _lines(choice)
+    if not choice.holds:
+        best = f"the best of {choice.tried} choices has {_percent(choice.error)}"
+        raise NotAccurateError(
+            "\n".join([f"--error: no choice keeps {_percent(bound)}; {best}: {lines[0]}", *lines[1:]])
+        )
+    for line in lines:
+        out.print(f"{case.name}: {line}", markup=False)
+    return choice.case
+
+
+def _lines(choice: Choice) -> list[str]:
+    """The choice in words, with its error and cost, and the keys that it changes."""
+    by = ", ".join(f"{name} {_percent(share)}" for name, share in sorted(choice.by.items(), key=lambda each: -each[1]))
+    return [
+        f"{choice.words}; expected error {_percent(choice.error)} ({by}), steps of about {choice.cost:.2g} s "
+        f"instead of {choice.own_cost:.2g} s",
+        *(choice.changes or ["the case as it is"]),
+    ]
+
+
+def _percent(share: float) -> str:
+    """A share in per cent."""
+    return f"{100.0 * share:.2g} %" if share < 0.995 else f"{100.0 * share:.0f} %"

@@ -1,0 +1,135 @@
+"""Runs with larger disks that show what sides do to the motion of the monitors: with far sides, and with others."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from dembound.casefile.disks import DiskCase
+from dembound.disks.scene import DiskScene, build
+from dembound.disks.stability import choose_step
+from dembound.errors import CaseError
+from dembound.studies.chart.measure import Gauges
+from dembound.studies.estimate.causes import Recorded
+from dembound.studies.estimate.coarser import coarser
+from dembound.studies.estimate.pair import PairScenes, measured, ratios, scenes_of_pair
+from dembound.studies.extended import bricks_needed, enlarged, movable_sides
+
+QUANTITIES = ("velocity", "displacement")
+"""Quantities whose errors are bounded."""
+
+LESS = 0.9
+"""Step of all companions over that of the pair, so that it is stable with the springs and half cells of any sides."""
+
+
+@dataclass
+class Companions:
+    """Companions of a case of disks.
+
+    case, scene, time_step (s) : those given. most : particle-steps that the first two may take. work : spent so far.
+    """
+
+    case: DiskCase
+    scene: DiskScene
+    time_step: float
+    most: float
+    work: int = 0
+
+    @cached_property
+    def pair(self) -> PairScenes | None:
+        """The scenes with the case's own sides and with far ones; None where no side that reflects can move."""
+        reflects = [side for side, table in self.case.boundary.items() if table.is_artificial and not table.is_outside]
+        if self.case.ground.size is not None or not set(reflects) - set(self.case.driving):
+            return None
+        return scenes_of_pair(self.case, self.scene, self.time_step, self.most)
+
+    @cached_property
+    def diameter(self) -> float:
+        """Largest diameter of their disks, m."""
+        ratio = ratios(self.case, self.scene)[-1] if self.pair is None else self.pair.ratio
+        return ratio * self.scene.ground.brick.mean_diameter
+
+    @cached_property
+    def step(self) -> float:
+        """Time step of all of them, s."""
+        if self.pair is not None:
+            return LESS * self.pair.step
+        return LESS * choose_step(build(self._own))[0]
+
+    @cached_property
+    def far(self) -> Gauges:
+        """The motion without what sides send back."""
+        if self.pair is not None:
+            return self._run(self.pair.larger.case)
+        return self._run(self._own)
+
+    @cached_property
+    def _own(self) -> DiskCase:
+        """The companion of the given case."""
+        return self._coarser(self.case, self.scene, self.time_step)
+
+    @cached_property
+    def _needed(self) -> dict[str, int]:
+        """Bricks of the companion's disks beyond each side that may move, with which nothing returns."""
+        return needed_by(build(self._own))
+
+    def recorded(self, scene: DiskScene) -> dict[str, Recorded]:
+        """That motion, at the places of the monitors in a scene."""
+        return {
+            name: Recorded(scene.monitored[name], gauge.time, {q: gauge.of(q)[:, :2] for q in QUANTITIES})  # type: ignore[arg-type]
+            for name, gauge in self.far.items()
+        }
+
+    def of_sides(
+        self, case: DiskCase, scene: DiskScene, time_step: float, wider: float
+    ) -> dict[str, dict[str, np.ndarray | float]]:
+        """What sides add to the motion of the monitors, by monitor and quantity, (k, 2) at the times of `recorded`.
+
+        wider : how much farther away than in the case they are, over the scene's length across them.
+        """
+        sides = self._coarser(case, scene, time_step).boundary
+        own = build(replace(self._own, boundary=sides))
+        found = self._run(self.wider(own, self._needed, wider) if wider else own.case)
+        return {
+            name: {q: found[name].of(q)[:, :2] - far.of(q)[:, :2] for q in QUANTITIES}  # type: ignore[arg-type]
+            for name, far in self.far.items()
+        }
+
+    def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
+        """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""
+        bricks = {side: min(count, self._bricks(scene, side, wider)) for side, count in needed.items()}
+        return enlarged(scene, bricks)[0]
+
+    def _bricks(self, scene: DiskScene, side: str, wider: float) -> int:
+        """Bricks by which a side moves."""
+        axis = 0 if side in ("left", "right") else 1
+        return math.ceil(wider * scene.case.packing.copies[axis] - 1e-9)
+
+    def _coarser(self, case: DiskCase, scene: DiskScene, time_step: float) -> DiskCase:
+        """The companion of a case."""
+        return coarser(case, scene, time_step, self.diameter).case
+
+    def _run(self, case: DiskCase) -> Gauges:
+        """The motion of the monitors of a companion."""
+        outcome = measured(case, self.step)
+        self.work += outcome.work
+        return outcome.gauges
+
+
+def needed_by(scene: DiskScene) -> dict[str, int]:
+    """By side that may move, the bricks beyond it with which nothing returns; none where no side may."""
+    try:
+        return bricks_needed(scene, movable_sides(scene.case))
+    except CaseError:
+        return {}
+
+
+def quiet(recorded: Mapping[str, Recorded], quantity: str, share: float) -> set[str]:
+    """Monitors whose largest value is below this share of that of the loudest one."""
+    peaks = {name: float(np.abs(each.values[quantity]).max(initial=0.0)) for name, each in recorded.items()}
+    loudest = max(peaks.values(), default=0.0)
+    return {name for name, peak in peaks.items() if peak < share * loudest}
