@@ -20,7 +20,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.sparse import diags
 from scipy.sparse.linalg import eigsh
-from timing import in_one_line, machine, show, timed, write
+from timing import in_one_line, machine, show, write
 
 from dembound import api
 from dembound.casefile.disks import DiskCase
@@ -30,6 +30,7 @@ from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, build, ground_of
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation
+from dembound.studies.reflection import beyond
 from dembound.studies.reflection.bricks import end_scene
 from dembound.studies.reflection.meter import Kind, Meter, homogenised_wave
 
@@ -41,6 +42,9 @@ PATTERNS: dict[str, dict[str, Any]] = {
     "B": {"radius_ratio": 1.5, "brick": [BRICK, BRICK]},
     "C": {"radius_ratio": 1.5, "brick": [BRICK, BRICK], "edge_radius": 0.26},
 }
+
+OUTSIDE: dict[str, Any] = {"outside": {"element": BRICK, "layers": 2, "reflection": 0.03}}
+"""Elements as long as bricks, which are in no step with the disks, and layers that send back more than usual ones."""
 
 SPREAD = 0.12
 """1/σ over k₀: waves of the packet that are half as fast across the side have exp(−17) of its energy."""
@@ -146,6 +150,7 @@ class Packet:
             material={"density": 2500.0, "p_wave_speed": 1000.0, "fric": 0.5},
             boundary={"bottom": lateral, "top": lateral, "right": dict(self.side)},
             run={"duration": 1.0},
+            **OUTSIDE if self.side["type"] == "outside" else {},
         )
         return as_kind(case, DiskCase, "is no case of disks")
 
@@ -172,13 +177,14 @@ class Packet:
     def motion(self, scene: DiskScene, middle: float, time_step: float) -> tuple[np.ndarray, np.ndarray]:
         """Displacement and velocity half a step (s) before, (3, n), of all disks, with the packet at x = middle (m)."""
         assembly, (u, v) = scene.assembly, np.zeros((2, 3, scene.count))
+        disks = scene.disk_count
         corner = assembly.tile * scene.ground.brick.size
         for offset in np.linspace(-5.0, 5.0, WAVES):
             wave = self.wave(scene.ground, offset, time_step)
             phase = corner @ wave.vector - wave.vector[0] * middle
             moved = np.exp(-0.5 * offset**2 + 1j * phase) * wave.motion[:, assembly.brick_particle] / wave.omega
-            u += moved.real
-            v += (moved * (1.0 - np.exp(1j * wave.omega * time_step)) / time_step).real
+            u[:, :disks] += moved.real
+            v[:, :disks] += (moved * (1.0 - np.exp(1j * wave.omega * time_step)) / time_step).real
         return u, v
 
 
@@ -191,7 +197,7 @@ class Energies(NamedTuple):
 
 
 def energy(simulation: Simulation) -> float:
-    """Kinetic and strain energy (J/m)."""
+    """Kinetic and strain energy (J/m), without the strain of elements that absorb."""
     scene = simulation.scene
     inert = np.stack([scene.mass, scene.mass, scene.inertia])
     kinetic = 0.5 * float(np.sum(inert * simulation.state.velocity**2))
@@ -200,8 +206,8 @@ def energy(simulation: Simulation) -> float:
 
 def share_of_p(packet: Packet, scene: DiskScene, velocity: np.ndarray) -> float:
     """Share of P waves in the energy of a motion (3, n) of waves with the packet's k_y."""
-    x, y = scene.positions.T
-    momentum = scene.mass * velocity[:2] * np.exp(-1j * packet.along * y)
+    x, y = scene.assembly.positions.T
+    momentum = scene.mass[: len(x)] * velocity[:2, : len(x)] * np.exp(-1j * packet.along * y)
     step = 2.0 * math.pi / scene.size[0]
     most = int(SHORTEST * math.hypot(packet.across, packet.along) / step)
     found = {"p": 0.0, "s": 0.0}
@@ -236,20 +242,25 @@ def in_a_run(packet: Packet) -> tuple[Energies, int, int]:
 def without_a_run(packet: Packet) -> Energies:
     """What the meter gives: its mean over the waves of the packet."""
     case = packet.case(2.0 * REACH * packet.width)
-    time_step, _ = choose_step(build(case))
-    meter = Meter("right", time_step, end_scene(case, "right"))
+    scene = build(case)
+    time_step, _ = choose_step(scene)
+    if scene.outside is None:
+        meter = Meter.of("right", time_step, end_scene(case, "right"))
+    else:
+        meter = beyond(scene, "right", time_step)
     points, weights = np.polynomial.hermite.hermgauss(MEANS)
     mean = np.zeros(2)
     for point, weight in zip(points, weights / weights.sum(), strict=True):
-        _, omega, _ = packet.wave(meter.ground, point, time_step)
-        (found,) = meter.measure([omega / (2.0 * math.pi)], [packet.angle_of(meter.ground, omega)], [packet.kind])
+        _, omega, _ = packet.wave(scene.ground, point, time_step)
+        angle = packet.angle_of(meter.ground, omega)
+        (found,) = meter.measure([omega / (2.0 * math.pi)], [angle], [packet.kind])
         mean += weight * np.array([found.same[packet.kind][0, 0], found.converted[packet.kind][0, 0]])
     p, s = mean if packet.kind == "p" else mean[::-1]
     return Energies(float(p), float(s), float(mean.sum()))
 
 
 VISCOUS, SOFT = {"type": "viscous"}, {"type": "viscous", "beta_p": 0.5, "beta_s": 0.5}
-SPRINGS = {"type": "viscoelastic", "distance": 20.0, "alpha_n": 1.0, "alpha_s": 0.5}
+SPRINGS = {"type": "viscoelastic", "distance": 5.0, "alpha_n": 1.0, "alpha_s": 0.5}
 
 PACKETS = (
     *(Packet("A", VISCOUS, "p", angle) for angle in (30.0, 45.0, 60.0, 75.0)),
@@ -264,6 +275,7 @@ PACKETS = (
     Packet("B", {"type": "free"}, "s", 30.0),
     Packet("B", {"type": "fixed"}, "s", 30.0),
     Packet("B", {"type": "roller"}, "p", 60.0),
+    *(Packet("B", {"type": "outside"}, kind, angle) for kind in ("p", "s") for angle in (0.0, 30.0, 60.0)),
     Packet("C", VISCOUS, "p", 60.0),
     Packet("C", SOFT, "s", 30.0),
 )

@@ -135,7 +135,7 @@ def _sentences(found: Measured) -> list[str]:
         beside[f"calibrated ({factors})"] = found.calibrated
     if found.continuum is not None:
         nodes, values = found.continuum
-        beside[f'type "outside" with {nodes:,} nodes, by formula,'] = values
+        beside[f"an outside of {nodes:,} nodes"] = values
     for arrival in found.arrivals:
         share = arrival.sent_back(found.found)
         if not math.isfinite(share):
@@ -144,8 +144,6 @@ def _sentences(found: Measured) -> list[str]:
         lines.append(
             "; ".join([line, *(f"{name} {_percent(arrival.sent_back(each))}" for name, each in beside.items())])
         )
-    if found.by_formula:
-        lines.append("by the formula of the layer that absorbs and the error of its elements, not measured")
     return lines
 
 

@@ -14,8 +14,8 @@ from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.studies.reflection.arrivals import Arrival, arrivals_of, frequencies_of
-from dembound.studies.reflection.beyond import by_continuum
-from dembound.studies.reflection.bricks import end_scene
+from dembound.studies.reflection.bricks import BrickInRow, end_scene
+from dembound.studies.reflection.continuum_end import ContinuumEnd, beside_elements
 from dembound.studies.reflection.meter import Meter, Reflections
 
 __all__ = ["Arrival", "Measured", "Reflections", "measure_side", "measured_sides"]
@@ -33,16 +33,15 @@ FREQUENCIES = 12
 class Measured:
     """Reflections of a side of a case.
 
-    side, type : of the side. found : the reflections; by_formula : whether they are those of the continuum's layer by
-    formula, as the side is one. calibrated : the same with calibrated factors, given by key; None for other sides.
-    continuum : the same, with the number of nodes, if the side were of type "outside"; None where it cannot be.
+    side, type : of the side. found : the reflections. calibrated : the same with calibrated factors, given by key; None
+    for other sides. continuum : the same, with the number of nodes, if the side and all that absorb were of type
+    "outside"; None where they cannot be.
     arrivals : what reaches the side.
     """
 
     side: str
     type: str
     found: Reflections
-    by_formula: bool
     factors: dict[str, float]
     calibrated: Reflections | None
     continuum: tuple[int, Reflections] | None
@@ -80,19 +79,29 @@ def measure_side(
     ground, table = whole.ground, case.side(side)
     chosen = frequencies_of(case, ground, frequencies) if isinstance(frequencies, int) else np.array(frequencies)
     arrivals = arrivals_of(case, side, ground)
+    step, _ = choose_step(whole)
     if table.is_outside:
-        _, found = by_continuum(whole, side, chosen, angles)
-        return Measured(side, table.type, found, True, {}, None, None, arrivals)
+        (found,) = beyond(whole, side, step).measure(chosen, angles, report=report)
+        return Measured(side, table.type, found, {}, None, None, arrivals)
     if table.is_periodic:
         raise CaseError([f"--side: is {side}, which is periodic; must be a side at which the body ends"])
-    step, _ = choose_step(whole)
     scene = end_scene(case, side)
     best = {f"beta_{motion}": homogenised_beta(scene, side, motion) for motion in table.factors}
     factors = {key: float(value) for key, value in best.items() if np.isfinite(value)}
     scenes = [scene, *([_with_factors(scene, side, factors)] if factors else [])]
-    found, *others = Meter(side, step, *scenes).measure(chosen, angles, report=report)
-    continuum = _as_continuum(case, side, chosen, angles)
-    return Measured(side, table.type, found, False, factors, others[0] if others else None, continuum, arrivals)
+    found, *others = Meter.of(side, step, *scenes).measure(chosen, angles, report=report)
+    continuum = None
+    if (other := _as_continuum(case, side)) is not None:
+        (reflections,) = beyond(other, side, step).measure(chosen, angles, report=report)
+        continuum = other.continua[0].count, reflections
+    return Measured(side, table.type, found, factors, others[0] if others else None, continuum, arrivals)
+
+
+def beyond(scene: DiskScene, side: str, time_step: float) -> Meter:
+    """A meter of the continuum of a scene beyond a side, at time steps of a run, s."""
+    assert scene.outside is not None
+    row = BrickInRow(beside_elements(scene.ground, side, scene.outside), side)
+    return Meter(row, time_step, ContinuumEnd(scene.outside, row))
 
 
 def _with_factors(scene: DiskScene, side: str, factors: Mapping[str, float]) -> DiskScene:
@@ -101,16 +110,13 @@ def _with_factors(scene: DiskScene, side: str, factors: Mapping[str, float]) -> 
     return with_boundaries(scene, replace(scene.case, boundary={**scene.case.boundary, side: table}))
 
 
-def _as_continuum(
-    case: DiskCase, side: str, frequencies: np.ndarray, angles: Sequence[float]
-) -> tuple[int, Reflections] | None:
-    """Nodes of a continuum beyond all sides that absorb and what it would send back; None where there can be none."""
+def _as_continuum(case: DiskCase, side: str) -> DiskScene | None:
+    """The case with a continuum beyond this side and all that absorb; None where there can be none."""
     from dembound.kinds import with_changes
 
     absorbing = {side, *(name for name, table in case.boundary.items() if table.is_artificial)}
     changes = {f"boundary.{name}": {"type": "outside"} for name in absorbing}
     try:
-        other = as_kind(with_changes(case, changes), DiskCase, "is no case of disks")
-        return by_continuum(build(other), side, frequencies, angles)
+        return build(as_kind(with_changes(case, changes), DiskCase, "is no case of disks"))
     except CaseError:
         return None

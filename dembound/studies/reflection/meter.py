@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 
@@ -85,21 +85,36 @@ def homogenised_wave(ground: PackedMaterial, kind: Kind, direction: np.ndarray) 
     return HomogenisedWave(kind, direction / speed, polarisations[:, found[0]])
 
 
+class End(Protocol):
+    """The end of a row of bricks."""
+
+    def at(self, oscillation: Oscillation) -> None:
+        """Condense at a frequency."""
+
+    def stiffness(self, phase: complex) -> np.ndarray:
+        """Dynamic stiffness (k, k) of the interface for waves of a phase from period to period along the side."""
+
+
 class Meter:
     """Sides at the end of a row of bricks.
 
     Parameters
     ----------
-    side : one with supports, or a free one. time_step : of the run, s. scenes : of the ends, one or more of the same
-    packing, see `bricks.end_scene`.
-
-    Raises CaseError for a scene in which disks of the end are missing.
+    row : the bricks. time_step : of the run, s. ends : of the row, one or more.
     """
 
-    def __init__(self, side: str, time_step: float, *scenes: DiskScene) -> None:
-        self.side, self._step, self.ground = side, time_step, scenes[0].ground
-        self._row = BrickInRow(self.ground, side)
-        self._ends = [end_of(scene, side, self._row) for scene in scenes]
+    def __init__(self, row: BrickInRow, time_step: float, *ends: End) -> None:
+        self.side, self.ground, self._step = row.side, row.ground, time_step
+        self._row, self._ends = row, ends
+
+    @classmethod
+    def of(cls, side: str, time_step: float, *scenes: DiskScene) -> Meter:
+        """That of a side with supports, or a free one; scenes : of the same packing, see `bricks.end_scene`.
+
+        Raises CaseError for a scene in which disks of the end are missing.
+        """
+        row = BrickInRow(scenes[0].ground, side)
+        return cls(row, time_step, *(end_of(scene, row) for scene in scenes))
 
     def measure(
         self,

@@ -22,6 +22,12 @@ RANK = 1e-11
 PROPAGATES = 1e-6
 """Difference of |λ| from 1 below which a wave propagates; of others a side reflects nothing that gets far."""
 
+APART = 1.5 * np.exp(1.0j)
+"""A λ that no wave has: one that dies out by just as much within a brick, with just this phase, would be chance."""
+
+SMALLEST = 1e-12
+"""1/|λ| below which λ is infinite: motion of the first interface alone."""
+
 
 class Modes(NamedTuple):
     """Waves of a row, m of them.
@@ -50,8 +56,6 @@ class Modes(NamedTuple):
 
 def modes_of(stiffness: np.ndarray) -> Modes:
     """The waves of bricks with the dynamic stiffness (2k, 2k) of both interfaces."""
-    from scipy.linalg import eig
-
     k = len(stiffness) // 2
     u, sizes, vh = np.linalg.svd(stiffness[:k, k:])
     rank = int(np.count_nonzero(sizes > RANK * sizes[0]))
@@ -61,9 +65,9 @@ def modes_of(stiffness: np.ndarray) -> Modes:
     one, none = np.eye(rank), np.zeros((rank, rank))
     left = np.block([[one, v.conj().T @ by_v], [none, u.conj().T @ by_v]])
     right = np.block([[v.conj().T @ by_u, none], [u.conj().T @ by_u, one]])
-    factor, shapes = eig(left, -right)
-    finite = np.isfinite(factor) & (np.abs(factor) > 0.0)
-    factor, (x, y) = factor[finite], np.split(shapes[:, finite], 2)
+    inverse, shapes = np.linalg.eig(np.linalg.solve(left + APART * right, right))  # 1/(APART − λ)
+    finite = np.abs(inverse) > SMALLEST
+    factor, (x, y) = APART - 1.0 / inverse[finite], np.split(shapes[:, finite], 2)
     motion = -(by_u @ (x * factor) + by_v @ y)
     power = np.where(np.abs(np.abs(factor) - 1.0) < PROPAGATES, np.imag(np.sum(x.conj() * y, axis=0)), 0.0)
     return Modes(factor, x, y, motion, power, v)
