@@ -14,6 +14,7 @@ from rich.table import Table
 from dembound.cli.app import PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing, writable
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import INTERVAL, compact_table, err, out
+from dembound.machine import one_thread_for_matrices
 
 if TYPE_CHECKING:
     import numpy as np
@@ -42,7 +43,7 @@ def boundary(
     ] = None,
     angles: Annotated[
         list[float] | None,
-        typer.Option("--angle", help="Degrees from the side's normal; by default 0, 5 … 85. May be repeated."),
+        typer.Option("--angle", help="Degrees from the side's normal; by default 13 up to 85. May be repeated."),
     ] = None,
     frequencies: Annotated[
         list[float] | None,
@@ -57,6 +58,7 @@ def boundary(
 
     Nothing is run. With several sides, pictures and tables have their names.
     """
+    one_thread_for_matrices()  # before numpy is imported
     from dembound.plot.reflection import plot_reflection
     from dembound.plot.style import save
     from dembound.plot.table import write_lines
@@ -155,7 +157,7 @@ def _curves(found: Measured) -> list[Curves]:
     if found.calibrated is not None:
         beside["in all, calibrated"] = found.calibrated
     if found.continuum is not None:
-        beside['in all, type "outside"'] = found.continuum[1]
+        beside["in all, an outside"] = found.continuum[1]
     return [
         Curves(kind.upper(), found.found.same[kind], found.found.converted[kind], _totals(beside, kind))
         for kind in found.found.kinds

@@ -14,15 +14,15 @@ from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.studies.reflection.arrivals import Arrival, arrivals_of, frequencies_of
-from dembound.studies.reflection.bricks import BrickInRow, end_scene
+from dembound.studies.reflection.bricks import BrickInRow, end_of, end_scene
 from dembound.studies.reflection.continuum_end import ContinuumEnd, beside_elements
-from dembound.studies.reflection.meter import Meter, Reflections
+from dembound.studies.reflection.meter import End, Meter, Reflections
 
 __all__ = ["Arrival", "Measured", "Reflections", "measure_side", "measured_sides"]
 
 Report = Callable[[float], None]
 
-ANGLES = tuple(float(angle) for angle in range(0, 90, 5))
+ANGLES = (0.0, 10.0, 15.0, 20.0, 30.0, 40.0, 45.0, 50.0, 60.0, 70.0, 75.0, 80.0, 85.0)
 """Angles (degrees) at which reflections are computed by default."""
 
 FREQUENCIES = 12
@@ -85,16 +85,21 @@ def measure_side(
         return Measured(side, table.type, found, {}, None, None, arrivals)
     if table.is_periodic:
         raise CaseError([f"--side: is {side}, which is periodic; must be a side at which the body ends"])
-    scene = end_scene(case, side)
+    scene, row = end_scene(case, side), BrickInRow(ground, side)
     best = {f"beta_{motion}": homogenised_beta(scene, side, motion) for motion in table.factors}
     factors = {key: float(value) for key, value in best.items() if np.isfinite(value)}
-    scenes = [scene, *([_with_factors(scene, side, factors)] if factors else [])]
-    found, *others = Meter.of(side, step, *scenes).measure(chosen, angles, report=report)
-    continuum = None
-    if (other := _as_continuum(case, side)) is not None:
-        (reflections,) = beyond(other, side, step).measure(chosen, angles, report=report)
-        continuum = other.continua[0].count, reflections
-    return Measured(side, table.type, found, factors, others[0] if others else None, continuum, arrivals)
+    ends: list[End] = [
+        end_of(each, row) for each in (scene, *([_with_factors(scene, side, factors)] if factors else []))
+    ]
+    other = _as_continuum(case, side)
+    at_once = other is not None and beside_elements(ground, side, other.continua[0]) is ground
+    if other is not None and at_once:
+        ends.append(ContinuumEnd(other.continua[0], row))
+    found, *others = Meter(row, step, *ends).measure(chosen, angles, report=report)
+    if other is not None and not at_once:
+        others += beyond(other, side, step).measure(chosen, angles, report=report)
+    continuum = None if other is None else (other.continua[0].count, others[-1])
+    return Measured(side, table.type, found, factors, others[0] if factors else None, continuum, arrivals)
 
 
 def beyond(scene: DiskScene, side: str, time_step: float) -> Meter:

@@ -107,13 +107,19 @@ class ContinuumEnd:
         body, moving, inner = self._body.stiffness(phase), self._elements.moving, self._count
         of_disks, of_nodes = self._elongations(phase, len(body))
         of_nodes = of_nodes[:, moving]
-        stiffness = self._wall.bonds.stiffness.ravel() * (1.0 + self._wall.lag * self._oscillation.lagging)
-        springs = diags(stiffness)
+        springs = diags(self._wall.bonds.stiffness.ravel() * (1.0 + self._wall.lag * self._oscillation.lagging))
         grid = self._elements.stiffness(self._oscillation, phase)[moving][:, moving]
         grid = (grid + of_nodes.conj().T @ springs @ of_nodes).tocsc()
-        pulled = (of_nodes.conj().T @ springs @ of_disks).toarray()
-        body += (of_disks.T @ springs @ of_disks).toarray()
-        body -= of_disks.T @ (springs @ (of_nodes @ splu(grid).solve(pulled)))
+        pulled = np.flatnonzero(of_nodes.getnnz(axis=0))  # the nodes that ties act on
+        unit = np.zeros((grid.shape[0], len(pulled)), dtype=complex)
+        unit[pulled, np.arange(len(pulled))] = 1.0
+        yielding = splu(grid).solve(unit)[pulled]
+        of_nodes = of_nodes[:, pulled]
+        there = np.unique(self._tied[self._tied >= 0])
+        of_disks = of_disks[:, there]
+        by_disks = (of_nodes.conj().T @ springs @ of_disks).toarray()
+        on_disks = (of_disks.T @ springs @ of_nodes).toarray()
+        body[np.ix_(there, there)] += (of_disks.T @ springs @ of_disks).toarray() - on_disks @ yielding @ by_disks
         if len(body) == inner:
             return body
         return body[:inner, :inner] - body[:inner, inner:] @ np.linalg.solve(body[inner:, inner:], body[inner:, :inner])

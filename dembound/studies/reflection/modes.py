@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 RANK = 1e-11
-"""Singular values of S₁₂ over the largest one that count as rank."""
+"""Diagonal entries of the triangle of S₁₂, over the largest one, that count as rank."""
 
 PROPAGATES = 1e-6
 """Difference of |λ| from 1 below which a wave propagates; of others a side reflects nothing that gets far."""
@@ -56,11 +56,16 @@ class Modes(NamedTuple):
 
 def modes_of(stiffness: np.ndarray) -> Modes:
     """The waves of bricks with the dynamic stiffness (2k, 2k) of both interfaces."""
+    from scipy.linalg import qr
+
     k = len(stiffness) // 2
-    u, sizes, vh = np.linalg.svd(stiffness[:k, k:])
+    u, triangle, order = qr(stiffness[:k, k:], pivoting=True)
+    sizes = np.abs(np.diagonal(triangle))
     rank = int(np.count_nonzero(sizes > RANK * sizes[0]))
     root = np.sqrt(sizes[:rank])
-    u, v = u[:, :rank] * root, vh[:rank].conj().T * root
+    v = np.empty((k, rank), dtype=complex)
+    v[order] = triangle[:rank].conj().T / root
+    u = u[:, :rank] * root
     by_u, by_v = np.split(np.linalg.solve(stiffness[:k, :k] + stiffness[k:, k:], np.hstack([u, v])), 2, axis=1)
     one, none = np.eye(rank), np.zeros((rank, rank))
     left = np.block([[one, v.conj().T @ by_v], [none, u.conj().T @ by_v]])
