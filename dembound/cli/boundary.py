@@ -28,6 +28,9 @@ PRINTED = 15.0
 LEAST = 1e-8
 """Share of energy below which numbers are rounding errors."""
 
+NEAR_GAP = 1.25
+"""Frequency of a gap of the packing over the highest one measured, below which it is named."""
+
 
 @app.command("boundary", rich_help_panel="Cases")
 def boundary(
@@ -51,6 +54,9 @@ def boundary(
     ] = None,
     output: Annotated[Path, PICTURE] = Path("boundary.png"),
     title: PictureTitle = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="A first answer in milliseconds: by a continuum in place of the disks.")
+    ] = False,
     table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
     changes: Settings = None,
 ) -> None:
@@ -74,6 +80,7 @@ def boundary(
             sorted(set(angles)) if angles else ANGLES,
             sorted(set(frequencies)) if frequencies else FREQUENCIES,
             report=_report(side),
+            quick=quick,
         )
         out.print(_overview(found, f"{loaded.name}: {side}, {found.type}"))
         for line in _sentences(found):
@@ -146,6 +153,11 @@ def _sentences(found: Measured) -> list[str]:
         lines.append(
             "; ".join([line, *(f"{name} {_percent(arrival.sent_back(each))}" for name, each in beside.items())])
         )
+    highest = found.found.frequencies.max()
+    gaps = {kind: found.gaps[kind] for kind in found.found.kinds if found.gaps.get(kind, math.inf) < NEAR_GAP * highest}
+    if gaps:
+        where = " and ".join(f"{kind.upper()} waves of {frequency:.3g} Hz" for kind, frequency in gaps.items())
+        lines.append(f"copies of the brick send back {where} by themselves, which is part of these numbers near there")
     return lines
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.disks.matching import homogenised_beta
@@ -17,6 +18,7 @@ from dembound.studies.reflection.arrivals import Arrival, arrivals_of, frequenci
 from dembound.studies.reflection.bricks import BrickInRow, end_of, end_scene
 from dembound.studies.reflection.continuum_end import ContinuumEnd, beside_elements
 from dembound.studies.reflection.meter import End, Meter, Reflections
+from dembound.studies.reflection.smeared import by_smeared_supports
 
 __all__ = ["Arrival", "Measured", "Reflections", "measure_side", "measured_sides"]
 
@@ -36,7 +38,8 @@ class Measured:
     side, type : of the side. found : the reflections. calibrated : the same with calibrated factors, given by key; None
     for other sides. continuum : the same, with the number of nodes, if the side and all that absorb were of type
     "outside"; None where they cannot be.
-    arrivals : what reaches the side.
+    arrivals : what reaches the side. gaps : Hz, the lowest at which copies of the brick send waves of a type back by
+    themselves, c/2L for bricks of length L along the normal.
     """
 
     side: str
@@ -46,6 +49,7 @@ class Measured:
     calibrated: Reflections | None
     continuum: tuple[int, Reflections] | None
     arrivals: list[Arrival]
+    gaps: dict[str, float]
 
 
 def measured_sides(case: DiskCase) -> list[str]:
@@ -62,13 +66,17 @@ def measure_side(
     angles: Sequence[float] = ANGLES,
     frequencies: int | Sequence[float] = FREQUENCIES,
     report: Report | None = None,
+    *,
+    quick: bool = False,
 ) -> Measured:
     """Measure what a side of a case sends back.
 
     angles : degrees from the normal, below 90. frequencies : Hz, or how many of those of the case. report : receives
-    every frequency (Hz) before it is computed.
+    every frequency (Hz) before it is computed. quick : instead of disks by the equivalent continuum, without an outside
+    beside it, see smeared.py.
 
-    Raises CaseError for a periodic side, and for angles and frequencies that are none.
+    Raises CaseError for a periodic side, for a quick answer about an outside, and for angles and frequencies that are
+    none.
     """
     problems = [f"--angle: is {a:g}, must be at least 0 and below 90 (degrees)" for a in angles if not 0.0 <= a < 90.0]
     if not isinstance(frequencies, int):
@@ -79,19 +87,24 @@ def measure_side(
     ground, table = whole.ground, case.side(side)
     chosen = frequencies_of(case, ground, frequencies) if isinstance(frequencies, int) else np.array(frequencies)
     arrivals = arrivals_of(case, side, ground)
-    step, _ = choose_step(whole)
+    if table.is_outside and quick:
+        raise CaseError([f"--quick: is not possible for side {side}, of type outside; leave it out"])
+    axis, speeds = normal_axis(side), ground.wave_speeds(normal_axis(side))
+    gaps = {kind: 0.5 * speed / float(ground.brick.size[axis]) for kind, speed in zip("ps", speeds, strict=True)}
     if table.is_outside:
-        (found,) = beyond(whole, side, step).measure(chosen, angles, report=report)
-        return Measured(side, table.type, found, {}, None, None, arrivals)
+        (found,) = beyond(whole, side, choose_step(whole)[0]).measure(chosen, angles, report=report)
+        return Measured(side, table.type, found, {}, None, None, arrivals, gaps)
     if table.is_periodic:
         raise CaseError([f"--side: is {side}, which is periodic; must be a side at which the body ends"])
-    scene, row = end_scene(case, side), BrickInRow(ground, side)
+    scene = end_scene(case, side)
     best = {f"beta_{motion}": homogenised_beta(scene, side, motion) for motion in table.factors}
     factors = {key: float(value) for key, value in best.items() if np.isfinite(value)}
-    ends: list[End] = [
-        end_of(each, row) for each in (scene, *([_with_factors(scene, side, factors)] if factors else []))
-    ]
-    other = _as_continuum(case, side)
+    scenes = [scene, *([_with_factors(scene, side, factors)] if factors else [])]
+    if quick:
+        found, *others = (by_smeared_supports(each, side, chosen, angles) for each in scenes)
+        return Measured(side, table.type, found, factors, others[0] if factors else None, None, arrivals, {})
+    step, row, other = choose_step(whole)[0], BrickInRow(ground, side), _as_continuum(case, side)
+    ends: list[End] = [end_of(each, row) for each in scenes]
     at_once = other is not None and beside_elements(ground, side, other.continua[0]) is ground
     if other is not None and at_once:
         ends.append(ContinuumEnd(other.continua[0], row))
@@ -99,7 +112,7 @@ def measure_side(
     if other is not None and not at_once:
         others += beyond(other, side, step).measure(chosen, angles, report=report)
     continuum = None if other is None else (other.continua[0].count, others[-1])
-    return Measured(side, table.type, found, factors, others[0] if factors else None, continuum, arrivals)
+    return Measured(side, table.type, found, factors, others[0] if factors else None, continuum, arrivals, gaps)
 
 
 def beyond(scene: DiskScene, side: str, time_step: float) -> Meter:

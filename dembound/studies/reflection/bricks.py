@@ -158,7 +158,7 @@ def end_of(scene: DiskScene, row: BrickInRow) -> Condensed:
     mass = np.stack([scene.mass, scene.mass, scene.inertia])[:, last.disks]
     moves = np.ones(mass.shape, dtype=bool)
     moves[list(scene.ground.held)] = False
-    damping, springs = np.zeros((2, *moves.shape))
+    damping, springs = np.zeros(mass.shape), np.zeros(mass.shape)
     table = scene.supports
     supported = last.number[table.node] >= 0
     where = table.component[supported], last.number[table.node[supported]]

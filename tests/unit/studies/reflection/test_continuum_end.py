@@ -11,7 +11,7 @@ from dembound.disks.scene import build, ground_of
 from dembound.outside.layer import Absorption
 from dembound.studies.reflection import beyond
 from dembound.studies.reflection.bricks import BrickInRow
-from dembound.studies.reflection.continuum_end import ContinuumEnd, copies_of, beside_elements
+from dembound.studies.reflection.continuum_end import ContinuumEnd, beside_elements, copies_of
 from dembound.studies.reflection.meter import Meter
 
 ANGLES = [0.0, 25.0, 60.0]
