@@ -34,6 +34,15 @@ def give_back_at_once() -> None:
             choose(_MMAP_THRESHOLD, OWN_PAGES)
 
 
+def one_thread_for_matrices() -> None:
+    """Have numpy and scipy, if they are not yet imported, solve with one thread, unless the environment has others.
+
+    Matrices of some hundred rows gain nothing from threads, and lose much where other programs need the cores.
+    """
+    for library in ("OPENBLAS", "MKL"):
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
+
 def memory_here(root: Path = Path("/")) -> Memory | None:
     """The memory this process may use; None where the system does not report it. root : of the file system.
 

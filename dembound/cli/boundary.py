@@ -14,6 +14,7 @@ from rich.table import Table
 from dembound.cli.app import PICTURE, PictureTitle, Settings, Side, app, load_disks, prepare_computing, writable
 from dembound.cli.calibration import OneCase
 from dembound.cli.console import INTERVAL, compact_table, err, out
+from dembound.machine import one_thread_for_matrices
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,6 +27,9 @@ PRINTED = 15.0
 
 LEAST = 1e-8
 """Share of energy below which numbers are rounding errors."""
+
+NEAR_GAP = 1.25
+"""Frequency of a gap of the packing over the highest one measured, below which it is named."""
 
 
 @app.command("boundary", rich_help_panel="Cases")
@@ -42,7 +46,7 @@ def boundary(
     ] = None,
     angles: Annotated[
         list[float] | None,
-        typer.Option("--angle", help="Degrees from the side's normal; by default 0, 5 … 85. May be repeated."),
+        typer.Option("--angle", help="Degrees from the side's normal; by default 13 up to 85. May be repeated."),
     ] = None,
     frequencies: Annotated[
         list[float] | None,
@@ -50,6 +54,9 @@ def boundary(
     ] = None,
     output: Annotated[Path, PICTURE] = Path("boundary.png"),
     title: PictureTitle = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="A first answer in milliseconds: by a continuum in place of the disks.")
+    ] = False,
     table: Annotated[Path | None, typer.Option(help="Table of the curves to write (CSV).", callback=writable)] = None,
     changes: Settings = None,
 ) -> None:
@@ -57,6 +64,7 @@ def boundary(
 
     Nothing is run. With several sides, pictures and tables have their names.
     """
+    one_thread_for_matrices()  # before numpy is imported
     from dembound.plot.reflection import plot_reflection
     from dembound.plot.style import save
     from dembound.plot.table import write_lines
@@ -72,6 +80,7 @@ def boundary(
             sorted(set(angles)) if angles else ANGLES,
             sorted(set(frequencies)) if frequencies else FREQUENCIES,
             report=_report(side),
+            quick=quick,
         )
         out.print(_overview(found, f"{loaded.name}: {side}, {found.type}"))
         for line in _sentences(found):
@@ -135,7 +144,7 @@ def _sentences(found: Measured) -> list[str]:
         beside[f"calibrated ({factors})"] = found.calibrated
     if found.continuum is not None:
         nodes, values = found.continuum
-        beside[f'type "outside" with {nodes:,} nodes, by formula,'] = values
+        beside[f"an outside of {nodes:,} nodes"] = values
     for arrival in found.arrivals:
         share = arrival.sent_back(found.found)
         if not math.isfinite(share):
@@ -144,8 +153,11 @@ def _sentences(found: Measured) -> list[str]:
         lines.append(
             "; ".join([line, *(f"{name} {_percent(arrival.sent_back(each))}" for name, each in beside.items())])
         )
-    if found.by_formula:
-        lines.append("by the formula of the layer that absorbs and the error of its elements, not measured")
+    highest = found.found.frequencies.max()
+    gaps = {kind: found.gaps[kind] for kind in found.found.kinds if found.gaps.get(kind, math.inf) < NEAR_GAP * highest}
+    if gaps:
+        where = " and ".join(f"{kind.upper()} waves of {frequency:.3g} Hz" for kind, frequency in gaps.items())
+        lines.append(f"copies of the brick send back {where} by themselves, which is part of these numbers near there")
     return lines
 
 
@@ -157,7 +169,7 @@ def _curves(found: Measured) -> list[Curves]:
     if found.calibrated is not None:
         beside["in all, calibrated"] = found.calibrated
     if found.continuum is not None:
-        beside['in all, type "outside"'] = found.continuum[1]
+        beside["in all, an outside"] = found.continuum[1]
     return [
         Curves(kind.upper(), found.found.same[kind], found.found.converted[kind], _totals(beside, kind))
         for kind in found.found.kinds

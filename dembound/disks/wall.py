@@ -111,6 +111,29 @@ class Wall:
         places, sizes = self.local.T, self.mesh.element_sizes[self.element].T
         return [self._seen(at, size, mean) for at, size, mean in zip(places, sizes, self.mean, strict=True)]
 
+    @property
+    def elongations(self) -> tuple[np.ndarray, np.ndarray]:
+        """Elongations per unit motion of the ties' disks, (3, t, 3), and of the nodes of their elements, (3, t, 2, N²).
+
+        Normal, shear and bending ones, as in the kernels: times the stiffness of the half bonds they are the forces
+        with which ties pull disks and nodes together.
+        """
+        (along, along_slope), (up, up_slope) = self._shapes
+        value, slope_x, slope_y = (
+            (b[:, :, None] * a[:, None, :]).reshape(len(a), -1)
+            for b, a in ((up, along), (up, along_slope), (up_slope, along))
+        )
+        xx, yy, xy, yx = np.moveaxis(self._corrector, 1, 0)[:, :, :, None]
+        moved = np.stack([xx * slope_x + xy * slope_y, yy * slope_y + yx * slope_x], axis=2)  # x, y, rotation
+        for component in (0, 1):
+            moved[component, :, component] += value
+        nx, ny = self.bonds.normal
+        none, one = np.zeros_like(nx), np.ones_like(nx)
+        turns = np.array([[nx, ny, none], [-ny, nx, none], [none, none, one]])
+        of_disks = -turns.transpose(0, 2, 1)
+        of_disks[1, :, 2] = -self.bonds.arm
+        return of_disks, np.einsum("ekt,ktcq->etcq", turns, moved)
+
     def ties(self, particle: np.ndarray, node: np.ndarray, line: np.ndarray, twin: np.ndarray | None) -> WallTies:
         """The arrays for the kernels.
 

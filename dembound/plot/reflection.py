@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from dembound.plot.style import COLOURS, MARKERS, line_style, new_figure, outside_legend, styled
+from dembound.plot.style import COLOURS, DASHES, line_style, new_figure, outside_legend, styled
 
 LEAST = 1e-6
 """Smallest share of energy drawn: 0.1 % of the amplitude."""
@@ -17,9 +17,8 @@ LEAST = 1e-6
 SHOWN = (0.0, 30.0, 60.0)
 """Angles (degrees) for which shares are drawn against frequency, or the nearest ones that were computed."""
 
-
-SHADES = ("#000000", "#595959", "#A6A6A6")
-"""Colours of these angles, none of which is that of a line against angle."""
+GREYS = ("#000000", "#606060", "#A8A8A8")
+"""Their colours: the lines against angle have all others."""
 
 
 class Curves(NamedTuple):
@@ -81,9 +80,9 @@ def _against_angle(panel: Axes, angles: np.ndarray, each: Curves) -> None:
 def _against_frequency(panel: Axes, angles: np.ndarray, frequencies: np.ndarray, each: Curves) -> None:
     """In all, at some angles."""
     near = dict.fromkeys(int(np.argmin(np.abs(angles - angle))) for angle in SHOWN)
-    for number, index in enumerate(near):
+    for index, colour, dash in zip(near, GREYS, DASHES, strict=False):
         values, name = (each.same + each.converted)[:, index], f"in all at {angles[index]:g}°"
-        look: dict[str, Any] = {**line_style(number), "color": SHADES[number], "marker": MARKERS[number]}
+        look: dict[str, Any] = {"color": colour, "linestyle": dash, "marker": "o", "markersize": 3.0}
         panel.plot(frequencies, _drawn(values), label=name, gid=f"{each.name}, {name}", **look)
     panel.set_xlabel("frequency (Hz)")
     _log(panel)

@@ -20,6 +20,7 @@ COMMANDS = (
     "pack_rate",
     "memory",
     "reductions",
+    "reflection_packets",
 )
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the benchmarks measure processes as Unix does")

@@ -59,7 +59,7 @@ def test_energy_of_a_reflected_pulse(motion, side) -> None:
     after = energy_after(simulation, 2.0 * LENGTH / speed)
 
     frequencies = frequencies_of(case, scene.ground, 24)
-    (found,) = Meter("right", simulation.time_step, end_scene(case, "right")).measure(frequencies, [0.0], (motion,))
+    (found,) = Meter.of("right", simulation.time_step, end_scene(case, "right")).measure(frequencies, [0.0], (motion,))
     expected = float(found.total(motion).mean())
     assert 0.05 < expected < 0.9
     assert after / before == pytest.approx(expected, rel=0.03)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.disks.matching import homogenised_beta
@@ -14,15 +15,16 @@ from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
 from dembound.studies.reflection.arrivals import Arrival, arrivals_of, frequencies_of
-from dembound.studies.reflection.beyond import by_continuum
-from dembound.studies.reflection.bricks import end_scene
-from dembound.studies.reflection.meter import Meter, Reflections
+from dembound.studies.reflection.bricks import BrickInRow, end_of, end_scene
+from dembound.studies.reflection.continuum_end import ContinuumEnd, beside_elements
+from dembound.studies.reflection.meter import End, Meter, Reflections
+from dembound.studies.reflection.smeared import by_smeared_supports
 
 __all__ = ["Arrival", "Measured", "Reflections", "measure_side", "measured_sides"]
 
 Report = Callable[[float], None]
 
-ANGLES = tuple(float(angle) for angle in range(0, 90, 5))
+ANGLES = (0.0, 10.0, 15.0, 20.0, 30.0, 40.0, 45.0, 50.0, 60.0, 70.0, 75.0, 80.0, 85.0)
 """Angles (degrees) at which reflections are computed by default."""
 
 FREQUENCIES = 12
@@ -33,20 +35,21 @@ FREQUENCIES = 12
 class Measured:
     """Reflections of a side of a case.
 
-    side, type : of the side. found : the reflections; by_formula : whether they are those of the continuum's layer by
-    formula, as the side is one. calibrated : the same with calibrated factors, given by key; None for other sides.
-    continuum : the same, with the number of nodes, if the side were of type "outside"; None where it cannot be.
-    arrivals : what reaches the side.
+    side, type : of the side. found : the reflections. calibrated : the same with calibrated factors, given by key; None
+    for other sides. continuum : the same, with the number of nodes, if the side and all that absorb were of type
+    "outside"; None where they cannot be.
+    arrivals : what reaches the side. gaps : Hz, the lowest at which copies of the brick send waves of a type back by
+    themselves, c/2L for bricks of length L along the normal.
     """
 
     side: str
     type: str
     found: Reflections
-    by_formula: bool
     factors: dict[str, float]
     calibrated: Reflections | None
     continuum: tuple[int, Reflections] | None
     arrivals: list[Arrival]
+    gaps: dict[str, float]
 
 
 def measured_sides(case: DiskCase) -> list[str]:
@@ -63,13 +66,17 @@ def measure_side(
     angles: Sequence[float] = ANGLES,
     frequencies: int | Sequence[float] = FREQUENCIES,
     report: Report | None = None,
+    *,
+    quick: bool = False,
 ) -> Measured:
     """Measure what a side of a case sends back.
 
     angles : degrees from the normal, below 90. frequencies : Hz, or how many of those of the case. report : receives
-    every frequency (Hz) before it is computed.
+    every frequency (Hz) before it is computed. quick : instead of disks by the equivalent continuum, without an outside
+    beside it, see smeared.py.
 
-    Raises CaseError for a periodic side, and for angles and frequencies that are none.
+    Raises CaseError for a periodic side, for a quick answer about an outside, and for angles and frequencies that are
+    none.
     """
     problems = [f"--angle: is {a:g}, must be at least 0 and below 90 (degrees)" for a in angles if not 0.0 <= a < 90.0]
     if not isinstance(frequencies, int):
@@ -80,19 +87,39 @@ def measure_side(
     ground, table = whole.ground, case.side(side)
     chosen = frequencies_of(case, ground, frequencies) if isinstance(frequencies, int) else np.array(frequencies)
     arrivals = arrivals_of(case, side, ground)
+    if table.is_outside and quick:
+        raise CaseError([f"--quick: is not possible for side {side}, of type outside; leave it out"])
+    axis, speeds = normal_axis(side), ground.wave_speeds(normal_axis(side))
+    gaps = {kind: 0.5 * speed / float(ground.brick.size[axis]) for kind, speed in zip("ps", speeds, strict=True)}
     if table.is_outside:
-        _, found = by_continuum(whole, side, chosen, angles)
-        return Measured(side, table.type, found, True, {}, None, None, arrivals)
+        (found,) = beyond(whole, side, choose_step(whole)[0]).measure(chosen, angles, report=report)
+        return Measured(side, table.type, found, {}, None, None, arrivals, gaps)
     if table.is_periodic:
         raise CaseError([f"--side: is {side}, which is periodic; must be a side at which the body ends"])
-    step, _ = choose_step(whole)
     scene = end_scene(case, side)
     best = {f"beta_{motion}": homogenised_beta(scene, side, motion) for motion in table.factors}
     factors = {key: float(value) for key, value in best.items() if np.isfinite(value)}
     scenes = [scene, *([_with_factors(scene, side, factors)] if factors else [])]
-    found, *others = Meter(side, step, *scenes).measure(chosen, angles, report=report)
-    continuum = _as_continuum(case, side, chosen, angles)
-    return Measured(side, table.type, found, False, factors, others[0] if others else None, continuum, arrivals)
+    if quick:
+        found, *others = (by_smeared_supports(each, side, chosen, angles) for each in scenes)
+        return Measured(side, table.type, found, factors, others[0] if factors else None, None, arrivals, {})
+    step, row, other = choose_step(whole)[0], BrickInRow(ground, side), _as_continuum(case, side)
+    ends: list[End] = [end_of(each, row) for each in scenes]
+    at_once = other is not None and beside_elements(ground, side, other.continua[0]) is ground
+    if other is not None and at_once:
+        ends.append(ContinuumEnd(other.continua[0], row))
+    found, *others = Meter(row, step, *ends).measure(chosen, angles, report=report)
+    if other is not None and not at_once:
+        others += beyond(other, side, step).measure(chosen, angles, report=report)
+    continuum = None if other is None else (other.continua[0].count, others[-1])
+    return Measured(side, table.type, found, factors, others[0] if factors else None, continuum, arrivals, gaps)
+
+
+def beyond(scene: DiskScene, side: str, time_step: float) -> Meter:
+    """A meter of the continuum of a scene beyond a side, at time steps of a run, s."""
+    assert scene.outside is not None
+    row = BrickInRow(beside_elements(scene.ground, side, scene.outside), side)
+    return Meter(row, time_step, ContinuumEnd(scene.outside, row))
 
 
 def _with_factors(scene: DiskScene, side: str, factors: Mapping[str, float]) -> DiskScene:
@@ -101,16 +128,13 @@ def _with_factors(scene: DiskScene, side: str, factors: Mapping[str, float]) -> 
     return with_boundaries(scene, replace(scene.case, boundary={**scene.case.boundary, side: table}))
 
 
-def _as_continuum(
-    case: DiskCase, side: str, frequencies: np.ndarray, angles: Sequence[float]
-) -> tuple[int, Reflections] | None:
-    """Nodes of a continuum beyond all sides that absorb and what it would send back; None where there can be none."""
+def _as_continuum(case: DiskCase, side: str) -> DiskScene | None:
+    """The case with a continuum beyond this side and all that absorb; None where there can be none."""
     from dembound.kinds import with_changes
 
     absorbing = {side, *(name for name, table in case.boundary.items() if table.is_artificial)}
     changes = {f"boundary.{name}": {"type": "outside"} for name in absorbing}
     try:
-        other = as_kind(with_changes(case, changes), DiskCase, "is no case of disks")
-        return by_continuum(build(other), side, frequencies, angles)
+        return build(as_kind(with_changes(case, changes), DiskCase, "is no case of disks"))
     except CaseError:
         return None

@@ -11,6 +11,7 @@ in the row. Its end, the last brick with the supports of the side, is condensed 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,7 @@ from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, build
 from dembound.errors import CaseError
 from dembound.laws import Stiffness
+from dembound.packings.tiling import Assembly
 from dembound.studies.reflection.condensed import Body, Condensed
 
 LAST = 2
@@ -38,12 +40,13 @@ class BrickInRow:
 
     Attributes
     ----------
-    disks : (p,) those of the brick at its interface inwards. components, places : of the interface's degrees of
-    freedom (count,) 0 x, 1 y, 2 rotation, and the centres (count, 2) m of their disks. condensed : to this interface
-    and the next brick's.
+    ground, side : the packing, and the side at the end of the row. disks : (p,) those of the brick at its interface
+    inwards. components, places : of the interface's degrees of freedom (count,) 0 x, 1 y, 2 rotation, and the centres
+    (count, 2) m of their disks. condensed : to this interface and the next brick's.
     """
 
     def __init__(self, ground: PackedMaterial, side: str) -> None:
+        self.ground, self.side = ground, side
         brick, axis = ground.brick, normal_axis(side)
         outwards = is_outwards(side) * brick.images[:, axis]
         is_next = np.stack([outwards < 0, outwards > 0], axis=1)  # which disk of a contact is in the next brick
@@ -77,46 +80,91 @@ def _split(
     return networks[0], networks[1]
 
 
-def end_of(scene: DiskScene, side: str, row: BrickInRow) -> Condensed:
+class LastBrick:
+    """The last brick of `LAST` of them in a row, cut at the side.
+
+    Parameters
+    ----------
+    assembly : the bricks, periodic along the side. row : a brick before them.
+
+    Attributes
+    ----------
+    disks : (n,) those of the assembly. number : (m,) of each of the assembly's disks in this brick, −1 for others.
+
+    Raises CaseError if disks of the interface are missing.
+    """
+
+    def __init__(self, assembly: Assembly, row: BrickInRow) -> None:
+        ground, side = row.ground, row.side
+        axis, brick = normal_axis(side), ground.brick
+        tile = assembly.tile[:, axis]
+        outwards = tile if is_outwards(side) > 0 else assembly.copies[axis] - 1 - tile
+        self.disks = np.flatnonzero(outwards >= LAST - 1)
+        self.number = np.full(len(assembly.radii), -1)
+        self.number[self.disks] = np.arange(len(self.disks))
+        pairs = self.number[assembly.pairs]
+        chosen = np.all(pairs >= 0, axis=1)
+        pairs, kind = pairs[chosen], assembly.contact_type[chosen]
+        plain, half = kind % len(brick.pairs), kind >= len(brick.pairs)
+        stiffness = ground.stiffness.of(plain).times(np.where(half, 0.5, 1.0))  # half along a side of half cells
+        first, second = assembly.positions[self.disks][pairs.T]
+        across = (first + brick.vectors[plain] - second)[:, 1 - axis]
+        periods = np.rint(across / assembly.size[1 - axis]).astype(int)
+        self._networks = _split(len(self.disks), pairs, brick.vectors[plain], stiffness, periods)
+        self._periods = periods[periods != 0]
+        self._row = row
+
+        first_of_last = np.flatnonzero(outwards[self.disks] == LAST - 1)
+        place = np.full(len(brick.radii), -1)
+        place[assembly.brick_particle[self.disks][first_of_last]] = first_of_last
+        self._inner = place[row.disks]
+        if (self._inner < 0).any():
+            raise _missing(side)
+
+    def condensed(
+        self,
+        mass: np.ndarray,
+        moves: np.ndarray,
+        damping: np.ndarray | None = None,
+        springs: np.ndarray | None = None,
+        kept: Sequence[int] | np.ndarray = (),
+    ) -> Condensed:
+        """It condensed to its interface, and behind that, ascending, to others (k,) of its 3n degrees of freedom.
+
+        mass, moves, damping, springs : (3, n) kg and kg·m², bool, and of dashpots and springs to what is fixed.
+
+        Raises CaseError if disks of the interface do not move.
+        """
+        none = np.zeros(mass.size)
+        damping, springs = (none if each is None else each.ravel() for each in (damping, springs))
+        body = Body(*self._networks, self._periods, mass.ravel(), damping, springs, moves.ravel())
+        interface = body.numbers(self._inner)
+        if len(interface) != self._row.count:
+            raise _missing(self._row.side)
+        return Condensed(body, np.concatenate([interface, np.setdiff1d(kept, interface)]).astype(int))
+
+
+def _missing(side: str) -> CaseError:
+    """That the last brick cannot be condensed to its interface."""
+    return CaseError([f"boundary.{side}: holds or leaves out disks at the inner side of its last brick; take longer"])
+
+
+def end_of(scene: DiskScene, row: BrickInRow) -> Condensed:
     """The last brick of a scene of `LAST` of them with the supports of a side, condensed to its interface.
 
     Raises CaseError if disks of the interface are missing, or if the side prescribes their motion.
     """
-    axis, assembly, brick = normal_axis(side), scene.assembly, scene.ground.brick
-    outwards = assembly.tile[:, axis] if is_outwards(side) > 0 else assembly.copies[axis] - 1 - assembly.tile[:, axis]
-    last = np.flatnonzero(outwards >= LAST - 1)
-    number = np.full(len(assembly.radii), -1)
-    number[last] = np.arange(len(last))
-    pairs = number[assembly.pairs]
-    chosen = np.all(pairs >= 0, axis=1)
-    pairs, kind = pairs[chosen], assembly.contact_type[chosen]
-    plain, half = kind % len(brick.pairs), kind >= len(brick.pairs)
-    stiffness = scene.ground.stiffness.of(plain).times(np.where(half, 0.5, 1.0))  # half along a side of half cells
-    first, second = assembly.positions[last][pairs.T]
-    across = (first + brick.vectors[plain] - second)[:, 1 - axis]
-    periods = np.rint(across / assembly.size[1 - axis]).astype(int)
-    within, beyond = _split(len(last), pairs, brick.vectors[plain], stiffness, periods)
-
-    mass = np.concatenate([scene.mass[last], scene.mass[last], scene.inertia[last]])
-    moves = np.ones((3, len(last)), dtype=bool)
+    last = LastBrick(scene.assembly, row)
+    mass = np.stack([scene.mass, scene.mass, scene.inertia])[:, last.disks]
+    moves = np.ones(mass.shape, dtype=bool)
     moves[list(scene.ground.held)] = False
-    damping, springs = np.zeros((2, *moves.shape))
+    damping, springs = np.zeros(mass.shape), np.zeros(mass.shape)
     table = scene.supports
-    supported = number[table.node] >= 0
-    where = table.component[supported], number[table.node[supported]]
+    supported = last.number[table.node] >= 0
+    where = table.component[supported], last.number[table.node[supported]]
     damping[where], springs[where] = table.damping[supported], table.stiffness[supported]
     moves[where] &= ~table.prescribed[supported]
-    body = Body(within, beyond, periods[periods != 0], mass, damping.ravel(), springs.ravel(), moves.ravel())
-
-    first_of_last = np.flatnonzero(outwards[last] == LAST - 1)
-    place = np.full(len(brick.radii), -1)
-    place[assembly.brick_particle[last][first_of_last]] = first_of_last
-    interface = body.numbers(place[row.disks])
-    if (place[row.disks] < 0).any() or len(interface) != row.count:
-        raise CaseError(
-            [f"boundary.{side}: holds or leaves out disks at the inner side of its last brick; take longer"]
-        )
-    return Condensed(body, interface)
+    return last.condensed(mass, moves, damping, springs)
 
 
 def end_scene(case: DiskCase, side: str) -> DiskScene:

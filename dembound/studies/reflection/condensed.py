@@ -11,6 +11,7 @@ factors of D, L_kk U_kk, which takes one factorisation and no solve.
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -48,6 +49,16 @@ class Oscillation(NamedTuple):
             return 1j * self.omega
         return 1j * math.sin(self.omega * self.time_step) / self.time_step
 
+    @property
+    def back(self) -> complex:
+        """What a motion a step before is multiplied by, e^{−iωΔt}."""
+        return cmath.exp(-1j * self.omega * self.time_step)
+
+    @property
+    def lagging(self) -> complex:
+        """Velocity half a step behind over the displacement, 1/s."""
+        return 1j * self.omega if self.time_step == 0.0 else (1.0 - self.back) / self.time_step
+
 
 class Body(NamedTuple):
     """Disks, their degrees of freedom numbered as all x, all y, all rotations.
@@ -77,6 +88,10 @@ class Condensed:
     ----------
     body : the disks. interface : numbers (k,) of the degrees of freedom at the interface.
 
+    Attributes
+    ----------
+    interface : as given.
+
     First it is condensed to the interface and the disks at the periodic sides, then, for every wave along the
     interface, to the interface.
     """
@@ -84,7 +99,7 @@ class Condensed:
     def __init__(self, body: Body, interface: np.ndarray) -> None:
         from scipy.sparse import diags
 
-        self._body, self._count = body, len(interface)
+        self._body, self.interface = body, interface
         aside = np.setdiff1d(body.numbers(np.unique(body.beyond.pairs)), interface)
         self._kept = np.concatenate([interface, aside])
         others = np.setdiff1d(np.flatnonzero(body.moves), self._kept)
@@ -107,7 +122,7 @@ class Condensed:
     def stiffness(self, phase: complex) -> np.ndarray:
         """Dynamic stiffness (k, k) of the interface if the motion of the next copy is this one's times the phase."""
         assert self._fixed is not None
-        matrix, kept = self._fixed.astype(complex), self._count
+        matrix, kept = self._fixed.astype(complex), len(self.interface)
         beyond = self._body.beyond
         if len(beyond.pairs):
             ways = beyond.motion_matrix(phase**self._body.periods)[:, self._kept]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 
@@ -32,7 +32,7 @@ ROUNDS = 8
 
 
 @dataclass(frozen=True)
-class PlaneWave:
+class HomogenisedWave:
     """A plane wave of the equivalent continuum.
 
     kind : "p" or "s"; slowness, polarisation : (2,) s/m and 1, along x and y.
@@ -67,7 +67,7 @@ class Reflections:
         return self.same[kind] + self.converted[kind]
 
 
-def plane_wave(ground: PackedMaterial, kind: Kind, direction: np.ndarray) -> PlaneWave | None:
+def homogenised_wave(ground: PackedMaterial, kind: Kind, direction: np.ndarray) -> HomogenisedWave | None:
     """The wave of a type along a direction (2,) in the equivalent continuum (Christoffel's equation), None if held."""
     free = [component for component in (0, 1) if component not in ground.held]
     gradients = np.array([[GRADIENTS.index(a + b) for b in "xy"] for a in "xy"])
@@ -82,7 +82,17 @@ def plane_wave(ground: PackedMaterial, kind: Kind, direction: np.ndarray) -> Pla
     if len(found) == 0 or not squares[found[0]] > 0.0:
         return None
     speed = math.sqrt(squares[found[0]] / ground.density)
-    return PlaneWave(kind, direction / speed, polarisations[:, found[0]])
+    return HomogenisedWave(kind, direction / speed, polarisations[:, found[0]])
+
+
+class End(Protocol):
+    """The end of a row of bricks."""
+
+    def at(self, oscillation: Oscillation) -> None:
+        """Condense at a frequency."""
+
+    def stiffness(self, phase: complex) -> np.ndarray:
+        """Dynamic stiffness (k, k) of the interface for waves of a phase from period to period along the side."""
 
 
 class Meter:
@@ -90,16 +100,21 @@ class Meter:
 
     Parameters
     ----------
-    side : one with supports, or a free one. time_step : of the run, s. scenes : of the ends, one or more of the same
-    packing, see `bricks.end_scene`.
-
-    Raises CaseError for a scene in which disks of the end are missing.
+    row : the bricks. time_step : of the run, s. ends : of the row, one or more.
     """
 
-    def __init__(self, side: str, time_step: float, *scenes: DiskScene) -> None:
-        self.side, self._step, self.ground = side, time_step, scenes[0].ground
-        self._row = BrickInRow(self.ground, side)
-        self._ends = [end_of(scene, side, self._row) for scene in scenes]
+    def __init__(self, row: BrickInRow, time_step: float, *ends: End) -> None:
+        self.side, self.ground, self._step = row.side, row.ground, time_step
+        self._row, self._ends = row, ends
+
+    @classmethod
+    def of(cls, side: str, time_step: float, *scenes: DiskScene) -> Meter:
+        """That of a side with supports, or a free one; scenes : of the same packing, see `bricks.end_scene`.
+
+        Raises CaseError for a scene in which disks of the end are missing.
+        """
+        row = BrickInRow(scenes[0].ground, side)
+        return cls(row, time_step, *(end_of(scene, row) for scene in scenes))
 
     def measure(
         self,
@@ -116,7 +131,7 @@ class Meter:
         ground = self.ground
         if set(ground.held) & {0, 1}:
             angles = [angle for angle in angles if angle == 0.0]
-        kinds = [kind for kind in kinds if plane_wave(ground, kind, self._direction(0.0)) is not None]
+        kinds = [kind for kind in kinds if homogenised_wave(ground, kind, self._direction(0.0)) is not None]
         shape = 2, len(self._ends), len(frequencies), len(angles)
         shares = {kind: np.full(shape, np.nan) for kind in kinds}
         for f, frequency in enumerate(frequencies):
@@ -143,7 +158,7 @@ class Meter:
 
     def _at(self, oscillation: Oscillation, kind: Kind, angle: float) -> np.ndarray:
         """Energy (2, e) that the ends send back as the same and as the other type."""
-        wave = plane_wave(self.ground, kind, self._direction(angle))
+        wave = homogenised_wave(self.ground, kind, self._direction(angle))
         assert wave is not None
         trace = wave.slowness[1 - normal_axis(self.side)]
         period = self.ground.brick.size[1 - normal_axis(self.side)]
@@ -163,7 +178,7 @@ class Meter:
         """Likeness (m,) of waves with the wave of a type that runs inwards with a slowness (s/m) along the side."""
         axis, sign = normal_axis(self.side), is_outwards(self.side)
         direction = -self._direction(0.0)
-        wave = plane_wave(self.ground, kind, direction)
+        wave = homogenised_wave(self.ground, kind, direction)
         for _ in range(ROUNDS):
             if wave is None:
                 return np.zeros(len(modes.factor))
@@ -172,11 +187,11 @@ class Meter:
                 return np.zeros(len(modes.factor))
             direction = np.empty(2)
             direction[axis], direction[1 - axis] = -sign * math.sqrt(1.0 - sine**2), sine
-            wave = plane_wave(self.ground, kind, direction)
+            wave = homogenised_wave(self.ground, kind, direction)
         assert wave is not None
         return self._likeness(modes, wave, omega)
 
-    def _likeness(self, modes: Modes, wave: PlaneWave, omega: float) -> np.ndarray:
+    def _likeness(self, modes: Modes, wave: HomogenisedWave, omega: float) -> np.ndarray:
         """Share (m,) of the translations at the interface that is the motion of a plane wave."""
         row = self._row
         moving = row.components < 2

@@ -17,10 +17,16 @@ from typing import NamedTuple
 import numpy as np
 
 RANK = 1e-11
-"""Singular values of S₁₂ over the largest one that count as rank."""
+"""Diagonal entries of the triangle of S₁₂, over the largest one, that count as rank."""
 
 PROPAGATES = 1e-6
 """Difference of |λ| from 1 below which a wave propagates; of others a side reflects nothing that gets far."""
+
+APART = 1.5 * np.exp(1.0j)
+"""A λ that no wave has: one that dies out by just as much within a brick, with just this phase, would be chance."""
+
+SMALLEST = 1e-12
+"""1/|λ| below which λ is infinite: motion of the first interface alone."""
 
 
 class Modes(NamedTuple):
@@ -50,20 +56,23 @@ class Modes(NamedTuple):
 
 def modes_of(stiffness: np.ndarray) -> Modes:
     """The waves of bricks with the dynamic stiffness (2k, 2k) of both interfaces."""
-    from scipy.linalg import eig
+    from scipy.linalg import qr
 
     k = len(stiffness) // 2
-    u, sizes, vh = np.linalg.svd(stiffness[:k, k:])
+    u, triangle, order = qr(stiffness[:k, k:], pivoting=True)
+    sizes = np.abs(np.diagonal(triangle))
     rank = int(np.count_nonzero(sizes > RANK * sizes[0]))
     root = np.sqrt(sizes[:rank])
-    u, v = u[:, :rank] * root, vh[:rank].conj().T * root
+    v = np.empty((k, rank), dtype=complex)
+    v[order] = triangle[:rank].conj().T / root
+    u = u[:, :rank] * root
     by_u, by_v = np.split(np.linalg.solve(stiffness[:k, :k] + stiffness[k:, k:], np.hstack([u, v])), 2, axis=1)
     one, none = np.eye(rank), np.zeros((rank, rank))
     left = np.block([[one, v.conj().T @ by_v], [none, u.conj().T @ by_v]])
     right = np.block([[v.conj().T @ by_u, none], [u.conj().T @ by_u, one]])
-    factor, shapes = eig(left, -right)
-    finite = np.isfinite(factor) & (np.abs(factor) > 0.0)
-    factor, (x, y) = factor[finite], np.split(shapes[:, finite], 2)
+    inverse, shapes = np.linalg.eig(np.linalg.solve(left + APART * right, right))  # 1/(APART − λ)
+    finite = np.abs(inverse) > SMALLEST
+    factor, (x, y) = APART - 1.0 / inverse[finite], np.split(shapes[:, finite], 2)
     motion = -(by_u @ (x * factor) + by_v @ y)
     power = np.where(np.abs(np.abs(factor) - 1.0) < PROPAGATES, np.imag(np.sum(x.conj() * y, axis=0)), 0.0)
     return Modes(factor, x, y, motion, power, v)

@@ -180,3 +180,18 @@ def test_ties_of_a_lattice_act_on_the_edge_alone() -> None:
     every = Tied(dense()).wall
     np.testing.assert_array_equal(every.nodes, np.unique(every.mesh.nodes[every.elements]))
     assert every.bonds.stiffness[2].all()
+
+
+def test_elongations_times_stiffness_are_the_forces_of_the_kernels(ground) -> None:
+    """Of any motion; on disks and nodes by the transpose."""
+    tied = Tied(ground)
+    wall, u = tied.wall, np.random.default_rng(4).standard_normal((3, tied.count))
+    of_disks, of_nodes = wall.elongations
+    disks, nodes = wall.bonds.particle, tied.particles + tied.mesh.nodes[wall.element].reshape(len(wall.element), -1)
+    pull = wall.bonds.stiffness * (
+        np.einsum("etc,ct->et", of_disks, u[:, disks]) + np.einsum("etcq,ctq->et", of_nodes, u[:2][:, nodes])
+    )
+    expected = np.zeros((tied.count, 3))
+    np.add.at(expected, disks, -np.einsum("etc,et->tc", of_disks, pull))
+    np.add.at(expected[:, :2], nodes, -np.einsum("etcq,et->tqc", of_nodes, pull))
+    np.testing.assert_allclose(tied.forces(u), expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
