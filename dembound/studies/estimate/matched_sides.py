@@ -75,7 +75,7 @@ def _energies(scene: DiskScene, end: DiskScene, side: str, time_step: float) -> 
     """Shares of the energy that come back, means over the case's frequencies; those that are known."""
     try:
         frequencies = frequencies_of(scene.case, scene.ground, FREQUENCIES)
-        found = Meter(side, time_step, end).measure(frequencies, [0.0])[0]
+        found = Meter.of(side, time_step, end).measure(frequencies, [0.0])[0]
     except CaseError:
         return {}
     means = {kind: float(np.nanmean(found.total(kind))) for kind in found.kinds if np.isfinite(found.total(kind)).any()}
