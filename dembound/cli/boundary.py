@@ -168,7 +168,7 @@ def _curves(found: Measured) -> list[Curves]:
     beside: dict[str, Reflections] = {}
     if found.calibrated is not None:
         beside["in all, calibrated"] = found.calibrated
-    if found.continuum is not None:
+    if found.continuum is not None and len(found.continuum[1].angles) == len(found.found.angles):
         beside["in all, an outside"] = found.continuum[1]
     return [
         Curves(kind.upper(), found.found.same[kind], found.found.converted[kind], _totals(beside, kind))

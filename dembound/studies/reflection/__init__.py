@@ -37,9 +37,9 @@ class Measured:
 
     side, type : of the side. found : the reflections. calibrated : the same with calibrated factors, given by key; None
     for other sides. continuum : the same, with the number of nodes, if the side and all that absorb were of type
-    "outside"; None where they cannot be.
-    arrivals : what reaches the side. gaps : Hz, the lowest at which copies of the brick send waves of a type back by
-    themselves, c/2L for bricks of length L along the normal.
+    "outside"; None where they cannot be, and beside a body that is periodic and narrow only for the angle 0. arrivals :
+    what reaches the side. gaps : Hz, the lowest at which copies of the brick send waves of a type back by themselves,
+    c/2L for bricks of length L along the normal.
     """
 
     side: str
@@ -92,7 +92,7 @@ def measure_side(
     axis, speeds = normal_axis(side), ground.wave_speeds(normal_axis(side))
     gaps = {kind: 0.5 * speed / float(ground.brick.size[axis]) for kind, speed in zip("ps", speeds, strict=True)}
     if table.is_outside:
-        (found,) = beyond(whole, side, choose_step(whole)[0]).measure(chosen, angles, report=report)
+        (found,) = _of_continuum(whole, side, choose_step(whole)[0], chosen, angles, report)
         return Measured(side, table.type, found, {}, None, None, arrivals, gaps)
     if table.is_periodic:
         raise CaseError([f"--side: is {side}, which is periodic; must be a side at which the body ends"])
@@ -105,14 +105,33 @@ def measure_side(
         return Measured(side, table.type, found, factors, others[0] if factors else None, None, arrivals, {})
     step, row, other = choose_step(whole)[0], BrickInRow(ground, side), _as_continuum(case, side)
     ends: list[End] = [end_of(each, row) for each in scenes]
-    at_once = other is not None and beside_elements(ground, side, other.continua[0]) is ground
+    at_once = other is not None and not _is_narrow(other) and beside_elements(ground, side, other.continua[0]) is ground
     if other is not None and at_once:
         ends.append(ContinuumEnd(other.continua[0], row))
     found, *others = Meter(row, step, *ends).measure(chosen, angles, report=report)
     if other is not None and not at_once:
-        others += beyond(other, side, step).measure(chosen, angles, report=report)
+        others += _of_continuum(other, side, step, chosen, angles, report)
     continuum = None if other is None else (other.continua[0].count, others[-1])
     return Measured(side, table.type, found, factors, others[0] if factors else None, continuum, arrivals, gaps)
+
+
+def _of_continuum(
+    scene: DiskScene,
+    side: str,
+    time_step: float,
+    frequencies: np.ndarray,
+    angles: Sequence[float],
+    report: Report | None,
+) -> list[Reflections]:
+    """Reflections by the continuum of a scene, beside a narrow body along the normal alone."""
+    chosen = [0.0] if _is_narrow(scene) else angles
+    return beyond(scene, side, time_step).measure(frequencies, chosen, report=report)
+
+
+def _is_narrow(scene: DiskScene) -> bool:
+    """Whether ties have the mean motion of elements, which passes on waves along the normal only."""
+    assert scene.outside is not None
+    return any(scene.outside.wall.mean)
 
 
 def beyond(scene: DiskScene, side: str, time_step: float) -> Meter:

@@ -90,46 +90,76 @@ class Condensed:
 
     Attributes
     ----------
-    interface : as given.
+    body, interface : as given.
 
-    First it is condensed to the interface and the disks at the periodic sides, then, for every wave along the
-    interface, to the interface.
+    A contact across a periodic side goes to the image of a disk, which moves as the disk times a phase. First the body
+    is condensed to the interface, the disks that have images, and these; then, for every wave along the interface, to
+    the interface.
     """
 
     def __init__(self, body: Body, interface: np.ndarray) -> None:
         from scipy.sparse import diags
 
-        self._body, self.interface = body, interface
-        aside = np.setdiff1d(body.numbers(np.unique(body.beyond.pairs)), interface)
-        self._kept = np.concatenate([interface, aside])
-        others = np.setdiff1d(np.flatnonzero(body.moves), self._kept)
-        matrix = _stiffness(body.within) + diags(body.stiffness)
-        self._order = np.concatenate([_in_order(matrix, others), self._kept])
-        self._inner = len(others)
-        self._matrix = matrix[self._order][:, self._order].tocsc()
+        self.body, self.interface = body, interface
+        count, (disks, periods, beyond) = body.within.disks, _images(body)
+        every = beyond.disks
+        own = (every * np.arange(3)[:, None] + np.arange(count)).ravel()
+        images = (every * np.arange(3)[:, None] + count + np.arange(len(disks))).ravel()
+        imaged = (count * np.arange(3)[:, None] + disks).ravel()  # of the body, which the images are of
+        moves = body.moves[imaged]
+        images, imaged, self._periods = images[moves], imaged[moves], np.tile(periods, 3)[moves]
+        base = np.concatenate([interface, np.setdiff1d(imaged, interface)])
+        place = np.full(3 * count, -1)
+        place[base] = np.arange(len(base))
+        self._base, self._imaged = len(base), place[imaged]
+
+        matrix = (_stiffness(body.within._replace(disks=every)) + _stiffness(beyond)).tocsc()
+        mass, damping, springs = np.zeros((3, 3 * every))
+        mass[own], damping[own], springs[own] = body.mass, body.damping, body.stiffness
+        others = own[np.setdiff1d(np.flatnonzero(body.moves), base)]
+        matrix += diags(springs)
+        order = np.concatenate([_in_order(matrix, others), own[base], images])
+        self._inner, self._mass, self._damping = len(others), mass[order], damping[order]
+        self._matrix = matrix[order][:, order].tocsc()
         self._fixed: np.ndarray | None = None
 
     def at(self, oscillation: Oscillation) -> None:
         """Condense at a frequency."""
         from scipy.sparse import diags
 
-        body = self._body
-        added = -oscillation.square * body.mass[self._order]
-        if body.damping.any():
-            added = added + oscillation.rate * body.damping[self._order]
+        added = -oscillation.square * self._mass
+        if self._damping.any():
+            added = added + oscillation.rate * self._damping
         self._fixed = _last_block(self._matrix + diags(added, format="csc"), self._inner)
 
     def stiffness(self, phase: complex) -> np.ndarray:
         """Dynamic stiffness (k, k) of the interface if the motion of the next copy is this one's times the phase."""
+        from scipy.sparse import csr_matrix
+
         assert self._fixed is not None
-        matrix, kept = self._fixed.astype(complex), len(self.interface)
-        beyond = self._body.beyond
-        if len(beyond.pairs):
-            ways = beyond.motion_matrix(phase**self._body.periods)[:, self._kept]
-            matrix += (ways.conj().T @ ways.multiply(beyond.springs[:, None])).toarray()
-        if len(matrix) == kept:
+        base, kept = self._base, len(self.interface)
+        images = np.arange(len(self._imaged))
+        shape = len(images), base
+        turn = csr_matrix((phase**self._periods, (images, self._imaged)), shape=shape)  # from disks to their images
+        columns = self._fixed[:, :base] + self._fixed[:, base:] @ turn
+        matrix = columns[:base] + turn.conj().T @ columns[base:]
+        if base == kept:
             return matrix
         return matrix[:kept, :kept] - matrix[:kept, kept:] @ np.linalg.solve(matrix[kept:, kept:], matrix[kept:, :kept])
+
+
+def _images(body: Body) -> tuple[np.ndarray, np.ndarray, Network]:
+    """Disks (m,) that have images, how many periods ahead (m,) these are, and the contacts across sides with images.
+
+    A contact with a disk behind is that of this disk with an image ahead.
+    """
+    beyond, ahead = body.beyond, body.periods > 0
+    pairs, row = beyond.pairs.copy(), np.arange(len(body.periods))
+    of = np.column_stack([pairs[row, ahead.astype(int)], np.abs(body.periods)])
+    images, number = np.unique(of, axis=0, return_inverse=True)
+    pairs[row, ahead.astype(int)] = body.within.disks + number.ravel()
+    disks, periods = images.T
+    return disks, periods, beyond._replace(disks=body.within.disks + len(disks), pairs=pairs)
 
 
 def _stiffness(network: Network) -> csc_matrix:

@@ -34,7 +34,7 @@ def test_one_factorisation_condenses_as_dense_algebra_does(held) -> None:
     for condensed in (row.condensed, end_of(end_scene(case, "right"), row)):
         assert isinstance(condensed, Condensed)
         condensed.at(oscillation)
-        expected = dense(condensed._body, condensed.interface, oscillation, phase)
+        expected = dense(condensed.body, condensed.interface, oscillation, phase)
         np.testing.assert_allclose(condensed.stiffness(phase), expected, atol=1e-9 * np.abs(expected).max())
 
 
@@ -46,7 +46,7 @@ def test_parts_that_are_not_connected_condense_alike() -> None:
     row = BrickInRow(scene.ground, "right")
     row.condensed.at(Oscillation(30.0, 0.0))
     found = row.condensed.stiffness(1.0)
-    expected = dense(row.condensed._body, row.condensed.interface, Oscillation(30.0, 0.0), 1.0)
+    expected = dense(row.condensed.body, row.condensed.interface, Oscillation(30.0, 0.0), 1.0)
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected).max())
 
 

@@ -9,7 +9,7 @@ from small_cases import GRAINS, small
 
 from dembound.disks.scene import build, ground_of
 from dembound.outside.layer import Absorption
-from dembound.studies.reflection import beyond
+from dembound.studies.reflection import beyond, measure_side
 from dembound.studies.reflection.bricks import BrickInRow
 from dembound.studies.reflection.continuum_end import ContinuumEnd, beside_elements, copies_of
 from dembound.studies.reflection.meter import Meter
@@ -68,3 +68,17 @@ def test_copies_of_a_brick_as_one_brick_are_the_same_packing(name) -> None:
     for kind in found[0].kinds:
         np.testing.assert_allclose(found[1].same[kind], found[0].same[kind], rtol=1e-6)
         np.testing.assert_allclose(found[1].converted[kind], found[0].converted[kind], rtol=1e-6, atol=1e-20)
+
+
+def test_beside_a_narrow_body_only_waves_along_the_normal_are_measured() -> None:
+    """Periodic and as wide as one element: its ties have the mean motion, as in a run."""
+    lateral = {"type": "periodic"}
+    ends = {"right": {"type": "outside"}, "left": {"type": "viscous"}, "bottom": lateral, "top": lateral}
+    case = small({**GRAINS, "boundary": ends, "outside": {"element": 4.0}})
+    found = measure_side(case, "right", [0.0, 30.0], [30.0])
+    assert found.found.angles.tolist() == [0.0]
+    beside = measure_side(case, "left", [0.0, 30.0], [30.0])
+    assert beside.found.angles.tolist() == [0.0, 30.0]
+    _, reflections = beside.continuum
+    assert reflections.angles.tolist() == [0.0]
+    assert 0.0 < reflections.total("p")[0, 0] < 1e-3 < beside.found.total("p")[0, 0]

@@ -10,6 +10,7 @@ from dembound.errors import CaseError
 from dembound.studies.reflection import measure_side, measured_sides
 from dembound.studies.reflection.bricks import end_scene
 from dembound.studies.reflection.meter import Meter, Reflections
+from dembound.studies.reflection.smeared import by_smeared_supports
 
 DIAMETER, SPEED = 0.5, 1000.0
 LATTICE = {
@@ -86,6 +87,17 @@ def test_oblique_incidence_is_that_of_a_continuum_for_long_waves(kind) -> None:
     expected = [dict(zip(("p", "s"), by_continuum(angle, kind, math.sqrt(0.5)), strict=True)) for angle in angles]
     np.testing.assert_allclose(found.same[kind][0], [each[kind] for each in expected], rtol=2e-4, atol=1e-6)
     np.testing.assert_allclose(found.converted[kind][0], [each[other] for each in expected], rtol=2e-4, atol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["p", "s"])
+def test_a_quick_answer_is_that_of_the_continuum(kind) -> None:
+    """To rounding, the root of it where a wave along the side is about to run: S at 45°."""
+    angles = [0.0, 10.0, 30.0, 45.0, 60.0, 75.0]
+    found = by_smeared_supports(end_scene(small(LATTICE), "right"), "right", [1.0, 50.0], angles)
+    expected = np.array([by_continuum(angle, kind, math.sqrt(0.5)) for angle in angles]).T
+    for frequency in (0, 1):
+        np.testing.assert_allclose(found.same[kind][frequency], expected["ps".index(kind)], rtol=1e-9, atol=5e-8)
+        np.testing.assert_allclose(found.converted[kind][frequency], expected["sp".index(kind)], rtol=1e-9, atol=5e-8)
 
 
 def test_continuum_formula_gives_the_published_amplitudes() -> None:
