@@ -144,9 +144,8 @@ def _material(case: DiskCase, ground: PackedMaterial) -> Material:
     p, s = math.sqrt(tensor[0, 0] / density), math.sqrt(tensor[3, 3] / density)
     moduli = ground.moduli
     ratio = 0.5 * (p / s) ** 2  # a square lattice whose disks turn freely has G = k_s/2
-    given = case.material.model_dump(
-        exclude_unset=True, exclude={"emod", "pb_emod", "match", "kratio", "pb_kratio", "locked_in"}
-    )
+    replaced = {"emod", "pb_emod", "match", "kratio", "pb_kratio", "locked_in"}
+    given = case.material.model_dump(exclude_unset=True, exclude=replaced)
     given |= {
         "p_wave_speed": p,
         "contact_share": moduli.emod / (moduli.emod + moduli.pb_emod),

@@ -41,8 +41,8 @@ class Estimate:
         delays = [
             cause.errors[monitor][quantity] for cause in self.causes.found if cause.name in {GRID, STEP} & {*shares}
         ]
-        if len(delays) == 2 and all(isinstance(delay, np.ndarray) for delay in delays):
-            both = Cause(GRID, "", {monitor: {quantity: np.sum(delays, axis=0)}})
+        if len(delays) == 2 and not any(isinstance(delay, float) for delay in delays):
+            both = Cause(GRID, "", {monitor: {quantity: np.asarray(delays[0]) + np.asarray(delays[1])}})
             shares |= {GRID: both.share(monitor, quantity, own), STEP: 0.0}
         return math.sqrt(sum(share**2 for share in shares.values())) if shares else math.nan
 
