@@ -47,8 +47,8 @@ def cause(tables, name, record, step=1e-4):
 
 
 def test_a_driven_side_keeps_a_part_of_its_wave_and_sends_back_what_returns():
-    # R = (1 − 0.6)/(1 + 0.6) = 0.25 of a wave is reflected, so that 0.75 of it comes in, of which
-    # the error is a third; what comes down again is reflected after 2H/c = 40 ms. Half cells reflect tan²(qD/4), < 1e-3, more.
+    # R = (1 − 0.6)/(1 + 0.6) = 0.25 of a wave is reflected, so that 0.75 of it comes in, of which the error is a
+    # third; what comes down again is reflected after 2H/c = 40 ms. Half cells reflect tan²(qD/4), below 1e-3, more.
     up = pulse(TIME - 0.01)
     error = cause(LAYER, "bottom side", recorded(up))
     np.testing.assert_allclose(error["velocity"][:, 1], (pulse(TIME - 0.05) - up) / 3.0, atol=5e-3)
