@@ -315,8 +315,8 @@ def continua() -> Iterator[Scene]:
         "run": {"duration": 0.35},
     }
     finer = {"outside.accuracy": 2e-4, "packing.size": [60.0, 30.0], "packing.origin": [10.0, 30.0]}
-    yield Scene("continuum, canyon", canyon, "changed", finer)
-    yield Scene("continuum, canyon, poor elements", canyon | {"outside": {"accuracy": 0.02}}, "changed", finer)
+    yield Scene("continuum A canyon", canyon, "changed", finer)
+    yield Scene("continuum A canyon, poor elements", canyon | {"outside": {"accuracy": 0.02}}, "changed", finer)
     bench: Tables = {
         "packing": lattice(40.0, 25.0, 1.0),
         "material": ISOTROPIC,
@@ -330,7 +330,7 @@ def continua() -> Iterator[Scene]:
         "monitor": monitors(crest=(18.5, 24.5), face=(23.5, 17.5), floor=(36.5, 12.5)),
         "run": {"duration": 0.2},
     }
-    yield Scene("continuum, bench", bench)
+    yield Scene("continuum A bench", bench)
 
 
 def blasts() -> Iterator[Scene]:

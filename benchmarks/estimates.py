@@ -1,6 +1,6 @@
 """How near estimates of errors are to the true ones, on some seventy small scenes of disks.
 
-    python benchmarks/estimates.py [--scenes lamb "bar A" ...] [--json FILE] [--markdown]
+    python benchmarks/estimates.py [--scenes lamb "bar A" ...] [--json FILE]
 
 Each scene is run, its error is estimated, and measured with its reference: the same disks with sides so far away that
 nothing returns, which gives the error of the sides alone, disks three times smaller, or an exact solution. Errors are
@@ -199,6 +199,8 @@ def main() -> None:
     parser.add_argument("--scenes", nargs="+", default=[], help="those whose names begin so; by default all")
     parser.add_argument("--json", type=Path, default=Path("results/benchmarks/estimates.json"))
     options = parser.parse_args()
+    from dembound.errors import DemboundError
+
     rows: list[dict[str, Any]] = []
     missing: list[str] = []
     for scene in scenes():
@@ -207,8 +209,8 @@ def main() -> None:
         began = time.process_time()
         try:
             own, lacking = measured(scene)
-        except Exception as error:
-            missing.append(f"{scene.name}: {error!r}")
+        except DemboundError as error:
+            missing.append(f"{scene.name}: {error}")
             print(missing[-1], file=sys.stderr, flush=True)
             continue
         rows += own

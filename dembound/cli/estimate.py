@@ -20,10 +20,17 @@ Budget = Annotated[
 ]
 
 
+SecondSeed = Annotated[
+    bool,
+    typer.Option("--second-seed", help="Run once more with another random packing: how much depends on it."),
+]
+
+
 @app.command("estimate", rich_help_panel="Results")
 def estimate(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Folders of results of complete runs.")],
     budget: Budget = None,
+    second_seed: SecondSeed = False,
     threads: Threads = None,
 ) -> None:
     """Estimate how wrong runs are: by their sides, their grid and their time step, at every monitor.
@@ -36,7 +43,7 @@ def estimate(
     prepare_computing(threads)
     for path in results:
         folder = Folder.of(path.parent if path.suffix == ".h5" else path).final
-        _show(folder, estimate_results(folder, budget))
+        _show(folder, estimate_results(folder, budget, second_seed))
 
 
 def print_estimate(folder: Path, budget: float | None = None) -> None:

@@ -31,8 +31,7 @@ from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import DiskScene, boundary_medium, build
 from dembound.laws import Moduli
 from dembound.packings.square import Square
-from dembound.studies.estimate.matched_sides import FREQUENCIES, Reflected, factor_for, reflected
-from dembound.studies.reflection.arrivals import frequencies_of
+from dembound.studies.estimate.matched_sides import Reflected, factor_for, reflected
 
 CELLS = 4
 """Smallest number of particles across a hole."""
@@ -144,9 +143,8 @@ def _material(case: DiskCase, ground: PackedMaterial) -> Material:
     p, s = math.sqrt(tensor[0, 0] / density), math.sqrt(tensor[3, 3] / density)
     moduli = ground.moduli
     ratio = 0.5 * (p / s) ** 2  # a square lattice whose disks turn freely has G = k_s/2
-    given = case.material.model_dump(
-        exclude_unset=True, exclude={"emod", "pb_emod", "match", "kratio", "pb_kratio", "locked_in"}
-    )
+    replaced = {"emod", "pb_emod", "match", "kratio", "pb_kratio", "locked_in"}
+    given = case.material.model_dump(exclude_unset=True, exclude=replaced)
     given |= {
         "p_wave_speed": p,
         "contact_share": moduli.emod / (moduli.emod + moduli.pb_emod),
@@ -190,10 +188,9 @@ def _load(load: Load, scene: DiskScene, cell: float, sides: _Sides) -> Load:
 def _with_equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> Coarser:
     """The case with dashpots that reflect as much, and springs as stiff, as those of the scene of the finer case."""
     own = build(case)
-    shares = {
-        side: reflected(scene, side, time_step) for side, table in case.boundary.items() if table.factors
-    }  # fmt: skip
-    weight = _weight_of_mass(shares, scene, own)
+    shares = {side: reflected(scene, side, time_step) for side, table in case.boundary.items() if table.factors}
+    halved = {side: found for side, found in shares.items() if _can_halve(case.boundary[side])}
+    weight = _weight_of_mass(halved, build(Coarser(case, 0.0).with_whole_cells), time_step)
     boundary = {
         side: _equal_side(table, side, shares[side], weight > 0.0, own, scene) if side in shares else table
         for side, table in case.boundary.items()
@@ -201,30 +198,23 @@ def _with_equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> Coa
     return Coarser(replace(case, boundary=boundary), weight)
 
 
-def _weight_of_mass(shares: Mapping[str, Mapping[Motion, Reflected]], finer: DiskScene, own: DiskScene) -> float:
-    """What sides of the finer scene reflect out of phase, over what the lattice's whole cells reflect, see `Coarser`.
+def _weight_of_mass(shares: Mapping[str, Mapping[Motion, Reflected]], whole: DiskScene, time_step: float) -> float:
+    """What sides of a finer scene reflect out of phase, over what the lattice's whole cells reflect, see `Coarser`.
 
-    These reflect tan(qD/4). The mean over sides and motions; 0 where the dashpots reflect more in phase.
+    time_step : s, with which lattices are stable that have larger disks. The mean over sides and motions; 0 where the
+    dashpots reflect more in phase.
     """
-    known = [
-        (share, speed)
-        for side, both in shares.items()
-        if _can_halve(own.case.boundary[side])
-        for share, speed in ((both[motion], _speed(finer, side, motion)) for motion in both)
-        if math.isfinite(speed)
-    ]
-    if sum(share.out_of_phase**2 for share, _ in known) <= sum(share.dashpots**2 for share, _ in known):
+    finer = [share for both in shares.values() for share in both.values()]
+    if sum(share.out_of_phase**2 for share in finer) <= sum(share.dashpots**2 for share in finer):
         return 0.0
-    omega = 2.0 * np.pi * frequencies_of(finer.case, finer.ground, FREQUENCIES)
-    whole = [np.tan(np.minimum(0.25 * omega / speed * own.ground.brick.mean_diameter, 1.0)) for _, speed in known]
-    return float(
-        np.mean([share.out_of_phase / np.sqrt(np.mean(each**2)) for (share, _), each in zip(known, whole, strict=True)])
-    )
-
-
-def _speed(scene: DiskScene, side: str, motion: Motion) -> float:
-    """Speed (m/s) of waves along the normal of a side."""
-    return scene.ground.wave_speeds(normal_axis(side))[0 if motion == "p" else 1]
+    coarse = {side: reflected(whole, side, time_step) for side in shares}
+    ratios = [
+        share.out_of_phase / coarse[side][motion].out_of_phase
+        for side, both in shares.items()
+        for motion, share in both.items()
+        if motion in coarse[side] and coarse[side][motion].out_of_phase > 0.0
+    ]
+    return float(np.mean(ratios)) if ratios else 0.0
 
 
 def _can_halve(table: Boundary) -> bool:

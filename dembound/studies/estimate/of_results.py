@@ -30,15 +30,16 @@ LEAST_SAMPLES = 8
 """Fewest samples of a history whose error is estimated."""
 
 
-def estimate_results(folder: Path, budget: float | None = None) -> Estimate:
+def estimate_results(folder: Path, budget: float | None = None, second_seed: bool = False) -> Estimate:
     """Estimate the error of a complete run; writes ``estimate.h5`` and the entry ``error_estimate`` of its summary.
 
     Parameters
     ----------
-    folder : of the results. budget : share of the run's work that may be spent; None: see `causes_of`.
+    folder : of the results. budget : share of the run's work that may be spent; None: see `causes_of`. second_seed :
+    whether a second run with another random packing is made, to find how much depends on it.
 
-    Raises CaseError for a run that is not complete or has no monitors, or a budget that is none, and RecordError for a
-    record that cannot be read.
+    Raises CaseError for a run that is not complete or has no monitors, a budget that is none, or a second seed of a
+    packing that has none, and RecordError for a record that cannot be read.
     """
     if budget is not None and not 0.0 < budget < np.inf:
         raise CaseError([f"--budget: is {budget:g}, must be above 0"])
@@ -51,6 +52,10 @@ def estimate_results(folder: Path, budget: float | None = None) -> Estimate:
     case = replace(case, run=case.run.model_copy(update={"duration": case.run.duration * steps_in_time}))
     work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
     causes = causes_of(case, recorded, summary["time_step"], work, budget)
+    if second_seed:
+        from dembound.studies.estimate.packing import cause_of_packing
+
+        causes += cause_of_packing(case, recorded, work)
     found = Estimate(recorded, causes + Causes([], broken, list(_law(case, summary))))
     _write(found, folder / FILE)
     with replacing(folder / "summary.json") as part:

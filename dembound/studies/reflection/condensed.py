@@ -186,11 +186,15 @@ def _last_block(matrix: csc_matrix, first: int) -> np.ndarray:
 
     if first == 0:
         return matrix.toarray()
-    factors = splu(matrix, permc_spec="NATURAL", **SYMMETRIC)
-    last = factors.perm_c[first:] - first
-    if last.min() >= 0 and np.array_equal(factors.perm_c, factors.perm_r):
-        product = factors.L[first:, first:].toarray() @ factors.U[first:, first:].toarray()
-        return product[np.ix_(last, last)]
+    try:
+        factors = splu(matrix, permc_spec="NATURAL", **SYMMETRIC)
+    except RuntimeError:  # a pivot on the diagonal is zero
+        factors = None
+    if factors is not None and np.array_equal(factors.perm_c, factors.perm_r):
+        last = factors.perm_c[first:] - first
+        if last.min() >= 0:
+            product = factors.L[first:, first:].toarray() @ factors.U[first:, first:].toarray()
+            return product[np.ix_(last, last)]
     inner = splu(
         matrix[:first, :first].tocsc(), permc_spec="MMD_AT_PLUS_A"
     )  # rows that are not connected change places

@@ -1,0 +1,54 @@
+"""How much the motion depends on the seed of a random packing: a second run, with another one.
+
+Two packings of the same recipe are two samples of the same rock. If the motion of each differs from the mean of all by
+errors of the same size, independent of each other, their difference is √2 times as large as either.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from dembound.casefile import Case
+from dembound.casefile.disks import DiskCase
+from dembound.errors import CaseError
+from dembound.results.histories import Quantity
+from dembound.running import Progress
+from dembound.studies.chart.measure import measure
+from dembound.studies.estimate.causes import Cause, Causes, Recorded
+
+PACKING = "packing"
+
+MOTIONS: tuple[Quantity, ...] = ("velocity", "displacement")
+
+
+def cause_of_packing(case: Case, recorded: Mapping[str, Recorded], work: float) -> Causes:
+    """What the seed of a random packing adds to the motion of its monitors, from one more run as long as the case's.
+
+    case : to the end of the run. work (particle-steps) : of the run. Raises CaseError for a packing without a seed, and
+    the errors of runs.
+    """
+    from scipy.interpolate import CubicSpline
+
+    seed = getattr(case.packing, "seed", None) if isinstance(case, DiskCase) else None
+    if seed is None:
+        raise CaseError(["--second-seed: the case has no random packing, so that nothing depends on a seed"], case.name)
+    assert isinstance(case, DiskCase)
+    ended = {"until": type(case.run).model_fields["until"].default, "checkpoint": 0.0}
+    packing = case.packing.model_copy(update={"seed": seed + 1})
+    other = replace(case, packing=packing, run=case.run.model_copy(update=ended))
+    outcome = measure(other, Progress())[0]
+    errors = {}
+    for name, own in recorded.items():
+        gauge = outcome.gauges[name]
+        times = np.minimum(own.time, gauge.time[-1])
+        errors[name] = {
+            quantity: (own.values[quantity] - CubicSpline(gauge.time, gauge.of(quantity)[:, :2])(times))
+            / math.sqrt(2.0)
+            for quantity in MOTIONS
+        }
+    words = f"from a run with the seed {seed + 1}: the difference over √2"
+    return Causes([Cause(PACKING, words, errors)], cost=outcome.work / work)
