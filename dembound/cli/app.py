@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from dembound.casefile.disks import DiskCase
 
 EXIT_CODES = (  # in one line: line breaks within a paragraph stay in the help
-    "Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration or view failed, or no "
-    "choice is as accurate as --error asks; 4 a packing could not be made; 5 a file could not be read or "
+    "Exit codes: 0 done; 1 a bug; 2 bad input, nothing was written; 3 a run, calibration, view or choice failed; 4 a "
+    "packing could not be made; 5 a file could not be read or "
     "written; 130 stopped with Ctrl-C, 143 by SIGTERM, 129 by SIGHUP."
 )
 CANNOT_WRITE = 5

@@ -106,9 +106,10 @@ def candidates(
         yield from (choice for choice in each if keeps(companions.case, choice.case, kept))
 
 
-def may_change_diameter(case: DiskCase) -> bool:
-    """Whether the disks only stand for the ground: on a lattice, whose bonds do not break and contacts do not open."""
-    return isinstance(case.packing, Square) and case.material.law == "elastic"
+def may_change_diameter(case: DiskCase, kept: Sequence[str]) -> bool:
+    """Whether disks only stand for the ground, on a lattice whose bonds do not break, and their radius is not kept."""
+    is_kept = any(key in ("packing", "packing.radius") for key in kept)
+    return isinstance(case.packing, Square) and case.material.law == "elastic" and not is_kept
 
 
 def _larger(case: DiskCase, factor: float) -> dict[str, Any]:

@@ -127,16 +127,16 @@ class _Search:
                 found += self._with_error(candidate)
                 if found and SAFETY * found[-1][1].worst <= self.bound:
                     return found[-1]
-        if not found and self.too_large:
-            nearest = min(self.too_large, key=lambda factor: self.too_large[factor])
-            found = [each for candidate in self._of(nearest) for each in self._with_error(candidate)]
+        for factor in sorted(self.too_large, key=lambda factor: self.too_large[factor]):
+            if not found:
+                found = [each for candidate in self._of(factor) for each in self._with_error(candidate)]
         if not found:
             raise CaseError(["--error: no choice keeps the values of --keep and --set"], self.companions.case.name)
         return min(found, key=lambda each: each[1].worst)
 
     def _by_cost(self) -> Iterator[Candidate]:
         """Choices by cost; those with the next smaller disks are only made when their cost has been reached."""
-        factors = list(FACTORS) if may_change_diameter(self.companions.case) else [1.0]
+        factors = list(FACTORS) if may_change_diameter(self.companions.case, self.kept) else [1.0]
         number, least = count(), 0.0
         waiting: list[tuple[float, int, Candidate | float]] = [(0.0, next(number), factors.pop(0))]
         while waiting:

@@ -1,0 +1,51 @@
+"""The options --error and --keep of check and run."""
+
+import json
+
+import pytest
+
+from dembound.cli.accuracy import bound_of
+from dembound.errors import CaseError
+from tests.unit.studies.accuracy.test_choice import BAR, small
+
+
+@pytest.fixture
+def case(tmp_path):
+    """A bar whose dashpots return a quarter of the wave."""
+    path = tmp_path / "bar.toml"
+    path.write_text(small(BAR).text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(("text", "bound"), [("1%", 0.01), ("0.01", 0.01), (" 2.5 %", 0.025), (None, None)])
+def test_bounds_are_shares_or_per_cent(text, bound) -> None:
+    assert bound_of(text, None) == (None if bound is None else pytest.approx(bound))
+
+
+@pytest.mark.parametrize("text", ["0", "1", "100%", "-1%", "nan", "small", "1%%", "%", ""])
+def test_other_bounds_are_one_line(text) -> None:
+    with pytest.raises(CaseError, match="^--error: is "):
+        bound_of(text, None)
+
+
+def test_keep_without_error_is_refused(dembound, case) -> None:
+    answer = dembound("check", case, "--keep", "packing")
+    assert (answer.code, answer.err) == (2, "--keep: needs --error, without which nothing is changed\n")
+
+
+def test_a_run_has_the_chosen_case_and_its_estimate(dembound, case, tmp_path) -> None:
+    answer = dembound("run", case, "--error", "5%", "--keep", "packing", "--set", "output.pictures=false")
+    assert answer.code == 0
+    assert "bar: boundary.right" in answer.out
+    assert "half_mass = true" in answer.out
+    summary = json.loads((tmp_path / "results/bar/summary.json").read_text())
+    found = [each["velocity"]["total"] for each in summary["error_estimate"]["monitors"].values()]
+    assert 0.0 < max(found) < 0.05
+
+
+def test_a_bound_that_nothing_holds_ends_with_the_best(dembound, case, tmp_path) -> None:
+    answer = dembound("run", case, "--error", "1%", "--keep", "packing.radius", "--set", "boundary.right.beta_p=0.6",
+                      "--keep", "packing.size")  # fmt: skip
+    assert answer.code == 3
+    assert "--error: no choice keeps 1 %; the best of" in answer.err
+    assert not (tmp_path / "results").exists()

@@ -1,0 +1,101 @@
+"""The cheapest choice within an error, of a bar under a P wave."""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dembound.casefile.disks import DiskCase
+from dembound.errors import CaseError
+from dembound.running import Progress
+from dembound.studies.accuracy import Choice, choose
+from dembound.studies.accuracy.choice import SAFETY
+from dembound.studies.chart.measure import Gauges, measure
+from tests.small_cases import PUSHED, SPALLING, small
+
+BAR = PUSHED | {
+    "packing": {"pattern": "A", "size": [30.0, 1.5], "radius": 0.25},
+    "boundary": {"left": {"type": "velocity", "wave_p": "push"}, "right": {"type": "viscous", "beta_p": 0.6}},
+    "motion": {"held": ["y", "rotation"]},
+    "wave": {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.03}},
+    "monitor": [{"name": "near", "position": [3.75, 0.75]}, {"name": "back", "position": [24.75, 0.75]}],
+    "run": {"duration": 0.07},
+}
+"""Waves of 60 disks; factor 0.6 of the dashpots returns (1 - 0.6)/(1 + 0.6) = 25 % of the velocity."""
+
+RETURNED = (1.0 - 0.6) / (1.0 + 0.6)
+
+
+def bar() -> DiskCase:
+    case = small(BAR)
+    assert isinstance(case, DiskCase)
+    return case
+
+
+@cache
+def chosen() -> Choice:
+    return choose(bar(), 0.02)
+
+
+def exact(case: DiskCase, gauges: Gauges, name: str) -> np.ndarray:
+    """The velocity of a plane wave from the first disk of the given case, at the times of a history."""
+    way = {"near": 3.75, "back": 24.75}[name] - 0.25
+    return np.asarray(case.wave["push"].velocity(gauges[name].time - way / 1000.0))
+
+
+def true_error(given: DiskCase, case: Any) -> float:
+    """Largest RMS of the velocity's error over that of the velocity."""
+    gauges = measure(case, Progress())[0].gauges
+    errors = [gauges[name].velocity[:, 0] - exact(given, gauges, name) for name in gauges]
+    sizes = [exact(given, gauges, name) for name in gauges]
+    return max(float(np.linalg.norm(e) / np.linalg.norm(s)) for e, s in zip(errors, sizes, strict=True))
+
+
+def test_the_choice_is_as_accurate_as_asked_for_where_the_case_is_not() -> None:
+    case = bar()
+    assert true_error(case, case) > 0.9 * RETURNED / 2**0.5  # the echo comes back to one monitor in full
+    choice = chosen()
+    assert choice.holds
+    assert true_error(case, choice.case) < 0.02
+    assert choice.cost <= choice.own_cost * 1.01  # matched dashpots need no more steps
+
+
+def test_only_what_may_change_does() -> None:
+    case, changed = bar(), chosen().case
+    for name in ("material", "wave", "motion", "load", "hole", "run", "output"):
+        assert getattr(changed, name) == getattr(case, name)
+    assert changed.side("left") == case.side("left")
+    assert [monitor.name for monitor in changed.monitor] == ["near", "back"]
+
+
+def test_a_loose_bound_leaves_the_sides_as_they_are() -> None:
+    """0.25 < bound/SAFETY, with larger disks only if their error leaves it."""
+    choice = choose(bar(), 0.6, ["packing"])
+    assert choice.holds
+    assert choice.changes == []
+
+
+def test_kept_keys_remain_and_the_best_is_returned_where_nothing_holds() -> None:
+    case = bar()
+    choice = choose(case, 0.01, ["boundary", "packing"])
+    assert not choice.holds
+    assert SAFETY * choice.error > 0.01
+    assert choice.case.packing == case.packing
+    assert choice.case.boundary == case.boundary
+    assert choice.by["sides"] == pytest.approx(true_error(case, case), rel=0.1)
+
+
+@pytest.mark.parametrize("bound", [0.0, 1.0, -0.1, float("nan")])
+def test_bounds_are_shares(bound: float) -> None:
+    with pytest.raises(CaseError, match="--error: is"):
+        choose(bar(), bound)
+
+
+def test_bars_and_cases_without_monitors_are_refused() -> None:
+    with pytest.raises(CaseError, match="for cases of disks"):
+        choose(small(SPALLING), 0.01)
+    with pytest.raises(CaseError, match="needs a monitor"):
+        choose(small({key: value for key, value in BAR.items() if key != "monitor"}), 0.01)
+    with pytest.raises(CaseError, match=r"--keep: packing\.radios is no key"):
+        choose(bar(), 0.01, ["packing.radios"])
