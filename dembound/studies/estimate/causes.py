@@ -35,12 +35,14 @@ class Cause:
     """One cause of errors.
 
     words : how its errors were found. errors : monitor -> quantity -> the part of the recorded values (k, c) that is
-    due to it, or, where only its size is known, a number: its RMS over that of the recorded values.
+    due to it, or, where only its size is known, a number: its RMS over that of the recorded values. is_sample : whether
+    they are one sample of many, of which only the size is the error's.
     """
 
     name: str
     words: str
     errors: Mapping[str, Mapping[str, np.ndarray | float]]
+    is_sample: bool = False
 
     def share(self, monitor: str, quantity: str, recorded: Recorded) -> float:
         """RMS of its error over that of the recorded values, of the component with the largest; nan if not known."""

@@ -36,7 +36,7 @@ class Estimate:
         """RMS of all errors over that of the recorded values; nan if none is known.
 
         Histories add up, as those of the grid and of the time step have opposite signs; where only the size of an error
-        is known, squares do.
+        is known, or it is one of many that might be, squares do.
         """
         own = self.recorded[monitor]
         histories, sizes = self._errors(monitor, quantity)
@@ -47,9 +47,14 @@ class Estimate:
 
     def _errors(self, monitor: str, quantity: str) -> tuple[list[np.ndarray], list[float]]:
         """The errors of all causes: histories (k, c), and where only they are known sizes."""
-        found = [cause.errors.get(monitor, {}).get(quantity, math.nan) for cause in self.causes.found]
-        sizes = [error for error in found if isinstance(error, float) and math.isfinite(error)]
-        return [error for error in found if not isinstance(error, float)], sizes
+        histories, sizes = [], []
+        for cause in self.causes.found:
+            error = cause.errors.get(monitor, {}).get(quantity, math.nan)
+            if isinstance(error, float) or cause.is_sample:
+                sizes.append(cause.share(monitor, quantity, self.recorded[monitor]))
+            else:
+                histories.append(error)
+        return histories, [size for size in sizes if math.isfinite(size)]
 
     def quantities(self, monitor: str) -> list[str]:
         """Quantities of a monitor that has any."""
@@ -57,7 +62,7 @@ class Estimate:
 
     @property
     def worst(self) -> float:
-        """Largest total of velocities and displacements at all monitors; nan if nothing is known."""
+        """Largest total at all monitors; nan if nothing is known."""
         found = [self.total(name, quantity) for name in self.recorded for quantity in self.quantities(name)]
         known = [share for share in found if math.isfinite(share)]
         return max(known, default=math.nan)

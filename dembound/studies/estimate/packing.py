@@ -41,7 +41,7 @@ def cause_of_packing(case: Case, recorded: Mapping[str, Recorded], work: float) 
     packing = case.packing.model_copy(update={"seed": seed + 1})
     other = replace(case, packing=packing, run=case.run.model_copy(update=ended))
     outcome = measure(other, Progress())[0]
-    errors = {}
+    errors: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in recorded.items():
         gauge = outcome.gauges[name]
         times = np.minimum(own.time, gauge.time[-1])
@@ -51,4 +51,4 @@ def cause_of_packing(case: Case, recorded: Mapping[str, Recorded], work: float) 
             for quantity in MOTIONS
         }
     words = f"from a run with the seed {seed + 1}: the difference over √2"
-    return Causes([Cause(PACKING, words, errors)], cost=outcome.work / work)
+    return Causes([Cause(PACKING, words, errors, is_sample=True)], cost=outcome.work / work)
