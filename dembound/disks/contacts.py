@@ -157,7 +157,7 @@ class ContactList:
         limits = elastic if reference else self.limits
         u = self._spread(displacement)
         still = np.zeros_like(u)
-        if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 2))) > 0:
+        if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 2)), 0) > 0:
             kernel.note_places(u, 0, self.arrays)
 
     def add_forces(self, total: np.ndarray) -> None:
