@@ -27,7 +27,7 @@ def motion(steps: int, size: float = 0.3) -> list[tuple[np.ndarray, np.ndarray]]
 def pushed(pairs: Contacts, limits: Limits, u: np.ndarray, v: np.ndarray, number: int = 0) -> np.ndarray:
     """One push by the kernel; what friction and cracks took."""
     lost = np.full((CHUNKS, 2), np.nan)
-    push(u, v, STEP, number, pairs, limits, lost)
+    push(u, v, STEP, number, pairs, limits, lost, 0)
     return lost.sum(axis=0)
 
 

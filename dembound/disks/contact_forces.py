@@ -117,5 +117,5 @@ def _pushed(contacts: Contacts, u: np.ndarray, *, slid: bool) -> Contacts:
         cracked=np.full(count, -1),
         force=np.empty((4, count)),
     )
-    push(u, u, 0.0, 0, copies, UNYIELDING, np.empty((CHUNKS, 2)))  # zero step: at rest
+    push(u, u, 0.0, 0, copies, UNYIELDING, np.empty((CHUNKS, 2)), 0)  # zero step: at rest
     return copies

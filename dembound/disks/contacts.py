@@ -118,7 +118,7 @@ class ContactList(PairList):
         limits = elastic if reference else self.limits
         u = self.spread(displacement)
         still = np.zeros_like(u)
-        if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 2))) > 0:
+        if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 2)), 0) > 0:
             kernel.note_places(u, 0, self.arrays)
 
     def add_forces(self, total: np.ndarray) -> None:

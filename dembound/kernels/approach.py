@@ -9,6 +9,7 @@ the displacements of each cell. Disks in other cells are so far apart that they 
 import numpy as np
 from numba import njit, prange
 
+from dembound.kernels.apart import apart
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, largest
 
 ACROSS = ((0, 0), (1, 0), (-1, 1), (0, 1), (1, 1))
@@ -68,6 +69,7 @@ def moved(u, begin, origin):
     return np.sqrt(largest(most))
 
 
+@apart
 @njit(**PARALLEL)
 def approach(u, begin, origin, cells):
     """Upper bound (m) of the relative displacement since the origin (2, n) of two disks that may meet.

@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit, prange
 
+from dembound.kernels.apart import apart
 from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS, DONE, FAST, LIST_ENDS, PARALLEL, U, column_sum, largest
 from dembound.kernels.contacts import ends_force, note_places
@@ -34,7 +35,7 @@ def check(bonded, u, u_next, v):
 def push(bonded, u, u_next, v, number, step, work):
     """Compute the forces of all pairs; returns the number of bonds that broke, if the loop is to stop at breaks."""
     lost = bonded.lost
-    breaks = push_pairs(u, v, step, number, bonded.contacts, bonded.limits, lost)
+    breaks = push_pairs(u, v, step, number, bonded.contacts, bonded.limits, lost, 0)
     if breaks > 0:
         note_places(u, number, bonded.contacts)
     for way in range(2):
@@ -43,6 +44,7 @@ def push(bonded, u, u_next, v, number, step, work):
     return breaks if bonded.stops else 0
 
 
+@apart
 @njit(**PARALLEL)
 def _move(u, v, contacts, body, u_next, fastest, damped):
     """One step of the contacts' particles, see `move_particle`.

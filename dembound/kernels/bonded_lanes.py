@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit, prange
 
 from dembound.kernels import bonded as law
+from dembound.kernels.apart import apart
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
 from dembound.kernels.contacts import ends_force, note_places
 from dembound.kernels.contacts import push as push_others
@@ -114,6 +115,7 @@ def _move_blocks(rows, pairs, first, last, u, v, body, contacts, extra, u_next, 
     result[2] = 0.5 * body.step * late
 
 
+@apart
 @njit(**PARALLEL)
 def _move(u, v, rows, pairs, contacts, stray, stray_start, stray_end, extra, body, u_next, fastest, damped):
     """One step of all disks; fastest (chunks,) gets speeds, damped (chunks, 2) the work of local damping."""

@@ -10,11 +10,14 @@ U = np.uint64  # unsigned indices avoid numba's test for negative ones
 FASTMATH = {"contract", "nsz"}
 """Fused multiply-add only: it rounds less and does not depend on threads."""
 
-FAST: dict[str, Any] = {"cache": True, "fastmath": FASTMATH, "error_model": "numpy", "_nrt": False}
+FAST: dict[str, Any] = {
+    "cache": True, "fastmath": FASTMATH, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True,
+}  # fmt: skip
 """Compiler options of functions that run at every step: no reference counts for arrays, which the caller keeps.
 
 Counting takes two calls whenever an array is read from a bundle or passed to a function, in all as much time as moving
-a thousand nodes of a bar. Such functions cannot create arrays.
+a thousand nodes of a bar. Such functions cannot create arrays. The code by which C could call each function, which
+takes long to compile, is left out.
 """
 
 MAKES = FAST | {"_nrt": True}

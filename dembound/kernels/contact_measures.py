@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit, prange
 
+from dembound.kernels.apart import apart
 from dembound.kernels.common import CHUNKS, PARALLEL, U, column_sum, largest
 from dembound.kernels.contacts import BONDED, INTACT, REFERENCE, UPDATED
 from dembound.kernels.pair_strain import pair, reference_strain, updated_stretch
@@ -11,8 +12,9 @@ TURN = 0.01
 """Largest rotation of a pair under the law of small displacements, whose error is half its square."""
 
 
+@apart
 @njit(**PARALLEL)
-def slack(u, contacts, limits, keeps_slip=False):
+def slack(u, contacts, limits, keeps_slip):
     """Least relative motion (m) of two surfaces after which a pair leaves the elastic law; negative: it has left it.
 
     A pair leaves it where a contact opens, closes or slides, a bond reaches its strength, or, if geometry follows the

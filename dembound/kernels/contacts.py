@@ -16,6 +16,7 @@ the contact and of the bond. Force (4,) of a pair: x and y on i (the opposite on
 import numpy as np
 from numba import njit, prange
 
+from dembound.kernels.apart import apart
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
 from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain
 
@@ -115,8 +116,9 @@ def push_pair(c, u, v, step, number, contacts, limits):
     return rubbed, broken, breaks
 
 
+@apart
 @njit(**PARALLEL)
-def push(u, v, step, number, contacts, limits, lost, begin=0):
+def push(u, v, step, number, contacts, limits, lost, begin):
     """Fill contacts.force for displacements u (3, n) reached with velocities v (3, n) after a step (s).
 
     Contacts and bonds at their limits slide and break; number is that of the step. lost (chunks, 2) receives the energy
@@ -137,6 +139,7 @@ def push(u, v, step, number, contacts, limits, lost, begin=0):
     return breaks
 
 
+@apart
 @njit(**FAST)
 def note_places(u, number, contacts):
     """Record the positions, at displacements u (3, n), of the bonds that broke in step `number`."""

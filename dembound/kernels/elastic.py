@@ -16,6 +16,7 @@ so that N = √k_n n·Δu, S = √k_s (t·Δu − l_iθ_i − l_jθ_j), and the 
 import numpy as np
 from numba import njit, prange
 
+from dembound.kernels.apart import apart
 from dembound.kernels.approach import approach
 from dembound.kernels.common import CHUNKS, DONE, FAST, LAW_ENDS, LIST_ENDS, PARALLEL, U, largest
 from dembound.kernels.contact_measures import slack
@@ -65,6 +66,7 @@ def move_rows(rows, u, v, body, u_next, fastest, arms, damped):
     """
 
 
+@apart
 @njit(**PARALLEL)
 def _fill(rows, u, force):
     begin, start, neighbour, contact_type, constants = rows
@@ -89,6 +91,7 @@ def seam_forces(seam, u, v, force):
             force[s, 2] += moment
 
 
+@apart
 @njit(**PARALLEL)
 def _move(rows, u, v, body, u_next, fastest, arms, damped):
     begin, start, neighbour, contact_type, constants = rows

@@ -14,6 +14,7 @@ all copies have also has a mask of those that do. Contacts that no row shares, s
 import numpy as np
 from numba import njit, prange
 
+from dembound.kernels.apart import apart
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
 from dembound.kernels.elastic import fill_forces, move_rows
 from dembound.kernels.held_lanes import move_pair, moving_pair
@@ -183,6 +184,7 @@ def _move_blocks_and_more(rows, first, last, u, v, body, u_next, arms, result):
     result[2] = 0.5 * body.step * late
 
 
+@apart
 @njit(**PARALLEL)
 def _fill(rows, u, force):
     begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]
@@ -191,6 +193,7 @@ def _fill(rows, u, force):
         _force_blocks(rows, begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS, u, force)
 
 
+@apart
 @njit(**PARALLEL)
 def _move(rows, u, v, body, u_next):
     begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]
@@ -199,6 +202,7 @@ def _move(rows, u, v, body, u_next):
         _move_blocks(rows, begin + chunk * n // CHUNKS, begin + (chunk + 1) * n // CHUNKS, u, v, body, u_next)
 
 
+@apart
 @njit(**PARALLEL)
 def _move_and_more(rows, u, v, body, u_next, fastest, arms, damped):
     begin, end = rows.group_block[0], rows.group_block[rows.group_block.size - 1]

@@ -11,6 +11,7 @@ of width W give a moment pHW·θ for a rotation θ, which grows at the rate √(
 import numpy as np
 from numba import njit
 
+from dembound.kernels.apart import apart
 from dembound.kernels.common import FAST, MAKES, U
 from dembound.kernels.law import is_turning
 from dembound.kernels.tables import Followers
@@ -77,6 +78,7 @@ def side_rotations(u, followers):
     return means
 
 
+@apart
 @njit(**MAKES)
 def turn_forces(followers, u, v, load, step):
     """Rotate the forces with their sides at displacements u (3, n), in load (3, n); returns work (J) of half a step.

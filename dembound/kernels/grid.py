@@ -11,6 +11,7 @@ The sum of it with kinetic energy and the strain energy of the others is conserv
 from numba import get_thread_id, njit, prange
 
 from dembound.kernels import lane_step
+from dembound.kernels.apart import apart
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
 from dembound.kernels.elements import WITHIN, absorbing_forces, block_forces, gather, shape_of
 from dembound.kernels.lanes import LANES, at_most, choose, lane, load, splat, store
@@ -159,6 +160,7 @@ def _move_shared(blocks, force, first, last, u, v, body, u_next, taken):
     taken[3] = -0.5 * body.step * half
 
 
+@apart
 @njit(**PARALLEL)
 def _move_all_blocks(points, elements, blocks, absorber, force, space, taken, u, v, body, u_next):
     n = blocks.blocks
@@ -169,6 +171,7 @@ def _move_all_blocks(points, elements, blocks, absorber, force, space, taken, u,
             _move_blocks(points, elements, blocks, absorber, force, first, last, u, v, body, u_next, own, result)
 
 
+@apart
 @njit(**PARALLEL)
 def _move_all_shared(blocks, force, taken, u, v, body, u_next):
     n = blocks.start.size - 1
@@ -221,6 +224,7 @@ def _store_forces(points, elements, blocks, force, first, last, u, result, space
             slot += _STEP
 
 
+@apart
 @njit(**PARALLEL)
 def _fill(points, elements, blocks, force, space, u, result):
     n, m = blocks.blocks, blocks.start.size - 1
@@ -255,6 +259,7 @@ def _block_energies(points, elements, blocks, first, last, u, energy, space):
         energy[block] = -0.5 * _sum(doubled)
 
 
+@apart
 @njit(**PARALLEL)
 def _energies(points, elements, blocks, space, u, energy):
     n = energy.size

@@ -10,6 +10,7 @@ With p a translation and q the other component that moves, and w = q_j, less q_i
 import numpy as np
 from numba import njit, prange
 
+from dembound.kernels.apart import apart
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
 from dembound.kernels.lane_step import INLINED, kick, next_place, place_of, stray_forces
 from dembound.kernels.lanes import LANES, at_most, bits, choose, load, splat, store
@@ -115,6 +116,7 @@ def _move_blocks(rows, first, last, p, q, u, v, body, u_next):
         store(u_next[q], i, y)
 
 
+@apart
 @njit(**PARALLEL)
 def move_pair(rows, p, q, u, v, body, u_next):
     """One step of components p and q of all disks, without steady loads and local damping."""

@@ -8,10 +8,10 @@ from functools import wraps
 from typing import Any
 
 import numpy as np
-from numba import config, literal_unroll, njit, types
+from numba import config, njit, types
 from numba.extending import overload
 
-from dembound.kernels.common import DONE, FAST
+from dembound.kernels.common import FAST
 
 Kernel = Any
 """A compiled function."""
@@ -77,26 +77,6 @@ def across(tie, u, v, force):
     """
 
 
-def pull(ties, u, v, force):
-    """Fill force (k, 3) with the forces of all ties on the k supported nodes, see `across`."""
-    force[:] = 0.0
-    for tie in ties:
-        across(tie, u, v, force)
-
-
-@overload(pull)
-def _pull(ties, u, v, force):
-    if len(ties) == 0:
-        return lambda ties, u, v, force: None
-
-    def pull_all(ties, u, v, force):
-        force[:] = 0.0
-        for tie in literal_unroll(ties):
-            across(tie, u, v, force)
-
-    return pull_all
-
-
 @generic
 def turn(turning, u, v, load, step):
     """Rotate the forces that rotate with their sides, in load (3, n); returns its work (J) up to the whole step."""
@@ -108,31 +88,33 @@ def turning_work(turning, v, step):
 
 
 def _of_all(kernel: Kernel, *, returns: bool) -> Kernel:
-    """The function called for all laws of a tuple in turn; returns the largest number where it returns numbers.
+    """The function called for all laws, or ties, of a tuple in turn; returns the largest number where it returns any.
 
-    A single law is called directly: for a short bar, unrolling a loop takes a tenth of a step.
+    A law without such a kernel costs nothing, neither time nor compiling.
     """
 
     def call(laws: Any, *others: Any) -> Any:
         """Replaced by one of the functions below in compiled code; this one runs without compiling."""
-        done = [kernel(law, *others) for law in laws]
-        return max(done) if returns else None
+        done = [kernel(law, *others) for law in laws if kernel.kernels[type(law)] is not None]
+        return max(done, default=0) if returns else None
 
     def choose(laws: Any, *others: Any) -> Kernel:
+        places = [k for k, law in enumerate(laws) if kernel.kernels[law.instance_class] is not None]
+        if not places:
+            return (lambda laws, *others: 0) if returns else (lambda laws, *others: None)
+        place, after = places[0], places[0] + 1
+
         def one(laws, *others):  # type: ignore[no-untyped-def]
-            return kernel(laws[0], *others)
+            return kernel(laws[place], *others)
 
         def several(laws, *others):  # type: ignore[no-untyped-def]
-            for law in literal_unroll(laws):
-                kernel(law, *others)
+            kernel(laws[place], *others)
+            call(laws[after:], *others)
 
         def largest(laws, *others):  # type: ignore[no-untyped-def]
-            most = 0
-            for law in literal_unroll(laws):
-                most = max(most, np.int64(kernel(law, *others)))
-            return most
+            return max(np.int64(kernel(laws[place], *others)), np.int64(call(laws[after:], *others)))
 
-        return one if len(laws) == 1 else largest if returns else several
+        return one if len(places) == 1 else largest if returns else several
 
     overload(call, jit_options=_UNCACHED, strict=False)(choose)
     return call
@@ -146,26 +128,7 @@ _UNCACHED: Any = {name: value for name, value in FAST.items() if name != "cache"
 begin_all, move_all = _of_all(begin, returns=False), _of_all(move, returns=False)
 check_all, push_all = _of_all(check, returns=True), _of_all(push, returns=True)
 note_all, finish_all = _of_all(note, returns=False), _of_all(finish, returns=False)
-
-
-@njit(**FAST)
-def _no_begin(law):
-    pass
-
-
-@njit(**FAST)
-def _no_check(law, u, u_next, v):
-    return DONE
-
-
-@njit(**FAST)
-def _no_push(law, u, u_next, v, number, step, work):
-    return 0
-
-
-@njit(**FAST)
-def _no_note(law, index, u, log):
-    pass
+across_all = _of_all(across, returns=False)
 
 
 @njit(**FAST)
@@ -183,10 +146,10 @@ def is_law(
     *,
     move: Kernel,
     finish: Kernel,
-    begin: Kernel = _no_begin,
-    check: Kernel = _no_check,
-    push: Kernel = _no_push,
-    note: Kernel = _no_note,
+    begin: Kernel | None = None,
+    check: Kernel | None = None,
+    push: Kernel | None = None,
+    note: Kernel | None = None,
 ) -> None:
     """Register bundles of this type as a law with these kernels; see the function of the same name in this module.
 
@@ -208,10 +171,13 @@ def is_turning(bundle: type, *, turn: Kernel, turning_work: Kernel) -> None:
     answer(globals()["turning_work"], bundle, turning_work)
 
 
-def answer(function: Kernel, bundle: type | None, kernel: Kernel) -> None:
-    """Make a generic function call a kernel if its first argument is a bundle of this type, or None."""
+def answer(function: Kernel, bundle: type | None, kernel: Kernel | None) -> None:
+    """Make a generic function call a kernel where its first argument is a bundle of this type, or None.
+
+    kernel : None if there is nothing to do, in functions that are called for all laws.
+    """
     function.kernels[bundle or type(None)] = kernel
-    if config.DISABLE_JIT:  # type: ignore[attr-defined]  # from the environment
+    if kernel is None or config.DISABLE_JIT:  # type: ignore[attr-defined]  # from the environment
         return
 
     def choose(first: Any, *others: Any) -> Kernel | None:

@@ -7,23 +7,22 @@ It is compiled separately for every combination of laws and ties, which are chos
 import numpy as np
 from numba import njit
 
-from dembound.kernels.common import BROKE, DONE, FAST, MAKES
+from dembound.kernels.common import BROKE, DONE, FAST
 from dembound.kernels.law import (
+    across_all,
     begin_all,
     check_all,
     finish_all,
     move_all,
     note_all,
-    pull,
     push_all,
     turn,
     turning_work,
 )
 from dembound.kernels.sides import note_side_halves, note_side_motion, note_side_work
-from dembound.kernels.step import copy, copy_component, move_supported, note_after, note_before, note_top_speeds
+from dembound.kernels.step import clear, move_supported, note_after, note_before, note_top_speeds
 
 
-@njit(**MAKES)
 def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
     """Advance by up to supports.drive.shape[0] steps, the first being that of `number`.
 
@@ -35,12 +34,12 @@ def advance(u, u_next, v, number, laws, ties, turning, body, supports, log):
     """
     for c in range(3):
         if body.free[c] == 0.0:
-            copy_component(u, u_next, c)
+            u_next[c] = u[c]
     k = supports.nodes.size
     pulled, followed, moved = np.zeros((k, 3)), np.zeros((k, 3)), np.zeros((3, 3, k))
     done, why = _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pulled, followed, moved)
     if done % 2 == 1:
-        copy(u_next, u)
+        u[:] = u_next
     return done, why
 
 
@@ -71,7 +70,9 @@ def _advance(u, u_next, v, number, laws, ties, turning, body, supports, log, pul
             break
         turned = turn(turning, here, v, body.load, body.step)
         breaks = push_all(laws, here, there, v, number + step, body.step, work)
-        pull(ties, here, v, pulled)
+        if len(ties) > 0:
+            clear(pulled)
+            across_all(ties, here, v, pulled)
         note_before(step, here, v, log.probes, log.record, supports.twin, followed)
         note_all(laws, step, here, log)
         move_all(laws, here, there, v, body, nodes)

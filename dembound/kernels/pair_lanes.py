@@ -7,6 +7,7 @@ and, where intact bonds keep the geometry of the start, from then on.
 import numpy as np
 from numba import njit, prange
 
+from dembound.kernels.apart import apart
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
 from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, push_pair
 from dembound.kernels.lane_step import INLINED, larger, next_place, place_of
@@ -215,6 +216,7 @@ def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, resul
         result[0] += lane(rubbed, U(k))
 
 
+@apart
 @njit(**PARALLEL)
 def push_rows(u, v, step, number, pairs, contacts, limits, lost):
     """Forces of the pairs in rows, see contacts.push."""

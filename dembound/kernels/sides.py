@@ -9,6 +9,7 @@ from typing import Any
 
 from numba import njit
 
+from dembound.kernels.apart import apart
 from dembound.kernels.common import FAST, FASTMATH, U
 
 _REORDERED: Any = FAST | {"fastmath": FASTMATH | {"reassoc"}}
@@ -135,6 +136,7 @@ def _of_side(b, step, u, supports, across, followed, moved, sides):
     return _of_batch(b, c, step, signal, lines, constants, u, supports, across, followed, moved, sides)
 
 
+@apart
 @njit(**FAST)
 def note_side_motion(step, row, u, supports, across, followed, moved, body, sides):
     """Write displacements and forces of all sides in this step to a row of sides.record.
@@ -158,6 +160,7 @@ def note_side_motion(step, row, u, supports, across, followed, moved, body, side
             record[row, sides.side[b], 3 + sides.component[b]] += sides.sign[b] * force
 
 
+@apart
 @njit(**FAST)
 def note_side_halves(step, u, supports, across, followed, moved, body, sides):
     """Fill sides.work[1], the work up to the beginning of this step; `note_side_work` has to be called after it."""

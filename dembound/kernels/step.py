@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit, prange
 
+from dembound.kernels.apart import apart
 from dembound.kernels.common import CHUNKS, FAST, PARALLEL, REST, U, column_sum
 
 
@@ -63,17 +64,11 @@ def move_particle(i, fx, fy, moment, u, v, body, u_next):
 
 
 @njit(**FAST)
-def copy_component(source, target, c):
-    """Copy row c of an array (3, n) to another one."""
-    for i in range(source.shape[1]):
-        target[c, i] = source[c, i]
-
-
-@njit(**FAST)
-def copy(source, target):
-    """Copy an array (3, n) to another one; with an assignment numba would compile its messages for seconds."""
-    for c in range(source.shape[0]):
-        copy_component(source, target, c)
+def clear(values):
+    """Set all of values (k, m) to zero; with an assignment numba would compile its messages for seconds."""
+    for i in range(values.shape[0]):
+        for c in range(values.shape[1]):
+            values[i, c] = 0.0
 
 
 @njit(**FAST)
@@ -140,6 +135,7 @@ def move_supported(step, u, v, u_next, across, followed, supports, body, work, m
     work[0, 1] += body.step * damped
 
 
+@apart
 @njit(**PARALLEL)
 def note_top_speeds(v, top_speed):
     """Update the largest speeds top_speed (n,) with velocities v (3, n)."""

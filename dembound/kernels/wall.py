@@ -18,6 +18,7 @@ from typing import Any
 
 from numba import njit
 
+from dembound.kernels.apart import apart
 from dembound.kernels.common import FAST, U
 from dembound.kernels.lanes import LANES, load, splat, store
 from dembound.kernels.law import is_tie
@@ -183,6 +184,7 @@ def _element_forces(points, within, e, u, v, lag, ties, force):
     return energy
 
 
+@apart
 @njit(**FAST)
 def tie_forces(ties, u, v, force, lag):
     """Add the forces of all ties to force (k, 3), with `lag` as η; returns their energy (J) where η is 0."""

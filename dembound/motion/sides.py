@@ -124,10 +124,11 @@ class NodeSides:
     def _bearing(self, table: tables.Sides) -> tables.Sides:
         """A table with the same for the kernels."""
         slot = self._scene.layout.slot
+        share = np.concatenate([share for _, share in self._bearers], axis=1)
         return table._replace(
             bearer_start=np.cumsum([0, *(len(node) for node, _ in self._bearers)]),
             bearer=np.concatenate([slot[node] for node, _ in self._bearers]),
-            share=np.concatenate([share for _, share in self._bearers], axis=1),
+            share=np.ascontiguousarray(share),  # for columns in order the loop would be compiled again
         )
 
     def _mean(self, edge: Edge) -> tuple[np.ndarray, np.ndarray]:

@@ -215,7 +215,7 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
     names = ("touch", "offset", "normal", "shear", "bond_normal", "bond_shear", "bending")
     springs = [columns[name] for name in names]
     bonds = [1.0 / columns["area"], 1.5 / columns["bond_radius"] ** 2]  # R̄/J with J = 2 R̄³/3
-    constants = np.column_stack([vectors, np.hypot(*vectors.T), *springs, *bonds])
+    constants = np.ascontiguousarray(np.column_stack([vectors, np.hypot(*vectors.T), *springs, *bonds]))
     owner, end = np.concatenate([first, second]), np.concatenate([2 * np.arange(b), 2 * np.arange(b) + 1])
     return tables.Contacts(
         0,

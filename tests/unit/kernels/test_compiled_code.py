@@ -12,7 +12,7 @@ FOLDER = Path(kernels.__file__).parent
 
 
 def test_compiled_code_is_kept_apart_for_every_state_of_the_sources() -> None:
-    assert kernels.sources_digest(FOLDER) in loop.advance._cache.cache_path
+    assert kernels.sources_digest(FOLDER) in loop._advance._cache.cache_path
 
 
 def test_a_change_in_any_file_is_another_state(tmp_path) -> None:

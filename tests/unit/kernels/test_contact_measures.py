@@ -38,7 +38,7 @@ def test_a_motion_smaller_than_the_slack_takes_no_pair_out_of_the_elastic_law(ra
     tried = 0
     for _ in range(60):
         u = 0.025 * rng.uniform(-1.0, 1.0, (3, PARTICLES))
-        room = slack(u, pairs, LIMITS)
+        room = slack(u, pairs, LIMITS, False)
         if room <= 0.0:
             continue
         tried += 1
@@ -56,7 +56,7 @@ def test_slack_is_negative_just_where_a_pair_is_outside(random_pairs, plain) -> 
     found = []
     for size in np.repeat([0.03, 0.08, 0.2], 20):
         u = size * rng.uniform(-1.0, 1.0, (3, PARTICLES))
-        found.append(slack(u, pairs, LIMITS) < 0.0)
+        found.append(slack(u, pairs, LIMITS, False) < 0.0)
         assert found[-1] == (outside(u, pairs, LIMITS, law) > 0.0).any()
     assert 10 < sum(found) < 50
 
@@ -72,16 +72,16 @@ def test_slack_is_negative_just_where_a_pair_is_outside(random_pairs, plain) -> 
 )
 def test_the_slack_of_one_contact_by_hand(one_pair, motion: np.ndarray, room: float) -> None:
     limits = UNBREAKABLE._replace(geometry=BONDED)
-    assert slack(motion, one_pair(overlap=0.1), limits) == pytest.approx(room, rel=1e-12)
+    assert slack(motion, one_pair(overlap=0.1), limits, False) == pytest.approx(room, rel=1e-12)
 
 
 def test_a_pair_that_turns_leaves_small_displacements(one_pair) -> None:
     pair = one_pair(overlap=10.0)
     limits = UNBREAKABLE._replace(friction=100.0)
     distance = pair.constants[0, 2]
-    assert slack(two(0.0, 0.004 * distance), pair, limits) == pytest.approx(0.006 * distance, rel=1e-9)
-    assert slack(two(0.0, -0.011 * distance), pair, limits) < 0.0
-    assert slack(two(0.0, -0.011 * distance), pair, limits._replace(geometry=BONDED)) > 0.0
+    assert slack(two(0.0, 0.004 * distance), pair, limits, False) == pytest.approx(0.006 * distance, rel=1e-9)
+    assert slack(two(0.0, -0.011 * distance), pair, limits, False) < 0.0
+    assert slack(two(0.0, -0.011 * distance), pair, limits._replace(geometry=BONDED), False) > 0.0
 
 
 @pytest.mark.parametrize(
@@ -98,13 +98,13 @@ def test_a_pair_that_turns_leaves_small_displacements(one_pair) -> None:
 def test_the_slack_of_one_bond_by_hand(one_pair, motion: np.ndarray, changes: dict, room: float) -> None:
     # the contact is pressed together so much that it is far from opening and sliding
     limits = UNBREAKABLE._replace(friction=100.0, geometry=BONDED, **changes)
-    assert slack(motion, one_pair(INTACT, overlap=1.0), limits) == pytest.approx(room, rel=1e-12)
+    assert slack(motion, one_pair(INTACT, overlap=1.0), limits, False) == pytest.approx(room, rel=1e-12)
 
 
 def test_without_pairs_there_is_all_the_slack_there_is(one_pair) -> None:
     pair = one_pair()
     nobody = Contacts(pair.begin, *(column[:0] for column in pair[1:]))
-    assert slack(two(), nobody, UNBREAKABLE) == np.inf
+    assert slack(two(), nobody, UNBREAKABLE, False) == np.inf
 
 
 @GEOMETRIES
