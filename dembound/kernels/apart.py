@@ -54,7 +54,7 @@ def _rebuilt(*kept: Any) -> Any:
     return code
 
 
-CompileResult._rebuild = _rebuilt
+CompileResult._rebuild = _rebuilt  # type: ignore[method-assign]
 
 
 def apart(kernel: Any) -> Callable[..., Any]:
