@@ -41,7 +41,7 @@ def cause_of_packing(case: Case, recorded: Mapping[str, Recorded], work: float) 
     packing = case.packing.model_copy(update={"seed": seed + 1})
     other = replace(case, packing=packing, run=case.run.model_copy(update=ended))
     outcome = measure(other, Progress())[0]
-    errors = {}
+    errors: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in recorded.items():
         gauge = outcome.gauges[name]
         times = np.minimum(own.time, gauge.time[-1])
