@@ -15,6 +15,7 @@ from dembound.disks.continuum_facts import expected_errors
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.errors import DemboundError
+from dembound.packings.square import Square
 from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.delays import error_of_delay
 from dembound.studies.estimate.dispersion import AXES, DIAGONAL, Direction, delay_of
@@ -49,7 +50,23 @@ class _Disks:
 
     def causes(self) -> Causes:
         """All causes."""
-        return Causes([*self._sides(), *self._delays()]) + self._pair()
+        return Causes([*self._sides(), *self._delays()], list(self._edge_disks())) + self._pair()
+
+    def _edge_disks(self) -> Iterator[str]:
+        """Monitors at absorbing sides of random packings, of whose disks nothing is known."""
+        if isinstance(self.case.packing, Square):
+            return
+        reach, box = 2.0 * self.scene.ground.brick.mean_diameter, self.case.packing.box
+        edges = {side: box[k] for k, side in enumerate(("left", "bottom", "right", "top"))}
+        at = [
+            name
+            for name, own in self.recorded.items()
+            for side, table in self.case.boundary.items()
+            if table.factors and abs(own.position[normal_axis(side)] - edges[side]) < reach
+        ]
+        if at:
+            names = " and ".join(dict.fromkeys(at))
+            yield f"how single disks at the edge of a random packing move otherwise than those around, at {names}"
 
     def _pair(self) -> Causes:
         """The errors of sides that absorb, from a pair of runs."""
