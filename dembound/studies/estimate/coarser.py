@@ -143,13 +143,14 @@ def _material(case: DiskCase, ground: PackedMaterial) -> Material:
     p, s = math.sqrt(tensor[0, 0] / density), math.sqrt(tensor[3, 3] / density)
     moduli = ground.moduli
     ratio = 0.5 * (p / s) ** 2  # a square lattice whose disks turn freely has G = k_s/2
+    contacts = moduli.emod / (moduli.emod + moduli.pb_emod)
     replaced = {"emod", "pb_emod", "match", "kratio", "pb_kratio", "locked_in"}
     given = case.material.model_dump(exclude_unset=True, exclude=replaced)
     given |= {
         "p_wave_speed": p,
-        "contact_share": moduli.emod / (moduli.emod + moduli.pb_emod),
+        "contact_share": contacts,
         "kratio": ratio,
-        "pb_kratio": ratio,
+        "pb_kratio": ratio if case.material.fric > 0.0 else ratio * (1.0 - contacts),  # else bonds carry all shear
         "s_wave_speed": None,
     }
     return Material.model_validate({key: value for key, value in given.items() if value is not None})

@@ -17,6 +17,7 @@ from dembound.disks.scene import DiskScene, build
 from dembound.disks.sources import sources_of
 from dembound.errors import DemboundError
 from dembound.motion.paths import Source
+from dembound.packings.square import Square
 from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.delays import error_of_delay
 from dembound.studies.estimate.dispersion import AXES, DIAGONAL, Direction, delay_of
@@ -61,11 +62,27 @@ class _Disks:
 
     def causes(self) -> Causes:
         """All causes."""
-        return Causes(self.by_formula()) + self._pair()
+        return Causes(self.by_formula(), list(self._edge_disks())) + self._pair()
 
     def by_formula(self) -> list[Cause]:
         """Those without the sides that are compared by runs."""
         return [*self._sides(), *self._delays()]
+
+    def _edge_disks(self) -> Iterator[str]:
+        """Monitors at absorbing sides of random packings, of whose disks nothing is known."""
+        if isinstance(self.case.packing, Square):
+            return
+        reach, box = 2.0 * self.scene.ground.brick.mean_diameter, self.case.packing.box
+        edges = {side: box[k] for k, side in enumerate(("left", "bottom", "right", "top"))}
+        at = [
+            name
+            for name, own in self.recorded.items()
+            for side, table in self.case.boundary.items()
+            if table.factors and abs(own.position[normal_axis(side)] - edges[side]) < reach
+        ]
+        if at:
+            names = " and ".join(dict.fromkeys(at))
+            yield f"how single disks at the edge of a random packing move otherwise than those around, at {names}"
 
     def _pair(self) -> Causes:
         """The errors of sides that absorb, from a pair of runs."""

@@ -8,7 +8,7 @@ from dembound.disks.scene import build
 from dembound.studies.estimate.causes import GRID, STEP, Recorded
 from dembound.studies.estimate.disks import causes_of_disks, reflected_motion
 from dembound.studies.estimate.matched_sides import Reflected
-from tests.small_cases import Tables, small
+from tests.small_cases import GRAINS, Tables, small
 
 HEIGHT, SPEED, PERIOD = 20.0, 1000.0, 0.02
 TIME = np.linspace(0.0, 0.08, 401)
@@ -85,6 +85,17 @@ def test_larger_steps_make_waves_earlier():
     record = recorded(np.exp(-(((TIME - 0.04) / 0.006) ** 2)))
     grid, step = (cause(LAYER, name, record, 4e-4)["velocity"][:, 1] for name in (GRID, STEP))
     np.testing.assert_allclose(step, -0.64 * grid, atol=0.03 * np.abs(grid).max())
+
+
+def test_single_disks_at_the_edge_of_a_random_packing_are_named():
+    times = np.linspace(0.0, 0.03, 31)
+    motion = {quantity: np.zeros((31, 2)) for quantity in ("velocity", "displacement")}
+    at = {"edge": (7.8, 2.0), "inside": (4.0, 2.0), "free": (4.0, 3.9)}
+    record = {name: Recorded(np.array(place), times, motion) for name, place in at.items()}
+    found = causes_of_disks(small(GRAINS, changes={"monitor": []}), record, 1e-4, 1e6, 1e6)
+    (line,) = [line for line in found.missing if "single disks" in line]
+    assert line.endswith("at edge")
+    assert not causes_of_disks(small(LAYER), recorded(pulse(TIME)), 1e-4, 1e6, 1e6).missing
 
 
 def test_displacements_beside_a_continuum_have_smaller_errors_than_velocities():
