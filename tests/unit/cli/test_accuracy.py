@@ -24,7 +24,7 @@ def test_bounds_are_shares_or_per_cent(text, bound) -> None:
 
 @pytest.mark.parametrize("text", ["0", "1", "100%", "-1%", "nan", "small", "1%%", "%", ""])
 def test_other_bounds_are_one_line(text) -> None:
-    with pytest.raises(CaseError, match="^--error: is "):
+    with pytest.raises(CaseError, match=r"^--error: is "):
         bound_of(text, None)
 
 
