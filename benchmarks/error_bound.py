@@ -1,6 +1,7 @@
 """How often the choice of `dembound run --error` is as accurate as asked for: small scenes beside enlarged, finer ones.
 
-    python benchmarks/error_bound.py [NAME...]
+    python benchmarks/error_bound.py [NAME...]           # scenes whose names contain one of these; all by default
+    python benchmarks/error_bound.py --every NAME...     # runs every choice of a scene, and prints the cheapest ones
 
 The reference of a scene is a larger one, from whose sides nothing returns. It is run with its own disks and with a
 third of their diameter, whose particles include the places of the first. As the errors of both are in the ratio 9 : 1,
@@ -23,8 +24,11 @@ from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import build
 from dembound.kinds import loads, with_changes
-from dembound.running import Progress
+from dembound.running import Progress, plan
 from dembound.studies.accuracy import choose
+from dembound.studies.accuracy.candidates import FACTORS, Candidate, candidates, cost_of, with_diameter
+from dembound.studies.accuracy.choice import COSTLIEST, WORK
+from dembound.studies.accuracy.companions import Companions
 from dembound.studies.chart.errors import QUIET
 from dembound.studies.chart.measure import Gauges, measure
 from dembound.studies.extended import extended
@@ -216,6 +220,34 @@ def true_error(found: Gauges, expected: Gauges) -> float:
     return max(errors)
 
 
+def every_choice(case: DiskCase) -> Iterator[Candidate]:
+    """All choices that cost less than `COSTLIEST` times the case, whatever their error."""
+    planned = plan(case)
+    companions = Companions(case, planned.scene, planned.time_step, WORK)  # type: ignore[arg-type]
+    for factor in FACTORS:
+        plain = with_diameter(companions, factor)
+        if plain is not None:
+            found = candidates(companions, plain, factor, BOUNDS[0], ())
+            yield from (each for each in found if each.cost < COSTLIEST * cost_of(planned))
+
+
+def every(names: list[str]) -> None:
+    """Print, for each bound, the cheapest choice whose true error is below it."""
+    for name, tables in scenes():
+        if name not in names:
+            continue
+        case = loads(tomli_w.dumps(tables), name=name.replace(" ", "_"))
+        assert isinstance(case, DiskCase)
+        expected = reference(case)
+        tried = sorted(every_choice(case), key=lambda each: each.cost)
+        for bound in BOUNDS:
+            errors = ((each, true_error(measure(each.case, Progress())[0].gauges, expected)) for each in tried)
+            best = next(((each, error) for each, error in errors if error <= bound), None)
+            if best is not None:
+                found = f"{best[0].words}, {100 * best[1]:.2g} %, {best[0].cost:.2g} s"
+                print(f"{name}, {100 * bound:g} %: the cheapest of {len(tried)} is {found}", flush=True)
+
+
 def main(names: list[str]) -> None:
     """Print a line for each scene and bound, and the share of those that keep it."""
     kept = []
@@ -245,4 +277,7 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    if sys.argv[1:2] == ["--every"]:
+        every(sys.argv[2:])
+    else:
+        main(sys.argv[1:])

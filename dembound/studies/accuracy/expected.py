@@ -26,6 +26,11 @@ WALL = 0.7
 """Error beside a round hole times its disks along the radius (docs/charts.md): 7 to 0.7 % with 10 to 80 of them."""
 
 
+STRAIGHT = 0.2
+"""The same of a rectangle, whose walls have no steps: 5 to 6 % with three disks along its smaller half
+(benchmarks/error_bound.py)."""
+
+
 @dataclass(frozen=True)
 class Expected:
     """An expected error. worst : of all monitors that move, RMS over RMS; by : its causes at the worst monitor."""
@@ -73,15 +78,16 @@ def of_sides(companions: Companions, scene: DiskScene, time_step: float, wider: 
 
 
 def _walls(case: DiskCase, scene: DiskScene, names: list[str]) -> Iterator[Cause]:
-    """Steps of the walls of holes on a lattice; those of a rectangle are straight."""
-    half = [
-        0.5 * min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1])
+    """Walls of holes on a lattice, which are made of disks."""
+    if not case.hole or not isinstance(case.packing, Square):
+        return
+    size = max(
+        (STRAIGHT if isinstance(hole, Rectangle) else WALL)
+        * scene.ground.brick.mean_diameter
+        / (0.5 * min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1]))
         for hole in case.hole
-        if not isinstance(hole, Rectangle)
-    ]
-    if half and isinstance(case.packing, Square):
-        size = WALL * scene.ground.brick.mean_diameter / min(half)
-        yield Cause("walls", "by the disks along the radius of the smallest hole", {n: _both(size) for n in names})
+    )
+    yield Cause("walls", "by the disks along the radius of the smallest hole", {name: _both(size) for name in names})
 
 
 def _both(size: float) -> dict[str, np.ndarray | float]:
