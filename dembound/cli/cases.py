@@ -96,6 +96,9 @@ def run(
     loaded = [load_case(path, changes, name) for path in cases]
     if name is not None and len(cases) > 1:
         raise CaseError(["--name: names the results of one case, there are several here"])
+    if estimate and (silent := [case.name for case in loaded if not case.monitor]):
+        needs = "has no monitor whose error could be estimated; give a [[monitor]]"
+        raise CaseError([f"--estimate: {name} {needs}" for name in silent])
     names = [case.name for case in loaded]
     if len(set(names)) < len(names):
         raise CaseError(["CASE: two case files have the same name, so one would overwrite the other's results"])

@@ -45,13 +45,13 @@ def bar_problems(tables: Mapping[str, Any], given: Mapping[str, Any]) -> Iterato
         yield from _beyond_the_bar(bar, tables)
         if tables["method"]:
             yield from _horizon_too_long(bar, tables["method"])
-    if tables["output"] and tables["output"].load_factor:
-        yield "output.load_factor: is for disks, not for bars"
+    if tables["output"]:
+        yield from never_estimated(tables["output"], tables["monitor"])
+        if tables["output"].load_factor:
+            yield "output.load_factor: is for disks, not for bars"
     if tables["run"]:
         yield from steps_too_long(tables["run"], tables["output"])
         yield from never_silent(tables["run"], tables["monitor"])
-    if tables["output"]:
-        yield from never_estimated(tables["output"], tables["monitor"])
         if bar:
             yield from _courant_too_large(bar, tables["run"])
 

@@ -207,12 +207,14 @@ def test_an_exact_motion_is_a_line_beside_those_of_runs(pushed_runs, tmp_path):
 def test_an_error_estimate_is_shown_if_there_is_one(two, pushed_runs, tmp_path):
     record = copied(pushed_runs[0], tmp_path / "estimated")
     summary = json.loads((record.parent / "summary.json").read_text())
-    (record.parent / "summary.json").write_text(json.dumps(summary | {"error_estimate": {"front": {"rms": 0.0123}}}))
+    shares = {"total": 0.0123, "sides": 0.0123}
+    estimate = {"monitors": {"front": {"velocity": shares}}, "found": {}, "notes": [], "not_estimated": []}
+    (record.parent / "summary.json").write_text(json.dumps(summary | {"error_estimate": estimate}))
     write_report([record], tmp_path / "page.html")
     page = Page(tmp_path / "page.html")
-    assert page.row("front.rms") == ["0.0123"]
-    assert "Error estimate" in page.said("h3")
-    assert "Error estimate" not in two.said("h3")
+    assert page.row("front, velocity") == ["1.2 % (sides 1.2 %)"]
+    assert "Estimated errors" in page.said("h3")
+    assert "Estimated errors" not in two.said("h3")
 
 
 @pytest.mark.parametrize("text", ["[]", "{}", '{"energy": 3}', '{"sides": [], "monitors": {"a": 1}}', '"text"', "null"])

@@ -1,0 +1,60 @@
+"""The command estimate, and run --estimate."""
+
+import json
+
+import h5py
+import numpy as np
+from small_cases import PUSHED, small
+
+LOOSE = {"boundary.right.beta_p": 0.5, "boundary.right.beta_s": 0.5, "run.duration": 0.03}
+"""Dashpots that return a third of waves, and time for it."""
+
+
+def written(tmp_path, **changes) -> None:
+    """A case file."""
+    (tmp_path / "bar.toml").write_text(small(PUSHED, "bar", LOOSE | changes).text)
+
+
+def test_a_run_is_estimated_and_drawn(dembound, tmp_path):
+    written(tmp_path)
+    answer = dembound("run", "bar.toml", "--estimate")
+    assert answer.code == 0, answer.err
+    assert "bar: error at back: velocity " in answer.out
+    folder = tmp_path / "results" / "bar"
+    found = json.loads((folder / "summary.json").read_text())["error_estimate"]
+    # the right side returns (1 − β)/(1 + β) = 1/3 of what arrives, which adds to the motion beside it
+    assert 0.15 < found["monitors"]["back"]["velocity"]["sides"] < 0.5
+    with h5py.File(folder / "estimate.h5") as file, h5py.File(folder / "run.h5") as run:
+        assert len(file["histories/back/time"]) == len(run["histories/back/time"])
+        assert np.abs(file["histories/back/velocity/error of sides"][:]).max() > 0.05
+    answer = dembound("estimate", "results/bar", "--budget", "1e-3")
+    assert answer.code == 0
+    assert "bar: sides from a companion" in answer.out
+    assert dembound("run", "bar.toml").code == 0
+    assert not (folder / "estimate.h5").exists()  # it was that of another run
+
+
+def test_a_case_asks_for_its_estimate(dembound, tmp_path):
+    written(tmp_path, **{"output.estimate": True, "output.pictures": False})
+    answer = dembound("run", "bar.toml")
+    assert "bar: error at front: " in answer.out
+
+
+def test_what_cannot_be_estimated_is_one_line(dembound, tmp_path):
+    written(tmp_path, **{"output.pictures": False, "monitor": []})
+    needs = "has no monitor whose error could be estimated; give a [[monitor]]"
+    answer = dembound("run", "bar.toml", "--estimate")
+    assert (answer.code, answer.err.strip()) == (2, f"--estimate: bar {needs}")
+    answer = dembound("run", "bar.toml", "--set", "output.estimate=true")
+    assert (answer.code, answer.err.strip()) == (
+        2,
+        f"bar: output.estimate: is true, but the case {needs}",
+    )
+    assert dembound("run", "bar.toml").code == 0
+    answer = dembound("estimate", "results/bar")
+    assert answer.code == 2
+    assert answer.err.strip().endswith("has no history of a monitor whose error could be estimated")
+    answer = dembound("estimate", "results/bar", "--budget", "0")
+    assert (answer.code, answer.err.strip()) == (2, "--budget: is 0, must be above 0")
+    answer = dembound("estimate", "nowhere")
+    assert answer.code != 0
