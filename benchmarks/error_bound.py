@@ -1,11 +1,12 @@
 """How often the choice of `dembound run --error` is as accurate as asked for: small scenes beside enlarged, finer ones.
 
-    python benchmarks/error_bound.py [NAME...]
+    python benchmarks/error_bound.py [NAME...]           # scenes whose names contain one of these; all by default
+    python benchmarks/error_bound.py --every NAME...     # runs every choice of a scene, and prints the cheapest ones
 
 The reference of a scene is a larger one, from whose sides nothing returns. It is run with its own disks and with a
 third of their diameter, whose particles include the places of the first. As the errors of both are in the ratio 9 : 1,
-the motion is extrapolated to (9 u_fine - u_own)/8. Where velocities are prescribed the particles of the side are at
-another place with smaller disks, and times are shifted by the way between.
+the motion is extrapolated to (9 u_fine - u_own)/8. Where waves enter at particles of a side these are at another place
+with smaller disks, and times are shifted by the way between.
 """
 
 from __future__ import annotations
@@ -19,11 +20,15 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import build
 from dembound.kinds import loads, with_changes
-from dembound.running import Progress
+from dembound.running import Progress, plan
 from dembound.studies.accuracy import choose
+from dembound.studies.accuracy.candidates import FACTORS, Candidate, candidates, cost_of, with_diameter
+from dembound.studies.accuracy.choice import COSTLIEST, WORK
+from dembound.studies.accuracy.companions import Companions
 from dembound.studies.chart.errors import QUIET
 from dembound.studies.chart.measure import Gauges, measure
 from dembound.studies.extended import extended
@@ -118,7 +123,7 @@ def bar(motion: str, wave: str, length: float, side: str) -> Tables:
 
 
 def ground(wave: str, hole: bool) -> Tables:
-    """Ground under an S wave from below, with a rectangular tunnel or without."""
+    """Ground under an S wave from below: level with a free field, or with a rectangular tunnel in a continuum."""
     tables: Tables = {
         "packing": {"pattern": "A", "size": [60.0, 40.0], "radius": 0.5},
         "material": MATERIAL,
@@ -132,7 +137,12 @@ def ground(wave: str, hole: bool) -> Tables:
         "run": {"duration": 0.3},
     }
     cave = {"name": "cave", "type": "rectangle", "corners": [22.0, 14.0, 38.0, 26.0]}
-    return tables | ({"hole": [cave]} if hole else {})
+    beyond = {
+        "left": {"type": "outside"},
+        "right": {"type": "outside"},
+        "bottom": {"type": "outside", "wave_s": "pulse"},
+    }
+    return tables | ({"hole": [cave], "boundary": beyond} if hole else {})
 
 
 def _around(x: float, y: float, wide: float, high: float) -> list[float]:
@@ -161,9 +171,7 @@ def scenes() -> Iterator[tuple[str, Tables]]:
 
 def reference(case: DiskCase) -> Gauges:
     """The motion in the enlarged scene, extrapolated to small disks, at the times of the finer run."""
-    entering = {f"boundary.{side}": {"type": "outside"} | _waves(case, side) for side in _replaced(case)}
-    whole = with_changes(case, entering) if entering else case
-    own, fine = (_far(with_changes(whole, {"packing.radius": 0.5 / k})) for k in (1, FINER))
+    own, fine = (_far(with_changes(case, {"packing.radius": 0.5 / k})) for k in (1, FINER))
     found, lag = {}, _lag(case)
     for name, late in fine.items():
         gauge = replace(late, time=late.time - lag)
@@ -176,22 +184,14 @@ def reference(case: DiskCase) -> Gauges:
     return found
 
 
-def _replaced(case: DiskCase) -> list[str]:
-    """The artificial sides where waves enter dashpots, which return a part of what comes from inside."""
-    entered = any(case.side(side).is_artificial for side in case.driving)
-    return [side for side, table in case.boundary.items() if table.is_artificial and entered]
-
-
 def _lag(case: DiskCase) -> float:
-    """Time (s) by which waves come later with smaller disks, whose prescribed velocities are nearer the plane."""
-    if not any(case.side(side).prescribed(0) for side in case.driving):
-        return 0.0
-    speed = build(case).ground.wave_speeds(0)[0 if "p" in case.driving["left"] else 1]
-    return case.packing.radius * (1.0 - 1.0 / FINER) / speed
-
-
-def _waves(case: DiskCase, side: str) -> Tables:
-    return {f"wave_{motion}": name for motion, name in case.side(side).waves.items()}
+    """Time (s) by which waves come later with smaller disks, as they enter at particles nearer the plane."""
+    for side, waves in case.driving.items():
+        if not case.side(side).is_outside:
+            axis = normal_axis(side)
+            speed = build(case).ground.wave_speeds(axis)[0 if "p" in waves else 1]
+            return case.packing.radius * (1.0 - 1.0 / FINER) / speed
+    return 0.0
 
 
 def _far(case: Any) -> Gauges:
@@ -218,6 +218,34 @@ def true_error(found: Gauges, expected: Gauges) -> float:
                 difference = _at(found, name, quantity, expected[name].time)[:, column] - each[:, column]
                 errors.append(float(np.linalg.norm(difference) / np.linalg.norm(each[:, column])))
     return max(errors)
+
+
+def every_choice(case: DiskCase) -> Iterator[Candidate]:
+    """All choices that cost less than `COSTLIEST` times the case, whatever their error."""
+    planned = plan(case)
+    companions = Companions(case, planned.scene, planned.time_step, WORK)  # type: ignore[arg-type]
+    for factor in FACTORS:
+        plain = with_diameter(companions, factor)
+        if plain is not None:
+            found = candidates(companions, plain, factor, BOUNDS[0], ())
+            yield from (each for each in found if each.cost < COSTLIEST * cost_of(planned))
+
+
+def every(names: list[str]) -> None:
+    """Print, for each bound, the cheapest choice whose true error is below it."""
+    for name, tables in scenes():
+        if name not in names:
+            continue
+        case = loads(tomli_w.dumps(tables), name=name.replace(" ", "_"))
+        assert isinstance(case, DiskCase)
+        expected = reference(case)
+        tried = sorted(every_choice(case), key=lambda each: each.cost)
+        for bound in BOUNDS:
+            errors = ((each, true_error(measure(each.case, Progress())[0].gauges, expected)) for each in tried)
+            best = next(((each, error) for each, error in errors if error <= bound), None)
+            if best is not None:
+                found = f"{best[0].words}, {100 * best[1]:.2g} %, {best[0].cost:.2g} s"
+                print(f"{name}, {100 * bound:g} %: the cheapest of {len(tried)} is {found}", flush=True)
 
 
 def main(names: list[str]) -> None:
@@ -249,4 +277,7 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    if sys.argv[1:2] == ["--every"]:
+        every(sys.argv[2:])
+    else:
+        main(sys.argv[1:])

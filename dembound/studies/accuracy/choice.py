@@ -29,7 +29,7 @@ from dembound.studies.accuracy.differences import differences, in_toml, value_at
 from dembound.studies.accuracy.expected import Expected, expected, of_ground, of_sides
 
 SAFETY = 1.4
-"""Expected errors are below the bound by this factor: true ones were up to 1.33 times as large
+"""Expected errors are below the bound by this factor: true ones were up to 1.33 times as large where sides reflect
 (benchmarks/error_bound.py)."""
 
 WORK = 5e7
