@@ -19,6 +19,7 @@ COMMANDS = (
     "pack_rate",
     "memory",
     "reductions",
+    "estimates",
 )
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the benchmarks measure processes as Unix does")
