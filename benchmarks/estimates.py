@@ -1,4 +1,4 @@
-"""How near estimates of errors are to the true ones, on some seventy small scenes of disks.
+"""How near estimates of errors are to the true ones, on 79 small scenes of disks.
 
     python benchmarks/estimates.py [--scenes lamb "bar A" ...] [--json FILE]
 

@@ -21,6 +21,7 @@ COMMANDS = (
     "memory",
     "reductions",
     "reflection_packets",
+    "estimates",
 )
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the benchmarks measure processes as Unix does")
