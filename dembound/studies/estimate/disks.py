@@ -18,6 +18,7 @@ from dembound.disks.sources import sources_of
 from dembound.errors import DemboundError
 from dembound.motion.paths import Source
 from dembound.packings.square import Square
+from dembound.results.estimates import in_words
 from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.delays import error_of_delay
 from dembound.studies.estimate.dispersion import AXES, DIAGONAL, Direction, delay_of
@@ -111,7 +112,7 @@ class _Disks:
         """How the pair was made, in words."""
         return (
             f"from a companion with {pair.ratio:.3g}× larger particles, {_size(pair)}, "
-            f"{100.0 * pair.work / self.work:.2g} % of the work of this run"
+            f"{in_words(pair.work / self.work)} of the work of this run"
         )
 
     def _sides(self) -> Iterator[Cause]:
