@@ -17,9 +17,10 @@ from dembound.casefile.model import as_kind
 from dembound.errors import CaseError, DemboundError, PackingError, RecordError, RunError
 from dembound.results.results import Arrays, Results
 from dembound.running import Progress, resume_case, run_case
+from dembound.running.recorded import recorded_case
 from dembound.studies import all_sides, calibration
 from dembound.studies.calibration import Calibration
-from dembound.studies.estimate import Estimate, estimate_results
+from dembound.studies.estimate import Estimate, estimate_if_asked, estimate_results
 from dembound.table import Table, as_toml
 
 __all__ = [
@@ -104,24 +105,31 @@ def run(
     """
     chosen = case if isinstance(case, Case) else load(case)
     with _threads(threads):
-        folder = run_case(chosen, Path(results), progress or _Warns())
-        if chosen.output.estimate:
-            estimate_results(folder)
-        return Results(folder)
+        return _estimated(chosen, run_case(chosen, Path(results), progress or _Warns()))
 
 
-def estimate(results: Path | str, budget: float | None = None, *, threads: int | None = None) -> Estimate:
+def _estimated(case: Case, folder: Path) -> Results:
+    """The results of a run, after the estimate of its errors if its case asks for that."""
+    if failed := estimate_if_asked(case, folder):
+        warnings.warn(f"{case.name}: {failed}", stacklevel=3)
+    return Results(folder)
+
+
+def estimate(
+    results: Path | str, budget: float | None = None, *, second_seed: bool = False, threads: int | None = None
+) -> Estimate:
     """Estimate the errors of a complete run, as ``dembound estimate`` does; see docs/estimates.md.
 
     Parameters
     ----------
     results : folder of the results, to which the estimate is added. budget : share of the run's work that may be spent;
-    by default 0.1, and the work of a second in any case. threads : as for `run`.
+    by default 0.1, and that of less than a second in any case. second_seed : whether one more run with another random
+    packing is made. threads : as for `run`.
 
-    Raises CaseError for a run without monitors, or that is not complete.
+    Raises CaseError for a run without monitors, or that is not complete, and a second seed of a packing without one.
     """
     with _threads(threads):
-        return estimate_results(Path(results), budget)
+        return estimate_results(Path(results), budget, second_seed)
 
 
 def resume(
@@ -137,7 +145,8 @@ def resume(
     Raises CaseError if there is nothing to continue, or a checkpoint of another version or case; else as `run`.
     """
     with _threads(threads):
-        return Results(resume_case(Path(results), until, progress or _Warns()))
+        folder = resume_case(Path(results), until, progress or _Warns())
+        return _estimated(recorded_case(folder / "run.h5"), folder)
 
 
 @contextmanager

@@ -89,6 +89,7 @@ def run(
     """
     from dembound.results.folder import Folder
     from dembound.running import preflight
+    from dembound.studies.estimate import require_budget
 
     spent = {"import": time.perf_counter() - IMPORT_BEGAN}
     bound = bound_of(error, keep)
@@ -96,6 +97,10 @@ def run(
     loaded = [load_case(path, changes, name) for path in cases]
     if name is not None and len(cases) > 1:
         raise CaseError(["--name: names the results of one case, there are several here"])
+    is_estimated = estimate or bound is not None or any(case.output.estimate for case in loaded)
+    if budget is not None and not is_estimated:
+        raise CaseError(["--budget: is for estimates; give --estimate, too"])
+    require_budget(budget)
     if estimate and (silent := [case.name for case in loaded if not case.monitor]):
         needs = "has no monitor whose error could be estimated; give a [[monitor]]"
         raise CaseError([f"--estimate: {name} {needs}" for name in silent])

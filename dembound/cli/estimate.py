@@ -9,7 +9,8 @@ import typer
 
 from dembound.cli.app import Threads, app, prepare_computing
 from dembound.cli.console import err, out
-from dembound.errors import DemboundError
+from dembound.cli.results import results_file
+from dembound.errors import CaseError, DemboundError
 
 if TYPE_CHECKING:
     from dembound.studies.estimate import Estimate
@@ -37,13 +38,19 @@ def estimate(
 
     Writes estimate.h5 and the entry error_estimate of summary.json; see docs/estimates.md.
     """
-    from dembound.results.folder import Folder
+    from dembound.results.folder import with_name
     from dembound.studies.estimate import estimate_results
 
     prepare_computing(threads)
+    problems = []
     for path in results:
-        folder = Folder.of(path.parent if path.suffix == ".h5" else path).final
-        _show(folder, estimate_results(folder, budget, second_seed))
+        try:
+            folder = with_name(results_file(path)).parent
+            _show(folder, estimate_results(folder, budget, second_seed))
+        except CaseError as error:
+            problems += [line for line in str(error).splitlines() if line not in problems]
+    if problems:
+        raise CaseError(problems)
 
 
 def print_estimate(folder: Path, budget: float | None = None) -> None:

@@ -74,5 +74,6 @@ def entries(estimate: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             causes = {name: share for name, share in shares.items() if name != "total"}
             yield f"{monitor}, {quantity}", f"{in_words(shares['total'])} ({split_in_words(causes)})"
     yield from estimate["found"].items()
-    if lines := [*estimate["notes"], *estimate["not_estimated"]]:
-        yield "not estimated", "; ".join(lines)
+    for name, lines in (("notes", estimate["notes"]), ("not estimated", estimate["not_estimated"])):
+        if lines:
+            yield name, "; ".join(lines)

@@ -2,7 +2,17 @@
 
 from dembound.studies.estimate.causes import Cause, Causes, Recorded
 from dembound.studies.estimate.estimate import Estimate
-from dembound.studies.estimate.of_results import estimate_results
+from dembound.studies.estimate.of_results import estimate_if_asked, estimate_results, require_budget
 from dembound.studies.estimate.of_run import BUDGET, causes_of
 
-__all__ = ["BUDGET", "Cause", "Causes", "Estimate", "Recorded", "causes_of", "estimate_results"]
+__all__ = [
+    "BUDGET",
+    "Cause",
+    "Causes",
+    "Estimate",
+    "Recorded",
+    "causes_of",
+    "estimate_if_asked",
+    "estimate_results",
+    "require_budget",
+]

@@ -36,7 +36,7 @@ class Cause:
 
     words : how its errors were found. errors : monitor -> quantity -> the part of the recorded values (k, c) that is
     due to it, or, where only its size is known, a number: its RMS over that of the recorded values. is_sample : whether
-    they are one sample of many, of which only the size is the error's.
+    they are a sample of a random error, of which only the RMS counts.
     """
 
     name: str

@@ -41,9 +41,10 @@ TRIED = 60
 
 
 def largest_diameter(case: DiskCase, shortest: float) -> float:
-    """Largest diameter (m) of disks: at most `shortest` (m), and `CELLS` across every hole and the scene itself."""
+    """Largest diameter (m) of disks: at most `shortest` (m), and `CELLS` across every hole and between sides."""
     holes = [min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1]) / CELLS for hole in case.hole]
-    return min([shortest, *holes, *(length / CELLS for length in case.size)])
+    across = [length / CELLS for length, periodic in zip(case.size, case.periodic, strict=True) if not periodic]
+    return min([shortest, *holes, *across])
 
 
 @dataclass(frozen=True)

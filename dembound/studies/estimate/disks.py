@@ -63,7 +63,7 @@ class _Disks:
 
     def causes(self) -> Causes:
         """All causes."""
-        return Causes(self.by_formula(), list(self._edge_disks())) + self._pair()
+        return Causes(self.by_formula(), [*self._edge_disks(), *self._without_formula()]) + self._pair()
 
     def by_formula(self) -> list[Cause]:
         """Those without the sides that are compared by runs."""
@@ -84,6 +84,13 @@ class _Disks:
         if at:
             names = " and ".join(dict.fromkeys(at))
             yield f"how single disks at the edge of a random packing move otherwise than those around, at {names}"
+
+    def _without_formula(self) -> Iterator[str]:
+        """Causes for which a formula needs more than the case has."""
+        if self.scene.outside is not None and expected_errors(self.scene) is None:
+            yield "continuum: its elements are judged by the highest frequency of waves, and a wave that jumps has none"
+        if not any(self._ways(own) for own in self.recorded.values()):
+            yield "grid and time step: waves start everywhere"
 
     def _pair(self) -> Causes:
         """The errors of sides that absorb, from a pair of runs."""
@@ -111,7 +118,7 @@ class _Disks:
     def _how(self, pair: Pair) -> str:
         """How the pair was made, in words."""
         return (
-            f"from a companion with {pair.ratio:.3g}× larger particles, {_size(pair)}, "
+            f"from a companion with particles {pair.ratio:.3g} times as large, {_size(pair)}, "
             f"{in_words(pair.work / self.work)} of the work of this run"
         )
 
@@ -126,7 +133,7 @@ class _Disks:
                 continue
             shares = reflected(self.scene, side, self.time_step)
             errors = {name: self._returned(own, side, waves, shares) for name, own in self.recorded.items()}
-            yield Cause(f"{side} side", "by the reflection of its dashpots at normal incidence", errors)
+            yield Cause(f"{side} side", "by the reflection of dashpots at normal incidence", errors)
 
     def _returned(
         self, own: Recorded, side: str, waves: Mapping[Motion, str], shares: Mapping[Motion, Reflected]
@@ -153,6 +160,8 @@ class _Disks:
 
     def _delays(self) -> Iterator[Cause]:
         """The dispersion of the packing, and of the time step."""
+        if not any(self._ways(own) for own in self.recorded.values()):
+            return
         words = "by the dispersion of plane waves on the way from where waves start"
         whole, grid = (
             {name: self._delayed(own, step) for name, own in self.recorded.items()} for step in (self.time_step, 0.0)
@@ -182,7 +191,11 @@ class _Disks:
         return sources_of(self.case, self.scene.ground)
 
     def _ways(self, own: Recorded) -> list[_Way]:
-        """The ways of P and S waves to a monitor: from a driven side, or from the nearest load or hole."""
+        """The ways of P and S waves to a monitor: from a driven side, or from the nearest load or hole.
+
+        A wave at an angle comes through a continuum, which delays it less: its way is the longer side of the disks.
+        None where waves start everywhere.
+        """
         sources, ground = self._sources, self.scene.ground
         driving = list(self.case.driving)
         if driving and not any(load.wave for load in self.case.load):
@@ -191,7 +204,11 @@ class _Disks:
             if not self.case.side(OPPOSITE[driving[0]]).is_artificial:
                 path = self.case.size[axis]  # the mean of the ways there, and back from the other side
             return _both_ways(np.eye(2)[axis], path, ground.wave_speeds(axis), [AXES[axis]])
-        places = [np.clip(own.position, each.box[:2], each.box[2:]) for each in sources]
+        if self.case.incident is not None:
+            extent = self.case.packing.extent
+            return _both_ways(np.eye(2)[1], max(extent), ground.wave_speeds(1), [AXES[0], DIAGONAL])
+        local = [each for each in sources if np.isfinite(each.box).all()]
+        places = [np.clip(own.position, each.box[:2], each.box[2:]) for each in local]
         rays = [own.position - place for place in places]
         if not rays:
             return []

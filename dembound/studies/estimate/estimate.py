@@ -36,7 +36,7 @@ class Estimate:
         """RMS of all errors over that of the recorded values; nan if none is known.
 
         Histories add up, as those of the grid and of the time step have opposite signs; where only the size of an error
-        is known, or it is one of many that might be, squares do.
+        is known, or it is one sample of a random error, squares do.
         """
         own = self.recorded[monitor]
         histories, sizes = self._errors(monitor, quantity)

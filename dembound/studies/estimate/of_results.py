@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -13,11 +14,11 @@ import numpy as np
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
-from dembound.errors import CaseError
+from dembound.errors import CaseError, DemboundError
 from dembound.results.datasets import describe, write
 from dembound.results.estimates import FILE, KEY
 from dembound.results.histories import FREE_FIELD
-from dembound.results.reader import history_of, open_record, replacing
+from dembound.results.reader import history_of, open_record, replacing, require_run
 from dembound.running.recorded import recorded_case
 from dembound.studies.estimate.causes import Causes, Recorded
 from dembound.studies.estimate.estimate import Estimate
@@ -41,10 +42,11 @@ def estimate_results(folder: Path, budget: float | None = None, second_seed: boo
     Raises CaseError for a run that is not complete or has no monitors, a budget that is none, or a second seed of a
     packing that has none, and RecordError for a record that cannot be read.
     """
-    if budget is not None and not 0.0 < budget < np.inf:
-        raise CaseError([f"--budget: is {budget:g}, must be above 0"])
-    summary = _summary(folder)
+    require_budget(budget)
     record = folder / "run.h5"
+    with open_record(record) as file:
+        require_run(file)
+    summary = _summary(folder)
     case, until = _until(recorded_case(record), summary), _first_break(record)
     recorded = _recorded(record, until)
     broken = [] if case.run.duration < until else [_broken(until)]
@@ -57,10 +59,38 @@ def estimate_results(folder: Path, budget: float | None = None, second_seed: boo
 
         causes += cause_of_packing(case, recorded, work)
     found = Estimate(recorded, causes + Causes([], broken, list(_law(case, summary))))
+    found = replace(found, causes=found.causes + Causes([], list(_at_rest(found))))
     _write(found, folder / FILE)
     with replacing(folder / "summary.json") as part:
         part.write_text(json.dumps(summary | {KEY: found.summary()}, indent=2) + "\n", encoding="utf-8")
     return found
+
+
+def require_budget(budget: float | None) -> None:
+    """Raise CaseError for a share of work that is none."""
+    if budget is not None and not 0.0 < budget < np.inf:
+        raise CaseError([f"--budget: is {budget:g}, must be above 0"])
+
+
+def estimate_if_asked(case: Case, folder: Path) -> str:
+    """Estimate the error of a complete run of a case with ``output.estimate``; returns why this is not possible.
+
+    Empty where it is, and for other cases: a run is complete without its estimate.
+    """
+    if case.output.estimate:
+        try:
+            estimate_results(folder)
+        except DemboundError as error:
+            return f"errors are not estimated: {'; '.join(str(error).splitlines())}"
+    return ""
+
+
+def _at_rest(found: Estimate) -> Iterator[str]:
+    """Monitors of which nothing is known, unless it is already said why."""
+    said = {line.split(":")[0] for line in found.causes.missing}
+    for name in found.recorded if found.causes.found else ():
+        if name not in said and not any(math.isfinite(found.total(name, each)) for each in found.quantities(name)):
+            yield f"{name}: does not move"
 
 
 def _summary(folder: Path) -> dict[str, Any]:
@@ -103,8 +133,8 @@ def _law(case: Case, summary: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _recorded(record: Path, until: float) -> dict[str, Recorded]:
-    """What the monitors have recorded up to a time (s); raises CaseError where there are none."""
-    found = {}
+    """What the monitors have recorded up to a time (s); raises CaseError where that is nothing, or too little."""
+    found, most = {}, 0
     with open_record(record) as file:
         for name, group in file.get("histories", {}).items():
             if name.endswith(FREE_FIELD):
@@ -115,12 +145,23 @@ def _recorded(record: Path, until: float) -> dict[str, Recorded]:
                     time, motion = history_of(group, quantity)
                     kept = time < until
                     values[quantity] = motion.reshape(len(motion), -1)[kept][:, :2]
+            most = max(most, int(np.count_nonzero(kept)) if values else 0)
             if values and np.count_nonzero(kept) >= LEAST_SAMPLES:
                 place = np.atleast_1d(group.attrs["position"])
                 found[name] = Recorded(np.array([*place, 0.0][:2]), time[kept], values)
     if not found:
-        raise CaseError([f"{record}: has no history of a monitor whose error could be estimated"])
+        raise CaseError([f"{record}: {_too_little(most, until)}"])
     return found
+
+
+def _too_little(samples: int, until: float) -> str:
+    """Why histories with so many samples up to a time (s) are not enough."""
+    if samples == 0 and math.isinf(until):
+        return "has no monitor whose error could be estimated"
+    needed = f"an estimate needs {LEAST_SAMPLES}"
+    if math.isfinite(until):
+        return f"the first bond broke at {until:.4g} s, after {samples} samples of the monitors; {needed}"
+    return f"has {samples} samples of its monitors (output.history_interval); {needed}"
 
 
 def _write(found: Estimate, path: Path) -> None:

@@ -12,7 +12,7 @@ from dembound.studies.estimate.causes import Causes, Recorded
 BUDGET, SHORT = 0.1, 5e7
 """Share of the work of a run that its estimate may take by default, and work that it may take in any case.
 
-That is the work of less than a second: runs of a few seconds have estimates as good as those of long ones.
+That is the work of less than a second: short runs have fine companions, too.
 """
 
 

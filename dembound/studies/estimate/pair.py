@@ -14,6 +14,7 @@ from dembound.disks.outside_settings import signals_of
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.disks.wave_front import slowest_speed
+from dembound.errors import CaseError
 from dembound.outside import choice
 from dembound.running import Progress
 from dembound.studies.chart.measure import Gauges, Outcome, measure
@@ -29,6 +30,9 @@ SHARE, PER_WAVE = 0.1, 7.0
 
 SMALLER = (4.0, 2.0)
 """Width and height of the larger scene, over those of the case, where one without echoes cannot be afforded."""
+
+LEEWAY = 1.5
+"""Work of the cheapest pair over what may be spent, from which on none is run."""
 
 
 @dataclass(frozen=True)
@@ -64,9 +68,12 @@ class Pair:
 def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) -> Pair:
     """The pair of a case that costs at most so many particle-steps, if this is possible; else the cheapest one.
 
-    scene, time_step (s) : of the case. Raises CaseError if no side can move, and the errors of runs.
+    scene, time_step (s) : of the case. Raises CaseError if no side can move, or even the cheapest pair costs too much,
+    and the errors of runs.
     """
     pair = scenes_of_pair(case, scene, time_step, most)
+    if (times := sum(map(_work, pair.scenes)) / most) > LEEWAY:
+        raise CaseError([f"a pair of runs would take {times:.2g} times the work that may be spent (--budget)"])
     own, far, *whole = (measured(each.case, pair.step) for each in pair.scenes)
     return Pair(
         own.gauges,

@@ -22,7 +22,7 @@ from dembound.results.interrupts import Stopped
 from dembound.results.reader import replacing
 from dembound.running import Progress, Shared, resume_case, run_case
 from dembound.studies.choices import digest
-from dembound.studies.estimate import estimate_results
+from dembound.studies.estimate import estimate_if_asked
 from dembound.studies.sweep.values import values_of_calibration, values_of_run
 
 MEMBERS, OUTCOMES, SETTLED = "members", "outcomes", "settled"
@@ -149,10 +149,9 @@ def _run(task: Task) -> tuple[dict[str, float], list[str]]:
             folder = resume_case(partial, progress=progress, shared=shared)
     if folder is None:
         folder = run_case(case, results, progress, shared=shared)
-    if case.output.estimate:
-        estimate_results(folder)
+    failed = estimate_if_asked(case, folder)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    return values_of_run(folder, summary), summary["warnings"]
+    return values_of_run(folder, summary), [*summary["warnings"], *([failed] if failed else [])]
 
 
 def _is_unfinished(case: Case, partial: Path) -> bool:

@@ -29,7 +29,7 @@ def test_a_run_is_estimated_and_drawn(dembound, tmp_path):
         assert np.abs(file["histories/back/velocity/error of sides"][:]).max() > 0.05
     answer = dembound("estimate", "results/bar", "--budget", "1e-3")
     assert answer.code == 0
-    assert "bar: sides from a companion" in answer.out
+    assert "bar: not estimated: sides: a pair of runs would take " in answer.out
     assert dembound("run", "bar.toml").code == 0
     assert not (folder / "estimate.h5").exists()  # it was that of another run
 
@@ -53,8 +53,13 @@ def test_what_cannot_be_estimated_is_one_line(dembound, tmp_path):
     assert dembound("run", "bar.toml").code == 0
     answer = dembound("estimate", "results/bar")
     assert answer.code == 2
-    assert answer.err.strip().endswith("has no history of a monitor whose error could be estimated")
+    assert answer.err.strip().endswith("run.h5: has no monitor whose error could be estimated")
     answer = dembound("estimate", "results/bar", "--budget", "0")
     assert (answer.code, answer.err.strip()) == (2, "--budget: is 0, must be above 0")
-    answer = dembound("estimate", "nowhere")
-    assert answer.code != 0
+    answer = dembound("run", "bar.toml", "--budget", "0.5")
+    assert (answer.code, answer.err.strip()) == (2, "--budget: is for estimates; give --estimate, too")
+    answer = dembound("estimate", "nowhere", "results/bar")
+    first, second = answer.err.strip().splitlines()
+    assert answer.code == 2
+    assert first == "nowhere: contains no results, must be a folder with run.h5 or calibration.h5"
+    assert second.endswith("run.h5: has no monitor whose error could be estimated")

@@ -40,5 +40,6 @@ def test_entries_of_a_summary_as_texts():
     assert dict(entries(estimate)) == {
         "a, velocity": "5 % (sides 4 %, grid 3 %)",
         "sides": "from a pair",
-        "not estimated": "a note; a gap",
+        "notes": "a note",
+        "not estimated": "a gap",
     }

@@ -68,18 +68,18 @@ def test_a_pair_that_can_be_afforded_has_the_smallest_disks_and_no_echoes(scene)
 def test_a_budget_that_is_too_small_leaves_echoes_and_the_largest_disks(scene):
     pair = run_pair(scene.case, scene, choose_step(scene)[0], 1.0)
     assert not pair.echo_free
-    assert pair.ratio == max(pairs._ratios(scene.case, scene))
+    assert pair.ratio == max(pairs.ratios(scene.case, scene))
     assert pair.size[0] == pytest.approx(12.0 + 2 * (pairs.SMALLER[-1] - 1.0) * 12.0, rel=0.1)  # at each side
 
 
 def test_disks_stay_small_enough_for_waves_and_holes(scene):
     # the pulse of 20 ms has a tenth of its energy above some 50 Hz: S waves of 14 m, of which a seventh is 2 m, eight
     # times the diameter; but the height needs four disks, 1.5 m
-    assert pairs._ratios(scene.case, scene) == [3.0, 4.0, 5.0, 6.0]
+    assert pairs.ratios(scene.case, scene) == [3.0, 4.0, 5.0, 6.0]
     short = small(SCENE, changes={"wave.pulse.period": 0.008})
-    assert max(pairs._ratios(short, scene)) < 6.0
+    assert max(pairs.ratios(short, scene)) < 6.0
     hole = small(SCENE | {"hole": [{"name": "h", "type": "circle", "centre": [4.0, 3.0], "radius": 1.0}]})
-    assert pairs._ratios(hole, build(hole)) == [2.0]
+    assert pairs.ratios(hole, build(hole)) == [2.0]
 
 
 def test_sides_that_waves_enter_do_not_move():
