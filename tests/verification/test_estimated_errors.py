@@ -10,13 +10,13 @@ is met within some per cent; a factor of 1.3 also holds at places where echoes c
 
 import numpy as np
 import pytest
+from small_cases import Tables, small
 
 from dembound.running import Progress
 from dembound.studies.chart.measure import measure
 from dembound.studies.estimate import Estimate, Recorded, causes_of
 from dembound.studies.estimate.causes import SIDES
 from dembound.studies.extended import extended
-from tests.small_cases import Tables, small
 
 SPRINGS: Tables = {"type": "viscoelastic", "alpha_n": 1.0, "alpha_s": 0.5, "source": [0.0, 20.0]}
 

@@ -3,10 +3,10 @@
 import json
 
 import pytest
+from unit.studies.accuracy.test_choice import BAR, small
 
 from dembound.cli.accuracy import bound_of
 from dembound.errors import CaseError
-from tests.unit.studies.accuracy.test_choice import BAR, small
 
 
 @pytest.fixture

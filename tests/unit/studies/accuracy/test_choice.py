@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from small_cases import PUSHED, SPALLING, small
 
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
@@ -12,7 +13,6 @@ from dembound.running import Progress
 from dembound.studies.accuracy import Choice, choose
 from dembound.studies.accuracy.choice import SAFETY
 from dembound.studies.chart.measure import Gauges, measure
-from tests.small_cases import PUSHED, SPALLING, small
 
 BAR = PUSHED | {
     "packing": {"pattern": "A", "size": [30.0, 1.5], "radius": 0.25},

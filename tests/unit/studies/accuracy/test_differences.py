@@ -3,12 +3,12 @@
 from typing import Any
 
 import pytest
+from small_cases import PUSHED, small
 
 from dembound.casefile.toml import parsed
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.studies.accuracy.differences import differences, in_toml, keeps, value_at
-from tests.small_cases import PUSHED, small
 
 CHANGES: list[dict[str, Any]] = [
     {"packing.radius": 0.125},

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from small_cases import Tables, small
 
 from dembound.disks.loads import forces_of
 from dembound.disks.matching import homogenised_beta
 from dembound.disks.scene import build
 from dembound.studies.estimate.coarser import coarser, largest_diameter
-from tests.small_cases import Tables, small
 
 STEP = 1e-4
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from small_cases import GRAINS, SURROUNDED, Tables, small
 
 from dembound.disks.continuum_facts import expected_errors
 from dembound.disks.scene import build
 from dembound.studies.estimate.causes import GRID, STEP, Recorded
 from dembound.studies.estimate.disks import causes_of_disks, reflected_motion
 from dembound.studies.estimate.matched_sides import Reflected
-from tests.small_cases import GRAINS, Tables, small
 
 HEIGHT, SPEED, PERIOD = 20.0, 1000.0, 0.02
 TIME = np.linspace(0.0, 0.08, 401)
@@ -108,3 +108,21 @@ def test_displacements_beside_a_continuum_have_smaller_errors_than_velocities():
     velocity, displacement = expected_errors(build(small(tables)))
     assert 0.0 < displacement < velocity < 0.1
     assert expected_errors(build(small(LAYER))) is None
+
+
+def test_waves_that_start_everywhere_have_no_way():
+    pulled = LAYER | {
+        "boundary": {side: LAYER["boundary"][side] for side in ("left", "right")},
+        "load": [{"name": "shake", "acceleration": [0.0, 1.0], "wave": "pulse"}],
+    }
+    found = causes_of_disks(small(pulled), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
+    assert not {GRID, STEP} & {each.name for each in found.found}
+    assert "grid and time step: waves start everywhere" in found.missing
+
+
+def test_a_continuum_under_waves_that_jump_is_not_estimated():
+    jumping = SURROUNDED | {"wave": {"push": {"type": "constant", "amplitude": 1.0}}}
+    jumping["load"] = [{"name": "push", "force": [0.0, -1.0], "position": [6.0, 6.0], "wave": "push"}]
+    found = causes_of_disks(small(jumping), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
+    assert "continuum" not in {each.name for each in found.found}
+    assert any(line.startswith("continuum: ") for line in found.missing)

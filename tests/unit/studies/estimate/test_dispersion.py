@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from small_cases import PUSHED, small
 
 from dembound.disks.scene import build
 from dembound.studies.estimate.dispersion import AXES, DIAGONAL, delay_of
-from tests.small_cases import PUSHED, small
 
 DIAMETER, PATH = 0.5, 300.0
 PHASE = 0.1

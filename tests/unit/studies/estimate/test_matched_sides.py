@@ -3,10 +3,10 @@
 import math
 
 import pytest
+from small_cases import PUSHED, small
 
 from dembound.disks.scene import build
 from dembound.studies.estimate.matched_sides import Reflected, factor_for, reflected
-from tests.small_cases import PUSHED, small
 
 STEP = 1e-4
 

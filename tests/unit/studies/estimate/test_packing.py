@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from small_cases import GRAINS, PUSHED, small
 
 from dembound.errors import CaseError
 from dembound.studies.chart.measure import Gauge, Outcome
 from dembound.studies.estimate import packing
 from dembound.studies.estimate.causes import Recorded
-from tests.small_cases import GRAINS, PUSHED, small
 
 TIME = np.linspace(0.0, 1.0, 21)
 

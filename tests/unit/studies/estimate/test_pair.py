@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from small_cases import Tables, small
 
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
@@ -12,7 +13,6 @@ from dembound.studies.chart.measure import Gauge
 from dembound.studies.estimate import pair as pairs
 from dembound.studies.estimate.causes import Recorded
 from dembound.studies.estimate.pair import Pair, run_pair
-from tests.small_cases import Tables, small
 
 TIME = np.linspace(0.0, 1.0, 41)
 
@@ -66,10 +66,15 @@ def test_a_pair_that_can_be_afforded_has_the_smallest_disks_and_no_echoes(scene)
 
 
 def test_a_budget_that_is_too_small_leaves_echoes_and_the_largest_disks(scene):
-    pair = run_pair(scene.case, scene, choose_step(scene)[0], 1.0)
+    pair = pairs.scenes_of_pair(scene.case, scene, choose_step(scene)[0], 1.0)
     assert not pair.echo_free
     assert pair.ratio == max(pairs.ratios(scene.case, scene))
-    assert pair.size[0] == pytest.approx(12.0 + 2 * (pairs.SMALLER[-1] - 1.0) * 12.0, rel=0.1)  # at each side
+    assert pair.larger.size[0] == pytest.approx(12.0 + 2 * (pairs.SMALLER[-1] - 1.0) * 12.0, rel=0.1)  # at each side
+
+
+def test_a_pair_that_costs_more_than_may_be_spent_is_not_run(scene):
+    with pytest.raises(CaseError, match=r"a pair of runs would take .* times the work that may be spent"):
+        run_pair(scene.case, scene, choose_step(scene)[0], 1.0)
 
 
 def test_disks_stay_small_enough_for_waves_and_holes(scene):
