@@ -27,8 +27,8 @@ from dembound.kinds import loads, with_changes
 from dembound.running import Progress, plan
 from dembound.studies.accuracy import choose
 from dembound.studies.accuracy.candidates import FACTORS, Candidate, candidates, cost_of, with_diameter
-from dembound.studies.accuracy.choice import COSTLIEST, WORK
 from dembound.studies.accuracy.companions import Companions
+from dembound.studies.accuracy.of_disks import COSTLIEST, WORK
 from dembound.studies.chart.errors import QUIET
 from dembound.studies.chart.measure import Gauges, measure
 from dembound.studies.extended import extended

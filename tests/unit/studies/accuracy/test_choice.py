@@ -10,9 +10,9 @@ from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
 from dembound.running import Progress
 from dembound.studies.accuracy import Choice, choose
-from dembound.studies.accuracy.choice import SAFETY
+from dembound.studies.accuracy.of_disks import SAFETY
 from dembound.studies.chart.measure import Gauges, measure
-from tests.small_cases import PUSHED, SPALLING, small
+from tests.small_cases import PUSHED, small
 
 BAR = PUSHED | {
     "packing": {"pattern": "A", "size": [30.0, 1.5], "radius": 0.25},
@@ -92,9 +92,7 @@ def test_bounds_are_shares(bound: float) -> None:
         choose(bar(), bound)
 
 
-def test_bars_and_cases_without_monitors_are_refused() -> None:
-    with pytest.raises(CaseError, match="for cases of disks"):
-        choose(small(SPALLING), 0.01)
+def test_cases_without_monitors_are_refused() -> None:
     with pytest.raises(CaseError, match="needs a monitor"):
         choose(small({key: value for key, value in BAR.items() if key != "monitor"}), 0.01)
     with pytest.raises(CaseError, match=r"--keep: packing\.radios is no key"):
