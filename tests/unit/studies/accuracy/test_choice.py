@@ -97,3 +97,14 @@ def test_cases_without_monitors_are_refused() -> None:
         choose(small({key: value for key, value in BAR.items() if key != "monitor"}), 0.01)
     with pytest.raises(CaseError, match=r"--keep: packing\.radios is no key"):
         choose(bar(), 0.01, ["packing.radios"])
+
+
+def test_what_whole_cells_at_a_side_reflect_is_counted() -> None:
+    """Half a cell too much at matched dashpots reflects kD/4 or so of a wave, 2 % of one of 20 disks."""
+    sides = {"left": BAR["boundary"]["left"], "right": {"type": "viscous", "beta_p": 1.0}}
+    case = small(BAR, changes={"boundary": sides, "wave.push.period": 0.012})
+
+    choice = choose(case, 0.001, ["boundary", "packing"])
+
+    assert choice.by["sides"] > 0.01
+    assert choice.error == pytest.approx(true_error(case, case), rel=0.2)  # type: ignore[arg-type]
