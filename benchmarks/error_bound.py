@@ -27,13 +27,13 @@ from dembound.kinds import loads, with_changes
 from dembound.running import Progress, plan
 from dembound.studies.accuracy import choose
 from dembound.studies.accuracy.candidates import FACTORS, Candidate, candidates, cost_of, with_diameter
-from dembound.studies.accuracy.choice import COSTLIEST, WORK
 from dembound.studies.accuracy.companions import Companions
+from dembound.studies.accuracy.of_disks import COSTLIEST, WORK
 from dembound.studies.chart.errors import QUIET
 from dembound.studies.chart.measure import Gauges, measure
 from dembound.studies.extended import extended
 
-BOUNDS = (0.01, 0.03, 0.1)
+BOUNDS = (0.003, 0.01, 0.03, 0.1)
 FINER = 3
 QUANTITIES = ("velocity", "displacement")
 
@@ -227,7 +227,7 @@ def every_choice(case: DiskCase) -> Iterator[Candidate]:
     for factor in FACTORS:
         plain = with_diameter(companions, factor)
         if plain is not None:
-            found = candidates(companions, plain, factor, BOUNDS[0], ())
+            found = candidates(companions, plain, factor, BOUNDS[1], ())
             yield from (each for each in found if each.cost < COSTLIEST * cost_of(planned))
 
 

@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
@@ -91,13 +92,21 @@ class Companions:
 
         wider : how much farther away than in the case they are, over the scene's length across them.
         """
-        sides = self._coarser(case, scene, time_step).boundary
-        own = build(replace(self._own, boundary=sides))
-        found = self._run(self.wider(own, self._needed, wider) if wider else own.case)
+        given = coarser(case, scene, time_step, self.diameter)
+        own = self._with_sides(given.case.boundary, wider)
+        whole = self._with_sides(given.with_whole_cells.boundary, wider) if given.weight > 0.0 else own
         return {
-            name: {q: found[name].of(q)[:, :2] - far.of(q)[:, :2] for q in QUANTITIES}  # type: ignore[arg-type]
+            name: {
+                q: own[name][q] - far.of(q)[:, :2] + given.weight * (whole[name][q] - own[name][q]) for q in QUANTITIES
+            }  # type: ignore[arg-type]
             for name, far in self.far.items()
         }
+
+    def _with_sides(self, sides: Mapping[str, Boundary], wider: float) -> dict[str, dict[str, np.ndarray]]:
+        """The motion (k, 2) of the monitors by quantity with other sides of the companion, so much farther away."""
+        own = build(replace(self._own, boundary=sides))
+        found = self._run(self.wider(own, self._needed, wider) if wider else own.case)
+        return {name: {q: each.of(q)[:, :2] for q in QUANTITIES} for name, each in found.items()}  # type: ignore[arg-type]
 
     def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
         """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""

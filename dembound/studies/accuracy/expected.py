@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -17,7 +17,7 @@ from dembound.holes import Hole, Rectangle
 from dembound.packings.square import Square
 from dembound.studies.accuracy.companions import QUANTITIES, Companions, quiet
 from dembound.studies.chart.errors import QUIET
-from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes
+from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.delays import error_of_delay
 from dembound.studies.estimate.disks import causes_by_formula
 from dembound.studies.estimate.estimate import Estimate
@@ -39,15 +39,14 @@ class Expected:
     by: dict[str, float]
 
 
-def expected(causes: list[Cause], companions: Companions, scene: DiskScene) -> Expected:
-    """The largest error of velocity or displacement at monitors that are not quiet; scene : of the choice."""
-    recorded = companions.recorded(scene)
+def expected(causes: list[Cause], recorded: Mapping[str, Recorded]) -> Expected:
+    """The largest error of all recorded quantities at monitors that are not quiet."""
     estimate = Estimate(recorded, Causes(causes))
     found = [
         (total, estimate.shares(name, quantity))
-        for quantity in QUANTITIES
-        for name in recorded.keys() - quiet(recorded, quantity, QUIET)
-        if np.isfinite(total := estimate.total(name, quantity))
+        for name in recorded
+        for quantity in estimate.quantities(name)
+        if name not in quiet(recorded, quantity, QUIET) and np.isfinite(total := estimate.total(name, quantity))
     ]
     return Expected(*max(found, key=lambda each: each[0], default=(0.0, {})))
 

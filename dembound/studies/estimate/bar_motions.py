@@ -120,8 +120,8 @@ class Motions:
         highest = 2.0 / self.scene.step_limit()
         return max(1, int(np.count_nonzero(np.abs(clock.change) <= ABOVE * highest)))
 
-    def exact(self) -> Histories:
-        """That of rods."""
+    def exact(self, places: Mapping[str, float] | None = None) -> Histories:
+        """That of rods; places : m, by monitor, if they are not those of its nodes."""
         finer = self.window.finer(FINER)
         pushed: dict[str, np.ndarray] = {}
         for load in self.case.load:
@@ -131,7 +131,8 @@ class Motions:
             pushed[load.side] = pushed.get(load.side, 0.0) + transform
         waves = {side: finer.transform(self._wave(side)) for side in ENDS if self.case.side(side).waves}
         count = needed([*pushed.values(), *waves.values()])
-        place = self.scene.positions[list(self.nodes.values()), 0]
+        nodes = {name: float(self.scene.positions[node, 0]) for name, node in self.nodes.items()}
+        place = np.array([(places or nodes)[name] for name in nodes])
         left, right = (self.scene.rod.end(side) for side in ENDS)
         plane = np.clip(place, 0.5 * left.spacing, right.end - 0.5 * right.spacing)
         found = []

@@ -27,7 +27,7 @@ import numpy as np
 from dembound.bar.layer_echo import WIDEST
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
-from dembound.studies.estimate.bar_motions import Motions
+from dembound.studies.estimate.bar_motions import Histories, Motions
 from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.window import Window
 
@@ -51,28 +51,33 @@ def causes_of_bar(case: BarCase, recorded: Mapping[str, Recorded], time_step: fl
 
     Raises the errors of building a scene.
     """
-    refused = _refused(case)
-    if refused or not recorded:
+    if (refused := not_linear(case)) or not recorded:
         return Causes([], refused)
     times = {name: each.time for name, each in recorded.items()}
     window = Window.up_to(max(float(time[-1]) for time in times.values()), time_step)
     motions = Motions(case, build_bar(case), window, times)
-    own, endless = motions.own(), motions.endless(time_step)
-    exact_time, exact = motions.endless(0.0), motions.exact()
-    parts = {GRID: (exact_time, exact), STEP: (endless, exact_time)}
-    if motions.absorbing:
-        parts[SIDES] = (own, endless)
+    own, exact = motions.own(), motions.exact()
     lines = {name: _unknown(case, each, own[name], exact[name]) for name, each in recorded.items()}
     known = [name for name, line in lines.items() if not line]
-    found = [
-        Cause(cause, HOW, {name: _errors(recorded[name], of[name], less[name]) for name in known})
-        for cause, (of, less) in parts.items()
-    ]
+    found = split(motions, own, exact, {name: recorded[name] for name in known})
     missing = [f"{name}: {line}" for name, line in lines.items() if line]
     return Causes(found if known else [], missing, echo_free=bool(motions.absorbing))
 
 
-def _refused(case: BarCase) -> list[str]:
+def split(motions: Motions, own: Histories, exact: Histories, recorded: Mapping[str, Recorded]) -> list[Cause]:
+    """What the grid, the time step and absorbing ends add, by the motions of the bar as it is stepped and of rods."""
+    step = motions.window.step
+    endless, exact_time = motions.endless(step), motions.endless(0.0)
+    found = [difference(GRID, exact_time, exact, recorded), difference(STEP, endless, exact_time, recorded)]
+    return [*found, difference(SIDES, own, endless, recorded)] if motions.absorbing else found
+
+
+def difference(cause: str, of: Histories, less: Histories, recorded: Mapping[str, Recorded]) -> Cause:
+    """A cause that adds the difference of two motions to what is recorded."""
+    return Cause(cause, HOW, {name: _errors(own, of[name], less[name]) for name, own in recorded.items()})
+
+
+def not_linear(case: BarCase) -> list[str]:
     """Why nothing can be estimated; empty if something can."""
     bar = case.bar
     if any(given.interface == "contact" for given in bar.range):
@@ -86,7 +91,7 @@ def _refused(case: BarCase) -> list[str]:
 
 def _unknown(case: BarCase, recorded: Recorded, own: Mapping[str, np.ndarray], exact: Mapping[str, np.ndarray]) -> str:
     """Why nothing is known at a monitor: its record is that of no linear bar, or of rest; empty otherwise."""
-    worst, largest = 0.0, _largest(case, float(recorded.time[-1]))
+    worst, largest = 0.0, largest_motion(case, float(recorded.time[-1]))
     for quantity, values in recorded.values.items():
         seen = values[:, 0]
         size = float(np.linalg.norm(seen))
@@ -101,7 +106,7 @@ def _unknown(case: BarCase, recorded: Recorded, own: Mapping[str, np.ndarray], e
     )
 
 
-def _largest(case: BarCase, last: float) -> dict[str, float]:
+def largest_motion(case: BarCase, last: float) -> dict[str, float]:
     """By quantity the sum of the largest motions that the sources make, up to a time (s)."""
     impedance = max(part.density * part.speed for part in case.bar.parts)
     waves = [case.wave[name].peak() for driven in case.driving.values() for name in driven.values()]

@@ -1,0 +1,83 @@
+"""How often the choice of `dembound run --error` for bars is as accurate as asked for, beside exact motions.
+
+    python benchmarks/error_bound_bars.py [NAME...]      # of tests/estimated_bars.py; by default those of `NAMES`
+
+The exact motion is d'Alembert's, for attenuation and ranges that of finite differences on nodes eight times as fine as
+those of the choice. Errors are those at the nodes of the given case's monitors.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+
+import numpy as np
+from timing import ROOT
+
+sys.path.insert(0, str(ROOT / "tests"))
+
+from estimated_bars import exact, recorded_of, scene
+
+from dembound.bar.scene import build_bar
+from dembound.casefile.bar import BarCase
+from dembound.studies.accuracy import choose
+from dembound.studies.accuracy.companions import quiet
+from dembound.studies.chart.errors import QUIET
+from dembound.studies.estimate.causes import Recorded
+
+BOUNDS = (0.003, 0.01, 0.03)
+
+NAMES = (
+    "finite differences, ν = 0.5",
+    "sine burst, ν = 0.5",
+    "viscous end, β = 0.7",
+    "viscous soft end, m = 3",
+    "matched layer",
+    "m = 3, corrected ends",
+    "ricker, m = 3",
+    "input, β = 0.8, m = 3",
+    "ranges",
+    "attenuation",
+)
+
+
+def true_error(given: BarCase, case: BarCase) -> float:
+    """The largest error of all quantities at monitors that move, RMS over RMS."""
+    scene, (found, _) = build_bar(given), recorded_of(case)
+    errors = []
+    for name, own in found.items():
+        moved = Recorded(scene.positions[scene.monitors[name]], own.time, own.values)
+        expected = exact(case, moved)
+        for quantity, values in own.values.items():
+            if name not in quiet(found, quantity, QUIET):
+                rest = np.linalg.norm(values[:, 0] - expected[quantity])
+                errors.append(float(rest / np.linalg.norm(values[:, 0])))
+    return max(errors)
+
+
+def main(names: list[str]) -> None:
+    """Print a line for each scene and bound, and the share of those that keep it."""
+    kept = []
+    print("| bar | bound | chosen | expected | true | steps, ms | of the case, ms | search, s |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name in names or NAMES:
+        case = scene(name)
+        for bound in BOUNDS:
+            began = time.process_time()
+            choice = choose(case, bound)
+            spent = time.process_time() - began
+            assert isinstance(choice.case, BarCase)
+            error = true_error(case, choice.case)
+            if choice.holds:
+                kept.append(error <= bound)
+            words = choice.words if choice.holds else f"none; {choice.words}"
+            print(
+                f"| {name} | {100 * bound:g} % | {words} | {100 * choice.error:.3g} % | {100 * error:.3g} % | "
+                f"{1e3 * choice.cost:.2g} | {1e3 * choice.own_cost:.2g} | {spent:.1f} |",
+                flush=True,
+            )
+    print(f"\n{sum(kept)} of {len(kept)} choices that were expected to keep their bound do so")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,125 @@
+"""The cheapest choice of nodes, steps and absorbing ends of a bar that keeps the error of all monitors within a bound.
+
+The motion of a linear bar is known without a run, as it is stepped and exactly (estimate/bars.py), for every choice:
+the error is their difference at each monitor. Choices are tried in the order of their predicted cost.
+
+Of a bar that may break the nodes and the method remain, as they are part of how it breaks; its error is that of the
+motion until bonds change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from dembound.bar.scene import build_bar
+from dembound.casefile.bar import BarCase
+from dembound.errors import CaseError
+from dembound.studies.accuracy.bar_candidates import BarCandidate, bar_candidates, may_break
+from dembound.studies.accuracy.choice import Choice
+from dembound.studies.accuracy.expected import Expected, expected
+from dembound.studies.estimate.bar_motions import Histories, Motions
+from dembound.studies.estimate.bars import QUIET, difference, largest_motion, not_linear, split
+from dembound.studies.estimate.causes import Recorded
+from dembound.studies.estimate.window import Window
+
+SAFETY = 1.05
+"""Expected errors are below the bound by this factor: they differ from true ones by up to 3 %
+(tests/unit/studies/estimate/test_bars.py)."""
+
+COSTLIEST = 64.0
+"""Cost up to which choices are tried, over that of the given case: an eighth of the spacing."""
+
+PLACES = "places"
+"""Cause of errors: monitors at other nodes than in the given case."""
+
+ALONG = "; its nodes and method remain, as it may break, and the error is that before bonds change"
+"""What is said of a bar that may break."""
+
+
+def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Choice:
+    """The cheapest choice that keeps a bound, or the one with the smallest error; kept : keys that do not change.
+
+    Raises CaseError for a bar whose errors are not known, one that does not move at its monitors, and where no choice
+    keeps those values; the errors of building a scene.
+    """
+    if refused := not_linear(case):
+        raise CaseError([f"--error: nothing is known of {line}" for line in refused], case.name)
+    scene = build_bar(case)
+    places = {name: float(scene.positions[node, 0]) for name, node in scene.monitors.items()}
+    own = next(each for each in bar_candidates(case, ()) if not each.changes)
+    if not _Motion(own, places).moves:
+        raise CaseError(["--error: nothing moves at the monitors"], case.name)
+    choices, own_cost = sorted(bar_candidates(case, kept), key=lambda each: each.cost), own.cost
+    found = list(_until(bound, (_Motion(each, places) for each in choices if each.cost <= COSTLIEST * own_cost)))
+    if not found:
+        raise CaseError(["--error: no choice keeps the values of --keep and --set"], case.name)
+    best = min(found, key=lambda each: each.error.worst)
+    words = f"{best.choice.words}{ALONG if may_break(case) else ''}"
+    costs = best.choice.cost, own_cost
+    return Choice(case, best.choice.case(case), words, best.error.worst, best.by, bound, *costs, len(found), SAFETY)
+
+
+def _until(bound: float, motions: Iterator[_Motion]) -> Iterator[_Motion]:
+    """Motions up to the first whose error is below a bound."""
+    for motion in motions:
+        yield motion
+        if SAFETY * motion.error.worst <= bound:
+            return
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """The motion of a choice beside the exact one at places (m) by monitor."""
+
+    choice: BarCandidate
+    places: Mapping[str, float]
+
+    @cached_property
+    def error(self) -> Expected:
+        """The error in all."""
+        return expected([difference("all", self._own, self._exact, self._recorded)], self._recorded)
+
+    @property
+    def by(self) -> dict[str, float]:
+        """Its causes at the monitor with the largest error; some have opposite signs, as those of grid and steps."""
+        at_nodes = self._motions.exact()
+        causes = split(self._motions, self._own, at_nodes, self._recorded)
+        found = expected([*causes, difference(PLACES, at_nodes, self._exact, self._recorded)], self._recorded).by
+        return {name: share for name, share in found.items() if share > 0.0}
+
+    @property
+    def moves(self) -> bool:
+        """Whether anything moves at a monitor, but for rounding errors."""
+        largest = largest_motion(self.choice.scene.case, self.choice.scene.case.run.duration)["velocity"]
+        return any(np.abs(own["velocity"]).max() > QUIET * largest for own in self._exact.values())
+
+    @cached_property
+    def _motions(self) -> Motions:
+        """The motions at all steps."""
+        scene, step, steps = self.choice.scene, self.choice.step, self.choice.steps
+        times = dict.fromkeys(self.places, step * np.arange(steps + 1))
+        return Motions(scene.case, scene, Window.up_to(steps * step, step), times)
+
+    @cached_property
+    def _own(self) -> Histories:
+        return self._motions.own()
+
+    @cached_property
+    def _exact(self) -> Histories:
+        return self._motions.exact(self.places)
+
+    @cached_property
+    def _recorded(self) -> dict[str, Recorded]:
+        """The motion as a run records it."""
+        return {
+            name: Recorded(
+                np.array([self.places[name], 0.0]),
+                self._motions.times[name],
+                {quantity: values[:, None] for quantity, values in own.items()},
+            )
+            for name, own in self._own.items()
+        }

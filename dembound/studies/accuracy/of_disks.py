@@ -1,0 +1,147 @@
+"""The cheapest choice of disks and sides that keeps the error of all monitors within a bound.
+
+Choices are tried in the order of their predicted cost. None of them is run: what their sides send back is found with
+companions of larger disks, the rest by formulas.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import count
+
+from dembound.casefile.disks import DiskCase
+from dembound.disks.scene import DiskScene
+from dembound.errors import CaseError, DemboundError
+from dembound.running import plan
+from dembound.studies.accuracy.candidates import (
+    FACTORS,
+    Candidate,
+    candidates,
+    cost_of,
+    may_change_diameter,
+    with_diameter,
+)
+from dembound.studies.accuracy.choice import Choice
+from dembound.studies.accuracy.companions import Companions
+from dembound.studies.accuracy.expected import Expected, expected, of_ground, of_sides
+
+SAFETY = 1.4
+"""Expected errors are below the bound by this factor: true ones were up to 1.33 times as large where sides reflect
+(benchmarks/error_bound.py)."""
+
+WORK = 5e7
+"""Particle-steps of the companions that are first run: less than a second."""
+
+SHARE = 0.1
+"""Their share of the given case's work, if this is more."""
+
+COSTLIEST = 64.0
+"""Cost up to which choices are tried, over that of the given case: disks of a quarter of the diameter."""
+
+
+def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Choice:
+    """The cheapest choice that keeps a bound, or the one with the smallest error; kept : keys that do not change.
+
+    Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running
+    the companions.
+    """
+    planned = plan(case)
+    companions = Companions(case, planned.scene, planned.time_step, 0.0)  # type: ignore[arg-type]
+    companions.most = max(WORK, SHARE * planned.scene.count * planned.steps)
+    search = _Search(companions, bound, kept, cost_of(planned))
+    best, error = search.best()
+    found = error.worst, error.by, bound, best.cost, search.own_cost, search.tried
+    return Choice(case, best.case, best.words, *found, reserve=SAFETY)
+
+
+@dataclass
+class _Search:
+    """The search for a choice.
+
+    too_much : arrangements and distances whose sides alone reflect more than the bound. too_large : factors of
+    diameters whose disks alone have larger errors than the bound, with these errors.
+    """
+
+    companions: Companions
+    bound: float
+    kept: Sequence[str]
+    own_cost: float
+    tried: int = 0
+    too_much: set[tuple[str, float]] = field(default_factory=set)
+    too_large: dict[float, float] = field(default_factory=dict)
+
+    def best(self) -> tuple[Candidate, Expected]:
+        """The cheapest choice that keeps the bound, or the one with the smallest error."""
+        found: list[tuple[Candidate, Expected]] = []
+        for candidate in self._by_cost():
+            if (candidate.arrangement.name, candidate.wider) not in self.too_much:
+                found += self._with_error(candidate)
+                if found and SAFETY * found[-1][1].worst <= self.bound:
+                    return found[-1]
+        for factor in sorted(self.too_large, key=lambda factor: self.too_large[factor]):
+            if not found:
+                found = [each for candidate in self._of(factor) for each in self._with_error(candidate)]
+        if not found:
+            raise CaseError(["--error: no choice keeps the values of --keep and --set"], self.companions.case.name)
+        return min(found, key=lambda each: each[1].worst)
+
+    def _by_cost(self) -> Iterator[Candidate]:
+        """Choices by cost; those with the next smaller disks are only made when their cost has been reached."""
+        factors = list(FACTORS) if may_change_diameter(self.companions.case, self.kept) else [1.0]
+        number, least = count(), 0.0
+        waiting: list[tuple[float, int, Candidate | float]] = [(0.0, next(number), factors.pop(0))]
+        while waiting:
+            cost, _, item = heapq.heappop(waiting)
+            if cost > COSTLIEST * self.own_cost:
+                return
+            if isinstance(item, Candidate):
+                yield item
+                continue
+            made = self._of(item) if self._are_small_enough(item) else []
+            for each in made:
+                heapq.heappush(waiting, (each.cost, next(number), each))
+            if made:
+                least = min(each.cost for each in made)
+            if factors:
+                heapq.heappush(waiting, (least, next(number), factors.pop(0)))
+
+    def _of(self, factor: float) -> list[Candidate]:
+        """Choices with disks of one diameter."""
+        plain = with_diameter(self.companions, factor)
+        return [] if plain is None else list(candidates(self.companions, plain, factor, self.bound, self.kept))
+
+    def _are_small_enough(self, factor: float) -> bool:
+        """Whether the error of disks of one diameter leaves some of the bound to sides."""
+        plain = with_diameter(self.companions, factor)
+        if plain is None:
+            return False
+        assert isinstance(plain.scene, DiskScene)
+        disks, _ = of_ground(self.companions, plain.scene, plain.time_step)
+        error = expected(disks, self.companions.recorded(plain.scene)).worst
+        if SAFETY * error > self.bound:
+            self.too_large[factor] = error
+        return factor not in self.too_large
+
+    def _with_error(self, candidate: Candidate) -> list[tuple[Candidate, Expected]]:
+        """A choice with its error; nothing if a companion of it cannot run."""
+        scene, step = candidate.scene, candidate.planned.time_step
+        recorded = self.companions.recorded(scene)
+        self.tried += 1
+        try:
+            disks, others = of_ground(self.companions, scene, step)
+            sides = [of_sides(self.companions, scene, step, candidate.wider)] if _reflects(scene.case) else []
+        except DemboundError:
+            return []
+        if SAFETY * expected(sides, recorded).worst > self.bound:
+            self.too_much.add((candidate.arrangement.name, candidate.wider))
+        return [(candidate, expected([*disks, *others, *sides], recorded))]
+
+
+def _reflects(case: DiskCase) -> bool:
+    """Whether sides reflect, so that companions are needed."""
+    return any(
+        table.is_artificial and not table.is_outside and side not in case.driving
+        for side, table in case.boundary.items()
+    )
