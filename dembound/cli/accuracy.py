@@ -62,15 +62,16 @@ def chosen(case: Case, bound: float, keep: Sequence[str] | None, changes: Sequen
 
     Raises NotAccurateError if no choice keeps the bound, with the best one; and the errors of `choose`.
     """
+    from dembound.results.estimates import in_words
     from dembound.studies.accuracy import choose
 
     kept = [*(keep or ()), *(text.partition("=")[0].strip() for text in changes or ())]
     choice = choose(case, bound, kept)
     lines = _lines(choice)
     if not choice.holds:
-        best = f"the best of {choice.tried} choices has {_percent(choice.error)}"
+        best = f"the best of {choice.tried} choices has {in_words(choice.error)}"
         raise NotAccurateError(
-            "\n".join([f"--error: no choice keeps {_percent(bound)}; {best}: {lines[0]}", *lines[1:]])
+            "\n".join([f"--error: no choice keeps {100.0 * bound:.3g} %; {best}: {lines[0]}", *lines[1:]])
         )
     for line in lines:
         out.print(f"{case.name}: {line}", markup=False)
@@ -79,14 +80,10 @@ def chosen(case: Case, bound: float, keep: Sequence[str] | None, changes: Sequen
 
 def _lines(choice: Choice) -> list[str]:
     """The choice in words, with its error and cost, and the keys that it changes."""
-    by = ", ".join(f"{name} {_percent(share)}" for name, share in sorted(choice.by.items(), key=lambda each: -each[1]))
+    from dembound.results.estimates import in_words, split_in_words
+
     return [
-        f"{choice.words}; expected error {_percent(choice.error)} ({by}), steps of about {choice.cost:.2g} s "
-        f"instead of {choice.own_cost:.2g} s",
+        f"{choice.words}; expected error {in_words(choice.error)} ({split_in_words(choice.by)}), "
+        f"steps of about {choice.cost:.2g} s instead of {choice.own_cost:.2g} s",
         *(choice.changes or ["the case as it is"]),
     ]
-
-
-def _percent(share: float) -> str:
-    """A share in per cent."""
-    return f"{100.0 * share:.2g} %" if share < 0.995 else f"{100.0 * share:.0f} %"

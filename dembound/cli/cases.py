@@ -84,8 +84,7 @@ def run(
 
     All case files are read before the first is run, so a mistake in the last one is found at once.
 
-    With --error each is run with the cheapest choice that is as accurate, see docs/error_bound.md, and its errors are
-    estimated afterwards.
+    With --error each is run with the cheapest choice that is as accurate; see docs/error_bound.md.
     """
     from dembound.results.folder import Folder
     from dembound.running import preflight

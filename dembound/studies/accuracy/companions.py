@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from dembound.boundaries import normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene, build
@@ -93,20 +94,17 @@ class Companions:
         wider : how much farther away than in the case they are, over the scene's length across them.
         """
         given = coarser(case, scene, time_step, self.diameter)
-        own = self._with_sides(given.case.boundary, wider)
+        own, far = self._with_sides(given.case.boundary, wider), _motions(self.far)
         whole = self._with_sides(given.with_whole_cells.boundary, wider) if given.weight > 0.0 else own
         return {
-            name: {
-                q: own[name][q] - far.of(q)[:, :2] + given.weight * (whole[name][q] - own[name][q]) for q in QUANTITIES
-            }  # type: ignore[arg-type]
-            for name, far in self.far.items()
+            name: {q: own[name][q] + given.weight * (whole[name][q] - own[name][q]) - far[name][q] for q in QUANTITIES}
+            for name in self.far
         }
 
     def _with_sides(self, sides: Mapping[str, Boundary], wider: float) -> dict[str, dict[str, np.ndarray]]:
         """The motion (k, 2) of the monitors by quantity with other sides of the companion, so much farther away."""
         own = build(replace(self._own, boundary=sides))
-        found = self._run(self.wider(own, self._needed, wider) if wider else own.case)
-        return {name: {q: each.of(q)[:, :2] for q in QUANTITIES} for name, each in found.items()}  # type: ignore[arg-type]
+        return _motions(self._run(self.wider(own, self._needed, wider) if wider else own.case))
 
     def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
         """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""
@@ -115,8 +113,7 @@ class Companions:
 
     def _bricks(self, scene: DiskScene, side: str, wider: float) -> int:
         """Bricks by which a side moves."""
-        axis = 0 if side in ("left", "right") else 1
-        return math.ceil(wider * scene.case.packing.copies[axis] - 1e-9)
+        return math.ceil(wider * scene.case.packing.copies[normal_axis(side)] - 1e-9)
 
     def _coarser(self, case: DiskCase, scene: DiskScene, time_step: float) -> DiskCase:
         """The companion of a case."""
@@ -127,6 +124,11 @@ class Companions:
         outcome = measured(case, self.step)
         self.work += outcome.work
         return outcome.gauges
+
+
+def _motions(gauges: Gauges) -> dict[str, dict[str, np.ndarray]]:
+    """Motion (k, 2) along x and y, by monitor and quantity."""
+    return {name: {q: each.of(q)[:, :2] for q in QUANTITIES} for name, each in gauges.items()}  # type: ignore[arg-type]
 
 
 def needed_by(scene: DiskScene) -> dict[str, int]:

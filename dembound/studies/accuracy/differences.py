@@ -25,15 +25,15 @@ def _differences(old: Any, new: Any, path: Path) -> Iterator[tuple[Path, Any]]:
     """The same for values at a path."""
     if old == new:
         return
-    old, new = _named(old), _named(new)
-    if path and not _may_be_changed_inside(old, new):
+    before, after = _named(old), _named(new)
+    if path and not _may_be_changed_inside(before, after):
         yield path, new
         return
-    for key, value in new.items():
-        if key not in old:
+    for key, value in after.items():
+        if key in before:
+            yield from _differences(before[key], value, (*path, key))
+        elif value != {}:  # an empty table is one that was left out
             yield (*path, key), value
-        else:
-            yield from _differences(old[key], value, (*path, key))
 
 
 def _may_be_changed_inside(old: Any, new: Any) -> bool:

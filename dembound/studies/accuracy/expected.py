@@ -17,7 +17,7 @@ from dembound.holes import Hole, Rectangle
 from dembound.packings.square import Square
 from dembound.studies.accuracy.companions import QUANTITIES, Companions, quiet
 from dembound.studies.chart.errors import QUIET
-from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
+from dembound.studies.estimate.causes import CONTINUUM, GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.delays import error_of_delay
 from dembound.studies.estimate.disks import causes_by_formula
 from dembound.studies.estimate.estimate import Estimate
@@ -25,10 +25,13 @@ from dembound.studies.estimate.estimate import Estimate
 WALL = 0.7
 """Error beside a round hole times its disks along the radius (docs/charts.md): 7 to 0.7 % with 10 to 80 of them."""
 
-
 STRAIGHT = 0.45
 """Error beside a rectangle, whose walls have no steps, times the square of the disks along its smaller half: 4.7 and
 0.47 % with 3 and 9 of them (benchmarks/error_bound.py)."""
+
+
+UNKNOWN = 1.0
+"""Error of a continuum whose error is not known: more than any bound."""
 
 
 @dataclass(frozen=True)
@@ -58,10 +61,16 @@ def of_ground(companions: Companions, scene: DiskScene, time_step: float) -> tup
     """
     case, recorded = scene.case, companions.recorded(scene)
     found = causes_by_formula(case, scene, recorded, time_step)
+    if scene.outside is not None and not any(cause.name == CONTINUUM for cause in found):
+        jumps = {name: _both(UNKNOWN) for name in recorded}
+        found.append(Cause(CONTINUUM, "not known for waves that jump", jumps))
     delays = [cause for cause in found if cause.name in (GRID, STEP)]
-    together = {
-        name: {q: sum((np.asarray(cause.errors[name][q]) for cause in delays), np.zeros(1)) for q in QUANTITIES}
-        for name in recorded
+    together: dict[str, dict[str, np.ndarray | float]] = {
+        name: {
+            q: sum((np.asarray(cause.errors[name][q]) for cause in delays), np.zeros_like(own.values[q]))
+            for q in QUANTITIES
+        }
+        for name, own in recorded.items()
     }
     disks = [
         Cause("disks and steps", "by the dispersion of plane waves", together),

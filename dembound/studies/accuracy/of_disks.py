@@ -47,6 +47,7 @@ def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Choice:
     Raises CaseError for cases without waves and where no choice keeps those values; the errors of building and running
     the companions.
     """
+    _require_known(case)
     planned = plan(case)
     companions = Companions(case, planned.scene, planned.time_step, 0.0)  # type: ignore[arg-type]
     companions.most = max(WORK, SHARE * planned.scene.count * planned.steps)
@@ -54,6 +55,21 @@ def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Choice:
     best, error = search.best()
     found = error.worst, error.by, bound, best.cost, search.own_cost, search.tried
     return Choice(case, best.case, best.words, *found, reserve=SAFETY)
+
+
+def _require_known(case: DiskCase) -> None:
+    """Raise CaseError where errors, or the body itself, depend on what is not known for other disks and sides."""
+    problems = []
+    if case.static is not None and case.static.from_ is not None:
+        problems.append("static.from: is the body of the given disks and sides; must be left out with --error")
+    if not case.driving and case.incident is None:
+        places = [load for load in case.load if not load.is_everywhere]
+        everywhere = [load.name for load in case.load if load.is_everywhere and load.wave is not None]
+        if everywhere and not places:
+            reason = "starts waves everywhere, so that their delay by the disks is not known; --error needs a place"
+            problems += [f"load.{name}: {reason}" for name in everywhere]
+    if problems:
+        raise CaseError(problems, case.name)
 
 
 @dataclass

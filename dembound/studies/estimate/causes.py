@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-SIDES, GRID, STEP = "sides", "grid", "time step"
-"""Names of causes that all kinds of bodies have."""
+SIDES, GRID, STEP, CONTINUUM = "sides", "grid", "time step", "continuum"
+"""Names of causes."""
 
 QUANTITIES = ("velocity", "displacement", "stress")
 """Quantities whose errors are estimated; stress of bars only."""

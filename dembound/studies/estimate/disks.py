@@ -19,7 +19,7 @@ from dembound.errors import DemboundError
 from dembound.motion.paths import Source
 from dembound.packings.square import Square
 from dembound.results.estimates import in_words
-from dembound.studies.estimate.causes import GRID, SIDES, STEP, Cause, Causes, Recorded
+from dembound.studies.estimate.causes import CONTINUUM, GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.delays import error_of_delay
 from dembound.studies.estimate.dispersion import AXES, DIAGONAL, Direction, delay_of
 from dembound.studies.estimate.matched_sides import Reflected, reflected
@@ -126,7 +126,7 @@ class _Disks:
         """The errors of sides beyond which there is a continuum, and of those that waves enter through."""
         if (sizes := expected_errors(self.scene)) is not None:
             same = {name: dict(zip(MOTIONS, sizes, strict=True)) for name in self.recorded}
-            yield Cause("continuum", "by the formulas of its elements, layers and ties", same)
+            yield Cause(CONTINUUM, "by the formulas of its elements, layers and ties", same)
         for side, waves in self.case.driving.items():
             table = self.case.side(side)
             if not table.is_artificial or table.is_outside or not table.factors:
