@@ -80,10 +80,8 @@ class Companions:
 
     def recorded(self, scene: DiskScene) -> dict[str, Recorded]:
         """That motion, at the places of the monitors in a scene."""
-        return {
-            name: Recorded(scene.monitored[name], gauge.time, {q: gauge.of(q)[:, :2] for q in QUANTITIES})  # type: ignore[arg-type]
-            for name, gauge in self.far.items()
-        }
+        motion = _motion(self.far)
+        return {name: Recorded(scene.monitored[name], gauge.time, motion[name]) for name, gauge in self.far.items()}
 
     def of_sides(
         self, case: DiskCase, scene: DiskScene, time_step: float, wider: float
@@ -95,18 +93,16 @@ class Companions:
         given = coarser(case, scene, time_step, self.diameter)
         own = self._with_sides(given.case.boundary, wider)
         whole = self._with_sides(given.with_whole_cells.boundary, wider) if given.weight > 0.0 else own
+        far = _motion(self.far)
         return {
-            name: {
-                q: own[name][q] - far.of(q)[:, :2] + given.weight * (whole[name][q] - own[name][q]) for q in QUANTITIES
-            }  # type: ignore[arg-type]
-            for name, far in self.far.items()
+            name: {q: own[name][q] - far[name][q] + given.weight * (whole[name][q] - own[name][q]) for q in QUANTITIES}
+            for name in far
         }
 
     def _with_sides(self, sides: Mapping[str, Boundary], wider: float) -> dict[str, dict[str, np.ndarray]]:
         """The motion (k, 2) of the monitors by quantity with other sides of the companion, so much farther away."""
         own = build(replace(self._own, boundary=sides))
-        found = self._run(self.wider(own, self._needed, wider) if wider else own.case)
-        return {name: {q: each.of(q)[:, :2] for q in QUANTITIES} for name, each in found.items()}  # type: ignore[arg-type]
+        return _motion(self._run(self.wider(own, self._needed, wider) if wider else own.case))
 
     def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
         """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""
@@ -127,6 +123,11 @@ class Companions:
         outcome = measured(case, self.step)
         self.work += outcome.work
         return outcome.gauges
+
+
+def _motion(gauges: Gauges) -> dict[str, dict[str, np.ndarray]]:
+    """What was recorded (k, 2) along x and y, by monitor and quantity."""
+    return {name: {q: gauge.of(q)[:, :2] for q in QUANTITIES} for name, gauge in gauges.items()}  # type: ignore[arg-type]
 
 
 def needed_by(scene: DiskScene) -> dict[str, int]:
