@@ -158,7 +158,8 @@ def _finer(case: BarCase, recorded: Recorded) -> dict[str, np.ndarray]:
         cells = int(0.5 * case.run.duration * bar.speed / bar.spacing) + 1
         changes |= {"bar.length": bar.length + cells * bar.spacing, "boundary": {}}
     changes |= {f"bar.range.{given.name}.spacing": given.spacing / FINER for given in bar.range if given.spacing}
-    changes |= {"bar.spacing": bar.spacing / FINER, "method": {"type": "finite_difference"}, "run.courant": 1.0}
+    changes |= {"bar.spacing": bar.spacing / FINER, "method": {"type": "finite_difference"}}
+    changes["run"] = {"duration": case.run.duration, "courant": 1.0}
     changes |= {f"load.{load.name}.nodes": 1 for load in case.load}
     changes["monitor"] = [{"name": "here", "position": float(recorded.position[0])}]
     finer, _ = recorded_of(with_changes(case, changes))

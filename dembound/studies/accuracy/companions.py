@@ -81,10 +81,8 @@ class Companions:
 
     def recorded(self, scene: DiskScene) -> dict[str, Recorded]:
         """That motion, at the places of the monitors in a scene."""
-        return {
-            name: Recorded(scene.monitored[name], gauge.time, {q: gauge.of(q)[:, :2] for q in QUANTITIES})  # type: ignore[arg-type]
-            for name, gauge in self.far.items()
-        }
+        motion = _motion(self.far)
+        return {name: Recorded(scene.monitored[name], gauge.time, motion[name]) for name, gauge in self.far.items()}
 
     def of_sides(
         self, case: DiskCase, scene: DiskScene, time_step: float, wider: float
@@ -94,17 +92,18 @@ class Companions:
         wider : how much farther away than in the case they are, over the scene's length across them.
         """
         given = coarser(case, scene, time_step, self.diameter)
-        own, far = self._with_sides(given.case.boundary, wider), _motions(self.far)
+        own = self._with_sides(given.case.boundary, wider)
         whole = self._with_sides(given.with_whole_cells.boundary, wider) if given.weight > 0.0 else own
+        far = _motion(self.far)
         return {
-            name: {q: own[name][q] + given.weight * (whole[name][q] - own[name][q]) - far[name][q] for q in QUANTITIES}
-            for name in self.far
+            name: {q: own[name][q] - far[name][q] + given.weight * (whole[name][q] - own[name][q]) for q in QUANTITIES}
+            for name in far
         }
 
     def _with_sides(self, sides: Mapping[str, Boundary], wider: float) -> dict[str, dict[str, np.ndarray]]:
         """The motion (k, 2) of the monitors by quantity with other sides of the companion, so much farther away."""
         own = build(replace(self._own, boundary=sides))
-        return _motions(self._run(self.wider(own, self._needed, wider) if wider else own.case))
+        return _motion(self._run(self.wider(own, self._needed, wider) if wider else own.case))
 
     def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
         """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""
@@ -126,9 +125,9 @@ class Companions:
         return outcome.gauges
 
 
-def _motions(gauges: Gauges) -> dict[str, dict[str, np.ndarray]]:
-    """Motion (k, 2) along x and y, by monitor and quantity."""
-    return {name: {q: each.of(q)[:, :2] for q in QUANTITIES} for name, each in gauges.items()}  # type: ignore[arg-type]
+def _motion(gauges: Gauges) -> dict[str, dict[str, np.ndarray]]:
+    """What was recorded (k, 2) along x and y, by monitor and quantity."""
+    return {name: {q: gauge.of(q)[:, :2] for q in QUANTITIES} for name, gauge in gauges.items()}  # type: ignore[arg-type]
 
 
 def needed_by(scene: DiskScene) -> dict[str, int]:

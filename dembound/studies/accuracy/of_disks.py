@@ -28,8 +28,8 @@ from dembound.studies.accuracy.companions import Companions
 from dembound.studies.accuracy.expected import Expected, expected, of_ground, of_sides
 
 SAFETY = 1.4
-"""Expected errors are below the bound by this factor: true ones were up to 1.33 times as large where sides reflect
-(benchmarks/error_bound.py)."""
+"""Expected errors are below the bound by this factor: true ones were mostly below 1.34 times these, at most 1.64 times
+(docs/error_bound.md)."""
 
 WORK = 5e7
 """Particle-steps of the companions that are first run: less than a second."""
