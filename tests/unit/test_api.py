@@ -137,6 +137,15 @@ def test_warnings_of_a_run_are_python_s(tmp_path) -> None:
         dembound.run(slow, tmp_path)
 
 
+def test_runs_are_estimated_if_their_case_asks_for_it(tmp_path) -> None:
+    case = dembound.case("asked", **(TABLES | {"output": TABLES["output"] | {"estimate": True}}))
+    found = dembound.run(case, tmp_path)
+    assert "middle" in found.summary["error_estimate"]["monitors"]
+    longer = dembound.resume(found.folder, until=0.006)
+    assert "middle" in longer.summary["error_estimate"]["monitors"]
+    assert dembound.estimate(found.folder, 10.0).total("middle", "velocity") > 0.0
+
+
 def test_a_side_is_calibrated() -> None:
     case = dembound.change(dembound.case(**TABLES), {"boundary.right.beta_p": 2.0, "wave.push.period": 0.1})
     calibrated, found = dembound.calibrate(case, "right")

@@ -108,3 +108,12 @@ def test_what_whole_cells_at_a_side_reflect_is_counted() -> None:
 
     assert choice.by["sides"] > 0.01
     assert choice.error == pytest.approx(true_error(case, case), rel=0.2)  # type: ignore[arg-type]
+
+
+def test_cases_whose_errors_depend_on_what_is_not_known_are_refused() -> None:
+    shaken = {key: value for key, value in BAR.items() if key != "boundary"} | {
+        "boundary": {"right": {"type": "viscous"}},
+        "load": [{"name": "shake", "acceleration": [1.0, 0.0], "wave": "push"}],
+    }
+    with pytest.raises(CaseError, match=r"load\.shake: starts waves everywhere"):
+        choose(small(shaken), 0.01)

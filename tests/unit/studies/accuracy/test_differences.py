@@ -61,3 +61,10 @@ def test_kept_keys_keep_their_values() -> None:
     assert keeps(given, changed, ["boundary", "packing.size"])
     assert not keeps(given, changed, ["packing"])
     assert not keeps(given, changed, ["boundary", "packing.radius"])
+
+
+def test_renamed_loads_are_replaced_as_a_list() -> None:
+    load = {"name": "hit", "force": [1.0, 0.0], "position": [5.0, 1.2], "wave": "push"}
+    given = small(PUSHED | {"load": [load]})
+    changed = small(PUSHED | {"load": [load | {"name": "blow"}]})
+    assert differences(given, changed) == {"load": [load | {"name": "blow"}]}

@@ -171,3 +171,11 @@ def test_calibrations_stop_after_a_pass(bar, task, tmp_path) -> None:
         assert perform(one) is None
     assert len(done) == 2
     assert outcome_in(tmp_path, member.key) is None
+
+
+def test_a_member_without_an_estimate_is_complete_and_says_why(rods, task) -> None:
+    (member,) = rods(12e6, **{"output.estimate": True, "output.history_interval": 3e-4})
+    outcome = perform(task(member))
+    assert outcome.failure == ""
+    assert outcome.values["energy.kinetic"] > 0.0
+    assert any("errors are not estimated: " in line for line in outcome.warnings)
