@@ -139,7 +139,8 @@ def needed_by(scene: DiskScene) -> dict[str, int]:
 
 
 def quiet(recorded: Mapping[str, Recorded], quantity: str, share: float) -> set[str]:
-    """Monitors whose largest value is below this share of that of the loudest one."""
-    peaks = {name: float(np.abs(each.values[quantity]).max(initial=0.0)) for name, each in recorded.items()}
+    """Monitors that record a quantity, but whose largest value is below this share of the loudest one's."""
+    values = {name: each.values[quantity] for name, each in recorded.items() if quantity in each.values}
+    peaks = {name: float(np.abs(each).max(initial=0.0)) for name, each in values.items()}
     loudest = max(peaks.values(), default=0.0)
     return {name for name, peak in peaks.items() if peak < share * loudest}

@@ -114,12 +114,14 @@ class _Motion:
 
     @cached_property
     def _recorded(self) -> dict[str, Recorded]:
-        """The motion as a run records it."""
+        """The motion as a run records it; without the stress of end nodes, which is that half a spacing inside."""
+        ends = (0, self.choice.scene.count - 1)
+        at_ends = [name for name, node in self._motions.nodes.items() if node in ends]
         return {
             name: Recorded(
                 np.array([self.places[name], 0.0]),
                 self._motions.times[name],
-                {quantity: values[:, None] for quantity, values in own.items()},
+                {q: values[:, None] for q, values in own.items() if q != "stress" or name not in at_ends},
             )
             for name, own in self._own.items()
         }

@@ -79,6 +79,19 @@ def test_the_cheapest_of_all_choices_is_taken() -> None:
     assert choice.tried == 1
 
 
+def test_the_small_stress_beside_a_free_end_does_not_count() -> None:
+    case = with_changes(scene("finite differences, ν = 0.9"), {"monitor.far.position": 1.0})
+
+    choice = choose(case, 0.05, ["bar", "run"])
+
+    recorded, _ = recorded_of(case)
+    errors = {q: v[:, 0] - exact(case, recorded["far"])[q] for q, v in recorded["far"].values.items()}
+    shares = {q: np.linalg.norm(errors[q]) / np.linalg.norm(v[:, 0]) for q, v in recorded["far"].values.items()}
+    assert shares["stress"] > 0.05 > shares["velocity"]
+    assert choice.holds
+    assert choice.changes == []
+
+
 def test_kept_keys_remain() -> None:
     case = scene("viscous end, β = 0.7")  # returns 0.3/1.7 = 18 %
 
