@@ -1,4 +1,4 @@
-"""Commands that begin with a case: check, run, packing, exact."""
+"""The commands check, run, resume and rerun."""
 
 from __future__ import annotations
 
@@ -14,18 +14,14 @@ import typer
 
 from dembound.cli.accuracy import Error, Keep, bound_of, chosen
 from dembound.cli.app import (
-    PICTURE,
     Cases,
     Name,
     Output,
-    PictureTitle,
     Settings,
-    Side,
     Threads,
     app,
     changed,
     load_case,
-    load_disks,
     prepare_computing,
 )
 from dembound.cli.console import compact_table, err, out
@@ -35,9 +31,7 @@ from dembound.results.interrupts import exit_code_of
 from dembound.version import IMPORT_BEGAN
 
 if TYPE_CHECKING:
-    from dembound.boundaries.support import Edge
     from dembound.casefile import Case
-    from dembound.disks.scene import DiskScene
     from dembound.results.folder import Folder
     from dembound.running import Progress
 
@@ -235,67 +229,3 @@ def _left_of(folder: Path) -> list[str]:
     if (folder / "checkpoint.npz").is_file():
         left.append(f"to continue: dembound resume {folder}")
     return left
-
-
-@app.command("packing", rich_help_panel="Cases")
-def packing(
-    cases: Cases,
-    output: Annotated[Path, PICTURE] = Path("packing.png"),
-    title: PictureTitle = None,
-    side: Annotated[Side, typer.Option(help="Side whose particles are marked.")] = Side.right,
-    brick: Annotated[bool, typer.Option("--brick", help="Show the first case's whole brick with its seams.")] = False,
-    changes: Settings = None,
-) -> None:
-    """Draw packings: one side of each case next to each other, or one brick."""
-    from dembound.disks.scene import build
-    from dembound.plot.packing import plot_brick, plot_patterns
-    from dembound.plot.style import save
-
-    loaded = [load_disks(path, changes) for path in cases]
-    if brick:
-        shown = build(loaded[0]).ground.brick
-        figure = plot_brick(shown.positions, shown.radii, shown.edge_rows, shown.size, shown.pairs, shown.images)
-    else:
-        scenes = {case.name: build(case) for case in loaded}
-        figure = plot_patterns(
-            {
-                name: (scene.assembly.positions, scene.assembly.radii, _edge_of(scene, side.value).nodes)
-                for name, scene in scenes.items()
-            }
-        )
-    save(figure, output, title)
-    out.print(f"wrote {output}")
-
-
-def _edge_of(scene: DiskScene, side: str) -> Edge:
-    """A side of the scene; periodic sides have no particles."""
-    if side not in scene.edges:
-        raise CaseError([f"--side: is {side}, which is periodic in {scene.case.name}; here: {', '.join(scene.edges)}"])
-    return scene.edges[side]
-
-
-@app.command("exact", rich_help_panel="Cases")
-def exact(
-    path: Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML) of a problem with an exact solution.")],
-    problem: Annotated[
-        str | None, typer.Option(help="lamb, cavity, garvin or scattering; absent: the one that holds for longest.")
-    ] = None,
-    output: Output = Path("results"),
-    changes: Settings = None,
-    name: Name = None,
-) -> None:
-    """Write the exact motion at the monitors of a case, as long as it is known.
-
-    Known are Lamb's and Garvin's problem, and a circular hole under a pressure or under a plane wave.
-
-    It is plotted and compared like a run. Its folder is named after the case with "_exact", or by --name.
-    """
-    from dembound.studies.exact import write_exact
-
-    case = load_disks(path, changes, name or f"{path.stem}_exact")
-    folder = output / case.name
-    found = write_exact(case, folder / "run.h5", problem)
-    for monitor, end in found.until.items():
-        if end < case.run.duration:
-            out.print(f"{case.name}: {monitor} up to {end:.4g} s, when scattered waves come back from the free surface")
-    out.print(f"{case.name}: {found.sentence}, histories in {folder}")

@@ -11,27 +11,22 @@ dashpots that reflect as much of plane waves along their normal as those of the 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from dembound.boundaries import Motion, normal_axis
-from dembound.boundaries.boundary import Boundary
-from dembound.boundaries.viscoelastic import Springs
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.ground import Ground
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import Material
 from dembound.casefile.disks.static import Static
 from dembound.disks.loads import forces_of
-from dembound.disks.matching import homogenised_beta
 from dembound.disks.packed_material import PackedMaterial
-from dembound.disks.scene import DiskScene, boundary_medium, build
+from dembound.disks.scene import DiskScene
 from dembound.laws import Moduli
 from dembound.packings.square import Square
-from dembound.studies.estimate.matched_sides import Reflected, factor_for, reflected
+from dembound.studies.estimate.equal_sides import equal_sides, with_whole_cells
 
 CELLS = 4
 """Smallest number of particles across a hole."""
@@ -61,9 +56,7 @@ class Coarser:
     @property
     def with_whole_cells(self) -> DiskCase:
         """The case with whole cells at its sides."""
-        sides = self.case.boundary.items()
-        whole = {side: table.model_copy(update={"half_mass": False}) for side, table in sides if _can_halve(table)}
-        return replace(self.case, boundary={**self.case.boundary, **whole})
+        return with_whole_cells(self.case)
 
 
 def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float) -> Coarser:
@@ -93,7 +86,8 @@ def coarser(case: DiskCase, scene: DiskScene, time_step: float, diameter: float)
         output=case.output.model_copy(update={"snapshots": 0, "history_interval": 0.0, "load_factor": False}),
         name=f"{case.name}_coarser",
     )
-    return _with_equal_sides(larger, scene, time_step)
+    boundary, weight = equal_sides(larger, scene, time_step)
+    return Coarser(replace(larger, boundary=boundary), weight)
 
 
 def _cells(size: tuple[float, float], diameter: float) -> tuple[int, int, float]:
@@ -185,72 +179,3 @@ def _load(load: Load, scene: DiskScene, cell: float, sides: _Sides) -> Load:
     middle, half = 0.5 * (box[:2] + box[2:]), np.maximum(0.5 * (box[2:] - box[:2]), 0.5 * cell * (1.0 + 1e-9))
     low, high = np.maximum(middle - half, 0.0), np.minimum(middle + half, sides.size)
     return load.model_copy(update=update | {"region": (*low.tolist(), *high.tolist())})
-
-
-def _with_equal_sides(case: DiskCase, scene: DiskScene, time_step: float) -> Coarser:
-    """The case with dashpots that reflect as much, and springs as stiff, as those of the scene of the finer case."""
-    own = build(case)
-    shares = {side: reflected(scene, side, time_step) for side, table in case.boundary.items() if table.factors}
-    halved = {side: found for side, found in shares.items() if _can_halve(case.boundary[side])}
-    weight = _weight_of_mass(halved, build(Coarser(case, 0.0).with_whole_cells), time_step)
-    boundary = {
-        side: _equal_side(table, side, shares[side], weight > 0.0, own, scene) if side in shares else table
-        for side, table in case.boundary.items()
-    }
-    return Coarser(replace(case, boundary=boundary), weight)
-
-
-def _weight_of_mass(shares: Mapping[str, Mapping[Motion, Reflected]], whole: DiskScene, time_step: float) -> float:
-    """What sides of a finer scene reflect out of phase, over what the lattice's whole cells reflect, see `Coarser`.
-
-    time_step : s, with which lattices are stable that have larger disks. The mean over sides and motions; 0 where the
-    dashpots reflect more in phase.
-    """
-    finer = [share for both in shares.values() for share in both.values()]
-    if sum(share.out_of_phase**2 for share in finer) <= sum(share.dashpots**2 for share in finer):
-        return 0.0
-    coarse = {side: reflected(whole, side, time_step) for side in shares}
-    ratios = [
-        share.out_of_phase / coarse[side][motion].out_of_phase
-        for side, both in shares.items()
-        for motion, share in both.items()
-        if motion in coarse[side] and coarse[side][motion].out_of_phase > 0.0
-    ]
-    return float(np.mean(ratios)) if ratios else 0.0
-
-
-def _can_halve(table: Boundary) -> bool:
-    """Whether a side may have half cells."""
-    return "half_mass" in type(table).model_fields and not table.needs_column
-
-
-def _equal_side(
-    table: Boundary,
-    side: str,
-    shares: Mapping[Motion, Reflected],
-    mass_apart: bool,
-    own: DiskScene,
-    finer: DiskScene,
-) -> Boundary:
-    """A side with other factors, its disks half cells; mass_apart : whether what is out of phase is found apart."""
-    update: dict[str, Any] = {
-        f"beta_{motion}": homogenised_beta(own, side, motion)
-        * factor_for(share.dashpots if mass_apart and _can_halve(table) else share.signed)
-        for motion, share in shares.items()
-    }
-    if _can_halve(table):
-        update["half_mass"] = True
-    if isinstance(table, Springs):
-        update |= _equal_springs(table, side, own, finer)
-    return table.model_copy(update=update)
-
-
-def _equal_springs(table: Springs, side: str, own: DiskScene, finer: DiskScene) -> Mapping[str, float]:
-    """Factors α of springs that are as stiff per length of the side."""
-    axis = normal_axis(side)
-    per_length = [
-        table.shear_modulus(boundary_medium(scene.case, scene.ground, axis)) * scene.edges[side].diameter_sum_ratio
-        for scene in (own, finer)
-    ]
-    ratio = per_length[1] / per_length[0]
-    return {"alpha_n": table.alpha_n * ratio, "alpha_s": table.alpha_s * ratio}
