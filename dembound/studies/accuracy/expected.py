@@ -13,7 +13,6 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.wave_front import slowest_speed
-from dembound.holes import Hole, Rectangle
 from dembound.packings.square import Square
 from dembound.studies.accuracy.companions import QUANTITIES, Companions, quiet
 from dembound.studies.chart.errors import QUIET
@@ -21,14 +20,7 @@ from dembound.studies.estimate.causes import CONTINUUM, GRID, SIDES, STEP, Cause
 from dembound.studies.estimate.delays import error_of_delay
 from dembound.studies.estimate.disks import causes_by_formula
 from dembound.studies.estimate.estimate import Estimate
-
-WALL = 0.7
-"""Error beside a round hole times its disks along the radius (docs/charts.md): 7 to 0.7 % with 10 to 80 of them."""
-
-STRAIGHT = 0.45
-"""Error beside a rectangle, whose walls have no steps, times the square of the disks along its smaller half: 4.7 and
-0.47 % with 3 and 9 of them (benchmarks/error_bound.py)."""
-
+from dembound.studies.estimate.walls import wall_error
 
 UNKNOWN = 1.0
 """Error of a continuum whose error is not known: more than any bound."""
@@ -89,14 +81,8 @@ def _walls(case: DiskCase, scene: DiskScene, names: list[str]) -> Iterator[Cause
     """Walls of holes on a lattice, which are made of disks."""
     if not case.hole or not isinstance(case.packing, Square):
         return
-    size = max(_wall(hole, scene.ground.brick.mean_diameter) for hole in case.hole)
+    size = wall_error(case, scene.ground.brick.mean_diameter)
     yield Cause("walls", "by the disks along the radius of the smallest hole", {name: _both(size) for name in names})
-
-
-def _wall(hole: Hole, diameter: float) -> float:
-    """Error beside a hole whose wall is made of disks of a diameter (m)."""
-    along = 0.5 * min(hole.box[2] - hole.box[0], hole.box[3] - hole.box[1]) / diameter
-    return STRAIGHT / along**2 if isinstance(hole, Rectangle) else WALL / along
 
 
 def _both(size: float) -> dict[str, np.ndarray | float]:

@@ -24,6 +24,7 @@ from dembound.studies.estimate.delays import error_of_delay
 from dembound.studies.estimate.dispersion import AXES, DIAGONAL, Direction, delay_of
 from dembound.studies.estimate.matched_sides import Reflected, reflected
 from dembound.studies.estimate.pair import Pair, run_pair
+from dembound.studies.estimate.walls import wall_error
 
 MOTIONS = ("velocity", "displacement")
 """Quantities of disks."""
@@ -91,6 +92,9 @@ class _Disks:
             yield "continuum: its elements are judged by the highest frequency of waves, and a wave that jumps has none"
         if not any(self._ways(own) for own in self.recorded.values()):
             yield "grid and time step: waves start everywhere"
+        if self.case.hole:
+            size = in_words(wall_error(self.case, self.scene.ground.brick.mean_diameter))
+            yield f"walls of holes, which consist of disks: up to some {size} beside them"
 
     def _pair(self) -> Causes:
         """The errors of sides that absorb, from a pair of runs."""
