@@ -28,9 +28,10 @@ from dembound.running import Progress, plan
 from dembound.studies.accuracy import choose
 from dembound.studies.accuracy.candidates import FACTORS, Candidate, candidates, cost_of, with_diameter
 from dembound.studies.accuracy.companions import Companions
-from dembound.studies.accuracy.of_disks import COSTLIEST, WORK
+from dembound.studies.accuracy.of_disks import COSTLIEST
 from dembound.studies.chart.errors import QUIET
 from dembound.studies.chart.measure import Gauges, measure
+from dembound.studies.estimate.of_run import SHORT
 from dembound.studies.extended import extended
 
 BOUNDS = (0.003, 0.01, 0.03, 0.1)
@@ -223,7 +224,7 @@ def true_error(found: Gauges, expected: Gauges) -> float:
 def every_choice(case: DiskCase) -> Iterator[Candidate]:
     """All choices that cost less than `COSTLIEST` times the case, whatever their error."""
     planned = plan(case)
-    companions = Companions(case, planned.scene, planned.time_step, WORK)  # type: ignore[arg-type]
+    companions = Companions(case, planned.scene, planned.time_step, SHORT)  # type: ignore[arg-type]
     for factor in FACTORS:
         plain = with_diameter(companions, factor)
         if plain is not None:

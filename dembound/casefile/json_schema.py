@@ -103,8 +103,8 @@ def _is_needed(kind: TypeAdapter[Any]) -> bool:
 def _table(table: Json) -> Json:
     """The definition of one type of table; the key that distinguishes types is always required."""
     table = _plain(table)
-    told_apart = [key for key, value in table["properties"].items() if "const" in value]
-    table["required"] = sorted({*table.get("required", ()), *told_apart})
+    distinguishing = [key for key, value in table["properties"].items() if "const" in value]
+    table["required"] = sorted({*table.get("required", ()), *distinguishing})
     table["properties"] = {key: _value(value) for key, value in table["properties"].items()}
     return table
 

@@ -35,7 +35,7 @@ Changes = dict[str, Any]
 class BarCandidate:
     """A choice.
 
-    scene : of the case. step : s, steps : of the run. cost : predicted CPU time of the steps, s. words : what it is.
+    scene : of the case. step : s, steps : of the run. cost : predicted CPU time of the steps, s. words : of it.
     """
 
     scene: BarScene

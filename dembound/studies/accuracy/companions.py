@@ -18,7 +18,7 @@ from dembound.errors import CaseError
 from dembound.studies.chart.measure import Gauges
 from dembound.studies.estimate.causes import Recorded
 from dembound.studies.estimate.coarser import coarser
-from dembound.studies.estimate.pair import PairScenes, measured, ratios, scenes_of_pair
+from dembound.studies.estimate.pair import PairScenes, measured, ratios, scenes_of_pair, sides_of_pair
 from dembound.studies.extended import bricks_needed, enlarged, movable_sides
 
 QUANTITIES = ("velocity", "displacement")
@@ -44,8 +44,7 @@ class Companions:
     @cached_property
     def pair(self) -> PairScenes | None:
         """The scenes with the case's own sides and with far ones; None where no side that reflects can move."""
-        reflects = [side for side, table in self.case.boundary.items() if table.is_artificial and not table.is_outside]
-        if self.case.ground.size is not None or not set(reflects) - set(self.case.driving):
+        if self.case.ground.size is not None or not sides_of_pair(self.case):
             return None
         return scenes_of_pair(self.case, self.scene, self.time_step, self.most)
 

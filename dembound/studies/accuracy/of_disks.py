@@ -26,16 +26,12 @@ from dembound.studies.accuracy.candidates import (
 from dembound.studies.accuracy.choice import Choice
 from dembound.studies.accuracy.companions import Companions
 from dembound.studies.accuracy.expected import Expected, expected, of_ground, of_sides
+from dembound.studies.estimate.of_run import BUDGET, SHORT
+from dembound.studies.estimate.pair import sides_of_pair
 
 SAFETY = 1.4
 """Expected errors are below the bound by this factor: true ones were mostly below 1.34 times these, at most 1.64 times
 (docs/error_bound.md)."""
-
-WORK = 5e7
-"""Particle-steps of the companions that are first run: less than a second."""
-
-SHARE = 0.1
-"""Their share of the given case's work, if this is more."""
 
 COSTLIEST = 64.0
 """Cost up to which choices are tried, over that of the given case: disks of a quarter of the diameter."""
@@ -50,7 +46,7 @@ def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Choice:
     _require_known(case)
     planned = plan(case)
     companions = Companions(case, planned.scene, planned.time_step, 0.0)  # type: ignore[arg-type]
-    companions.most = max(WORK, SHARE * planned.scene.count * planned.steps)
+    companions.most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
     search = _Search(companions, bound, kept, cost_of(planned))
     best, error = search.best()
     found = error.worst, error.by, bound, best.cost, search.own_cost, search.tried
@@ -147,17 +143,9 @@ class _Search:
         self.tried += 1
         try:
             disks, others = of_ground(self.companions, scene, step)
-            sides = [of_sides(self.companions, scene, step, candidate.wider)] if _reflects(scene.case) else []
+            sides = [of_sides(self.companions, scene, step, candidate.wider)] if sides_of_pair(scene.case) else []
         except DemboundError:
             return []
         if SAFETY * expected(sides, recorded).worst > self.bound:
             self.too_much.add((candidate.arrangement.name, candidate.wider))
         return [(candidate, expected([*disks, *others, *sides], recorded))]
-
-
-def _reflects(case: DiskCase) -> bool:
-    """Whether sides reflect, so that companions are needed."""
-    return any(
-        table.is_artificial and not table.is_outside and side not in case.driving
-        for side, table in case.boundary.items()
-    )

@@ -23,7 +23,7 @@ from dembound.studies.estimate.causes import CONTINUUM, GRID, SIDES, STEP, Cause
 from dembound.studies.estimate.delays import error_of_delay
 from dembound.studies.estimate.dispersion import AXES, DIAGONAL, Direction, delay_of
 from dembound.studies.estimate.matched_sides import Reflected, reflected
-from dembound.studies.estimate.pair import Pair, run_pair
+from dembound.studies.estimate.pair import Pair, run_pair, sides_of_pair
 from dembound.studies.estimate.walls import wall_error
 
 MOTIONS = ("velocity", "displacement")
@@ -98,14 +98,12 @@ class _Disks:
 
     def _pair(self) -> Causes:
         """The errors of sides that absorb, from a pair of runs."""
-        artificial = [
-            side for side, table in self.case.boundary.items() if table.is_artificial and not table.is_outside
-        ]
-        if not set(artificial) - set(self.case.driving):
+        sides = sides_of_pair(self.case)
+        if not sides:
             return Causes([])
         if self.case.ground.size is not None or self.case.incident is not None:
             reason = "beside a continuum no pair of runs is made"
-            return Causes([], [f"{' and '.join(artificial)}: {reason}"])
+            return Causes([], [f"{' and '.join(sides)}: {reason}"])
         try:
             pair = run_pair(self.case, self.scene, self.time_step, self.most)
         except DemboundError as error:
@@ -256,7 +254,9 @@ def reflected_motion(own: Recorded, column: int, share: Reflected) -> dict[str, 
     acceleration = np.gradient(velocity, own.time)
     size = float(np.linalg.norm(acceleration))
     lag = -share.out_of_phase * float(np.linalg.norm(velocity)) / size if size > 0.0 else 0.0
-    in_phase = share.dashpots / (1.0 - share.dashpots)
+    in_phase = (
+        share.dashpots / (1.0 - share.dashpots) if share.dashpots < 1.0 else 0.0
+    )  # without dashpots none comes in
     return {
         "velocity": in_phase * velocity + lag * acceleration,
         "displacement": in_phase * displacement + lag * velocity,

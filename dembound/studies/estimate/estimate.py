@@ -60,13 +60,6 @@ class Estimate:
         """Quantities of a monitor that has any."""
         return [name for name in QUANTITIES if name in self.recorded[monitor].values]
 
-    @property
-    def worst(self) -> float:
-        """Largest total at all monitors; nan if nothing is known."""
-        found = [self.total(name, quantity) for name in self.recorded for quantity in self.quantities(name)]
-        known = [share for share in found if math.isfinite(share)]
-        return max(known, default=math.nan)
-
     def correction(self, monitor: str, quantity: str) -> np.ndarray | None:
         """What the sides add (k, c), to be subtracted; None if it is not known without echoes."""
         cause = next((cause for cause in self.causes.found if cause.name == SIDES), None)

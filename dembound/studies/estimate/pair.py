@@ -126,6 +126,15 @@ def scenes_of_pair(case: DiskCase, scene: DiskScene, time_step: float, most: flo
     return PairScenes(smaller, larger, whole, given.weight, ratio, echo_free)
 
 
+def sides_of_pair(case: DiskCase) -> list[str]:
+    """The sides whose error a pair gives: those that stand in for ground beyond them, but no continuum and no wave."""
+    return [
+        side
+        for side, table in case.boundary.items()
+        if table.is_artificial and not table.is_outside and side not in case.driving
+    ]
+
+
 def ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
     """Ratios of diameters, the smallest first, with which the pair still resolves waves and holes."""
     finest = scene.ground.brick.mean_diameter

@@ -126,3 +126,8 @@ def test_a_continuum_under_waves_that_jump_is_not_estimated():
     found = causes_of_disks(small(jumping), recorded(pulse(TIME)), 1e-4, 1e6, 1e6)
     assert "continuum" not in {each.name for each in found.found}
     assert any(line.startswith("continuum: ") for line in found.missing)
+
+
+def test_a_side_without_dashpots_lets_nothing_in() -> None:
+    sent = reflected_motion(recorded(pulse(TIME))["middle"], 1, Reflected(1.0, 1.0))
+    assert all((values == 0.0).all() for values in sent.values())

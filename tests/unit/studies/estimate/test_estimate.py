@@ -25,7 +25,6 @@ def test_shares_are_those_of_the_larger_component_and_add_as_squares():
     sides = 2.0 * 5**0.5 / 5.0
     assert found.shares("a", "velocity") == {SIDES: pytest.approx(sides), "grid": 0.25}
     assert found.total("a", "velocity") == pytest.approx(np.hypot(sides, 0.25))
-    assert found.worst == found.total("a", "velocity")
 
 
 def test_bands_add_the_sizes_of_all_errors():

@@ -1,0 +1,86 @@
+"""What enlarged scenes of all kinds have in common: sides that move, their size in words, and their time step."""
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+from dembound.boundaries import SIDES
+from dembound.casefile import Case
+from dembound.casefile.run import Run
+from dembound.errors import CaseError
+from dembound.table import Box
+
+LESS = 0.95
+"""Largest `run.safety` with which the step of the case is also stable in the larger scene.
+
+There the disks of a moved side have more neighbours, and the limit of the step may be some per cent smaller. With a
+larger safety the step remains "auto".
+"""
+
+R = TypeVar("R", bound=Run)
+
+
+@dataclass(frozen=True)
+class Extended:
+    """An enlarged case.
+
+    case : the enlarged case, called as the case with "_extended"; the case itself if no side has to move.
+    sentence : its size, the number of its particles, and what does not return from where.
+    inside : the scene of the case in it, m.
+    """
+
+    case: Case
+    sentence: str
+    inside: Box
+
+
+def movable(case: Case, staying: set[str]) -> list[str]:
+    """The artificial sides that can move; staying : sides where motion enters."""
+    artificial = [side for side in SIDES if case.side(side).is_artificial]
+    moving = [side for side in artificial if side not in staying]
+    if artificial and not moving:
+        raise CaseError(
+            [
+                f"boundary.{side}: lets motion in, so it cannot move away without changing that; no other side is "
+                "artificial, and the scene cannot be extended"
+                for side in artificial[:1]
+            ],
+            case.name,
+        )
+    return moving
+
+
+def must_not_exceed(count: int, most: int, size: str, case: Case) -> None:
+    """Raise CaseError for a scene that is too large."""
+    if count > most:
+        raise CaseError(
+            [
+                f"run.duration: is {case.run.duration:g} s, for which nothing returns only in a scene of {size} with "
+                f"{count:,} particles, more than {most:,}; take a shorter run, or coarser particles"
+            ],
+            case.name,
+        )
+
+
+def sentence_of(case: Case, what: str, moving: list[str]) -> str:
+    """The size of the scene, and what does not return."""
+    artificial = [side for side in SIDES if case.side(side).is_artificial]
+    if not artificial:
+        return f"reference: {what}, none of whose sides is artificial"
+    staying = [side for side in artificial if side not in moving]
+    until = f"nothing returns before {case.run.duration:g} s"
+    if not staying:
+        return f"reference: {what}, from which {until}"
+    stay, reflect = ("stay", "reflect") if len(staying) > 1 else ("stays", "reflects")
+    stays = f"{what}, from whose {' and '.join(moving)} {until}; {' and '.join(staying)} {stay}, as waves enter there"
+    if all(case.side(side).is_outside for side in staying):
+        return f"reference: {stays}, before a continuum, which returns next to nothing"
+    if all(case.side(side).layer for side in staying):
+        return f"reference: {stays}, before a matched layer, which returns next to nothing"
+    return f"reference: {stays}, and {reflect} as in the case"
+
+
+def same_step(run: R, step: float) -> R:
+    """The ``[run]`` table with the time step (s) of the case."""
+    if run.time_step != "auto" or run.safety > LESS or getattr(run, "courant", None) is not None:
+        return run
+    return run.model_copy(update={"time_step": step})
