@@ -1,7 +1,7 @@
 """How often the choice of `dembound run --error` is as accurate as asked for: small scenes beside enlarged, finer ones.
 
     python benchmarks/error_bound.py [NAME...]           # scenes whose names contain one of these; all by default
-    python benchmarks/error_bound.py --every NAME...     # runs every choice of a scene, and prints the cheapest ones
+    python benchmarks/error_bound.py --every [NAME...]   # what choices cost beside the cheapest ones that keep a bound
 
 The reference of a scene is a larger one, from whose sides nothing returns. It is run with its own disks and with a
 third of their diameter, whose particles include the places of the first. As the errors of both are in the ratio 9 : 1,
@@ -11,22 +11,26 @@ with smaller disks, and times are shifted by the way between.
 
 from __future__ import annotations
 
+import math
 import sys
 import time
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import tomli_w
+from error_bound_scenes import scenes
 
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import build
+from dembound.errors import DemboundError
 from dembound.kinds import loads, with_changes
 from dembound.running import Progress, plan
-from dembound.studies.accuracy import choose
-from dembound.studies.accuracy.candidates import FACTORS, Candidate, candidates, cost_of, with_diameter
+from dembound.studies.accuracy import Choice, choose
+from dembound.studies.accuracy.candidates import FACTORS, Candidate, candidates, with_diameter
 from dembound.studies.accuracy.companions import Companions
 from dembound.studies.accuracy.of_disks import COSTLIEST
 from dembound.studies.chart.errors import QUIET
@@ -37,137 +41,6 @@ from dembound.studies.extended import extended
 BOUNDS = (0.003, 0.01, 0.03, 0.1)
 FINER = 3
 QUANTITIES = ("velocity", "displacement")
-
-Tables = dict[str, Any]
-MATERIAL = {"density": 2500.0, "p_wave_speed": 1000.0}
-WAVES: dict[str, Tables] = {
-    "ricker": {"type": "ricker", "amplitude": 1.0, "frequency": 10.0},
-    "cosine": {"type": "cosine", "amplitude": 1.0, "period": 0.08},
-}
-VISCOUS: Tables = {"type": "viscous"}
-
-
-def lamb(sides: str, wide: float, high: float, wave: str) -> Tables:
-    """A force on the surface of a half-space."""
-    middle = 0.5 * wide
-    tables = {"type": sides} | ({"source": [middle, high]} if sides == "viscoelastic" else {})
-    return {
-        "packing": {"pattern": "A", "size": [wide, high], "radius": 0.5},
-        "material": MATERIAL,
-        "boundary": {side: tables for side in ("left", "right", "bottom")},
-        "wave": {"pulse": WAVES[wave]},
-        "load": [
-            {"name": "hit", "force": [0.0, -1e6], "region": _around(middle, high - 0.5, 4.0, 1.0), "wave": "pulse"}
-        ],
-        "monitor": [
-            {"name": "surface", "position": [middle + 10.5, high - 0.5]},
-            {"name": "deep", "position": [middle + 4.5, high - 8.5]},
-        ],
-        "run": {"duration": 0.2},
-    }
-
-
-def embedded(wide: float, wave: str, force: tuple[float, float]) -> Tables:
-    """A force within rock that goes on beyond all sides."""
-    middle = 0.5 * wide
-    return {
-        "packing": {"pattern": "A", "size": [wide, wide], "radius": 0.5},
-        "material": MATERIAL,
-        "boundary": dict.fromkeys(("left", "right", "bottom", "top"), VISCOUS),
-        "wave": {"pulse": WAVES[wave]},
-        "load": [{"name": "push", "force": list(force), "region": _around(middle, middle, 2.0, 2.0), "wave": "pulse"}],
-        "monitor": [
-            {"name": "beside", "position": [middle + 7.5, middle + 0.5]},
-            {"name": "above", "position": [middle - 4.5, middle + 8.5]},
-        ],
-        "run": {"duration": 0.2},
-    }
-
-
-def two_loads(sides: str, wave: str) -> Tables:
-    """Two forces on the surface, one of them along it."""
-    tables = lamb(sides, 50.0, 24.0, wave)
-    second = {"name": "drag", "force": [5e5, 0.0], "region": [12.0, 23.0, 14.0, 24.0], "wave": "pulse"}
-    return tables | {"load": [*tables["load"], second]}
-
-
-def blast(sides: str, wide: float, wave: str) -> Tables:
-    """A pressure in a rectangular hole, whose walls are straight on every lattice."""
-    middle = 0.5 * wide
-    tables = {"type": sides} | ({"source": [middle, middle]} if sides == "viscoelastic" else {})
-    return {
-        "packing": {"pattern": "A", "size": [wide, wide], "radius": 0.5},
-        "material": MATERIAL,
-        "boundary": {side: tables for side in ("left", "right", "bottom", "top")},
-        "wave": {"pulse": WAVES[wave]},
-        "hole": [{"name": "cave", "type": "rectangle", "corners": _around(middle, middle, 6.0, 6.0)}],
-        "load": [{"name": "blast", "pressure": 1e6, "hole": "cave", "wave": "pulse"}],
-        "monitor": [
-            {"name": "right", "position": [middle + 9.5, middle + 0.5]},
-            {"name": "corner", "position": [middle + 7.5, middle + 7.5]},
-        ],
-        "run": {"duration": 0.2},
-    }
-
-
-def bar(motion: str, wave: str, length: float, side: str) -> Tables:
-    """A bar that is driven at its left end, and ends within rock that goes on."""
-    return {
-        "packing": {"pattern": "A", "size": [length, 3.0], "radius": 0.5},
-        "material": MATERIAL,
-        "motion": {"held": ["y" if motion == "p" else "x", "rotation"]},
-        "boundary": {"left": {"type": "velocity", f"wave_{motion}": "pulse"}, "right": {"type": side}},
-        "wave": {"pulse": WAVES[wave]},
-        "monitor": [{"name": "near", "position": [10.5, 1.5]}, {"name": "far", "position": [length - 10.5, 1.5]}],
-        "run": {"duration": 0.25},
-    }
-
-
-def ground(wave: str, hole: bool) -> Tables:
-    """Ground under an S wave from below: level with a free field, or with a rectangular tunnel in a continuum."""
-    tables: Tables = {
-        "packing": {"pattern": "A", "size": [60.0, 40.0], "radius": 0.5},
-        "material": MATERIAL,
-        "boundary": {
-            "left": {"type": "free_field"},
-            "right": {"type": "free_field"},
-            "bottom": {"type": "viscous_input", "wave_s": "pulse", "half_mass": True},
-        },
-        "wave": {"pulse": WAVES[wave]},
-        "monitor": [{"name": "surface", "position": [30.5, 39.5]}, {"name": "wall", "position": [40.5, 20.5]}],
-        "run": {"duration": 0.3},
-    }
-    cave = {"name": "cave", "type": "rectangle", "corners": [22.0, 14.0, 38.0, 26.0]}
-    beyond = {
-        "left": {"type": "outside"},
-        "right": {"type": "outside"},
-        "bottom": {"type": "outside", "wave_s": "pulse"},
-    }
-    return tables | ({"hole": [cave], "boundary": beyond} if hole else {})
-
-
-def _around(x: float, y: float, wide: float, high: float) -> list[float]:
-    """A rectangle round its middle."""
-    return [x - 0.5 * wide, y - 0.5 * high, x + 0.5 * wide, y + 0.5 * high]
-
-
-def scenes() -> Iterator[tuple[str, Tables]]:
-    """All scenes by name."""
-    for wave in WAVES:
-        for sides in ("viscous", "viscoelastic", "outside"):
-            for wide, high in ((40.0, 20.0), (60.0, 40.0)):
-                yield f"lamb {sides} {wide:g} m {wave}", lamb(sides, wide, high, wave)
-        for wide in (30.0, 50.0):
-            yield f"embedded {wide:g} m along x {wave}", embedded(wide, wave, (1e6, 0.0))
-            yield f"embedded {wide:g} m inclined {wave}", embedded(wide, wave, (1e6, 5e5))
-        for sides in ("viscous", "outside"):
-            yield f"two loads {sides} {wave}", two_loads(sides, wave)
-        for sides, wide in (("viscous", 30.0), ("viscoelastic", 50.0)):
-            yield f"blast {sides} {wide:g} m {wave}", blast(sides, wide, wave)
-        for motion in ("p", "s"):
-            yield f"{motion.upper()} bar {wave}", bar(motion, wave, 60.0, "viscous")
-        yield f"tunnel {wave}", ground(wave, hole=True)
-        yield f"level ground {wave}", ground(wave, hole=False)
 
 
 def reference(case: DiskCase) -> Gauges:
@@ -221,60 +94,108 @@ def true_error(found: Gauges, expected: Gauges) -> float:
     return max(errors)
 
 
-def every_choice(case: DiskCase) -> Iterator[Candidate]:
-    """All choices that cost less than `COSTLIEST` times the case, whatever their error."""
+def every_choice(case: DiskCase, bound: float, most: float) -> list[Candidate]:
+    """All choices for a bound that cost at most so much (s), whatever their error, the cheapest first."""
     planned = plan(case)
     companions = Companions(case, planned.scene, planned.time_step, SHORT)  # type: ignore[arg-type]
+    found: list[Candidate] = []
     for factor in FACTORS:
         plain = with_diameter(companions, factor)
         if plain is not None:
-            found = candidates(companions, plain, factor, BOUNDS[1], ())
-            yield from (each for each in found if each.cost < COSTLIEST * cost_of(planned))
+            found += candidates(companions, plain, factor, bound, ())
+    return sorted((each for each in found if each.cost <= most), key=lambda each: each.cost)
+
+
+@dataclass
+class Truth:
+    """True errors of choices for a case, each of which is run once."""
+
+    case: DiskCase
+    known: dict[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def reference(self) -> Gauges:
+        """What they are compared with."""
+        return reference(self.case)
+
+    def of(self, choice: DiskCase) -> float:
+        """The largest error of a choice, RMS over RMS; infinite if it cannot run."""
+        if choice.text not in self.known:
+            try:
+                self.known[choice.text] = true_error(measure(choice, Progress())[0].gauges, self.reference)
+            except DemboundError:
+                self.known[choice.text] = math.inf
+        return self.known[choice.text]
 
 
 def every(names: list[str]) -> None:
-    """Print, for each bound, the cheapest choice whose true error is below it."""
-    for name, tables in scenes():
-        if name not in names:
-            continue
-        case = loads(tomli_w.dumps(tables), name=name.replace(" ", "_"))
-        assert isinstance(case, DiskCase)
-        expected = reference(case)
-        tried = sorted(every_choice(case), key=lambda each: each.cost)
+    """Print how much the choice for each bound costs beside the cheapest one whose true error is below it."""
+    ratios = []
+    print("| scene | bound | choice, s | cheapest, s | ratio | choice | cheapest | its error |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name, case in cases(names):
+        truth = Truth(case)
         for bound in BOUNDS:
-            errors = ((each, true_error(measure(each.case, Progress())[0].gauges, expected)) for each in tried)
-            best = next(((each, error) for each, error in errors if error <= bound), None)
+            choice = choose(case, bound)
+            tried = every_choice(case, bound, choice.cost if choice.holds else COSTLIEST * choice.own_cost)
+            best = next((each for each in tried if truth.of(each.case) <= bound), None)
+            cells = [f"{choice.cost:.2g}", "", "", choice.words] if choice.holds else ["", "", "", "none"]
             if best is not None:
-                found = f"{best[0].words}, {100 * best[1]:.2g} %, {best[0].cost:.2g} s"
-                print(f"{name}, {100 * bound:g} %: the cheapest of {len(tried)} is {found}", flush=True)
+                cells[1] = f"{best.cost:.2g}"
+                cells += [best.words, f"{100 * truth.of(best.case):.2g} %"]
+                if choice.holds:
+                    ratios.append(choice.cost / best.cost)
+                    cells[2] = f"{ratios[-1]:.2g}"
+            print(f"| {name} | {100 * bound:g} % | {' | '.join(cells)} |", flush=True)
+    if ratios:
+        print(f"\n{len(ratios)} choices over the cheapest: {np.median(ratios):.2g} (median), {max(ratios):.2g} at most")
+
+
+def cases(names: list[str]) -> Iterator[tuple[str, DiskCase]]:
+    """The scenes whose names contain one of these, all without any."""
+    for name, tables in scenes():
+        if not names or any(each in name for each in names):
+            case = loads(tomli_w.dumps(tables), name=name.replace(" ", "_"))
+            assert isinstance(case, DiskCase)
+            yield name, case
 
 
 def main(names: list[str]) -> None:
-    """Print a line for each scene and bound, and the share of those that keep it."""
-    kept = []
+    """Print a line for each scene and bound, the spread of errors by bound, and the share of those that keep it."""
+    found: dict[float, list[tuple[Choice, float]]] = {bound: [] for bound in BOUNDS}
     print("| scene | bound | chosen | expected | true | true/expected | steps, s | of the case, s | search, s |")
     print("|---|---|---|---|---|---|---|---|---|")
-    for name, tables in scenes():
-        if names and not any(each in name for each in names):
-            continue
-        case = loads(tomli_w.dumps(tables), name=name.replace(" ", "_"))
-        assert isinstance(case, DiskCase)
-        expected = reference(case)
+    for name, case in cases(names):
+        truth = Truth(case)
         for bound in BOUNDS:
             began = time.process_time()
             choice = choose(case, bound)
             spent = time.process_time() - began
-            error = true_error(measure(choice.case, Progress())[0].gauges, expected)
-            if choice.holds:
-                kept.append(error <= bound)
+            assert isinstance(choice.case, DiskCase)
+            error = truth.of(choice.case)
+            found[bound].append((choice, error))
             words = choice.words if choice.holds else f"none; {choice.words}"
             print(
                 f"| {name} | {100 * bound:g} % | {words} | {100 * choice.error:.2g} % | {100 * error:.2g} % | "
                 f"{error / max(choice.error, 1e-9):.2f} | {choice.cost:.2g} | {choice.own_cost:.2g} | {spent:.1f} |",
                 flush=True,
             )
-    if kept:
-        print(f"\n{sum(kept)} of {len(kept)} choices that were expected to keep their bound do so")
+    by_bound(found)
+
+
+def by_bound(found: Mapping[float, list[tuple[Choice, float]]]) -> None:
+    """Print a line for each bound: choices that were expected to keep it, those that do, and how errors scatter."""
+    print("\n| bound | choices | within it | true over expected error | cost over that of the case |")
+    print("|---|---|---|---|---|")
+    for bound, each in found.items():
+        held = [(choice, error) for choice, error in each if choice.holds]
+        if not held:
+            continue
+        within = sum(error <= bound for _, error in held)
+        ratios = [error / choice.error for choice, error in held]
+        cost = np.median([choice.cost / choice.own_cost for choice, _ in held])
+        scatter = f"{min(ratios):.2f}, {np.median(ratios):.2f}, {max(ratios):.2f}"
+        print(f"| {100 * bound:g} % | {len(held)} of {len(each)} | {within} | {scatter} | {cost:.2g} |")
 
 
 if __name__ == "__main__":

@@ -12,9 +12,11 @@ import numpy as np
 from dembound.boundaries import normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
+from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
+from dembound.studies.accuracy.patches import patch_around, weights_at
 from dembound.studies.chart.measure import Gauges
 from dembound.studies.estimate.causes import Recorded
 from dembound.studies.estimate.coarser import coarser
@@ -59,19 +61,43 @@ class Companions:
         """Time step of all of them, s."""
         if self.pair is not None:
             return LESS * self.pair.step
-        return LESS * choose_step(build(self._own))[0]
+        return LESS * choose_step(self._lattice)[0]
 
     @cached_property
     def far(self) -> Gauges:
-        """The motion without what sides send back."""
+        """The motion without what sides send back, of the disks of all patches."""
         if self.pair is not None:
-            return self._run(self.pair.larger.case)
+            return self._run(enlarged(build(self._own), self.pair.bricks)[0])
         return self._run(self._own)
 
     @cached_property
+    def _lattice(self) -> DiskScene:
+        """The scene of the companion of the given case."""
+        return build(coarser(self.case, self.scene, self.time_step, self.diameter).case)
+
+    @property
+    def _names(self) -> list[str]:
+        """Names of the monitors."""
+        return [monitor.name for monitor in self.case.monitor]
+
+    @cached_property
+    def _patches(self) -> dict[str, np.ndarray]:
+        """By monitor, the places (k, 2) m of the disks round it in that scene."""
+        return {name: patch_around(self._lattice, self._place(self.scene, name)) for name in self._names}
+
+    @cached_property
     def _own(self) -> DiskCase:
-        """The companion of the given case."""
-        return self._coarser(self.case, self.scene, self.time_step)
+        """The companion of the given case, with monitors at the disks of all patches."""
+        case = self._lattice.case
+        monitors = {monitor.name: monitor for monitor in case.monitor}
+        return replace(
+            case,
+            monitor=tuple(
+                monitors[name].model_copy(update={"name": _named(name, k), "position": tuple(place)})
+                for name, patch in self._patches.items()
+                for k, place in enumerate(patch.tolist())
+            ),
+        )
 
     @cached_property
     def _needed(self) -> dict[str, int]:
@@ -79,30 +105,55 @@ class Companions:
         return needed_by(build(self._own))
 
     def recorded(self, scene: DiskScene) -> dict[str, Recorded]:
-        """That motion, at the places of the monitors in a scene."""
-        motion = _motion(self.far)
-        return {name: Recorded(scene.monitored[name], gauge.time, motion[name]) for name, gauge in self.far.items()}
+        """That motion, at the places of the monitors in a scene, seen from the loads."""
+        time = next(iter(self.far.values())).time
+        motion = self._motion(self.far, scene)
+        return {name: Recorded(scene.monitored[name], time, values) for name, values in motion.items()}
+
+    def _place(self, scene: DiskScene, name: str) -> np.ndarray:
+        """Where (2,) m in the lattice of the companion the particle of a monitor in a scene is, seen from the loads."""
+        there, (seen, own) = scene.monitored[name], (middle_of_loads(each) for each in (scene, self._lattice))
+        if seen is None or own is None:
+            return np.asarray(there * (np.array(self._lattice.case.size) / self.case.size))
+        return np.asarray(own + there - seen)
+
+    def _motion(self, gauges: Gauges, scene: DiskScene) -> dict[str, dict[str, np.ndarray]]:
+        """Motion (k, 2) along x and y at the places of the monitors in a scene, by monitor and quantity."""
+        found: dict[str, dict[str, np.ndarray]] = {}
+        for name, patch in self._patches.items():
+            weights = weights_at(patch, self._place(scene, name))
+            disks = [gauges[_named(name, k)] for k in range(len(patch))]
+            found[name] = {
+                q: sum(
+                    (w * gauge.of(q)[:, :2] for w, gauge in zip(weights, disks, strict=True)),  # type: ignore[arg-type]
+                    np.zeros((len(disks[0].time), 2)),
+                )
+                for q in QUANTITIES
+            }
+        return found
 
     def of_sides(
         self, case: DiskCase, scene: DiskScene, time_step: float, wider: float
     ) -> dict[str, dict[str, np.ndarray | float]]:
-        """What sides add to the motion of the monitors, by monitor and quantity, (k, 2) at the times of `recorded`.
+        """What sides add to the motion of a scene's monitors, by monitor and quantity, (k, 2) at those times.
 
         wider : how much farther away than in the case they are, over the scene's length across them.
         """
         given = coarser(case, scene, time_step, self.diameter)
-        own = self._with_sides(given.case.boundary, wider)
-        whole = self._with_sides(given.with_whole_cells.boundary, wider) if given.weight > 0.0 else own
-        far = _motion(self.far)
+        own = self._with_sides(given.case.boundary, scene, wider)
+        whole = self._with_sides(given.with_whole_cells.boundary, scene, wider) if given.weight > 0.0 else own
+        far = self._motion(self.far, scene)
         return {
             name: {q: own[name][q] - far[name][q] + given.weight * (whole[name][q] - own[name][q]) for q in QUANTITIES}
             for name in far
         }
 
-    def _with_sides(self, sides: Mapping[str, Boundary], wider: float) -> dict[str, dict[str, np.ndarray]]:
-        """The motion (k, 2) of the monitors by quantity with other sides of the companion, so much farther away."""
+    def _with_sides(
+        self, sides: Mapping[str, Boundary], scene: DiskScene, wider: float
+    ) -> dict[str, dict[str, np.ndarray]]:
+        """The motion at the monitors of a scene with other sides of the companion, so much farther away."""
         own = build(replace(self._own, boundary=sides))
-        return _motion(self._run(self.wider(own, self._needed, wider) if wider else own.case))
+        return self._motion(self._run(self.wider(own, self._needed, wider) if wider else own.case), scene)
 
     def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
         """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""
@@ -113,10 +164,6 @@ class Companions:
         """Bricks by which a side moves."""
         return math.ceil(wider * scene.case.packing.copies[normal_axis(side)] - 1e-9)
 
-    def _coarser(self, case: DiskCase, scene: DiskScene, time_step: float) -> DiskCase:
-        """The companion of a case."""
-        return coarser(case, scene, time_step, self.diameter).case
-
     def _run(self, case: DiskCase) -> Gauges:
         """The motion of the monitors of a companion."""
         outcome = measured(case, self.step)
@@ -124,9 +171,28 @@ class Companions:
         return outcome.gauges
 
 
-def _motion(gauges: Gauges) -> dict[str, dict[str, np.ndarray]]:
-    """What was recorded (k, 2) along x and y, by monitor and quantity."""
-    return {name: {q: gauge.of(q)[:, :2] for q in QUANTITIES} for name, gauge in gauges.items()}  # type: ignore[arg-type]
+def _named(monitor: str, number: int) -> str:
+    """The name of a monitor of a patch."""
+    return f"{monitor}.{number}"
+
+
+def middle_of_loads(scene: DiskScene) -> np.ndarray | None:
+    """The middle (2,) m of the places where loads start waves, by force; None if waves enter through sides."""
+    case = scene.case
+    if case.driving and not any(load.wave for load in case.load):
+        return None
+    middles, sizes = [], []
+    for load in case.load:
+        if load.pressure is not None:
+            left, bottom, right, top = next(hole.box for hole in case.hole if hole.name == load.hole)
+            middles.append(np.array([0.5 * (left + right), 0.5 * (bottom + top)]))
+            sizes.append(abs(load.pressure) * (right - left + top - bottom))
+        elif not load.is_everywhere:
+            nodes, forces = forces_of(load, scene)
+            strength = np.hypot(*forces[:, :2].T)
+            middles.append(np.average(scene.positions[nodes], axis=0, weights=strength))
+            sizes.append(float(strength.sum()))
+    return np.average(middles, axis=0, weights=sizes) if middles else None
 
 
 def needed_by(scene: DiskScene) -> dict[str, int]:

@@ -10,11 +10,10 @@ import numpy as np
 
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
-from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
-from dembound.disks.wave_front import slowest_speed
 from dembound.packings.square import Square
 from dembound.studies.accuracy.companions import QUANTITIES, Companions, quiet
+from dembound.studies.accuracy.near_loads import errors_near_loads
 from dembound.studies.chart.errors import QUIET
 from dembound.studies.estimate.causes import CONTINUUM, GRID, SIDES, STEP, Cause, Causes, Recorded
 from dembound.studies.estimate.delays import error_of_delay
@@ -49,7 +48,8 @@ def expected(causes: list[Cause], recorded: Mapping[str, Recorded]) -> Expected:
 def of_ground(companions: Companions, scene: DiskScene, time_step: float) -> tuple[list[Cause], list[Cause]]:
     """Causes that are known without companions: of the disks, and of a continuum and of driven sides.
 
-    Those of disks are dispersion, by disks and steps together, steps of walls, and other places of monitors.
+    Those of disks are dispersion, by disks and steps together, what disks near loads and walls do, and other places of
+    monitors.
     """
     case, recorded = scene.case, companions.recorded(scene)
     found = causes_by_formula(case, scene, recorded, time_step)
@@ -67,6 +67,7 @@ def of_ground(companions: Companions, scene: DiskScene, time_step: float) -> tup
     disks = [
         Cause("disks and steps", "by the dispersion of plane waves", together),
         *_walls(case, scene, list(recorded)),
+        Cause("near loads", "by its measured size", {n: errors_near_loads(scene, own) for n, own in recorded.items()}),
         *_places(companions, scene),
     ]
     return disks, [cause for cause in found if cause.name not in (GRID, STEP)]
@@ -91,14 +92,15 @@ def _both(size: float) -> dict[str, np.ndarray | float]:
 
 
 def _places(companions: Companions, scene: DiskScene) -> Iterator[Cause]:
-    """Monitors and loads at other places than in the given case, as their nearest disks are others."""
-    speed = slowest_speed(scene.ground)
+    """Monitors and the disks that waves start from are elsewhere than in the given case, as the nearest are others."""
+    given = companions.recorded(companions.scene)
+    late = _later(companions.scene, scene)
     errors: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in companions.recorded(scene).items():
-        delay = _moved(companions.scene, scene, name) / speed
-        velocity, displacement = error_of_delay(own.time, own.values["velocity"], partial(_constant, delay))
-        errors[name] = {"velocity": velocity, "displacement": displacement}
-    yield Cause("places", "by the way that waves take between the disks of monitors and loads", errors)
+        delayed = error_of_delay(own.time, own.values["velocity"], partial(_constant, late))
+        parts = dict(zip(QUANTITIES, delayed, strict=True))
+        errors[name] = {q: own.values[q] - given[name].values[q] + parts[q] for q in QUANTITIES}
+    yield Cause("places", "by the motion between the disks of companions", errors)
 
 
 def _constant(delay: float, omega: np.ndarray) -> np.ndarray:
@@ -106,30 +108,18 @@ def _constant(delay: float, omega: np.ndarray) -> np.ndarray:
     return np.full_like(omega, delay)
 
 
-def _moved(given: DiskScene, scene: DiskScene, name: str) -> float:
-    """How far (m) the particle of a monitor is elsewhere than in the given scene, seen from where waves start."""
-    if given.case.driving and not any(load.wave for load in given.case.load):
-        return max(abs(_beyond(scene, side, name) - _beyond(given, side, name)) for side in given.case.driving)
-    moved = _seen_from_loads(scene, name) - _seen_from_loads(given, name)
-    return float(np.hypot(*moved.T).max())
+def _later(given: DiskScene, scene: DiskScene) -> float:
+    """How much later (s) waves start than in the given scene, at disks that are nearer the plane of a driven side."""
+    for side, waves in scene.case.driving.items():
+        speeds = [scene.ground.wave_speeds(normal_axis(side))[0 if motion == "p" else 1] for motion in waves]
+        return (_depth(given, side) - _depth(scene, side)) / min(speeds)
+    return 0.0
 
 
-def _beyond(scene: DiskScene, side: str, name: str) -> float:
-    """Distance (m) of the particle of a monitor from those of a driven side, or from its plane beside a continuum."""
-    axis, place = normal_axis(side), scene.monitored[name]
+def _depth(scene: DiskScene, side: str) -> float:
+    """How far (m) inside a side the disks are at which waves enter, 0 beside a continuum."""
+    if scene.case.side(side).is_outside:
+        return 0.0
+    axis = normal_axis(side)
     plane = scene.case.size[axis] if side in ("right", "top") else 0.0
-    if not scene.case.side(side).is_outside:
-        plane = float(scene.edges[side].positions[:, axis].mean())
-    return abs(float(place[axis]) - plane)
-
-
-def _seen_from_loads(scene: DiskScene, name: str) -> np.ndarray:
-    """Where (k, 2) m the particle of a monitor is, seen from the middle of each load, else from the origin."""
-    place = scene.monitored[name]
-    local = [load for load in scene.case.load if load.pressure is None and not load.is_everywhere]
-    return np.array([place - _middle(scene, *forces_of(load, scene)) for load in local] or [place])
-
-
-def _middle(scene: DiskScene, nodes: np.ndarray, forces: np.ndarray) -> np.ndarray:
-    """The middle (2,) m of forces (k, 3) on nodes."""
-    return np.average(scene.positions[nodes], axis=0, weights=np.hypot(*forces[:, :2].T))
+    return abs(float(scene.edges[side].positions[:, axis].mean()) - plane)

@@ -14,9 +14,6 @@ import numpy as np
 Delay = Callable[[np.ndarray], np.ndarray]
 """Returns delays (k,) s at angular frequencies (k,) rad/s."""
 
-TAPER = 0.05
-"""Part of the record after its end in which its last value fades out, so that its spectrum has no jump."""
-
 
 def error_of_delay(time: np.ndarray, velocity: np.ndarray, delay: Delay) -> tuple[np.ndarray, np.ndarray]:
     """What a delay adds to a recorded velocity (k, c) m/s and its displacement (k, c) m, at evenly spaced times (k,).
@@ -24,9 +21,8 @@ def error_of_delay(time: np.ndarray, velocity: np.ndarray, delay: Delay) -> tupl
     Frequencies at which no wave runs, whose delay is nan, count as an error as large as themselves.
     """
     step = float(time[1] - time[0]) if len(time) > 1 else 1.0
-    count, fade = len(time), max(8, int(TAPER * len(time)))
-    ramp = 0.5 * (1.0 + np.cos(np.pi * np.arange(1, fade + 1) / (fade + 1)))
-    padded = np.concatenate([velocity, ramp[:, None] * velocity[-1]])
+    count = len(time)
+    padded = np.concatenate([velocity, _going_on(velocity)])
     length = 2 ** int(np.ceil(np.log2(2 * len(padded))))
     omega = 2.0 * np.pi * np.fft.rfftfreq(length, step)
     phase = np.exp(1j * omega * np.nan_to_num(delay(omega)))
@@ -35,3 +31,14 @@ def error_of_delay(time: np.ndarray, velocity: np.ndarray, delay: Delay) -> tupl
     error = np.fft.irfft(spectrum * (1.0 - phase)[:, None], length, axis=0)[:count]
     displacement = step * (np.cumsum(error, axis=0) - 0.5 * (error + error[0]))
     return error, displacement
+
+
+def _going_on(values: np.ndarray) -> np.ndarray:
+    """What is taken to follow values (k, c) that end within a wave, (k - 1, c): it goes on with their slope, and fades.
+
+    The values turned about the last one. A corner there would have high frequencies, which no wave of the record has,
+    and whose long delays would bring them into the record.
+    """
+    turned = 2.0 * values[-1] - values[-2::-1]
+    fading = 0.5 * (1.0 + np.cos(np.pi * np.arange(1, len(values)) / len(values)))
+    return np.asarray(fading[:, None] * turned)

@@ -91,11 +91,13 @@ def run_pair(case: DiskCase, scene: DiskScene, time_step: float, most: float) ->
 class PairScenes:
     """The scenes of a pair before their runs, see `Pair`.
 
-    smaller, larger : with the sides of the case, and far ones. whole : with whole cells at the sides, if it is run.
+    smaller, larger : with the sides of the case, and far ones. bricks : that the larger one has more beyond its sides.
+    whole : with whole cells at the sides, if it is run.
     """
 
     smaller: DiskScene
     larger: DiskScene
+    bricks: Mapping[str, int]
     whole: DiskScene | None
     weight: float
     ratio: float
@@ -121,9 +123,9 @@ def scenes_of_pair(case: DiskCase, scene: DiskScene, time_step: float, most: flo
         if _work(best[2]) + _work(best[3]) <= most:
             break
     assert best is not None
-    ratio, given, smaller, larger, echo_free = best
+    ratio, given, smaller, larger, bricks, echo_free = best
     whole = build(given.with_whole_cells) if given.weight > 0.0 else None
-    return PairScenes(smaller, larger, whole, given.weight, ratio, echo_free)
+    return PairScenes(smaller, larger, bricks, whole, given.weight, ratio, echo_free)
 
 
 def sides_of_pair(case: DiskCase) -> list[str]:
@@ -145,8 +147,11 @@ def ratios(case: DiskCase, scene: DiskScene) -> Sequence[float]:
     return [ratio for ratio in RATIOS if ratio <= largest] or [min(largest, RATIOS[0])]
 
 
-def _scenes(case: DiskCase, given: Coarser, most: float) -> tuple[DiskScene, DiskScene, bool]:
-    """Both scenes, and whether the larger one is free of echoes; it is smaller where they would cost too much."""
+def _scenes(case: DiskCase, given: Coarser, most: float) -> tuple[DiskScene, DiskScene, Mapping[str, int], bool]:
+    """Both scenes, the bricks beyond the sides of the larger one, and whether it is free of echoes.
+
+    It is smaller where they would cost too much.
+    """
     smaller = build(given.case)
     bricks = bricks_needed(smaller, movable_sides(smaller.case))
     steps = case.run.duration / choose_step(smaller)[0]
@@ -156,7 +161,7 @@ def _scenes(case: DiskCase, given: Coarser, most: float) -> tuple[DiskScene, Dis
         if _count(smaller.case, limited) <= allowed:
             break
     larger, _ = enlarged(smaller, limited)
-    return smaller, build(larger), limited == bricks
+    return smaller, build(larger), limited, limited == bricks
 
 
 def _limit(case: DiskCase, side: str, times: float) -> float:

@@ -1,0 +1,40 @@
+"""The motion at places between the disks of a square lattice: by polynomials through that of three by three of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dembound.disks.scene import DiskScene
+
+NINE = np.array([(across, up) for across in (-1, 0, 1) for up in (-1, 0, 1)])
+"""Columns and rows of a patch, counted from its middle."""
+
+
+def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
+    """Places (9, 2) m of the patch of disks whose middle is nearest to a place (2,) m, in the order of `NINE`.
+
+    Only the nearest disk (1, 2) where no nine stand together around it, such as in bodies two disks wide.
+    """
+    first = 0 if scene.seam is None else scene.seam.count
+    disks = scene.positions[first : scene.disk_count]
+    cell = scene.ground.brick.mean_diameter
+    nearest = disks[np.argmin(np.hypot(*(disks - place).T))]
+    cells = np.rint((disks - nearest) / cell).astype(int)
+    present = {(int(x), int(y)) for x, y in cells[(np.abs(cells) <= 2).all(axis=1)]}
+    middles = [shift for shift in NINE if all((int(x), int(y)) in present for x, y in NINE + shift)]
+    if not middles:
+        return np.asarray(nearest[None])
+    middle = min(middles, key=lambda shift: float(np.hypot(*(nearest + cell * shift - place))))
+    return np.asarray(nearest + cell * (middle + NINE))
+
+
+def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Weights of the motion of the disks of a patch (9, 2) m in that at a place (2,) m: exact for quadratic motion.
+
+    Lagrange's polynomials through three places along x, times those along y.
+    """
+    if len(patch) == 1:
+        return np.ones(1)
+    cell = patch[-1] - patch[4]
+    x, y = ((-s * (1.0 - s) / 2.0, 1.0 - s * s, s * (1.0 + s) / 2.0) for s in (place - patch[4]) / cell)
+    return np.outer(x, y).ravel()
