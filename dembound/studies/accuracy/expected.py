@@ -97,9 +97,9 @@ def _places(companions: Companions, scene: DiskScene) -> Iterator[Cause]:
     late = _later(companions.scene, scene)
     errors: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in companions.recorded(scene).items():
-        delayed = error_of_delay(own.time, own.values["velocity"], partial(_constant, late))
-        parts = dict(zip(QUANTITIES, delayed, strict=True))
-        errors[name] = {q: own.values[q] - given[name].values[q] + parts[q] for q in QUANTITIES}
+        undone = error_of_delay(own.time, own.values["velocity"], partial(_constant, -late))  # v(t) − v(t − late)
+        less = dict(zip(QUANTITIES, undone, strict=True))
+        errors[name] = {q: own.values[q] - given[name].values[q] - less[q] for q in QUANTITIES}
     yield Cause("places", "by the motion between the disks of companions", errors)
 
 

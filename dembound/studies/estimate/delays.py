@@ -36,9 +36,11 @@ def error_of_delay(time: np.ndarray, velocity: np.ndarray, delay: Delay) -> tupl
 def _going_on(values: np.ndarray) -> np.ndarray:
     """What is taken to follow values (k, c) that end within a wave, (k - 1, c): it goes on with their slope, and fades.
 
-    The values turned about the last one. A corner there would have high frequencies, which no wave of the record has,
-    and whose long delays would bring them into the record.
+    The values turned about the last one, times a polynomial that falls from 1 to 0 without slope and curvature at its
+    ends. Corners would have high frequencies, which no wave of the record has, and whose long delays would bring them
+    into the record.
     """
     turned = 2.0 * values[-1] - values[-2::-1]
-    fading = 0.5 * (1.0 + np.cos(np.pi * np.arange(1, len(values)) / len(values)))
+    s = np.arange(1, len(values)) / len(values)
+    fading = 1.0 - s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
     return np.asarray(fading[:, None] * turned)

@@ -1,0 +1,65 @@
+"""What disks at other places do to what monitors record, beside the exact plane wave in a bar."""
+
+import numpy as np
+import pytest
+from small_cases import PUSHED, small
+
+from dembound.casefile.disks import DiskCase
+from dembound.disks.scene import DiskScene
+from dembound.kinds import with_changes
+from dembound.running import plan
+from dembound.studies.accuracy.companions import Companions
+from dembound.studies.accuracy.expected import of_ground
+
+LENGTH, SPEED = 30.0, 1000.0
+
+BAR = PUSHED | {
+    "packing": {"pattern": "A", "size": [LENGTH, 1.5], "radius": 0.25},
+    "boundary": {"left": {"type": "velocity", "wave_p": "push"}},
+    "motion": {"held": ["y", "rotation"]},
+    "wave": {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.03}},
+    "monitor": [{"name": "near", "position": [3.75, 0.75]}, {"name": "back", "position": [24.75, 0.75]}],
+    "run": {"duration": 0.063},
+}
+"""A wave of 60 disks, which returns from the free end, and at the end not yet from the driven one."""
+
+
+@pytest.fixture(scope="module")
+def given() -> Companions:
+    case = small(BAR)
+    assert isinstance(case, DiskCase)
+    planned = plan(case)
+    return Companions(case, planned.scene, planned.time_step, 0.0)  # type: ignore[arg-type]
+
+
+def exact(scene: DiskScene, name: str, time: np.ndarray) -> np.ndarray:
+    """Velocity at the disk of a monitor: of the wave from the first disk, and of what the free end sends back."""
+    first, place = float(scene.positions[:, 0].min()), float(scene.monitored[name][0])
+    wave = scene.case.wave["push"]
+    return np.sum([wave.velocity(time - way / SPEED) for way in (place - first, 2 * LENGTH - place - first)], axis=0)
+
+
+def test_other_places_change_the_motion_as_they_do_in_an_exact_wave(given: Companions) -> None:
+    """Disks of 1.5 m: waves start 0.5 m farther in, and one monitor is 0.5 m away, so that ways there and back differ.
+
+    The companion's disks, here as small as those given, delay what is compared by (qD)²/24 = 5e-4 of at most 60 m, q =
+    2π/30 m: 0.03 m, which changes motion by q times that, 0.6 %. Between disks the polynomial has (qD)³/16 = 7e-5 of
+    the motion, 7e-4 of a change that is q times 0.5 m of it. Half a per cent comes from the end of the record within a
+    wave.
+    """
+    planned = plan(with_changes(given.case, {"packing.radius": 0.75}))
+    scene = planned.scene
+    assert isinstance(scene, DiskScene)
+    places = next(cause for cause in of_ground(given, scene, planned.time_step)[0] if cause.name == "places")
+
+    for name, own in given.recorded(scene).items():
+        expected = exact(scene, name, own.time) - exact(given.scene, name, own.time)
+        assert np.linalg.norm(expected) > 0.03 * np.linalg.norm(own.values["velocity"][:, 0])
+        difference = np.asarray(places.errors[name]["velocity"])[:, 0] - expected
+        assert np.linalg.norm(difference) < 0.03 * np.linalg.norm(expected)
+
+
+def test_the_given_scene_has_no_other_places(given: Companions) -> None:
+    places = next(cause for cause in of_ground(given, given.scene, given.time_step)[0] if cause.name == "places")
+    for errors in places.errors.values():
+        np.testing.assert_allclose(np.asarray(errors["velocity"]), 0.0, atol=1e-12)
