@@ -45,13 +45,13 @@ QUANTITIES = ("velocity", "displacement")
 
 def reference(case: DiskCase) -> Gauges:
     """The motion in the enlarged scene, extrapolated to small disks, at the times of the finer run."""
-    own, fine = (_far(with_changes(case, {"packing.radius": 0.5 / k})) for k in (1, FINER))
+    own, fine = (far_motion(with_changes(case, {"packing.radius": 0.5 / k})) for k in (1, FINER))
     found, lag = {}, _lag(case)
     for name, late in fine.items():
         gauge = replace(late, time=late.time - lag)
         values = {}
         for quantity in QUANTITIES:
-            coarse = _at(own, name, quantity, gauge.time)
+            coarse = at_times(own, name, quantity, gauge.time)
             exact = gauge.of(quantity) + (gauge.of(quantity) - coarse) / (FINER**2 - 1)  # type: ignore[arg-type]
             values[quantity] = exact
         found[name] = replace(gauge, **values)
@@ -68,11 +68,12 @@ def _lag(case: DiskCase) -> float:
     return 0.0
 
 
-def _far(case: Any) -> Gauges:
+def far_motion(case: Any) -> Gauges:
+    """The motion in the enlarged scene."""
     return measure(extended(case).case, Progress())[0].gauges
 
 
-def _at(gauges: Gauges, name: str, quantity: Any, times: np.ndarray) -> np.ndarray:
+def at_times(gauges: Gauges, name: str, quantity: Any, times: np.ndarray) -> np.ndarray:
     """Values (k, 3) of a quantity at some times."""
     from scipy.interpolate import CubicSpline
 
@@ -89,7 +90,7 @@ def true_error(found: Gauges, expected: Gauges) -> float:
         for name, each in values.items():
             column = int(np.argmax(np.abs(each).max(axis=0)))
             if np.abs(each).max() >= QUIET * loudest:
-                difference = _at(found, name, quantity, expected[name].time)[:, column] - each[:, column]
+                difference = at_times(found, name, quantity, expected[name].time)[:, column] - each[:, column]
                 errors.append(float(np.linalg.norm(difference) / np.linalg.norm(each[:, column])))
     return max(errors)
 
