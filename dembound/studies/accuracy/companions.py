@@ -75,15 +75,10 @@ class Companions:
         """The scene of the companion of the given case."""
         return build(coarser(self.case, self.scene, self.time_step, self.diameter).case)
 
-    @property
-    def _names(self) -> list[str]:
-        """Names of the monitors."""
-        return [monitor.name for monitor in self.case.monitor]
-
     @cached_property
     def _patches(self) -> dict[str, np.ndarray]:
         """By monitor, the places (k, 2) m of the disks round it in that scene."""
-        return {name: patch_around(self._lattice, self._place(self.scene, name)) for name in self._names}
+        return {name: patch_around(self._lattice, place) for name, place in self._places(self.scene).items()}
 
     @cached_property
     def _own(self) -> DiskCase:
@@ -107,21 +102,41 @@ class Companions:
     def recorded(self, scene: DiskScene) -> dict[str, Recorded]:
         """That motion, at the places of the monitors in a scene, seen from the loads."""
         time = next(iter(self.far.values())).time
-        motion = self._motion(self.far, scene)
+        motion = self._motion(self.far, self._places(scene))
         return {name: Recorded(scene.monitored[name], time, values) for name, values in motion.items()}
 
-    def _place(self, scene: DiskScene, name: str) -> np.ndarray:
-        """Where (2,) m in the lattice of the companion the particle of a monitor in a scene is, seen from the loads."""
-        there, (seen, own) = scene.monitored[name], (middle_of_loads(each) for each in (scene, self._lattice))
-        if seen is None or own is None:
-            return np.asarray(there * (np.array(self._lattice.case.size) / self.case.size))
-        return np.asarray(own + there - seen)
+    def moved(self, scene: DiskScene) -> list[dict[str, dict[str, np.ndarray]]]:
+        """How that motion differs at the places of a scene's monitors from that at those given, (k, 2).
 
-    def _motion(self, gauges: Gauges, scene: DiskScene) -> dict[str, dict[str, np.ndarray]]:
-        """Motion (k, 2) along x and y at the places of the monitors in a scene, by monitor and quantity."""
+        By monitor and quantity, seen from each load in turn, as loads may be elsewhere, too; else from the ground.
+        """
+        both = (middles_of_loads(each) for each in (scene, self.scene))
+        loads = [there - given for (there, _), (given, _) in zip(*both, strict=True)] or [np.zeros(2)]
+        given = self._motion(self.far, self._places(self.scene))
+        found = []
+        for load in loads:
+            places = {
+                name: place + scene.monitored[name] - self.scene.monitored[name] - load
+                for name, place in self._places(self.scene).items()
+            }
+            motion = self._motion(self.far, places)
+            found.append({name: {q: motion[name][q] - given[name][q] for q in QUANTITIES} for name in given})
+        return found
+
+    def _places(self, scene: DiskScene) -> dict[str, np.ndarray]:
+        """Where (2,) m in the lattice of the companion the monitors of a scene are, seen from the middle of loads."""
+        seen, own = (middle_of_loads(each) for each in (scene, self._lattice))
+        stretch = np.array(self._lattice.case.size) / self.case.size
+        names = [monitor.name for monitor in self.case.monitor]
+        if seen is None or own is None:
+            return {name: scene.monitored[name] * stretch for name in names}
+        return {name: own + scene.monitored[name] - seen for name in names}
+
+    def _motion(self, gauges: Gauges, places: Mapping[str, np.ndarray]) -> dict[str, dict[str, np.ndarray]]:
+        """Motion (k, 2) along x and y at places (2,) m near the monitors, by monitor and quantity."""
         found: dict[str, dict[str, np.ndarray]] = {}
         for name, patch in self._patches.items():
-            weights = weights_at(patch, self._place(scene, name))
+            weights = weights_at(patch, places[name])
             disks = [gauges[_named(name, k)] for k in range(len(patch))]
             found[name] = {
                 q: sum(
@@ -142,7 +157,7 @@ class Companions:
         given = coarser(case, scene, time_step, self.diameter)
         own = self._with_sides(given.case.boundary, scene, wider)
         whole = self._with_sides(given.with_whole_cells.boundary, scene, wider) if given.weight > 0.0 else own
-        far = self._motion(self.far, scene)
+        far = self._motion(self.far, self._places(scene))
         return {
             name: {q: own[name][q] - far[name][q] + given.weight * (whole[name][q] - own[name][q]) for q in QUANTITIES}
             for name in far
@@ -153,7 +168,7 @@ class Companions:
     ) -> dict[str, dict[str, np.ndarray]]:
         """The motion at the monitors of a scene with other sides of the companion, so much farther away."""
         own = build(replace(self._own, boundary=sides))
-        return self._motion(self._run(self.wider(own, self._needed, wider) if wider else own.case), scene)
+        return self._motion(self._run(self.wider(own, self._needed, wider) if wider else own.case), self._places(scene))
 
     def wider(self, scene: DiskScene, needed: Mapping[str, int], wider: float) -> DiskCase:
         """The case of a scene with sides so much farther away; needed : see `needed_by`. Itself if none has to move."""
@@ -178,21 +193,26 @@ def _named(monitor: str, number: int) -> str:
 
 def middle_of_loads(scene: DiskScene) -> np.ndarray | None:
     """The middle (2,) m of the places where loads start waves, by force; None if waves enter through sides."""
+    found = middles_of_loads(scene)
+    return np.average([place for place, _ in found], axis=0, weights=[size for _, size in found]) if found else None
+
+
+def middles_of_loads(scene: DiskScene) -> list[tuple[np.ndarray, float]]:
+    """The middle (2,) m of each load that starts waves, and its force (N); none if they enter through sides."""
     case = scene.case
     if case.driving and not any(load.wave for load in case.load):
-        return None
-    middles, sizes = [], []
+        return []
+    found: list[tuple[np.ndarray, float]] = []
     for load in case.load:
         if load.pressure is not None:
             left, bottom, right, top = next(hole.box for hole in case.hole if hole.name == load.hole)
-            middles.append(np.array([0.5 * (left + right), 0.5 * (bottom + top)]))
-            sizes.append(abs(load.pressure) * (right - left + top - bottom))
+            middle = np.array([0.5 * (left + right), 0.5 * (bottom + top)])
+            found.append((middle, abs(load.pressure) * (right - left + top - bottom)))
         elif not load.is_everywhere:
             nodes, forces = forces_of(load, scene)
             strength = np.hypot(*forces[:, :2].T)
-            middles.append(np.average(scene.positions[nodes], axis=0, weights=strength))
-            sizes.append(float(strength.sum()))
-    return np.average(middles, axis=0, weights=sizes) if middles else None
+            found.append((np.average(scene.positions[nodes], axis=0, weights=strength), float(strength.sum())))
+    return found
 
 
 def needed_by(scene: DiskScene) -> dict[str, int]:

@@ -92,15 +92,22 @@ def _both(size: float) -> dict[str, np.ndarray | float]:
 
 
 def _places(companions: Companions, scene: DiskScene) -> Iterator[Cause]:
-    """Monitors and the disks that waves start from are elsewhere than in the given case, as the nearest are others."""
-    given = companions.recorded(companions.scene)
+    """Monitors, loads and the disks that waves start from are elsewhere than in the given case.
+
+    Of several loads, of whose motion only the sum is known, the one by which the motion differs most counts.
+    """
     late = _later(companions.scene, scene)
+    each = companions.moved(scene)
     errors: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in companions.recorded(scene).items():
         undone = error_of_delay(own.time, own.values["velocity"], partial(_constant, -late))  # v(t) − v(t − late)
         less = dict(zip(QUANTITIES, undone, strict=True))
-        errors[name] = {q: own.values[q] - given[name].values[q] - less[q] for q in QUANTITIES}
+        errors[name] = {q: max((moved[name][q] for moved in each), key=_norm) - less[q] for q in QUANTITIES}
     yield Cause("places", "by the motion between the disks of companions", errors)
+
+
+def _norm(values: np.ndarray) -> float:
+    return float(np.linalg.norm(values))
 
 
 def _constant(delay: float, omega: np.ndarray) -> np.ndarray:

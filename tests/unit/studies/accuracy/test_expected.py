@@ -8,7 +8,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene, build
 from dembound.kinds import with_changes
 from dembound.running import plan
-from dembound.studies.accuracy.companions import Companions, middle_of_loads
+from dembound.studies.accuracy.companions import Companions, middle_of_loads, middles_of_loads
 from dembound.studies.accuracy.expected import of_ground
 
 LENGTH, SPEED = 30.0, 1000.0
@@ -81,3 +81,29 @@ def test_places_are_seen_from_the_middle_of_the_loads_by_their_force() -> None:
     assert middle(load=loads, **free) == pytest.approx(np.array([5.5, 1.0]))
     assert middle(load=[blast], hole=[cave], **free) == pytest.approx(np.array([5.0, 1.0]))
     assert middle() is None  # driven
+
+
+def test_of_two_loads_that_move_apart_the_one_counts_that_changes_the_motion_more() -> None:
+    """Disks of 1 m in place of 0.5 m: the left force is 0.25 m to the right, the right one as far to the left.
+
+    Seen from their middle the monitor moves 0.25 m to the right, seen from the left one not, from the right one 0.5 m.
+    """
+    regions = {"a": [0.6, 0.0, 1.9, 2.0], "b": [8.1, 0.0, 9.4, 2.0]}
+    loads = [{"name": name, "force": [1e5, 0.0], "region": box, "wave": "push"} for name, box in regions.items()]
+    tables = {"packing.size": [10.0, 4.0], "boundary": {}, "load": loads}
+    case = small(PUSHED, changes=tables | {"monitor": [{"name": "m", "position": [5.25, 1.75]}]})
+    assert isinstance(case, DiskCase)
+    given = plan(case)
+    companions = Companions(case, given.scene, given.time_step, 0.0)  # type: ignore[arg-type]
+    planned = plan(with_changes(case, {"packing.radius": 0.5, "monitor.m.position": [5.5, 1.5]}))
+    scene = planned.scene
+    assert isinstance(scene, DiskScene)
+    both = (middles_of_loads(each) for each in (scene, given.scene))
+    np.testing.assert_allclose([a[0] - b[0] for (a, _), (b, _) in zip(*both, strict=True)], [0.25, -0.25], atol=1e-9)
+
+    left, right = (moved["m"]["velocity"] for moved in companions.moved(scene))
+    places = next(cause for cause in of_ground(companions, scene, planned.time_step)[0] if cause.name == "places")
+
+    assert np.linalg.norm(right - left) > 0.3 * np.linalg.norm(right)
+    larger = max((left, right), key=lambda each: float(np.linalg.norm(each)))
+    np.testing.assert_allclose(np.asarray(places.errors["m"]["velocity"]), larger, atol=1e-9 * np.abs(larger).max())
