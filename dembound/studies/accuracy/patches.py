@@ -9,6 +9,9 @@ from dembound.disks.scene import DiskScene
 NINE = np.array([(across, up) for across in (-1, 0, 1) for up in (-1, 0, 1)])
 """Columns and rows of a patch, counted from its middle."""
 
+FARTHEST = 2.0
+"""Cells from the middle of a patch up to which its polynomials are followed: one beyond its disks."""
+
 
 def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
     """Places (9, 2) m of the patch of disks whose middle is nearest to a place (2,) m, in the order of `NINE`.
@@ -31,10 +34,11 @@ def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
 def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:
     """Weights of the motion of the disks of a patch (9, 2) m in that at a place (2,) m: exact for quadratic motion.
 
-    Lagrange's polynomials through three places along x, times those along y.
+    Lagrange's polynomials through three places along x, times those along y. Beyond `FARTHEST` they are those there, as
+    in a continuum beyond the disks.
     """
     if len(patch) == 1:
         return np.ones(1)
-    cell = patch[-1] - patch[4]
-    x, y = ((-s * (1.0 - s) / 2.0, 1.0 - s * s, s * (1.0 + s) / 2.0) for s in (place - patch[4]) / cell)
+    away = np.clip((place - patch[4]) / (patch[-1] - patch[4]), -FARTHEST, FARTHEST)
+    x, y = ((-s * (1.0 - s) / 2.0, 1.0 - s * s, s * (1.0 + s) / 2.0) for s in away)
     return np.outer(x, y).ravel()

@@ -26,6 +26,7 @@ def test_quadratic_motion_is_found_at_any_place() -> None:
         found = weights_at(patch, np.array(place)) @ motion(*patch.T)
         assert found == pytest.approx(float(motion(*np.array(place))), rel=1e-12)
     assert weights_at(patch[:1], np.array([9.0, 9.0])) == pytest.approx([1.0])
+    assert weights_at(patch, np.array([9.0, 1.3])) == pytest.approx(weights_at(patch, np.array([4.25, 1.3])))
 
 
 @pytest.mark.parametrize(
