@@ -12,10 +12,11 @@ import numpy as np
 from dembound.boundaries import normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
+from dembound.disks.breaks import BREAK_TIME
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
-from dembound.studies.chart.measure import Gauges
+from dembound.studies.chart.measure import Gauges, Outcome
 from dembound.studies.estimate.causes import Recorded
 from dembound.studies.estimate.coarser import coarser
 from dembound.studies.estimate.pair import PairScenes, measured, ratios, scenes_of_pair, sides_of_pair
@@ -61,12 +62,21 @@ class Companions:
             return LESS * self.pair.step
         return LESS * choose_step(build(self._own))[0]
 
-    @cached_property
+    @property
     def far(self) -> Gauges:
-        """The motion without what sides send back."""
-        if self.pair is not None:
-            return self._run(self.pair.larger.case)
-        return self._run(self._own)
+        """The motion without what sides send back, until bonds break."""
+        return _until(self._far.gauges, self.first_break)
+
+    @property
+    def first_break(self) -> float:
+        """Time (s) at which the first bond breaks there, infinite without one."""
+        found = self._far.findings.get(BREAK_TIME)
+        return math.inf if found is None else found.value
+
+    @cached_property
+    def _far(self) -> Outcome:
+        """The run with far sides."""
+        return self._measured(self._own if self.pair is None else self.pair.larger.case)
 
     @cached_property
     def _own(self) -> DiskCase:
@@ -118,10 +128,25 @@ class Companions:
         return coarser(case, scene, time_step, self.diameter).case
 
     def _run(self, case: DiskCase) -> Gauges:
-        """The motion of the monitors of a companion."""
+        """The motion of the monitors of a companion, until bonds break with far sides."""
+        return _until(self._measured(case).gauges, self.first_break)
+
+    def _measured(self, case: DiskCase) -> Outcome:
+        """The outcome of a companion."""
         outcome = measured(case, self.step)
         self.work += outcome.work
-        return outcome.gauges
+        return outcome
+
+
+def _until(gauges: Gauges, time: float) -> Gauges:
+    """Histories before a time (s)."""
+    if math.isinf(time):
+        return gauges
+    return {
+        name: replace(each, time=each.time[own], displacement=each.displacement[own], velocity=each.velocity[own])
+        for name, each in gauges.items()
+        for own in [each.time < time]
+    }
 
 
 def _motion(gauges: Gauges) -> dict[str, dict[str, np.ndarray]]:
