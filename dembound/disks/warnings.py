@@ -184,7 +184,7 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
         cracks = cracks_until(file, np.inf)
         at_rest = 0.0 if scene.case.static is None else AT_REST * slowest_speed(scene.ground)
         moving = still_moving(scene, summary["duration"], file, _pieces(scene, cracks["particles"]), at_rest)
-        return [*moving, *_not_elastic(summary["load_factor"]), *near_tie_warnings(scene, summary, cracks)]
+        return [*moving, *_not_elastic(summary.get("load_factor")), *near_tie_warnings(scene, summary, cracks)]
 
 
 def _not_elastic(found: Mapping[str, Any] | None) -> Iterator[str]:
