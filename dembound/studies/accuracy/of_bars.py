@@ -9,7 +9,8 @@ motion until bonds change.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,8 +20,10 @@ from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
 from dembound.studies.accuracy.bar_candidates import BarCandidate, bar_candidates, may_break
+from dembound.studies.accuracy.bar_floors import Floors, first_echo, is_regular
 from dembound.studies.accuracy.choice import Choice
-from dembound.studies.accuracy.expected import Expected, expected
+from dembound.studies.accuracy.exact_bar import ExactMotion
+from dembound.studies.accuracy.expected import expected
 from dembound.studies.estimate.bar_motions import Histories, Motions
 from dembound.studies.estimate.bars import QUIET, difference, largest_motion, not_linear, split
 from dembound.studies.estimate.causes import Recorded
@@ -48,40 +51,66 @@ def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Choice:
     """
     if refused := not_linear(case):
         raise CaseError([f"--error: nothing is known of {line}" for line in refused], case.name)
-    scene = build_bar(case)
-    places = {name: float(scene.positions[node, 0]) for name, node in scene.monitors.items()}
+    exact = ExactMotion(build_bar(case))
     own = next(each for each in bar_candidates(case, ()) if not each.changes)
-    if not _Motion(own, places).moves:
+    if not _Motion(own, exact).moves:
         raise CaseError(["--error: nothing moves at the monitors"], case.name)
-    choices, own_cost = sorted(bar_candidates(case, kept), key=lambda each: each.cost), own.cost
-    found = list(_until(bound, (_Motion(each, places) for each in choices if each.cost <= COSTLIEST * own_cost)))
-    if not found:
+    choices = sorted(bar_candidates(case, kept), key=lambda each: each.cost)
+    motions = [_Motion(each, exact) for each in choices if each.cost <= COSTLIEST * own.cost]
+    if not motions:
         raise CaseError(["--error: no choice keeps the values of --keep and --set"], case.name)
-    best = min(found, key=lambda each: each.error.worst)
+    best, tried = _search(motions, bound)
     words = f"{best.choice.words}{ALONG if may_break(case) else ''}"
-    costs = best.choice.cost, own_cost
-    return Choice(case, best.choice.case(case), words, best.error.worst, best.by, bound, *costs, len(found), SAFETY)
+    costs = best.choice.cost, own.cost
+    return Choice(case, best.choice.case(case), words, best.error, best.by, bound, *costs, tried, SAFETY)
 
 
-def _until(bound: float, motions: Iterator[_Motion]) -> Iterator[_Motion]:
-    """Motions up to the first whose error is below a bound."""
+def _search(motions: Sequence[_Motion], bound: float) -> tuple[_Motion, int]:
+    """The first motion whose error is below a bound, else the one with the smallest, and how many errors were computed.
+
+    Those of which it is known that their error is larger are left out.
+    """
+    floors, found, left = Floors(), list[_Motion](), list[_Motion]()
     for motion in motions:
-        yield motion
-        if SAFETY * motion.error.worst <= bound:
-            return
+        if SAFETY * floors.of(motion.choice) > bound:
+            left.append(motion)
+            continue
+        found.append(motion.add_to(floors))
+        if SAFETY * motion.error <= bound:
+            return motion, len(found)
+    best = min(found, key=lambda each: each.error)
+    for motion in reversed(left):  # finer nodes first
+        if floors.of(motion.choice) < best.error:
+            found.append(motion.add_to(floors))
+            best = min(best, motion, key=lambda each: each.error)
+    return best, len(found)
 
 
 @dataclass(frozen=True)
 class _Motion:
-    """The motion of a choice beside the exact one at places (m) by monitor."""
+    """The motion of a choice beside the exact one."""
 
     choice: BarCandidate
-    places: Mapping[str, float]
+    exact: ExactMotion
+
+    def add_to(self, floors: Floors) -> _Motion:
+        """Itself; what its error says of others is known then."""
+        if is_regular(self.choice, self.exact.places):
+            floors.add(self.choice, self.error, self._error_until(first_echo(self.choice.scene)))
+        return self
 
     @cached_property
-    def error(self) -> Expected:
-        """The error in all."""
-        return expected([difference("all", self._own, self._exact, self._recorded)], self._recorded)
+    def error(self) -> float:
+        """The error at the worst monitor."""
+        return self._error_until(dict.fromkeys(self.exact.places, math.inf))
+
+    def _error_until(self, last: Mapping[str, float]) -> float:
+        """The error at the worst monitor of a motion that is exact from some time (s) on, by monitor."""
+        own = {
+            name: {q: np.where(self._motions.times[name] <= last[name], values, exact[q]) for q, values in each.items()}
+            for (name, each), exact in zip(self._own.items(), self._exact.values(), strict=True)
+        }
+        return expected([difference("all", own, self._exact, self._recorded)], self._recorded).worst
 
     @property
     def by(self) -> dict[str, float]:
@@ -101,7 +130,7 @@ class _Motion:
     def _motions(self) -> Motions:
         """The motions at all steps."""
         scene, step, steps = self.choice.scene, self.choice.step, self.choice.steps
-        times = dict.fromkeys(self.places, step * np.arange(steps + 1))
+        times = dict.fromkeys(self.exact.places, step * np.arange(steps + 1))
         return Motions(scene.case, scene, Window.up_to(steps * step, step), times)
 
     @cached_property
@@ -110,7 +139,7 @@ class _Motion:
 
     @cached_property
     def _exact(self) -> Histories:
-        return self._motions.exact(self.places)
+        return self.exact.at(self._motions.window)
 
     @cached_property
     def _recorded(self) -> dict[str, Recorded]:
@@ -119,7 +148,7 @@ class _Motion:
         at_ends = [name for name, node in self._motions.nodes.items() if node in ends]
         return {
             name: Recorded(
-                np.array([self.places[name], 0.0]),
+                np.array([self.exact.places[name], 0.0]),
                 self._motions.times[name],
                 {q: values[:, None] for q, values in own.items() if q != "stress" or name not in at_ends},
             )
