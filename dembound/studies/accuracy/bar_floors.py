@@ -50,9 +50,10 @@ class Floors:
     def of(self, choice: BarCandidate) -> float:
         """What the error of a choice is at least; 0 where nothing is known."""
         same, alike = (self._known[kind] for kind in _kinds(choice))
-        of_same = [error * (choice.spacing / at) ** 2 for at, error in same if choice.spacing <= at]
-        of_alike = [error * min(1.0, choice.spacing / at) ** 2 for at, error in alike]
-        return max([*of_same, *of_alike], default=0.0) / MARGIN
+        finer = [error * (choice.spacing / at) ** 2 / MARGIN for at, error in same if choice.spacing <= at]
+        coarser = [error for at, error in same if choice.spacing > at]
+        others = [error * min(1.0, choice.spacing / at) ** 2 / MARGIN for at, error in alike]
+        return max([*finer, *coarser, *others], default=0.0)
 
 
 def _kinds(choice: BarCandidate) -> tuple[Kind, Kind]:

@@ -51,26 +51,36 @@ def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Choice:
     """
     if refused := not_linear(case):
         raise CaseError([f"--error: nothing is known of {line}" for line in refused], case.name)
-    exact = ExactMotion(build_bar(case))
-    own = next(each for each in bar_candidates(case, ()) if not each.changes)
-    if not _Motion(own, exact).moves:
+    own = given_motion(case)
+    if not own.moves:
         raise CaseError(["--error: nothing moves at the monitors"], case.name)
-    choices = sorted(bar_candidates(case, kept), key=lambda each: each.cost)
-    motions = [_Motion(each, exact) for each in choices if each.cost <= COSTLIEST * own.cost]
+    motions = all_motions(own, kept)
     if not motions:
         raise CaseError(["--error: no choice keeps the values of --keep and --set"], case.name)
-    best, tried = _search(motions, bound)
+    best, tried = cheapest(motions, bound)
     words = f"{best.choice.words}{ALONG if may_break(case) else ''}"
-    costs = best.choice.cost, own.cost
+    costs = best.choice.cost, own.choice.cost
     return Choice(case, best.choice.case(case), words, best.error, best.by, bound, *costs, tried, SAFETY)
 
 
-def _search(motions: Sequence[_Motion], bound: float) -> tuple[_Motion, int]:
-    """The first motion whose error is below a bound, else the one with the smallest, and how many errors were computed.
+def given_motion(case: BarCase) -> Motion:
+    """The motion of a case as it is; raises the errors of building its scene."""
+    exact = ExactMotion(build_bar(case))
+    return Motion(next(each for each in bar_candidates(case, ()) if not each.changes), exact)
 
-    Those of which it is known that their error is larger are left out.
+
+def all_motions(own: Motion, kept: Sequence[str]) -> list[Motion]:
+    """Those of all choices for a given case that do not cost too much, the cheapest first."""
+    choices = sorted(bar_candidates(own.choice.scene.case, kept), key=lambda each: each.cost)
+    return [Motion(each, own.exact) for each in choices if each.cost <= COSTLIEST * own.choice.cost]
+
+
+def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
+    """The first whose error is below a bound, else the one with the smallest, and how many errors were computed.
+
+    Those whose errors are larger by what is known of others (bar_floors.py) are left out.
     """
-    floors, found, left = Floors(), list[_Motion](), list[_Motion]()
+    floors, found, left = Floors(), list[Motion](), list[Motion]()
     for motion in motions:
         if SAFETY * floors.of(motion.choice) > bound:
             left.append(motion)
@@ -87,13 +97,13 @@ def _search(motions: Sequence[_Motion], bound: float) -> tuple[_Motion, int]:
 
 
 @dataclass(frozen=True)
-class _Motion:
+class Motion:
     """The motion of a choice beside the exact one."""
 
     choice: BarCandidate
     exact: ExactMotion
 
-    def add_to(self, floors: Floors) -> _Motion:
+    def add_to(self, floors: Floors) -> Motion:
         """Itself; what its error says of others is known then."""
         if is_regular(self.choice, self.exact.places):
             floors.add(self.choice, self.error, self._error_until(first_echo(self.choice.scene)))
@@ -106,11 +116,12 @@ class _Motion:
 
     def _error_until(self, last: Mapping[str, float]) -> float:
         """The error at the worst monitor of a motion that is exact from some time (s) on, by monitor."""
+        times, exact = self._motions.times, self._exact
         own = {
-            name: {q: np.where(self._motions.times[name] <= last[name], values, exact[q]) for q, values in each.items()}
-            for (name, each), exact in zip(self._own.items(), self._exact.values(), strict=True)
+            name: {q: np.where(times[name] <= last[name], values, exact[name][q]) for q, values in each.items()}
+            for name, each in self._own.items()
         }
-        return expected([difference("all", own, self._exact, self._recorded)], self._recorded).worst
+        return expected([difference("all", own, exact, self._recorded)], self._recorded).worst
 
     @property
     def by(self) -> dict[str, float]:
