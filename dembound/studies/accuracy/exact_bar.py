@@ -6,12 +6,22 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from dembound.bar.banded import ROUNDING
+from dembound.bar.layers import ENDS
 from dembound.bar.scene import BarScene
+from dembound.studies.accuracy.bar_candidates import FACTORS
+from dembound.studies.chart.errors import QUIET
 from dembound.studies.estimate.bar_motions import FINER, Histories, Motions
+from dembound.studies.estimate.causes import QUANTITIES
 from dembound.studies.estimate.window import Window
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
+
+CLEARLY = 2.0
+"""Largest motion of a monitor that surely counts, over the smallest that does."""
 
 
 class ExactMotion:
@@ -38,6 +48,26 @@ class ExactMotion:
             name: {quantity: spline(window.time) for quantity, spline in each.items()}
             for name, each in self._found[octave].items()
         }
+
+    def surely_counted(self, window: Window) -> dict[str, set[str]]:
+        """By monitor the quantities that count for all choices.
+
+        Left out are those that almost do not count, as they are small, and stresses that may be those of end nodes.
+        """
+        motion, found = self.at(window), {name: set[str]() for name in self.places}
+        for quantity in QUANTITIES:
+            peaks = {name: float(np.abs(each[quantity]).max()) for name, each in motion.items()}
+            for name, peak in peaks.items():
+                if peak > CLEARLY * QUIET * max(peaks.values()) and (quantity != "stress" or self._inside(name)):
+                    found[name].add(quantity)
+        return found
+
+    def _inside(self, name: str) -> bool:
+        """Whether the node of a monitor is no end node with any spacing that is tried."""
+        rod, place = self._scene.rod, self.places[name]
+        away = {"left": place, "right": rod.ranges[-1].end - place}
+        reach = 0.5 * max(FACTORS) * (1.0 + ROUNDING)
+        return all(away[side] > reach * rod.end(side).spacing for side in ENDS)
 
     def _splines(self, step: float) -> dict[str, dict[str, CubicSpline]]:
         """For times of steps (s) of up to twice this length, of which the last may begin before the end of the run."""

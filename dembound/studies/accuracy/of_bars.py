@@ -9,9 +9,8 @@ motion until bonds change.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -106,22 +105,33 @@ class Motion:
     def add_to(self, floors: Floors) -> Motion:
         """Itself; what its error says of others is known then."""
         if is_regular(self.choice, self.exact.places):
-            floors.add(self.choice, self.error, self._error_until(first_echo(self.choice.scene)))
+            counted, echo = self._surely_counted, first_echo(self.choice.scene)
+            floors.add(self.choice, self._error_of(counted), self._error_of(counted, echo))
         return self
 
     @cached_property
     def error(self) -> float:
         """The error at the worst monitor."""
-        return self._error_until(dict.fromkeys(self.exact.places, math.inf))
+        return self._error_of(self._recorded)
 
-    def _error_until(self, last: Mapping[str, float]) -> float:
-        """The error at the worst monitor of a motion that is exact from some time (s) on, by monitor."""
-        times, exact = self._motions.times, self._exact
-        own = {
-            name: {q: np.where(times[name] <= last[name], values, exact[name][q]) for q, values in each.items()}
-            for name, each in self._own.items()
+    def _error_of(self, recorded: Mapping[str, Recorded], last: Mapping[str, float] | None = None) -> float:
+        """The error of what is recorded; last : s, by monitor, up to which it counts."""
+        times, own, exact = self._motions.times, self._own, self._exact
+        if last is not None:
+            own = {
+                name: {q: np.where(times[name] <= last[name], values, exact[name][q]) for q, values in each.items()}
+                for name, each in own.items()
+            }
+        return expected([difference("all", own, exact, recorded)], recorded).worst
+
+    @property
+    def _surely_counted(self) -> dict[str, Recorded]:
+        """The part of what is recorded that counts for all choices."""
+        counted = self.exact.surely_counted(self._motions.window)
+        return {
+            name: replace(own, values={q: values for q, values in own.values.items() if q in counted[name]})
+            for name, own in self._recorded.items()
         }
-        return expected([difference("all", own, exact, self._recorded)], self._recorded).worst
 
     @property
     def by(self) -> dict[str, float]:
