@@ -3,12 +3,13 @@
 Two rules, of choices with the same method and Courant number:
 
 - Spacings. What nodes, steps and ends add falls with the square of the spacing at most, as all schemes of bars are of
-  second order. So an error e at the spacing Δx is at least e (Δx'/Δx)² at a finer Δx'.
+  second order. So an error e at the spacing Δx is at least e (Δx'/Δx)² at a finer Δx'; coarser nodes are not better.
 - Ends. Up to the time at which something may come back from an end that absorbs, ends of all kinds move alike. What is
   wrong until then follows the rule of spacings with any ends, and with coarser nodes it is at least as large.
 
 Errors that vary otherwise are left out: of monitors that are not at their places, and near the Courant number at which
-nodes do not disperse waves, as those of corners of waves, which may coincide with steps, remain there.
+nodes do not disperse waves, as only those of corners of waves remain there, which may coincide with steps. In an endless
+bar errors are no such floor: where a wave enters, those of the end may have the opposite sign of those of nodes.
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ from dembound.methods.rod import Range
 from dembound.studies.accuracy.bar_candidates import BarCandidate
 
 MARGIN = 1.5
-"""Factor by which both rules may be wrong: 1.31 in the most unfavourable of 29,000 pairs of choices for 12 bars
-(benchmarks/error_bound_bars.py --rules)."""
+"""Factor by which rules for finer nodes and other ends may be wrong: at most 1.31 of all pairs of choices for 40 bars
+(benchmarks/error_bound_bars.py --every)."""
 
 DISPERSES = 0.95
 """Square of the Courant number, over that at which waves are not dispersed, above which the rules are not used."""
