@@ -102,8 +102,8 @@ def every(names: list[str]) -> None:
 def main(names: list[str]) -> None:
     """Print a line for each scene and bound, and the share of those that keep it."""
     kept = []
-    print("| bar | bound | chosen | expected | true | steps, ms | of the case, ms | search, s |")
-    print("|---|---|---|---|---|---|---|---|")
+    print("| bar | bound | chosen | expected | true | steps, ms | of the case, ms | errors computed | search, s |")
+    print("|---|---|---|---|---|---|---|---|---|")
     for name in names or NAMES:
         case = scene(name)
         for bound in BOUNDS:
@@ -117,7 +117,7 @@ def main(names: list[str]) -> None:
             words = choice.words if choice.holds else f"none; {choice.words}"
             print(
                 f"| {name} | {100 * bound:g} % | {words} | {100 * choice.error:.3g} % | {100 * error:.3g} % | "
-                f"{1e3 * choice.cost:.2g} | {1e3 * choice.own_cost:.2g} | {spent:.1f} |",
+                f"{1e3 * choice.cost:.2g} | {1e3 * choice.own_cost:.2g} | {choice.tried} | {spent:.1f} |",
                 flush=True,
             )
     print(f"\n{sum(kept)} of {len(kept)} choices that were expected to keep their bound do so")

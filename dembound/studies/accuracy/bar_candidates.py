@@ -139,10 +139,8 @@ def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequ
     limit = scene.step_limit()
     steps: dict[float, Changes] = {own_step(scene, limit): {}}
     others = {key: value for key, value in case.run.given().items() if key not in STEP_KEYS}
-    for step, key, value in [
-        (unit_step(scene), "courant", 1.0),
-        *((share * limit, "safety", share) for share in SHARES),
-    ]:
+    unit = unit_step(scene)
+    for step, key, value in [(unit, "courant", 1.0), *((share * limit, "safety", share) for share in SHARES)]:
         steps.setdefault(step, {"run": others | {key: value}})
     for step, of_step in steps.items():
         choice = changes | of_step

@@ -8,8 +8,8 @@ Two rules, of choices with the same method and Courant number:
   wrong until then follows the rule of spacings with any ends, and with coarser nodes it is at least as large.
 
 Errors that vary otherwise are left out: of monitors that are not at their places, and near the Courant number at which
-nodes do not disperse waves, as only those of corners of waves remain there, which may coincide with steps. In an endless
-bar errors are no such floor: where a wave enters, those of the end may have the opposite sign of those of nodes.
+nodes do not disperse waves, as only those of corners of waves remain there, which may coincide with steps. The error of
+an endless bar is no such floor: where a wave enters, what the end adds may have the opposite sign of what nodes add.
 """
 
 from __future__ import annotations
