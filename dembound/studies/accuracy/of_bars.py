@@ -21,11 +21,12 @@ from dembound.errors import CaseError
 from dembound.studies.accuracy.bar_candidates import BarCandidate, bar_candidates, may_break
 from dembound.studies.accuracy.bar_floors import Floors, first_echo, is_regular
 from dembound.studies.accuracy.choice import Choice
+from dembound.studies.accuracy.duration import ended_earlier
 from dembound.studies.accuracy.exact_bar import ExactMotion
 from dembound.studies.accuracy.expected import expected
 from dembound.studies.estimate.bar_motions import Histories, Motions
 from dembound.studies.estimate.bars import QUIET, difference, largest_motion, not_linear, split
-from dembound.studies.estimate.causes import Recorded
+from dembound.studies.estimate.causes import Cause, Recorded
 from dembound.studies.estimate.window import Window
 
 SAFETY = 1.05
@@ -59,7 +60,8 @@ def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Choice:
     best, tried = cheapest(motions, bound)
     words = f"{best.choice.words}{ALONG if may_break(case) else ''}"
     costs = best.choice.cost, own.choice.cost
-    return Choice(case, best.choice.case(case), words, best.error, best.by, bound, *costs, tried, SAFETY)
+    choice = Choice(case, best.choice.case(case), words, best.error, best.by, bound, *costs, tried, SAFETY)
+    return choice if may_break(case) else ended_earlier(choice, best.recorded, best.recorded, best.causes, kept)
 
 
 def given_motion(case: BarCase) -> Motion:
@@ -112,7 +114,7 @@ class Motion:
     @cached_property
     def error(self) -> float:
         """The error at the worst monitor."""
-        return self._error_of(self._recorded)
+        return self._error_of(self.recorded)
 
     def _error_of(self, recorded: Mapping[str, Recorded], last: Mapping[str, float] | None = None) -> float:
         """The error of what is recorded; last : s, by monitor, up to which it counts."""
@@ -130,16 +132,20 @@ class Motion:
         counted = self.exact.surely_counted(self._motions.window)
         return {
             name: replace(own, values={q: values for q, values in own.values.items() if q in counted[name]})
-            for name, own in self._recorded.items()
+            for name, own in self.recorded.items()
         }
 
     @property
     def by(self) -> dict[str, float]:
         """Its causes at the monitor with the largest error; some have opposite signs, as those of grid and steps."""
+        return expected(self.causes, self.recorded).by
+
+    @cached_property
+    def causes(self) -> list[Cause]:
+        """Its causes."""
         at_nodes = self._motions.exact()
-        causes = split(self._motions, self._own, at_nodes, self._recorded)
-        found = expected([*causes, difference(PLACES, at_nodes, self._exact, self._recorded)], self._recorded).by
-        return {name: share for name, share in found.items() if share > 0.0}
+        causes = split(self._motions, self._own, at_nodes, self.recorded)
+        return [*causes, difference(PLACES, at_nodes, self._exact, self.recorded)]
 
     @property
     def moves(self) -> bool:
@@ -163,7 +169,7 @@ class Motion:
         return self.exact.at(self._motions.window)
 
     @cached_property
-    def _recorded(self) -> dict[str, Recorded]:
+    def recorded(self) -> dict[str, Recorded]:
         """The motion as a run records it; without the stress of end nodes, which is that half a spacing inside."""
         ends = (0, self.choice.scene.count - 1)
         at_ends = [name for name, node in self._motions.nodes.items() if node in ends]

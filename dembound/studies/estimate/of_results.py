@@ -47,7 +47,7 @@ def estimate_results(folder: Path, budget: float | None = None, second_seed: boo
     clock = Clock(time.process_time)
     with clock.with_compiling(), clock.of("estimate"):
         found, summary = _estimated(folder, budget, second_seed)
-    found = replace(found, seconds=clock.seconds["estimate"])
+    found = replace(found, cpu_seconds=clock.seconds["estimate"])
     _write(found, folder / FILE)
     with replacing(folder / "summary.json") as part:
         part.write_text(json.dumps(summary | {KEY: found.summary()}, indent=2) + "\n", encoding="utf-8")

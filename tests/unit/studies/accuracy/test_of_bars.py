@@ -155,3 +155,18 @@ def test_a_bar_that_may_break_keeps_its_nodes_and_its_method() -> None:
 def test_bars_of_which_nothing_is_known_are_refused(case: Case, line: str) -> None:
     with pytest.raises(CaseError, match=line):
         choose(case, 0.01)
+
+
+def test_a_run_ends_once_nothing_returns_from_absorbing_ends() -> None:
+    """Of a pulse nothing remains once it has left; a bar between free ends rings on."""
+    case = with_changes(scene("viscous end, β = 0.7"), {"run.duration": 0.02})
+    choice = choose(case, 0.01)
+    assert choice.holds
+    assert choice.case.run.until == "silent"
+    assert choice.cost < 0.5 * choose(case, 0.01, ["run.until"]).cost
+    recorded = recorded_of(choice.case)[0]  # type: ignore[arg-type]
+    expected = float(choice.words.rpartition("about ")[2].removesuffix(" s"))
+    # the run looks at its monitors some times only
+    assert next(iter(recorded.values())).time[-1] == pytest.approx(expected, rel=0.1)
+    ringing = with_changes(scene("finite differences, ν = 0.5"), {"run.duration": 0.02})
+    assert choose(ringing, 0.1).case.run.until == "duration"
