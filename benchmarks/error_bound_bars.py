@@ -1,9 +1,14 @@
 """How often the choice of `dembound run --error` for bars is as accurate as asked for, beside exact motions.
 
     python benchmarks/error_bound_bars.py [NAME...]      # of tests/estimated_bars.py; by default those of `NAMES`
+    python benchmarks/error_bound_bars.py --every [NAME...]      # computes the errors of all choices
 
 The exact motion is d'Alembert's, for attenuation and ranges that of finite differences on nodes eight times as fine as
 those of the choice. Errors are those at the nodes of the given case's monitors.
+
+With `--every` it prints how many errors the search computes, whether it finds the choice that all of them give, and the
+largest factor by which the rules of bar_floors.py are wrong, of all pairs of choices: for finer nodes and other ends,
+which `MARGIN` has to cover, and for coarser ones, which only matter where no choice keeps the bound.
 """
 
 from __future__ import annotations
@@ -16,12 +21,14 @@ from timing import ROOT
 
 sys.path.insert(0, str(ROOT / "tests"))
 
-from estimated_bars import exact, recorded_of, scene
+from estimated_bars import SCENES, exact, recorded_of, scene
 
 from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.studies.accuracy import choose
+from dembound.studies.accuracy.bar_floors import MARGIN, Floors
 from dembound.studies.accuracy.companions import quiet
+from dembound.studies.accuracy.of_bars import SAFETY, Motion, all_motions, cheapest, given_motion
 from dembound.studies.chart.errors import QUIET
 from dembound.studies.estimate.causes import Recorded
 
@@ -55,11 +62,48 @@ def true_error(given: BarCase, case: BarCase) -> float:
     return max(errors)
 
 
+def wrong_by(motions: list[Motion]) -> tuple[float, float]:
+    """The largest factors by which what one error says of another is too large: as `MARGIN` covers, and without it."""
+    worst = [0.0, 0.0]
+    for known in motions:
+        floors = Floors()
+        known.add_to(floors)
+        for other in (each for each in motions if each is not known):
+            alike = (known.choice.ends, known.choice.method) == (other.choice.ends, other.choice.method)
+            is_coarser = alike and other.choice.spacing > known.choice.spacing
+            factor = floors.of(other.choice) / other.error * (1.0 if is_coarser else MARGIN)
+            worst[is_coarser] = max(worst[is_coarser], factor)
+    return worst[0], worst[1]
+
+
+def every(names: list[str]) -> None:
+    """Print a line for each scene: the search beside the errors of all choices."""
+    bounds = " | ".join(f"computed at {100 * bound:g} %" for bound in BOUNDS)
+    print(f"| bar | choices | {bounds} | same choices | finer nodes, other ends | coarser nodes |")
+    print("|---|---|" + "---|" * len(BOUNDS) + "---|---|---|")
+    for name in names or SCENES:
+        motions = all_motions(given_motion(scene(name)), [])
+        best = min(motions, key=lambda each: each.error)
+        tried, same = [], 0
+        for bound in BOUNDS:
+            found, count = cheapest(motions, bound)
+            same += found is next((each for each in motions if SAFETY * each.error <= bound), best)
+            tried.append(str(count))
+        row = [
+            name,
+            str(len(motions)),
+            *tried,
+            f"{same} of {len(BOUNDS)}",
+            *(f"{each:.2f}" for each in wrong_by(motions)),
+        ]
+        print(f"| {' | '.join(row)} |", flush=True)
+
+
 def main(names: list[str]) -> None:
     """Print a line for each scene and bound, and the share of those that keep it."""
     kept = []
-    print("| bar | bound | chosen | expected | true | steps, ms | of the case, ms | search, s |")
-    print("|---|---|---|---|---|---|---|---|")
+    print("| bar | bound | chosen | expected | true | steps, ms | of the case, ms | errors computed | search, s |")
+    print("|---|---|---|---|---|---|---|---|---|")
     for name in names or NAMES:
         case = scene(name)
         for bound in BOUNDS:
@@ -73,11 +117,14 @@ def main(names: list[str]) -> None:
             words = choice.words if choice.holds else f"none; {choice.words}"
             print(
                 f"| {name} | {100 * bound:g} % | {words} | {100 * choice.error:.3g} % | {100 * error:.3g} % | "
-                f"{1e3 * choice.cost:.2g} | {1e3 * choice.own_cost:.2g} | {spent:.1f} |",
+                f"{1e3 * choice.cost:.2g} | {1e3 * choice.own_cost:.2g} | {choice.tried} | {spent:.1f} |",
                 flush=True,
             )
     print(f"\n{sum(kept)} of {len(kept)} choices that were expected to keep their bound do so")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    if sys.argv[1:2] == ["--every"]:
+        every(sys.argv[2:])
+    else:
+        main(sys.argv[1:])

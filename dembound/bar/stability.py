@@ -9,7 +9,7 @@ def own_step(scene: BarScene, limit: float) -> float:
     """The time step (s) of the case at a stability limit (s): a share of it, or the one given, even above it."""
     run = scene.case.run
     if run.courant is not None:
-        return run.courant * _unit(scene)
+        return run.courant * unit_step(scene)
     return float(run.time_step) if isinstance(run.time_step, float | int) else run.safety * limit
 
 
@@ -24,11 +24,11 @@ def choose_step(scene: BarScene) -> tuple[float, float]:
         courant = scene.case.run.courant
         if courant is None:
             raise CaseError([f"run.time_step: is {step:g} s, must not be above the stability limit {limit:.6g} s"])
-        most = limit / _unit(scene)
+        most = limit / unit_step(scene)
         raise CaseError([f"run.courant: is {courant:g}, must not be above {most:.6g}, the stability limit"])
     return step, limit
 
 
-def _unit(scene: BarScene) -> float:
+def unit_step(scene: BarScene) -> float:
     """The time step (s) at a Courant number of 1, in the range where this is shortest."""
     return min(part.spacing / part.speed for part in scene.rod.ranges)

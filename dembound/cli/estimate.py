@@ -70,6 +70,7 @@ def _show(folder: Path, found: Estimate) -> None:
 
     for line in found.lines():
         out.print(f"{folder.name}: {line}")
+    out.print(f"{folder.name}: estimated in {found.cpu_seconds:.2g} s of CPU time")
     picture = folder / "histories.png"
     if picture.is_file():
         save(plot_histories([folder / "run.h5"]), picture)

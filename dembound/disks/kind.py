@@ -12,7 +12,7 @@ from dembound.disks.breaks import first_break
 from dembound.disks.contact_mesh import contact_mesh
 from dembound.disks.continuum_mesh import continuum_mesh
 from dembound.disks.facts import disk_facts
-from dembound.disks.load_factor import LoadFactor
+from dembound.disks.load_factor import LoadFactor, least_load_factor
 from dembound.disks.memory import expected_bytes
 from dembound.disks.mesh import VIEW_SCRIPT, disk_mesh
 from dembound.disks.outcome import disk_outcome
@@ -155,8 +155,8 @@ class Disks(Kind[DiskCase, DiskScene]):
         return run.state.step * run.scene.count
 
     def findings(self, scene: DiskScene, run: Run, inside: Box | None = None) -> dict[str, Finding]:
-        """Time (s) and place (m) of the first broken bonds, if any break there."""
-        return first_break(run, inside)
+        """Time (s) and place (m) of the first broken bonds, if any break there, and the load factor if asked for."""
+        return first_break(run, inside) | least_load_factor(run, inside)
 
     def outcome(self, summary: Mapping[str, Any]) -> list[str]:
         """Static stage, laws and cracks in words."""

@@ -2,10 +2,11 @@
 
 The law is linear, so the motion under f times the waves is u_rest + f·(u − u_rest). Every limit of a pair, also those
 of sizes such as |F_s| ≤ μF_n, is one of straight lines in its stretch, shear and turn, which this motion meets at a
-factor known in closed form. The least over all pairs, limits and steps is the load factor.
+factor known in closed form. The least over all pairs, limits and steps is the load factor; it is 0 if a pair is at, or
+beyond, a limit at rest.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,11 +17,16 @@ from dembound.disks.system import DiskSystem
 from dembound.kernels.common import CHUNKS
 from dembound.kernels.load_factor import least_factors
 from dembound.kernels.tables import Limits
+from dembound.motion.kind import Finding
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Every, Run
+from dembound.table import Box
 
 LIMITS = ("opens", "slides", "slides", "breaks in tension", "breaks in tension", "breaks in shear", "breaks in shear")
 """What a pair does at each limit of `limit_lines`."""
+
+LOAD_FACTOR = "load factor"
+"""Name of what is found about it."""
 
 
 def limit_lines(constants: np.ndarray, limits: Limits) -> tuple[np.ndarray, np.ndarray]:
@@ -92,7 +98,7 @@ class LoadFactor(Every):
             least_factors(state.u, self._rest, pairs, *self._lines, self._least, self._where)
             chunk = int(np.argmin(self._least))
             if self._least[chunk] < self.factor:
-                self.factor = float(self._least[chunk])
+                self.factor = max(0.0, float(self._least[chunk]))  # below 0 beyond a limit at rest
                 self._found = np.array([state.step, number, *self._where[chunk]])
 
     def describe(self, run: Run) -> dict[str, Any] | None:
@@ -121,6 +127,26 @@ class LoadFactor(Every):
         self.factor, self._found = float(memory["factor"]), memory["found"].copy()
 
 
+def load_factor_of(run: Run) -> LoadFactor | None:
+    """The tracker of a run that finds its load factor; None if it has none."""
+    found = run.state.owners.get(LoadFactor.name)
+    return found if isinstance(found, LoadFactor) else None
+
+
+def least_load_factor(run: Run, inside: Box | None = None) -> dict[str, Finding]:
+    """The load factor as a number that is compared between runs; empty without one, or if it is not reached inside."""
+    tracker = load_factor_of(run)
+    found = None if tracker is None else tracker.describe(run)
+    if found is None or (inside is not None and not _is_inside(found["position"], inside)):
+        return {}
+    return {LOAD_FACTOR: Finding(found["factor"], "1")}
+
+
+def _is_inside(place: Sequence[float], box: Box) -> bool:
+    """Whether a place (2,) m is in a box."""
+    return box[0] <= place[0] <= box[2] and box[1] <= place[1] <= box[3]
+
+
 def limit_in_words(limit: int, constants: np.ndarray) -> str:
     """What a pair with these constants (12,) does at a limit of `limit_lines`."""
     has_gap = constants[3] < constants[2]
@@ -132,5 +158,7 @@ def load_factor_in_words(found: Mapping[str, Any]) -> str:
     if found["factor"] is None:
         return "the elastic law holds under any multiple of the waves"
     x, y = found["position"]
+    if found["factor"] == 0.0:
+        return f"the elastic law holds under no waves: at rest the pair at ({x:.4g}, {y:.4g}) m {found['limit']}"
     what = f"the pair at ({x:.4g}, {y:.4g}) m {found['limit']} at t = {found['time']:.4g} s"
     return f"the elastic law holds up to {found['factor']:.4g} times the waves, where {what}"

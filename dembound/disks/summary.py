@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from dembound.disks.load_factor import LoadFactor
+from dembound.disks.load_factor import load_factor_of
 from dembound.disks.near_ties import OPENED
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.disks.settled import Settled
@@ -27,10 +27,8 @@ def summarise_disks(scene: DiskScene, run: Run) -> dict[str, Any]:
 
 def _describe_load_factor(run: Run) -> dict[str, Any] | None:
     """The load factor and where it is reached, see `LoadFactor.describe`; None if it has not been asked for."""
-    found = run.state.owners.get(LoadFactor.name)
-    if not isinstance(found, LoadFactor):
-        return None
-    return found.describe(run) or {"factor": None}
+    found = load_factor_of(run)
+    return None if found is None else found.describe(run) or {"factor": None}
 
 
 def asked_stress(scene: DiskScene) -> list[float] | None:

@@ -9,9 +9,11 @@ import numpy as np
 
 from dembound.boundaries import SIDES, Motion
 from dembound.casefile.disks.load import Load
+from dembound.casefile.disks.material import with_history
 from dembound.casefile.magnitudes import stress_in_words
 from dembound.casefile.messages import numbered
 from dembound.disks.continuum_facts import continuum_warnings
+from dembound.disks.load_factor import load_factor_in_words
 from dembound.disks.matching import homogenised_beta, reflected
 from dembound.disks.near_ties import near_tie_warnings
 from dembound.disks.scene import DiskScene
@@ -182,7 +184,14 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
         cracks = cracks_until(file, np.inf)
         at_rest = 0.0 if scene.case.static is None else AT_REST * slowest_speed(scene.ground)
         moving = still_moving(scene, summary["duration"], file, _pieces(scene, cracks["particles"]), at_rest)
-        return [*moving, *near_tie_warnings(scene, summary, cracks)]
+        return [*moving, *_not_elastic(summary.get("load_factor")), *near_tie_warnings(scene, summary, cracks)]
+
+
+def _not_elastic(found: Mapping[str, Any] | None) -> Iterator[str]:
+    """A load factor below 1: the motion is not that of the material."""
+    if found is not None and found["factor"] is not None and found["factor"] < 1.0:
+        law = f"take law = {with_history()}, or smaller waves"
+        yield f'material.law: is "elastic", but {load_factor_in_words(found)}; {law}'
 
 
 def _pieces(scene: DiskScene, broken: np.ndarray) -> np.ndarray:

@@ -62,6 +62,16 @@ def _longest(scene: Scene, sources: Sequence[Source], places: np.ndarray) -> flo
     return max(waves, 2.0 * float(np.max(ways, initial=0.0)) / slowest)
 
 
+def last_loud(speeds: np.ndarray, level: float, peaks: np.ndarray) -> int:
+    """The last sample at which any monitor is above `level` times its largest speed so far; -1 for none.
+
+    speeds : (k, monitors) m/s. peaks : (monitors,), the largest before them.
+    """
+    so_far = np.maximum(np.maximum.accumulate(speeds, axis=0), peaks)
+    loud = np.flatnonzero((speeds > level * so_far).any(axis=1))
+    return int(loud[-1]) if len(loud) > 0 else -1
+
+
 class Silence(Tracker):
     """Ends a run when all monitors have been silent for long enough; one that has not moved yet is silent, too.
 
@@ -89,10 +99,9 @@ class Silence(Tracker):
         times = (run.state.step - len(record) + np.arange(len(record))) * run.time_step
         speeds = np.abs(run.scene.observed(record, times)[:, :, 3:5]).max(axis=2)
         peaks = self._peaks if self._peaks.size else np.zeros(speeds.shape[1])
-        so_far = np.maximum(np.maximum.accumulate(speeds, axis=0), peaks)
-        loud = np.flatnonzero((speeds > self._level * so_far).any(axis=1))
-        if len(loud) > 0:
-            self._loud = run.state.step - len(record) + int(loud[-1])
+        loud = last_loud(speeds, self._level, peaks)
+        if loud >= 0:
+            self._loud = run.state.step - len(record) + loud
         self._peaks = np.maximum(peaks, speeds.max(axis=0, initial=0.0))
         since = run.state.step - max(self._loud, self._earliest)
         if since > self._hold:

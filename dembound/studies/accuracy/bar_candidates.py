@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from dembound.bar import step_cost
 from dembound.bar.banded import ROUNDING
 from dembound.bar.scene import BarScene, build_bar
-from dembound.bar.stability import own_step
+from dembound.bar.stability import own_step, unit_step
 from dembound.casefile.bar import BarCase
 from dembound.errors import DemboundError
 from dembound.kinds import with_changes
@@ -35,20 +36,37 @@ Changes = dict[str, Any]
 class BarCandidate:
     """A choice.
 
-    scene : of the case. step : s, steps : of the run. cost : predicted CPU time of the steps, s. words : of it.
+    scene : of the case. step : s, steps : of the run. ends, method : these in words. cost : predicted CPU time of the
+    steps, s.
     """
 
     scene: BarScene
     step: float
     changes: Changes
-    words: str
+    ends: str
+    method: str
+
+    @property
+    def words(self) -> str:
+        """The choice in words."""
+        return f"{self.ends}{self.method}, nodes every {self.spacing:.4g} m, steps of {self.step:.4g} s"
+
+    @property
+    def spacing(self) -> float:
+        """Of the nodes, m."""
+        return self.scene.case.bar.spacing
+
+    @property
+    def courant(self) -> float:
+        """The Courant number, in the range where it is largest."""
+        return self.step / unit_step(self.scene)
 
     @property
     def steps(self) -> int:
         """Number of steps of the run."""
         return max(1, math.ceil(self.scene.case.run.duration / self.step - 1e-9))
 
-    @property
+    @cached_property
     def cost(self) -> float:
         """Predicted CPU time of the steps, s."""
         return 1e-9 * self.steps * step_cost.of_bar(self.scene)
@@ -65,7 +83,7 @@ def bar_candidates(case: BarCase, kept: Sequence[str]) -> Iterator[BarCandidate]
         for method, of_method in _methods(case) if not breaks else [("", Changes())]:
             for factor in sorted(FACTORS, key=lambda each: each != 1.0) if not breaks else [1.0]:
                 changes = of_ends | of_method | _spacings(case, factor)
-                yield from _stepped(case, changes, f"{ends}{method}", kept)
+                yield from _stepped(case, changes, (ends, method), kept)
 
 
 def may_break(case: BarCase) -> bool:
@@ -82,7 +100,9 @@ def _ends(case: BarCase, kept: Sequence[str]) -> Iterator[tuple[str, Changes]]:
     where = " and ".join(free)
     waves = {side: {f"wave_{motion}": name for motion, name in case.side(side).waves.items()} for side in free}
     kinds = {side: "viscous_input" if waves[side] else "viscous" for side in free}
-    yield f"dashpots at {where}", {f"boundary.{side}": {"type": kinds[side], **waves[side]} for side in free}
+    dashpots = {side: {"type": kinds[side], **waves[side]} for side in free}
+    if any(case.side(side).given() != table for side, table in dashpots.items()):
+        yield f"dashpots at {where}", {f"boundary.{side}": table for side, table in dashpots.items()}
     for nodes in LAYERS:
         layers = {f"boundary.{side}": {"type": "matched_layer", "nodes": nodes, **waves[side]} for side in free}
         yield f"matched layers of {nodes} nodes at {where}", layers
@@ -109,7 +129,7 @@ def _spacings(case: BarCase, factor: float) -> Changes:
     return {key: float(f"{factor * spacing:.12g}") for key, spacing in own.items()}
 
 
-def _stepped(case: BarCase, changes: Changes, words: str, kept: Sequence[str]) -> Iterator[BarCandidate]:
+def _stepped(case: BarCase, changes: Changes, words: tuple[str, str], kept: Sequence[str]) -> Iterator[BarCandidate]:
     """The same nodes with several steps."""
     try:
         changed = _changed(case, changes)
@@ -119,15 +139,14 @@ def _stepped(case: BarCase, changes: Changes, words: str, kept: Sequence[str]) -
     limit = scene.step_limit()
     steps: dict[float, Changes] = {own_step(scene, limit): {}}
     others = {key: value for key, value in case.run.given().items() if key not in STEP_KEYS}
-    unit = min(part.spacing / part.speed for part in scene.rod.ranges)
+    unit = unit_step(scene)
     for step, key, value in [(unit, "courant", 1.0), *((share * limit, "safety", share) for share in SHARES)]:
         steps.setdefault(step, {"run": others | {key: value}})
     for step, of_step in steps.items():
         choice = changes | of_step
         is_valid = step <= min(limit * (1.0 + ROUNDING), changed.run.duration)
         if is_valid and (not kept or keeps(case, _changed(case, choice), kept)):
-            size = f"nodes every {changed.bar.spacing:.4g} m, steps of {step:.4g} s"
-            yield BarCandidate(scene, step, choice, f"{words}, {size}")
+            yield BarCandidate(scene, step, choice, *words)
 
 
 def _changed(case: BarCase, changes: Changes) -> BarCase:

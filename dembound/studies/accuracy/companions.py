@@ -12,12 +12,13 @@ import numpy as np
 from dembound.boundaries import normal_axis
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
-from dembound.disks.loads import forces_of
+from dembound.disks.breaks import BREAK_TIME
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
+from dembound.studies.accuracy.load_places import middle_of_loads, middles_of_loads
 from dembound.studies.accuracy.patches import patch_around, weights_at
-from dembound.studies.chart.measure import Gauges
+from dembound.studies.chart.measure import Gauges, Outcome
 from dembound.studies.estimate.causes import Recorded
 from dembound.studies.estimate.coarser import coarser
 from dembound.studies.estimate.pair import PairScenes, measured, ratios, scenes_of_pair, sides_of_pair
@@ -63,12 +64,21 @@ class Companions:
             return LESS * self.pair.step
         return LESS * choose_step(self._lattice)[0]
 
-    @cached_property
+    @property
     def far(self) -> Gauges:
-        """The motion without what sides send back, of the disks of all patches."""
-        if self.pair is not None:
-            return self._run(enlarged(build(self._own), self.pair.bricks)[0])
-        return self._run(self._own)
+        """The motion of the disks of all patches without what sides send back, until bonds break."""
+        return _until(self._far.gauges, self.first_break)
+
+    @property
+    def first_break(self) -> float:
+        """Time (s) at which the first bond breaks there, infinite without one."""
+        found = self._far.findings.get(BREAK_TIME)
+        return math.inf if found is None else found.value
+
+    @cached_property
+    def _far(self) -> Outcome:
+        """The run with far sides."""
+        return self._measured(self._own if self.pair is None else enlarged(build(self._own), self.pair.bricks)[0])
 
     @cached_property
     def _lattice(self) -> DiskScene:
@@ -180,39 +190,30 @@ class Companions:
         return math.ceil(wider * scene.case.packing.copies[normal_axis(side)] - 1e-9)
 
     def _run(self, case: DiskCase) -> Gauges:
-        """The motion of the monitors of a companion."""
+        """The motion of the monitors of a companion, until bonds break with far sides."""
+        return _until(self._measured(case).gauges, self.first_break)
+
+    def _measured(self, case: DiskCase) -> Outcome:
+        """The outcome of a companion."""
         outcome = measured(case, self.step)
         self.work += outcome.work
-        return outcome.gauges
+        return outcome
+
+
+def _until(gauges: Gauges, time: float) -> Gauges:
+    """Histories before a time (s)."""
+    if math.isinf(time):
+        return gauges
+    return {
+        name: replace(each, time=each.time[own], displacement=each.displacement[own], velocity=each.velocity[own])
+        for name, each in gauges.items()
+        for own in [each.time < time]
+    }
 
 
 def _named(monitor: str, number: int) -> str:
     """The name of a monitor of a patch."""
     return f"{monitor}.{number}"
-
-
-def middle_of_loads(scene: DiskScene) -> np.ndarray | None:
-    """The middle (2,) m of the places where loads start waves, by force; None if waves enter through sides."""
-    found = middles_of_loads(scene)
-    return np.average([place for place, _ in found], axis=0, weights=[size for _, size in found]) if found else None
-
-
-def middles_of_loads(scene: DiskScene) -> list[tuple[np.ndarray, float]]:
-    """The middle (2,) m of each load that starts waves, and its force (N); none if they enter through sides."""
-    case = scene.case
-    if case.driving and not any(load.wave for load in case.load):
-        return []
-    found: list[tuple[np.ndarray, float]] = []
-    for load in case.load:
-        if load.pressure is not None:
-            left, bottom, right, top = next(hole.box for hole in case.hole if hole.name == load.hole)
-            middle = np.array([0.5 * (left + right), 0.5 * (bottom + top)])
-            found.append((middle, abs(load.pressure) * (right - left + top - bottom)))
-        elif not load.is_everywhere:
-            nodes, forces = forces_of(load, scene)
-            strength = np.hypot(*forces[:, :2].T)
-            found.append((np.average(scene.positions[nodes], axis=0, weights=strength), float(strength.sum())))
-    return found
 
 
 def needed_by(scene: DiskScene) -> dict[str, int]:

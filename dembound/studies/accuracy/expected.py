@@ -34,7 +34,7 @@ class Expected:
 
 
 def expected(causes: list[Cause], recorded: Mapping[str, Recorded]) -> Expected:
-    """The largest error of all recorded quantities at monitors that are not quiet."""
+    """The largest error of all recorded quantities at monitors that are not quiet, and its causes that are not zero."""
     estimate = Estimate(recorded, Causes(causes))
     found = [
         (total, estimate.shares(name, quantity))
@@ -42,7 +42,8 @@ def expected(causes: list[Cause], recorded: Mapping[str, Recorded]) -> Expected:
         for quantity in estimate.quantities(name)
         if name not in quiet(recorded, quantity, QUIET) and np.isfinite(total := estimate.total(name, quantity))
     ]
-    return Expected(*max(found, key=lambda each: each[0], default=(0.0, {})))
+    worst, by = max(found, key=lambda each: each[0], default=(0.0, {}))
+    return Expected(worst, {name: share for name, share in by.items() if share > 0.0})
 
 
 def of_ground(companions: Companions, scene: DiskScene, time_step: float) -> tuple[list[Cause], list[Cause]]:

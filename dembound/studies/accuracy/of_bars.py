@@ -9,8 +9,8 @@ motion until bonds change.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -19,11 +19,14 @@ from dembound.bar.scene import build_bar
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
 from dembound.studies.accuracy.bar_candidates import BarCandidate, bar_candidates, may_break
+from dembound.studies.accuracy.bar_floors import Floors, first_echo, is_regular
 from dembound.studies.accuracy.choice import Choice
-from dembound.studies.accuracy.expected import Expected, expected
+from dembound.studies.accuracy.duration import ended_earlier
+from dembound.studies.accuracy.exact_bar import ExactMotion
+from dembound.studies.accuracy.expected import expected
 from dembound.studies.estimate.bar_motions import Histories, Motions
 from dembound.studies.estimate.bars import QUIET, difference, largest_motion, not_linear, split
-from dembound.studies.estimate.causes import Recorded
+from dembound.studies.estimate.causes import Cause, Recorded
 from dembound.studies.estimate.window import Window
 
 SAFETY = 1.05
@@ -48,48 +51,101 @@ def best_of_bar(case: BarCase, bound: float, kept: Sequence[str]) -> Choice:
     """
     if refused := not_linear(case):
         raise CaseError([f"--error: nothing is known of {line}" for line in refused], case.name)
-    scene = build_bar(case)
-    places = {name: float(scene.positions[node, 0]) for name, node in scene.monitors.items()}
-    own = next(each for each in bar_candidates(case, ()) if not each.changes)
-    if not _Motion(own, places).moves:
+    own = given_motion(case)
+    if not own.moves:
         raise CaseError(["--error: nothing moves at the monitors"], case.name)
-    choices, own_cost = sorted(bar_candidates(case, kept), key=lambda each: each.cost), own.cost
-    found = list(_until(bound, (_Motion(each, places) for each in choices if each.cost <= COSTLIEST * own_cost)))
-    if not found:
+    motions = all_motions(own, kept)
+    if not motions:
         raise CaseError(["--error: no choice keeps the values of --keep and --set"], case.name)
-    best = min(found, key=lambda each: each.error.worst)
+    best, tried = cheapest(motions, bound)
     words = f"{best.choice.words}{ALONG if may_break(case) else ''}"
-    costs = best.choice.cost, own_cost
-    return Choice(case, best.choice.case(case), words, best.error.worst, best.by, bound, *costs, len(found), SAFETY)
+    costs = best.choice.cost, own.choice.cost
+    choice = Choice(case, best.choice.case(case), words, best.error, best.by, bound, *costs, tried, SAFETY)
+    return choice if may_break(case) else ended_earlier(choice, best.recorded, best.recorded, best.causes, kept)
 
 
-def _until(bound: float, motions: Iterator[_Motion]) -> Iterator[_Motion]:
-    """Motions up to the first whose error is below a bound."""
+def given_motion(case: BarCase) -> Motion:
+    """The motion of a case as it is; raises the errors of building its scene."""
+    exact = ExactMotion(build_bar(case))
+    return Motion(next(each for each in bar_candidates(case, ()) if not each.changes), exact)
+
+
+def all_motions(own: Motion, kept: Sequence[str]) -> list[Motion]:
+    """Those of all choices for a given case that do not cost too much, the cheapest first."""
+    choices = sorted(bar_candidates(own.choice.scene.case, kept), key=lambda each: each.cost)
+    return [Motion(each, own.exact) for each in choices if each.cost <= COSTLIEST * own.choice.cost]
+
+
+def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
+    """The first whose error is below a bound, else the one with the smallest, and how many errors were computed.
+
+    Those whose errors are larger by what is known of others (bar_floors.py) are left out.
+    """
+    floors, found, left = Floors(), list[Motion](), list[Motion]()
     for motion in motions:
-        yield motion
-        if SAFETY * motion.error.worst <= bound:
-            return
+        if SAFETY * floors.of(motion.choice) > bound:
+            left.append(motion)
+            continue
+        found.append(motion.add_to(floors))
+        if SAFETY * motion.error <= bound:
+            return motion, len(found)
+    best = min(found, key=lambda each: each.error)
+    for motion in reversed(left):  # finer nodes first
+        if floors.of(motion.choice) < best.error:
+            found.append(motion.add_to(floors))
+            best = min(best, motion, key=lambda each: each.error)
+    return best, len(found)
 
 
 @dataclass(frozen=True)
-class _Motion:
-    """The motion of a choice beside the exact one at places (m) by monitor."""
+class Motion:
+    """The motion of a choice beside the exact one."""
 
     choice: BarCandidate
-    places: Mapping[str, float]
+    exact: ExactMotion
+
+    def add_to(self, floors: Floors) -> Motion:
+        """Itself; what its error says of others is known then."""
+        if is_regular(self.choice, self.exact.places):
+            counted, echo = self._surely_counted, first_echo(self.choice.scene)
+            floors.add(self.choice, self._error_of(counted), self._error_of(counted, echo))
+        return self
 
     @cached_property
-    def error(self) -> Expected:
-        """The error in all."""
-        return expected([difference("all", self._own, self._exact, self._recorded)], self._recorded)
+    def error(self) -> float:
+        """The error at the worst monitor."""
+        return self._error_of(self.recorded)
+
+    def _error_of(self, recorded: Mapping[str, Recorded], last: Mapping[str, float] | None = None) -> float:
+        """The error of what is recorded; last : s, by monitor, up to which it counts."""
+        times, own, exact = self._motions.times, self._own, self._exact
+        if last is not None:
+            own = {
+                name: {q: np.where(times[name] <= last[name], values, exact[name][q]) for q, values in each.items()}
+                for name, each in own.items()
+            }
+        return expected([difference("all", own, exact, recorded)], recorded).worst
+
+    @property
+    def _surely_counted(self) -> dict[str, Recorded]:
+        """The part of what is recorded that counts for all choices."""
+        counted = self.exact.surely_counted(self._motions.window)
+        return {
+            name: replace(own, values={q: values for q, values in own.values.items() if q in counted[name]})
+            for name, own in self.recorded.items()
+        }
 
     @property
     def by(self) -> dict[str, float]:
         """Its causes at the monitor with the largest error; some have opposite signs, as those of grid and steps."""
+        return expected(self.causes, self.recorded).by
+
+    @cached_property
+    def causes(self) -> list[Cause]:
+        """Its causes."""
         at_nodes = self._motions.exact()
-        causes = split(self._motions, self._own, at_nodes, self._recorded)
-        found = expected([*causes, difference(PLACES, at_nodes, self._exact, self._recorded)], self._recorded).by
-        return {name: share for name, share in found.items() if share > 0.0}
+        causes = split(self._motions, self._own, at_nodes, self.recorded)
+        return [*causes, difference(PLACES, at_nodes, self._exact, self.recorded)]
 
     @property
     def moves(self) -> bool:
@@ -101,7 +157,7 @@ class _Motion:
     def _motions(self) -> Motions:
         """The motions at all steps."""
         scene, step, steps = self.choice.scene, self.choice.step, self.choice.steps
-        times = dict.fromkeys(self.places, step * np.arange(steps + 1))
+        times = dict.fromkeys(self.exact.places, step * np.arange(steps + 1))
         return Motions(scene.case, scene, Window.up_to(steps * step, step), times)
 
     @cached_property
@@ -110,16 +166,16 @@ class _Motion:
 
     @cached_property
     def _exact(self) -> Histories:
-        return self._motions.exact(self.places)
+        return self.exact.at(self._motions.window)
 
     @cached_property
-    def _recorded(self) -> dict[str, Recorded]:
+    def recorded(self) -> dict[str, Recorded]:
         """The motion as a run records it; without the stress of end nodes, which is that half a spacing inside."""
         ends = (0, self.choice.scene.count - 1)
         at_ends = [name for name, node in self._motions.nodes.items() if node in ends]
         return {
             name: Recorded(
-                np.array([self.places[name], 0.0]),
+                np.array([self.exact.places[name], 0.0]),
                 self._motions.times[name],
                 {q: values[:, None] for q, values in own.items() if q != "stress" or name not in at_ends},
             )

@@ -7,13 +7,15 @@ companions of larger disks, the rest by formulas.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import count
 
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, DemboundError
+from dembound.motion.kind import Plan
 from dembound.running import plan
 from dembound.studies.accuracy.candidates import (
     FACTORS,
@@ -25,7 +27,10 @@ from dembound.studies.accuracy.candidates import (
 )
 from dembound.studies.accuracy.choice import Choice
 from dembound.studies.accuracy.companions import Companions
+from dembound.studies.accuracy.duration import ended_earlier
 from dembound.studies.accuracy.expected import Expected, expected, of_ground, of_sides
+from dembound.studies.accuracy.law import ElasticTwin, elastic_twin
+from dembound.studies.estimate.causes import SIDES, Cause, Recorded
 from dembound.studies.estimate.of_run import BUDGET, SHORT
 from dembound.studies.estimate.pair import sides_of_pair
 
@@ -45,12 +50,41 @@ def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Choice:
     """
     _require_known(case)
     planned = plan(case)
-    companions = Companions(case, planned.scene, planned.time_step, 0.0)  # type: ignore[arg-type]
-    companions.most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
-    search = _Search(companions, bound, kept, cost_of(planned))
-    best, error = search.best()
-    found = error.worst, error.by, bound, best.cost, search.own_cost, search.tried
-    return Choice(case, best.case, best.words, *found, reserve=SAFETY)
+    assert isinstance(planned.scene, DiskScene)
+    most = max(SHORT, BUDGET * planned.scene.count * planned.steps)
+    twin = elastic_twin(case, planned, most, kept)
+    if twin is None:
+        return _best(case, planned, bound, kept, most)
+    found = _best(twin.case, twin.planned, bound, kept, most, twin)
+    steps = planned.steps / twin.planned.steps  # which the other law makes with the cost of this one, until it is left
+    found = replace(found, given=case, words=f"{twin.words}; {found.words}", own_cost=steps * found.own_cost)
+    if found.holds or twin.stress == 0.0:
+        return found
+    return min(found, _best(case, planned, bound, kept, most), key=lambda choice: choice.error)
+
+
+def _best(
+    case: DiskCase,
+    planned: Plan,
+    bound: float,
+    kept: Sequence[str],
+    most: float,
+    twin: ElasticTwin | None = None,
+) -> Choice:
+    """The best choice under the law of a case, planned; twin : the same, if it is not that of the given case."""
+    companions = Companions(case, planned.scene, planned.time_step, most)  # type: ignore[arg-type]
+    search = _Search(companions, bound, kept, cost_of(planned), twin)
+    best = search.best()
+    words, error, cost = best.candidate.words, best.error, best.candidate.cost
+    breaks = companions.first_break
+    if breaks < case.run.duration:
+        words += f"; the error is that before bonds break, after about {breaks:.3g} s"
+    choice = Choice(
+        case, best.candidate.case, words, error.worst, error.by, bound, cost, search.own_cost, search.tried, SAFETY
+    )
+    if breaks < case.run.duration:
+        return choice
+    return ended_earlier(choice, best.recorded, best.motion, best.causes, kept)
 
 
 def _require_known(case: DiskCase) -> None:
@@ -68,36 +102,61 @@ def _require_known(case: DiskCase) -> None:
         raise CaseError(problems, case.name)
 
 
+@dataclass(frozen=True)
+class _Found:
+    """A choice with its error; recorded : the motion without it, by monitor; causes : of the error."""
+
+    candidate: Candidate
+    recorded: Mapping[str, Recorded]
+    causes: list[Cause]
+
+    @cached_property
+    def error(self) -> Expected:
+        """The error of all causes."""
+        return expected(self.causes, self.recorded)
+
+    @property
+    def motion(self) -> dict[str, Recorded]:
+        """The motion with what the sides add to it."""
+        sides = [cause.errors for cause in self.causes if cause.name == SIDES]
+        return {
+            name: replace(own, values={q: own.values[q] + sum(errors[name][q] for errors in sides) for q in own.values})
+            for name, own in self.recorded.items()
+        }
+
+
 @dataclass
 class _Search:
     """The search for a choice.
 
-    too_much : arrangements and distances whose sides alone reflect more than the bound. too_large : factors of
-    diameters whose disks alone have larger errors than the bound, with these errors.
+    twin : the case, if its law is not that given. too_much : arrangements and distances whose sides alone reflect
+    more than the bound. too_large : factors of diameters whose disks alone have larger errors than the bound, with
+    these errors.
     """
 
     companions: Companions
     bound: float
     kept: Sequence[str]
     own_cost: float
+    twin: ElasticTwin | None
     tried: int = 0
     too_much: set[tuple[str, float]] = field(default_factory=set)
     too_large: dict[float, float] = field(default_factory=dict)
 
-    def best(self) -> tuple[Candidate, Expected]:
+    def best(self) -> _Found:
         """The cheapest choice that keeps the bound, or the one with the smallest error."""
-        found: list[tuple[Candidate, Expected]] = []
+        found: list[_Found] = []
         for candidate in self._by_cost():
             if (candidate.arrangement.name, candidate.wider) not in self.too_much:
                 found += self._with_error(candidate)
-                if found and SAFETY * found[-1][1].worst <= self.bound:
+                if found and SAFETY * found[-1].error.worst <= self.bound:
                     return found[-1]
         for factor in sorted(self.too_large, key=lambda factor: self.too_large[factor]):
             if not found:
                 found = [each for candidate in self._of(factor) for each in self._with_error(candidate)]
         if not found:
             raise CaseError(["--error: no choice keeps the values of --keep and --set"], self.companions.case.name)
-        return min(found, key=lambda each: each[1].worst)
+        return min(found, key=lambda each: each.error.worst)
 
     def _by_cost(self) -> Iterator[Candidate]:
         """Choices by cost; those with the next smaller disks are only made when their cost has been reached."""
@@ -121,12 +180,18 @@ class _Search:
 
     def _of(self, factor: float) -> list[Candidate]:
         """Choices with disks of one diameter."""
-        plain = with_diameter(self.companions, factor)
+        plain = self._with_diameter(factor)
         return [] if plain is None else list(candidates(self.companions, plain, factor, self.bound, self.kept))
+
+    def _with_diameter(self, factor: float) -> Plan | None:
+        """The case with disks of another diameter, planned; None if it may not have them."""
+        own = self.companions.scene.ground.brick.mean_diameter
+        may_be = self.twin is None or self.twin.holds(factor * own)
+        return with_diameter(self.companions, factor) if may_be else None
 
     def _are_small_enough(self, factor: float) -> bool:
         """Whether the error of disks of one diameter leaves some of the bound to sides."""
-        plain = with_diameter(self.companions, factor)
+        plain = self._with_diameter(factor)
         if plain is None:
             return False
         assert isinstance(plain.scene, DiskScene)
@@ -136,7 +201,7 @@ class _Search:
             self.too_large[factor] = error
         return factor not in self.too_large
 
-    def _with_error(self, candidate: Candidate) -> list[tuple[Candidate, Expected]]:
+    def _with_error(self, candidate: Candidate) -> list[_Found]:
         """A choice with its error; nothing if a companion of it cannot run."""
         scene, step = candidate.scene, candidate.planned.time_step
         recorded = self.companions.recorded(scene)
@@ -148,4 +213,5 @@ class _Search:
             return []
         if SAFETY * expected(sides, recorded).worst > self.bound:
             self.too_much.add((candidate.arrangement.name, candidate.wider))
-        return [(candidate, expected([*disks, *others, *sides], recorded))]
+        law = [] if self.twin is None else self.twin.causes(scene, recorded)
+        return [_Found(candidate, recorded, [*disks, *others, *sides, *law])]

@@ -84,6 +84,7 @@ def measure(
         simulation, ledger = simulation_of(planned, beginning, cpu)
         records = Records()
         simulation.track(records, *([ledger] if watched else []), Reports(progress, planned.steps))
+        simulation.track(*planned.kind.trackers(simulation))
         with cpu.with_compiling():
             simulation.run(planned.steps)
     return _outcome(planned, simulation, records, inside), cpu.seconds["step"], wall.seconds["whole"]

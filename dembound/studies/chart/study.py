@@ -104,7 +104,7 @@ class Charted:
         parts = [f"no {', '.join(missing)}"] if missing else []
         for name, (value, unit) in found.items():
             number = f"{value:.5g}" if name not in wanted else f"{value - wanted[name]:+.2g}"
-            parts.append(f"{name} {number} {unit}")
+            parts.append(f"{name} {number}{'' if unit == '1' else f' {unit}'}")
         return ", ".join(parts)
 
     @property

@@ -157,8 +157,10 @@ class Motions:
         grid, time = window.time, self.times[name]
         found = {}
         for quantity, values in zip(("velocity", "displacement", "stress"), transforms, strict=True):
-            spline = CubicSpline(grid, window.history(values))
-            found[quantity] = np.where(time <= grid[-1] + 0.5 * window.step, spline(time), 0.0)
+            own = window.history(values)
+            if not np.array_equal(time, grid):
+                own = np.where(time <= grid[-1] + 0.5 * window.step, CubicSpline(grid, own)(time), 0.0)
+            found[quantity] = own
         return found
 
 

@@ -33,18 +33,23 @@ def joined(first: Link, middle: np.ndarray, second: Link) -> Link:
     )
 
 
-def repeated(link: Link, middle: np.ndarray, count: int) -> Link:
-    """So many equal links, at least 1, as one, without the equal blocks between them, middle (f, b, b)."""
-    found: Link | None = None
-    power = link
-    while True:
-        if count % 2:
-            found = power if found is None else joined(found, middle, power)
-        count //= 2
-        if count == 0:
-            assert found is not None
-            return found
-        power = joined(power, middle, power)
+class Row:
+    """Equal blocks in a row, middle (f, b, b) the matrix of each, equal links between them."""
+
+    def __init__(self, link: Link, middle: np.ndarray) -> None:
+        self.middle = middle
+        self._powers = [link]  # of 1, 2, 4 ... links
+
+    def links(self, count: int) -> Link:
+        """So many links, at least 1, as one, without the blocks between them."""
+        found: Link | None = None
+        for bit in range(count.bit_length()):
+            if bit == len(self._powers):
+                self._powers.append(joined(self._powers[-1], self.middle, self._powers[-1]))
+            if count >> bit & 1:
+                found = self._powers[bit] if found is None else joined(found, self.middle, self._powers[bit])
+        assert found is not None
+        return found
 
 
 def velocities(own: Sequence[np.ndarray], links: Sequence[Link], force: np.ndarray) -> np.ndarray:
@@ -56,16 +61,16 @@ def velocities(own: Sequence[np.ndarray], links: Sequence[Link], force: np.ndarr
     for k, link in enumerate(links):
         whole[k] += link.a
         whole[k + 1] += link.d
-    rest = force.copy()
+    rest, answers = force.copy(), []
     for k, link in enumerate(links):  # eliminate from the left
-        answer = solve(whole[k], np.concatenate([link.b, rest[:, k, :, None]], axis=2))
-        whole[k + 1] -= link.c @ answer[:, :, :-1]
-        rest[:, k + 1] -= (link.c @ answer[:, :, -1:])[:, :, 0]
+        answers.append(solve(whole[k], np.concatenate([link.b, rest[:, k, :, None]], axis=2)))
+        passed = link.c @ answers[k]
+        whole[k + 1] -= passed[:, :, :-1]
+        rest[:, k + 1] -= passed[:, :, -1]
     moved = np.empty_like(rest)
     moved[:, -1] = solve(whole[-1], rest[:, -1, :, None])[:, :, 0]
     for k in range(len(links) - 1, -1, -1):
-        left = rest[:, k] - (links[k].b @ moved[:, k + 1, :, None])[:, :, 0]
-        moved[:, k] = solve(whole[k], left[:, :, None])[:, :, 0]
+        moved[:, k] = answers[k][:, :, -1] - (answers[k][:, :, :-1] @ moved[:, k + 1, :, None])[:, :, 0]
     return moved
 
 

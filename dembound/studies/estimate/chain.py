@@ -17,7 +17,7 @@ import numpy as np
 
 from dembound.bar.layers import EndLayer
 from dembound.bar.scene import BarScene
-from dembound.studies.estimate.blocks import Link, repeated, solve, velocities
+from dembound.studies.estimate.blocks import Link, Row, solve, velocities
 
 EQUAL = 1e-10
 """Relative difference up to which blocks are equal, for rounding."""
@@ -138,8 +138,7 @@ class Chain:
             self.first // self.wide // 2 if side == "left" else (self.first + self._bar + self.count) // self.wide // 2
         )
         matrix, across = self.matrices(block, clock)
-        none = np.zeros_like(across)
-        link = repeated(Link(none, across, across.swapaxes(1, 2), none), matrix, len(self.mass))
+        link = _row(matrix, across).links(len(self.mass))
         push = np.zeros((len(clock.s), self.wide, 1), dtype=complex)
         push[:, 0] = 1.0
         return np.asarray(solve(matrix + link.a + link.d, push)[:, 0, 0])
@@ -171,24 +170,22 @@ class Response:
         chosen[1:] |= kinds[1:] != kinds[:-1]
         chosen[:-1] |= kinds[1:] != kinds[:-1]
         chosen[[(chain.first + node) // wide for node in nodes]] = True
+        self._kinds = kinds
         self._stations: list[int] = np.flatnonzero(chosen).tolist()
         self._index = {block: k for k, block in enumerate(self._stations)}
 
     def velocities(self, clock: Clock, forces: Mapping[int, np.ndarray]) -> np.ndarray:
         """Velocities (f, k, b) of the stations under forces (f,) N on nodes of the bar."""
         chain, stations = self.chain, self._stations
-        own, links = [], []
-        for block, following in zip(stations, [*stations[1:], stations[-1]], strict=True):
-            matrix, across = chain.matrices(block, clock)
-            own.append(matrix)
-            if following > block:
-                none = np.zeros_like(across)
-                links.append(repeated(Link(none, across, across.swapaxes(1, 2), none), matrix, following - block))
+        rows = {self._kinds[block]: block for block in reversed(stations)}
+        alike = {kind: _row(*chain.matrices(block, clock)) for kind, block in rows.items()}
+        own = [alike[self._kinds[block]] for block in stations]
+        links = [row.links(after - block) for row, block, after in zip(own, stations, stations[1:], strict=False)]
         force = np.zeros((len(clock.s), len(stations), chain.wide), dtype=complex)
         for node, values in forces.items():
             block, i = divmod(chain.first + node, chain.wide)
             force[:, self._index[block], i] += values
-        return velocities(own, links, force)
+        return velocities([row.middle for row in own], links, force)
 
     def at(self, moved: np.ndarray, place: int) -> np.ndarray:
         """Velocity (f,) of a node of the chain; moved : what `velocities` has returned."""
@@ -205,6 +202,12 @@ class Response:
                     stretch = self.at(moved, i + length) - self.at(moved, i)
                     total += chain.stiffness(block, own, length, clock) * stretch
         return total
+
+
+def _row(matrix: np.ndarray, across: np.ndarray) -> Row:
+    """Blocks like one, by its matrices."""
+    none = np.zeros_like(across)
+    return Row(Link(none, across, across.swapaxes(1, 2), none), matrix)
 
 
 def observed_near(chain: Chain, nodes: Sequence[int]) -> set[int]:

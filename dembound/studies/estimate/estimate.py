@@ -21,10 +21,12 @@ class Estimate:
     ----------
     recorded : monitor -> what the run has recorded, up to the time from which on nothing is estimated.
     causes : what contributes to the error.
+    cpu_seconds : CPU time that it took, s.
     """
 
     recorded: Mapping[str, Recorded]
     causes: Causes
+    cpu_seconds: float = 0.0
 
     def shares(self, monitor: str, quantity: str) -> dict[str, float]:
         """RMS errors over the RMS of the recorded values, by cause; only those that are known."""
@@ -95,6 +97,7 @@ class Estimate:
             "not_estimated": list(self.causes.missing),
             "notes": list(self.causes.notes),
             "cost": self.causes.cost,
+            "cpu_seconds": self.cpu_seconds,
         }
 
     def lines(self) -> list[str]:

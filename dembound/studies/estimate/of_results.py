@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import time
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
 from dembound.errors import CaseError, DemboundError
+from dembound.motion.clock import Clock
 from dembound.results.datasets import describe, write
 from dembound.results.estimates import FILE, KEY
 from dembound.results.histories import FREE_FIELD
@@ -42,6 +44,18 @@ def estimate_results(folder: Path, budget: float | None = None, second_seed: boo
     Raises CaseError for a run that is not complete or has no monitors, a budget that is none, or a second seed of a
     packing that has none, and RecordError for a record that cannot be read.
     """
+    clock = Clock(time.process_time)
+    with clock.with_compiling(), clock.of("estimate"):
+        found, summary = _estimated(folder, budget, second_seed)
+    found = replace(found, cpu_seconds=clock.seconds["estimate"])
+    _write(found, folder / FILE)
+    with replacing(folder / "summary.json") as part:
+        part.write_text(json.dumps(summary | {KEY: found.summary()}, indent=2) + "\n", encoding="utf-8")
+    return found
+
+
+def _estimated(folder: Path, budget: float | None, second_seed: bool) -> tuple[Estimate, dict[str, Any]]:
+    """The estimate, and the summary of the run."""
     require_budget(budget)
     record = folder / "run.h5"
     with open_record(record) as file:
@@ -59,11 +73,7 @@ def estimate_results(folder: Path, budget: float | None = None, second_seed: boo
 
         causes += cause_of_packing(case, recorded, work)
     found = Estimate(recorded, causes + Causes([], broken, list(_law(case, summary))))
-    found = replace(found, causes=found.causes + Causes([], list(_at_rest(found))))
-    _write(found, folder / FILE)
-    with replacing(folder / "summary.json") as part:
-        part.write_text(json.dumps(summary | {KEY: found.summary()}, indent=2) + "\n", encoding="utf-8")
-    return found
+    return replace(found, causes=found.causes + Causes([], list(_at_rest(found)))), summary
 
 
 def require_budget(budget: float | None) -> None:
@@ -114,9 +124,9 @@ def _first_break(record: Path) -> float:
     return float(times[times > 0.0].min(initial=np.inf))
 
 
-def _broken(time: float) -> str:
-    """That nothing is known once bonds have broken."""
-    return f"motion after {time:.4g} s, when the first bond broke"
+def _broken(first: float) -> str:
+    """That nothing is known once bonds have broken, first at a time (s)."""
+    return f"motion after {first:.4g} s, when the first bond broke"
 
 
 def _law(case: Case, summary: Mapping[str, Any]) -> Iterator[str]:
@@ -142,13 +152,13 @@ def _recorded(record: Path, until: float) -> dict[str, Recorded]:
             values = {}
             for quantity in UNITS:
                 if quantity in group:
-                    time, motion = history_of(group, quantity)
-                    kept = time < until
+                    times, motion = history_of(group, quantity)
+                    kept = times < until
                     values[quantity] = motion.reshape(len(motion), -1)[kept][:, :2]
             most = max(most, int(np.count_nonzero(kept)) if values else 0)
             if values and np.count_nonzero(kept) >= LEAST_SAMPLES:
                 place = np.atleast_1d(group.attrs["position"])
-                found[name] = Recorded(np.array([*place, 0.0][:2]), time[kept], values)
+                found[name] = Recorded(np.array([*place, 0.0][:2]), times[kept], values)
     if not found:
         raise CaseError([f"{record}: {_too_little(most, until)}"])
     return found

@@ -68,7 +68,7 @@ def load_factor(library: Library, contacts: Sequence[WatchedContact], motion: np
         grows = _strain(contact, motion - library.rest) @ slopes.T
         room = allowed - rest @ slopes.T
         factors = np.full(grows.shape, np.inf)
-        np.divide(room, grows, out=factors, where=grows > 0.0)
+        np.divide(np.maximum(room, 0.0), grows, out=factors, where=grows > 0.0)  # 0 beyond a limit at rest
         sample, limit = np.unravel_index(np.argmin(factors), factors.shape)
         if factors[sample, limit] < least.factor:
             words = limit_in_words(int(limit), contact.constants)

@@ -8,10 +8,11 @@ import pytest
 from small_cases import PUSHED, SPALLING, small
 
 from dembound.disks.kind import Disks
-from dembound.disks.load_factor import LIMITS, limit_in_words, limit_lines, load_factor_in_words
+from dembound.disks.load_factor import LIMITS, LOAD_FACTOR, limit_in_words, limit_lines, load_factor_in_words
 from dembound.errors import CaseError
 from dembound.kernels.tables import Limits
-from dembound.running import resume_case, run_case
+from dembound.running import Progress, resume_case, run_case
+from dembound.studies.chart.measure import measure
 
 STRENGTH = Limits(friction=0.4, tension=3e6, cohesion=2e6, tan_fa=0.5, geometry=2)
 
@@ -105,6 +106,31 @@ def test_a_resumed_run_has_the_same_factor(tmp_path):
     assert first != second
     assert 0.0 < x < 10.0
     assert 0.0 < y < 2.5
+
+
+def test_a_body_beyond_its_limits_at_rest_has_the_factor_zero(tmp_path):
+    """Contacts open under a pull of 0.5 MPa along y, and bonds of 0.1 MPa do not hold either."""
+    material = STATIC["material"] | {"pb_ten": 1e5, "pb_coh": 1e5}
+    changes = {"material": material, "static.stress": [-1e6, 5e5, 0.0], "output.contacts": False, "output.snapshots": 0}
+    folder = run_case(small(STATIC, "torn", changes), tmp_path)
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["load_factor"]["factor"] == 0.0
+    assert any(
+        line.startswith('material.law: is "elastic", but the elastic law holds under no waves')
+        for line in summary["warnings"]
+    )
+
+
+def test_the_factor_of_a_choice_is_found_as_in_a_run(tmp_path):
+    changes = {"output.contacts": False, "output.snapshots": 0}
+    case = small(STATIC, "charted", changes)
+    summary = json.loads((run_case(case, tmp_path) / "summary.json").read_text())
+    factor = summary["load_factor"]["factor"]
+    assert measure(case, Progress())[0].findings[LOAD_FACTOR] == (factor, "1")
+    x, y = summary["load_factor"]["position"]
+    assert LOAD_FACTOR in measure(case, Progress(), inside=(x - 0.1, y - 0.1, x + 0.1, y + 0.1))[0].findings
+    assert LOAD_FACTOR not in measure(case, Progress(), inside=(x + 0.1, y + 0.1, x + 0.2, y + 0.2))[0].findings
+    assert any("holds up to" in line for line in summary["warnings"]) is (factor < 1.0)
 
 
 def test_without_limits_there_is_no_factor(tmp_path):

@@ -21,6 +21,10 @@ def test_only_what_applies_is_told() -> None:
         "the elastic law holds up to 1.25 times the waves, where the pair at (3, 4) m slides at t = 0.5 s"
     ]
     assert disk_outcome(elastic | quiet) == ["elastic law all through"]
+    at_once = first | {"factor": 0.0, "time": 0.01}
+    assert disk_outcome(elastic | {"load_factor": at_once}) == [
+        "the elastic law holds under no waves: at rest the pair at (3, 4) m slides"
+    ]
     broken = {"cracks": {"tension": 1200, "shear": 30}, "static": settled | {"cracks": 1100}}
     assert disk_outcome(elastic | quiet | broken) == [
         f"{stage}, breaking 1,100 bonds",

@@ -117,3 +117,19 @@ def test_cases_whose_errors_depend_on_what_is_not_known_are_refused() -> None:
     }
     with pytest.raises(CaseError, match=r"load\.shake: starts waves everywhere"):
         choose(small(shaken), 0.01)
+
+
+def test_where_bonds_break_the_error_is_that_before() -> None:
+    """A pulse of 1.25 MPa comes back from a free end as tension, and breaks bonds of 0.8 MPa."""
+    tables = BAR | {
+        "material": BAR["material"] | {"law": "linearpbond", "contact_share": 0.0, "pb_ten": 0.8e6},
+        "boundary": {"left": {"type": "viscous_input", "wave_p": "push"}},
+        "wave": {"push": {"type": "cosine", "amplitude": 0.5, "period": 0.02}},
+        "run": {"duration": 0.1},
+    }
+    choice = choose(small(tables), 0.1, ["boundary", "packing"])
+    assert "the error is that before bonds break, after about 0.04" in choice.words
+    assert isinstance(choice.case, DiskCase)
+    assert choice.case.material.law == "linearpbond"
+    assert choice.case.run.until == "duration"
+    assert choice.holds

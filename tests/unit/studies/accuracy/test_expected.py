@@ -5,11 +5,12 @@ import pytest
 from small_cases import PUSHED, small
 
 from dembound.casefile.disks import DiskCase
-from dembound.disks.scene import DiskScene, build
+from dembound.disks.scene import DiskScene
 from dembound.kinds import with_changes
 from dembound.running import plan
-from dembound.studies.accuracy.companions import Companions, middle_of_loads, middles_of_loads
+from dembound.studies.accuracy.companions import Companions
 from dembound.studies.accuracy.expected import of_ground
+from dembound.studies.accuracy.load_places import middles_of_loads
 
 LENGTH, SPEED = 30.0, 1000.0
 
@@ -63,24 +64,6 @@ def test_the_given_scene_has_no_other_places(given: Companions) -> None:
     places = next(cause for cause in of_ground(given, given.scene, given.time_step)[0] if cause.name == "places")
     for errors in places.errors.values():
         np.testing.assert_allclose(np.asarray(errors["velocity"]), 0.0, atol=1e-12)
-
-
-def test_places_are_seen_from_the_middle_of_the_loads_by_their_force() -> None:
-    """Of 1 at (2.5, 1) and 3 at (6.5, 1): (5.5, 1); a pressure counts from the middle of its hole."""
-    loads = [
-        {"name": "a", "force": [1e5, 0.0], "region": [2.0, 0.5, 3.0, 1.5], "wave": "push"},
-        {"name": "b", "force": [0.0, -3e5], "region": [6.0, 0.5, 7.0, 1.5], "wave": "push"},
-    ]
-    cave = {"name": "cave", "type": "rectangle", "corners": [4.0, 0.5, 6.0, 1.5]}
-    blast = {"name": "c", "pressure": 1e5, "hole": "cave", "wave": "push"}
-    free = {"boundary": {}}
-
-    def middle(**changes: object) -> np.ndarray | None:
-        return middle_of_loads(build(small(PUSHED, changes=changes)))  # type: ignore[arg-type]
-
-    assert middle(load=loads, **free) == pytest.approx(np.array([5.5, 1.0]))
-    assert middle(load=[blast], hole=[cave], **free) == pytest.approx(np.array([5.0, 1.0]))
-    assert middle() is None  # driven
 
 
 def test_of_two_loads_that_move_apart_the_one_counts_that_changes_the_motion_more() -> None:

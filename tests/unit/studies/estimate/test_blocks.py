@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dembound.studies.estimate.blocks import Link, joined, repeated, solve, velocities
+from dembound.studies.estimate.blocks import Link, Row, joined, solve, velocities
 
 RANDOM = np.random.default_rng(1)
 
@@ -62,6 +62,6 @@ def test_a_uniform_row_is_one_link(count: int) -> None:
     own, force = [first, *(count - 1) * [middle], last], np.zeros((2, count + 1, 2), dtype=complex)
     force[:, [0, -1]] = matrices(2, 2, 2)
 
-    found = velocities([first, last], [repeated(link, middle, count)], force[:, [0, -1]])
+    found = velocities([first, last], [Row(link, middle).links(count)], force[:, [0, -1]])
 
     np.testing.assert_allclose(found, velocities(own, count * [link], force)[:, [0, -1]], rtol=1e-10)

@@ -1,0 +1,26 @@
+"""Where loads start waves."""
+
+import numpy as np
+import pytest
+from small_cases import PUSHED, small
+
+from dembound.disks.scene import build
+from dembound.studies.accuracy.load_places import middle_of_loads
+
+
+def test_places_are_seen_from_the_middle_of_the_loads_by_their_force() -> None:
+    """Of 1 at (2.5, 1) and 3 at (6.5, 1): (5.5, 1); a pressure counts from the middle of its hole."""
+    loads = [
+        {"name": "a", "force": [1e5, 0.0], "region": [2.0, 0.5, 3.0, 1.5], "wave": "push"},
+        {"name": "b", "force": [0.0, -3e5], "region": [6.0, 0.5, 7.0, 1.5], "wave": "push"},
+    ]
+    cave = {"name": "cave", "type": "rectangle", "corners": [4.0, 0.5, 6.0, 1.5]}
+    blast = {"name": "c", "pressure": 1e5, "hole": "cave", "wave": "push"}
+    free = {"boundary": {}}
+
+    def middle(**changes: object) -> np.ndarray | None:
+        return middle_of_loads(build(small(PUSHED, changes=changes)))  # type: ignore[arg-type]
+
+    assert middle(load=loads, **free) == pytest.approx(np.array([5.5, 1.0]))
+    assert middle(load=[blast], hole=[cave], **free) == pytest.approx(np.array([5.0, 1.0]))
+    assert middle() is None  # driven
