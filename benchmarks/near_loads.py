@@ -8,17 +8,17 @@ their diameter; 9/8 of the difference is the error. RMS over RMS, of velocities.
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 
 import numpy as np
 import tomli_w
 from error_bound import FINER, at_times, far_motion
 from error_bound_scenes import embedded
 
-from dembound.disks.wave_front import slowest_speed
 from dembound.kinds import loads, with_changes
 from dembound.running import plan
-from dembound.studies.accuracy.near_loads import CURVED, NEAR
+from dembound.studies.accuracy.near_loads import errors_near_loads
+from dembound.studies.estimate.causes import Recorded
 
 WIDE = 40.0
 """Of the body, m; its disks are 1 m wide."""
@@ -31,9 +31,6 @@ FREQUENCIES = (6.0, 10.0, 20.0)
 
 PERIODS = 3.2
 """Length of the runs, in periods."""
-
-RMS = math.sqrt(1.25)
-"""RMS frequency of a Ricker wave over that of its crest."""
 
 
 def errors(frequency: float) -> tuple[list[float], list[float]]:
@@ -51,8 +48,12 @@ def errors(frequency: float) -> tuple[list[float], list[float]]:
         exact = gauge.velocity - late / (FINER**2 - 1)
         share = FINER**2 / (FINER**2 - 1)
         measured.append(share * float(np.linalg.norm(late[:, 0]) / np.linalg.norm(exact[:, 0])))
-    number = 2.0 * math.pi * RMS * frequency / slowest_speed(plan(case).scene.ground)  # type: ignore[attr-defined]
-    return measured, [NEAR * (number + CURVED / r) ** 2 for r in DISTANCES]
+    scene = plan(case).scene
+    formula = [
+        errors_near_loads(scene, Recorded(gauge.position, gauge.time, {"velocity": gauge.velocity[:, :2]}))["velocity"]  # type: ignore[arg-type]
+        for gauge in (replace(each, position=scene.monitored[name]) for name, each in fine.items())
+    ]
+    return measured, formula
 
 
 if __name__ == "__main__":

@@ -97,8 +97,9 @@ class LoadFactor(Every):
         for number, pairs in enumerate(self._pairs):
             least_factors(state.u, self._rest, pairs, *self._lines, self._least, self._where)
             chunk = int(np.argmin(self._least))
-            if self._least[chunk] < self.factor:
-                self.factor = max(0.0, float(self._least[chunk]))  # below 0 beyond a limit at rest
+            least = max(0.0, float(self._least[chunk]))  # below 0 beyond a limit at rest
+            if least < self.factor:
+                self.factor = least
                 self._found = np.array([state.step, number, *self._where[chunk]])
 
     def describe(self, run: Run) -> dict[str, Any] | None:

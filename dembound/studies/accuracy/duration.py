@@ -97,13 +97,13 @@ def _ended(case: Case, motion: Mapping[str, Recorded], changes: Mapping[str, obj
 
 
 def _lost(motion: Mapping[str, Recorded], end: float) -> Cause:
-    """What is not recorded after the end: of displacements, which remain, what is added to the last one."""
+    """What is not recorded after the end, with the sign of an error: of displacements what is added to the last one."""
     errors: dict[str, dict[str, np.ndarray | float]] = {}
     for name, own in motion.items():
         late = own.time > end
         last = np.argmax(late) - 1 if late.any() else -1
         errors[name] = {
-            quantity: np.where(late[:, None], values - (values[last] if quantity == "displacement" else 0.0), 0.0)
+            quantity: np.where(late[:, None], (values[last] if quantity == "displacement" else 0.0) - values, 0.0)
             for quantity, values in own.values.items()
         }
     return Cause(END, "by the motion after the monitors are silent", errors)

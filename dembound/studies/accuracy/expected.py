@@ -117,11 +117,15 @@ def _constant(delay: float, omega: np.ndarray) -> np.ndarray:
 
 
 def _later(given: DiskScene, scene: DiskScene) -> float:
-    """How much later (s) waves start than in the given scene, at disks that are nearer the plane of a driven side."""
+    """How much later (s) waves start than in the given scene, at disks that are nearer the plane of a driven side.
+
+    Of several driven sides that with the largest difference counts.
+    """
+    found = [0.0]
     for side, waves in scene.case.driving.items():
         speeds = [scene.ground.wave_speeds(normal_axis(side))[0 if motion == "p" else 1] for motion in waves]
-        return (_depth(given, side) - _depth(scene, side)) / min(speeds)
-    return 0.0
+        found.append((_depth(given, side) - _depth(scene, side)) / min(speeds))
+    return max(found, key=abs)
 
 
 def _depth(scene: DiskScene, side: str) -> float:

@@ -15,12 +15,17 @@ def middle_of_loads(scene: DiskScene) -> np.ndarray | None:
 
 
 def middles_of_loads(scene: DiskScene) -> list[tuple[np.ndarray, float]]:
-    """The middle (2,) m of each load that starts waves, and its force (N); none if they enter through sides."""
+    """The middle (2,) m of each load that starts waves, and its force (N); none if they enter through sides.
+
+    A load without a wave starts them by its sudden beginning, but not if a static stage comes before.
+    """
     case = scene.case
     if case.driving and not any(load.wave for load in case.load):
         return []
     found: list[tuple[np.ndarray, float]] = []
     for load in case.load:
+        if load.wave is None and case.static is not None:
+            continue
         if load.pressure is not None:
             left, bottom, right, top = next(hole.box for hole in case.hole if hole.name == load.hole)
             middle = np.array([0.5 * (left + right), 0.5 * (bottom + top)])

@@ -24,7 +24,7 @@ def errors_near_loads(scene: DiskScene, own: Recorded) -> dict[str, float]:
 
     own : the motion, whose RMS frequency and part along the ray from the nearest force count.
     """
-    rays = [own.position - place for place in _places(scene)]
+    rays = [_nearest(own.position - place, scene) for place in _places(scene)]
     if not rays:
         return dict.fromkeys(own.values, 0.0)
     diameter, ray = scene.ground.brick.mean_diameter, min(rays, key=lambda each: float(np.hypot(*each)))
@@ -46,6 +46,12 @@ def _places(scene: DiskScene) -> list[np.ndarray]:
             nodes, forces = forces_of(load, scene)
             found.append(np.average(scene.positions[nodes], axis=0, weights=np.hypot(*forces[:, :2].T)))
     return found
+
+
+def _nearest(ray: np.ndarray, scene: DiskScene) -> np.ndarray:
+    """A ray (2,) m from a force, or from its nearest copy across periodic sides."""
+    size, periodic = np.array(scene.case.size), np.array(scene.case.periodic)
+    return np.asarray(ray - np.where(periodic, size * np.rint(ray / size), 0.0))
 
 
 def _along(values: np.ndarray, column: int, ray: np.ndarray) -> float:

@@ -12,10 +12,13 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count
 
+import numpy as np
+
 from dembound.casefile.disks import DiskCase
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError, DemboundError
 from dembound.motion.kind import Plan
+from dembound.motion.silence import monitored
 from dembound.running import plan
 from dembound.studies.accuracy.candidates import (
     FACTORS,
@@ -56,7 +59,7 @@ def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Choice:
     if twin is None:
         return _best(case, planned, bound, kept, most)
     found = _best(twin.case, twin.planned, bound, kept, most, twin)
-    steps = planned.steps / twin.planned.steps  # which the other law makes with the cost of this one, until it is left
+    steps = planned.steps / twin.planned.steps  # of the given law, which cost as much while nothing opens
     found = replace(found, given=case, words=f"{twin.words}; {found.words}", own_cost=steps * found.own_cost)
     if found.holds or twin.stress == 0.0:
         return found
@@ -73,6 +76,9 @@ def _best(
 ) -> Choice:
     """The best choice under the law of a case, planned; twin : the same, if it is not that of the given case."""
     companions = Companions(case, planned.scene, planned.time_step, most)  # type: ignore[arg-type]
+    moved = (own.values["velocity"] for own in companions.recorded(companions.scene).values())
+    if not _is_reached(planned) or not any(map(np.any, moved)):
+        raise CaseError(["--error: nothing moves at the monitors"], case.name)
     search = _Search(companions, bound, kept, cost_of(planned), twin)
     best = search.best()
     words, error, cost = best.candidate.words, best.error, best.candidate.cost
@@ -93,13 +99,22 @@ def _require_known(case: DiskCase) -> None:
     if case.static is not None and case.static.from_ is not None:
         problems.append("static.from: is the body of the given disks and sides; must be left out with --error")
     if not case.driving and case.incident is None:
-        places = [load for load in case.load if not load.is_everywhere]
-        everywhere = [load.name for load in case.load if load.is_everywhere and load.wave is not None]
-        if everywhere and not places:
-            reason = "starts waves everywhere, so that their delay by the disks is not known; --error needs a place"
-            problems += [f"load.{name}: {reason}" for name in everywhere]
+        reason = "starts waves everywhere, so that their delay by the disks is not known; --error needs a place"
+        problems += [
+            f"load.{load.name}: {reason}" for load in case.load if load.is_everywhere and load.wave is not None
+        ]
     if problems:
         raise CaseError(problems, case.name)
+
+
+def _is_reached(planned: Plan) -> bool:
+    """Whether the fastest waves come to any monitor within the run."""
+    scene, duration = planned.scene, planned.scene.case.run.duration
+    front, places = planned.kind.front(scene, planned.time_step), monitored(scene)
+    return any(
+        float(source.distance(places).min()) <= front.reach(duration - source.start)
+        for source in planned.kind.sources(scene)
+    )
 
 
 @dataclass(frozen=True)

@@ -99,6 +99,15 @@ def test_cases_without_monitors_are_refused() -> None:
         choose(bar(), 0.01, ["packing.radios"])
 
 
+def test_monitors_that_nothing_reaches_are_refused() -> None:
+    """To 24.5 m waves of 1,000 m/s take 24.5 ms; what runs ahead of them has faded after a few disks."""
+    far = [{"name": "back", "position": [24.75, 0.75]}]
+    late = {"push": BAR["wave"]["push"] | {"start": 0.05}}
+    for tables in ({"run": {"duration": 0.01}, "monitor": far}, {"run": {"duration": 0.04}, "wave": late}):
+        with pytest.raises(CaseError, match="nothing moves at the monitors"):
+            choose(small(BAR | tables), 0.01)
+
+
 def test_what_whole_cells_at_a_side_reflect_is_counted() -> None:
     """Half a cell too much at matched dashpots reflects kD/4 or so of a wave, 2 % of one of 20 disks."""
     sides = {"left": BAR["boundary"]["left"], "right": {"type": "viscous", "beta_p": 1.0}}
@@ -117,6 +126,9 @@ def test_cases_whose_errors_depend_on_what_is_not_known_are_refused() -> None:
     }
     with pytest.raises(CaseError, match=r"load\.shake: starts waves everywhere"):
         choose(small(shaken), 0.01)
+    steady = {"name": "foot", "force": [1.0, 0.0], "region": [5.0, 1.0, 6.0, 1.5]}
+    with pytest.raises(CaseError, match=r"load\.shake: starts waves everywhere"):
+        choose(small(shaken | {"load": [*shaken["load"], steady]}), 0.01)
 
 
 def test_where_bonds_break_the_error_is_that_before() -> None:

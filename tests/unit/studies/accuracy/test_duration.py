@@ -11,7 +11,8 @@ from dembound.running import Progress
 from dembound.studies.accuracy import Choice, choose
 from dembound.studies.accuracy.duration import END, LEAST_SAVED, earlier_ends, ended_earlier
 from dembound.studies.chart.measure import measure
-from dembound.studies.estimate.causes import Cause, Recorded
+from dembound.studies.estimate.causes import Cause, Causes, Recorded
+from dembound.studies.estimate.estimate import Estimate
 
 BAR: dict[str, Any] = PUSHED | {
     "packing": {"pattern": "A", "size": [30.0, 1.5], "radius": 0.25},
@@ -56,8 +57,8 @@ def test_what_comes_later_is_an_error() -> None:
     (end,) = earlier_ends(small(BAR), motion, 0.01, [])
     lost = end.lost.errors["back"]
     late = motion["back"].time >= 0.3
-    np.testing.assert_array_equal(np.asarray(lost["velocity"])[:, 0], np.where(late, 4e-4, 0.0))
-    assert np.asarray(lost["displacement"])[-1, 0] == pytest.approx(4e-5, rel=1e-2)
+    np.testing.assert_array_equal(np.asarray(lost["velocity"])[:, 0], np.where(late, -4e-4, 0.0))
+    assert np.asarray(lost["displacement"])[-1, 0] == pytest.approx(-4e-5, rel=1e-2)
     assert not np.any(lost["velocity"][:2500])  # type: ignore[index]
     assert earlier_ends(small(BAR), passing(6e-4), 0.01, []) == []  # now it is above 1e-3 of the peak until the end
 
@@ -92,6 +93,23 @@ def test_a_choice_keeps_its_bound_with_the_end() -> None:
     assert "until the monitors are silent after about 0.1" in ended.words
     nearly = replace(choice, bound=1.4 * 0.005 * (1.0 + 1e-6))
     assert ended_earlier(nearly, motion, motion, [other], []) == nearly
+
+
+def test_sides_add_nothing_to_what_is_not_recorded() -> None:
+    """Half of the late motion is sent back: without it the run has the error of what is lost of the true motion."""
+    case, true = small(BAR), passing(2e-4)
+    sent = {
+        name: {q: values - passing()[name].values[q] for q, values in own.values.items()} for name, own in true.items()
+    }
+    own = {
+        name: replace(each, values={q: values + sent[name][q] for q, values in each.values.items()})
+        for name, each in true.items()
+    }
+    (end,) = earlier_ends(case, own, 0.01, [])
+    both = Estimate(true, Causes([Cause("sides", "", sent), end.lost]))  # type: ignore[arg-type]
+    lost = true["back"].values["velocity"][true["back"].time >= 0.3]
+    share = float(np.linalg.norm(lost) / np.linalg.norm(true["back"].values["velocity"]))
+    assert both.total("back", "velocity") == pytest.approx(share, rel=1e-9)
 
 
 def test_the_run_of_a_choice_ends_when_it_is_expected_to() -> None:
