@@ -116,6 +116,23 @@ def ground(wave: str, hole: bool) -> Tables:
     return tables | ({"hole": [cave], "boundary": beyond} if hole else {})
 
 
+def confined(tables: Tables, stress: float) -> Tables:
+    """The same under a pressure (Pa) at rest, with contacts that may open or slide, and bonds that may break."""
+    strength = {"law": "linearpbond", "fric": 0.5, "pb_ten": 2.0 * stress, "pb_coh": 2.0 * stress, "pb_fa": 30.0}
+    return tables | {"material": MATERIAL | strength, "static": {"stress": [-stress, -stress, 0.0]}}
+
+
+def bonded(tables: Tables) -> Tables:
+    """The same with bonds alone, that may break."""
+    strength = {"law": "linearpbond", "contact_share": 0.0, "pb_ten": 1e8, "pb_coh": 1e8}
+    return tables | {"material": MATERIAL | strength}
+
+
+def lasting(tables: Tables, duration: float) -> Tables:
+    """The same for a longer time (s)."""
+    return tables | {"run": {"duration": duration}}
+
+
 def _around(x: float, y: float, wide: float, high: float) -> list[float]:
     """A rectangle round its middle."""
     return [x - 0.5 * wide, y - 0.5 * high, x + 0.5 * wide, y + 0.5 * high]
@@ -138,3 +155,11 @@ def scenes() -> Iterator[tuple[str, Tables]]:
             yield f"{motion.upper()} bar {wave}", bar(motion, wave, 60.0, "viscous")
         yield f"tunnel {wave}", ground(wave, hole=True)
         yield f"level ground {wave}", ground(wave, hole=False)
+        rock = embedded(30.0, wave, (1e6, 5e5))
+        yield f"confined lamb {wave}", confined(lamb("viscous", 40.0, 20.0, wave), 1e6)
+        yield f"confined embedded {wave}", confined(rock, 1e6)
+        yield f"confined embedded 10 MPa {wave}", confined(rock, 1e7)
+        yield f"bonded P bar {wave}", bonded(bar("p", wave, 60.0, "viscous"))
+        yield f"lasting lamb {wave}", lasting(lamb("viscous", 40.0, 20.0, wave), 0.5)
+        yield f"lasting embedded {wave}", lasting(rock, 0.5)
+        yield f"lasting P bar {wave}", lasting(bar("p", wave, 60.0, "viscous"), 1.0)

@@ -25,7 +25,8 @@ def with_changes(case: Case, changes: Mapping[str, Any], schemas: Sequence[Schem
     changes
         Dotted key -> value in TOML terms, such as ``{"boundary.right.beta_p": 0.81}``. A value may be a whole
         table; missing tables are created. A load, monitor or hole is identified by its name or its number, from 1:
-        ``load.blow.pressure`` or ``load.1.pressure``. Keys set by neither case nor changes stay unset.
+        ``load.blow.pressure`` or ``load.1.pressure``. None leaves a key out. Keys set by neither case nor changes stay
+        unset.
 
     Raises
     ------
@@ -60,7 +61,10 @@ def _changed(text: str, changes: Mapping[str, Any]) -> str:
         table: Any = data
         for name in path:
             table = _inner(table, name, dotted)
-        table[_key(table, last, dotted)] = deepcopy(value)  # as a later change may modify it
+        key = _key(table, last, dotted)
+        table[key] = deepcopy(value)  # as a later change may modify it
+        if value is None:
+            del table[key]
     return tomli_w.dumps(data)
 
 

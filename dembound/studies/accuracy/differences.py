@@ -16,7 +16,8 @@ Path = tuple[str, ...]
 def differences(given: Case, changed: Case) -> dict[str, Any]:
     """Dotted keys and values by which `with_changes` makes the changed case of the given one.
 
-    A table that lacks keys of the given one is replaced as a whole. A load, monitor or hole is identified by its name.
+    A table that lacks keys of the given one is replaced as a whole, one that is left out has None. A load, monitor or
+    hole is identified by its name.
     """
     return {".".join(path): value for path, value in _differences(parsed(given.text), parsed(changed.text), ())}
 
@@ -29,6 +30,7 @@ def _differences(old: Any, new: Any, path: Path) -> Iterator[tuple[Path, Any]]:
     if path and not _may_be_changed_inside(before, after):
         yield path, new
         return
+    yield from (((*path, key), None) for key in before if key not in after)
     for key, value in after.items():
         if key in before:
             yield from _differences(before[key], value, (*path, key))
@@ -49,8 +51,8 @@ def _named(value: Any) -> Any:
 
 
 def in_toml(changes: Mapping[str, Any]) -> list[str]:
-    """A line ``key = value`` for each change, as TOML and ``--set`` take it."""
-    return [f"{key} = {_value(value)}" for key, value in changes.items()]
+    """A line ``key = value`` for each change, as TOML and ``--set`` take it; those that are left out are named so."""
+    return [f"{key}: left out" if value is None else f"{key} = {_value(value)}" for key, value in changes.items()]
 
 
 def _value(value: Any) -> str:

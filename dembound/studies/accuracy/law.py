@@ -107,12 +107,13 @@ def elastic_twin(case: DiskCase, planned: Plan, most: float, kept: Sequence[str]
     strong = {"material": given | {"law": "elastic"}, "output.load_factor": True}
     weak = {key: value for key, value in given.items() if key not in (*STRENGTH_KEYS, "pb_fa")} | {"law": "elastic"}
     try:
-        watched, twin = with_changes(case, strong), with_changes(case, {"material": weak})
+        watched = with_changes(case, strong)
+        twins = [with_changes(case, {"material": weak} | change) for change in _without_stage(case)]
     except CaseError:  # a load that never ends, without a body at rest under it; local damping
         return None
     assert isinstance(watched, DiskCase)
-    assert isinstance(twin, DiskCase)
-    if not keeps(case, twin, kept):
+    twin = next((each for each in twins if keeps(case, each, kept)), None)
+    if not isinstance(twin, DiskCase):
         return None
     try:
         factor, diameter = _factor(watched, planned, most)
@@ -133,6 +134,15 @@ def _may_be_elastic(case: DiskCase) -> bool:
         return False
     pushed = any(load.wave is None and not load.is_everywhere for load in case.load)
     return isinstance(case.packing, Square) and not (case.static is not None and (case.hole or pushed))
+
+
+def _without_stage(case: DiskCase) -> list[dict[str, None]]:
+    """Changes that leave out a static stage, if that is possible, and none.
+
+    A given stress does nothing to the motion of an elastic body about its rest; steady loads have to be balanced.
+    """
+    is_steady = any(load.wave is None for load in case.load)
+    return [{}] if case.static is None or is_steady else [{"static": None}, {}]
 
 
 def _turning_stress(case: DiskCase) -> float:

@@ -16,7 +16,7 @@ from dembound.studies.estimate.causes import Recorded
 
 NEAR, CURVED = 0.08, 0.6
 """Error of the motion along the ray over (κD)², κ = k + CURVED/r, with the RMS wave number k of S waves: measured along
-a force in rock within a factor of 1.5 at r of 4 to 14 disks, for k of 0.08 to 0.28 per disk (docs/error_bound.md)."""
+a force in rock within a factor of 1.6 at r of 4 to 14 disks, for k of 0.08 to 0.28 per disk (docs/error_bound.md)."""
 
 
 def errors_near_loads(scene: DiskScene, own: Recorded) -> dict[str, float]:

@@ -30,6 +30,15 @@ def test_nothing_changed_is_the_same_case() -> None:
     assert loads(to_toml(with_changes(case, {}))) == case
 
 
+def test_none_leaves_a_key_out() -> None:
+    case = with_changes(loads(STARTER), {"boundary.left.beta_p": 0.81, "static": {"stress": [-1e6, -1e6, 0.0]}})
+    assert with_changes(case, {"boundary.left.beta_p": None, "static": None}) == loads(STARTER)
+    assert with_changes(case, {"material.fric": None}) == case  # which it does not have
+    assert [each.name for each in with_changes(case, {"monitor.1": None}).monitor] == [
+        each.name for each in case.monitor[1:]
+    ]
+
+
 def test_changes_replace_and_add_keys_and_touch_nothing_else() -> None:
     case = loads(STARTER, Path("here"), "bar")
     right = {"type": "fixed"}

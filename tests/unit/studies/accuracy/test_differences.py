@@ -10,6 +10,8 @@ from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.studies.accuracy.differences import differences, in_toml, keeps, value_at
 
+DRIVEN = {"boundary": {"left": {"type": "velocity", "wave_p": "push"}, "right": {"type": "viscous"}}}
+
 CHANGES: list[dict[str, Any]] = [
     {"packing.radius": 0.125},
     {"boundary.right": {"type": "outside"}, "outside.accuracy": 0.01, "boundary.left": {"type": "outside"}},
@@ -36,6 +38,15 @@ def test_a_table_that_loses_keys_is_replaced_as_a_whole() -> None:
     given = small(PUSHED)
     changed = with_changes(given, {"boundary.left": {"type": "outside"}})
     assert differences(given, changed) == {"boundary.left": {"type": "outside"}}
+
+
+def test_a_table_that_is_left_out_has_none() -> None:
+    given = small(PUSHED | {"motion": {"held": ["y"]}, "wave": {"push": PUSHED["wave"]["push"]}} | DRIVEN)
+    changed = with_changes(given, {"motion": None})
+    found = differences(given, changed)
+    assert found == {"motion": None}
+    assert with_changes(given, found) == changed
+    assert in_toml(found) == ["motion: left out"]
 
 
 def test_lines_are_toml_of_the_same_values() -> None:

@@ -56,6 +56,7 @@ def test_the_elastic_law_replaces_another_that_is_never_needed() -> None:
     assert twin.case.material.law == "elastic"
     assert twin.case.material.pb_ten is None
     assert twin.case.load == confined().load
+    assert twin.case.static is None  # whose stress does nothing to the motion of an elastic body
     assert twin.diameter == 0.5  # that of the case itself, which costs little
     assert 1.0 < twin.factor < 20.0
 
@@ -111,6 +112,18 @@ def test_a_kept_law_remains() -> None:
     assert twin_of(confined(), kept=("material.pb_ten",)) is None
     assert twin_of(confined(), kept=("material.law", "material.pb_ten")) is None
     assert twin_of(confined(), kept=("packing", "material.density")) is not None
+    for kept in ("static", "static.stress"):
+        settled = twin_of(confined(), kept=(kept,))
+        assert settled is not None
+        assert settled.case.static == confined().static
+
+
+def test_without_the_stress_at_rest_an_elastic_body_moves_alike() -> None:
+    fixed = {"run.time_step": 0.9 * plan(own_twin().case).time_step}
+    settled = with_changes(own_twin().case, {"static": CONFINED["static"], **fixed})
+    without = with_changes(own_twin().case, fixed)
+    one, other = (measure(case, Progress())[0].gauges["beside"].velocity for case in (settled, without))
+    np.testing.assert_allclose(one, other, atol=1e-9 * float(np.abs(other).max()))
 
 
 def test_the_law_remains_where_no_companion_can_run() -> None:
@@ -184,6 +197,7 @@ def test_what_turns_is_the_given_stress_and_the_weight() -> None:
     heavy = twin_of(confined(changes))
     assert heavy is not None
     assert heavy.stress == pytest.approx(2500.0 * 10.0 * 12.0)
+    assert heavy.case.static is not None  # balances the weight
     still = twin_of(confined({"material.geometry": "reference"}))
     assert still is not None
     assert still.stress == 0.0
