@@ -144,9 +144,8 @@ class _Found:
 class _Search:
     """The search for a choice.
 
-    twin : the case, if its law is not that given. too_much : arrangements and distances whose sides alone reflect
-    more than the bound. too_large : factors of diameters whose disks alone have larger errors than the bound, with
-    these errors.
+    twin : the case, if its law is not that given. of_sides : by arrangement and distance the largest error of its
+    sides alone. of_disks : by factor of the diameter the error of its disks alone.
     """
 
     companions: Companions
@@ -155,23 +154,47 @@ class _Search:
     own_cost: float
     twin: ElasticTwin | None
     tried: int = 0
-    too_much: set[tuple[str, float]] = field(default_factory=set)
-    too_large: dict[float, float] = field(default_factory=dict)
+    of_sides: dict[tuple[str, float], float] = field(default_factory=dict)
+    of_disks: dict[float, float] = field(default_factory=dict)
 
     def best(self) -> _Found:
         """The cheapest choice that keeps the bound, or the one with the smallest error."""
         found: list[_Found] = []
+        left: list[Candidate] = []
         for candidate in self._by_cost():
-            if (candidate.arrangement.name, candidate.wider) not in self.too_much:
-                found += self._with_error(candidate)
-                if found and SAFETY * found[-1].error.worst <= self.bound:
-                    return found[-1]
-        for factor in sorted(self.too_large, key=lambda factor: self.too_large[factor]):
-            if not found:
-                found = [each for candidate in self._of(factor) for each in self._with_error(candidate)]
+            if not self._keeps(self.of_sides.get(_sides(candidate), 0.0)):
+                left.append(candidate)
+                continue
+            found += self._with_error(candidate)
+            if found and self._keeps(found[-1].error.worst):
+                return found[-1]
+        return self._most_accurate(found, left)
+
+    def _most_accurate(self, found: list[_Found], left: list[Candidate]) -> _Found:
+        """The choice with the smallest error of those found and those left out, as none keeps the bound.
+
+        These are tried from the smallest error on that their sides or disks are known to have alone, as long as this is
+        below the smallest one found.
+        """
+        for factor, error in self.of_disks.items():
+            if not self._keeps(error):
+                left += [each for each in self._of(factor) if each.cost <= COSTLIEST * self.own_cost]
+        while left:
+            left.sort(key=self._alone)
+            if found and self._alone(left[0]) >= min(each.error.worst for each in found):
+                break
+            found += self._with_error(left.pop(0))
         if not found:
             raise CaseError(["--error: no choice keeps the values of --keep and --set"], self.companions.case.name)
         return min(found, key=lambda each: each.error.worst)
+
+    def _alone(self, candidate: Candidate) -> float:
+        """The larger one of the errors that sides and disks of a choice are known to have alone."""
+        return max(self.of_sides.get(_sides(candidate), 0.0), self.of_disks.get(candidate.factor, 0.0))
+
+    def _keeps(self, error: float) -> bool:
+        """Whether an error is within the bound, with its reserve."""
+        return SAFETY * error <= self.bound
 
     def _by_cost(self) -> Iterator[Candidate]:
         """Choices by cost; those with the next smaller disks are only made when their cost has been reached."""
@@ -211,10 +234,8 @@ class _Search:
             return False
         assert isinstance(plain.scene, DiskScene)
         disks, _ = of_ground(self.companions, plain.scene, plain.time_step)
-        error = expected(disks, self.companions.recorded(plain.scene)).worst
-        if SAFETY * error > self.bound:
-            self.too_large[factor] = error
-        return factor not in self.too_large
+        self.of_disks[factor] = expected(disks, self.companions.recorded(plain.scene)).worst
+        return self._keeps(self.of_disks[factor])
 
     def _with_error(self, candidate: Candidate) -> list[_Found]:
         """A choice with its error; nothing if a companion of it cannot run."""
@@ -226,7 +247,12 @@ class _Search:
             sides = [of_sides(self.companions, scene, step, candidate.wider)] if sides_of_pair(scene.case) else []
         except DemboundError:
             return []
-        if SAFETY * expected(sides, recorded).worst > self.bound:
-            self.too_much.add((candidate.arrangement.name, candidate.wider))
+        alone = expected(sides, recorded).worst
+        self.of_sides[_sides(candidate)] = max(alone, self.of_sides.get(_sides(candidate), 0.0))
         law = [] if self.twin is None else self.twin.causes(scene, recorded)
         return [_Found(candidate, recorded, [*disks, *others, *sides, *law])]
+
+
+def _sides(candidate: Candidate) -> tuple[str, float]:
+    """What the sides of a choice are, and how much farther away."""
+    return candidate.arrangement.name, candidate.wider

@@ -10,7 +10,7 @@ from small_cases import PUSHED, small
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
 from dembound.running import Progress
-from dembound.studies.accuracy import Choice, choose
+from dembound.studies.accuracy import Choice, choose, of_disks
 from dembound.studies.accuracy.of_disks import SAFETY
 from dembound.studies.chart.measure import Gauges, measure
 
@@ -84,6 +84,16 @@ def test_kept_keys_remain_and_the_best_is_returned_where_nothing_holds() -> None
     assert choice.case.packing == case.packing
     assert choice.case.boundary == case.boundary
     assert choice.by["sides"] == pytest.approx(true_error(case, case), rel=0.1)
+
+
+def test_the_best_may_have_sides_that_only_larger_disks_can_afford(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Far sides and disks of 0.5 m have an error of 0.1 %, disks of 0.17 m without them one of 40 %."""
+    monkeypatch.setattr(of_disks, "COSTLIEST", 10.0)  # those of 0.17 m cost 9 times the given ones, far sides 3 times
+    push = {"name": "push", "region": [13.5, 0.0, 15.0, 1.5], "force": [1e6, 0.0], "wave": "push"}
+    ends = {"boundary": dict.fromkeys(("left", "right"), BAR["boundary"]["right"]), "load": [push]}
+    choice = choose(small(BAR | ends), 0.001, ["boundary"])
+    assert not choice.holds
+    assert choice.error < 0.002
 
 
 @pytest.mark.parametrize("bound", [0.0, 1.0, -0.1, float("nan")])
