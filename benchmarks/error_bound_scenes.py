@@ -6,10 +6,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
-Tables = dict[str, Any]
-MATERIAL = {"density": 2500.0, "p_wave_speed": 1000.0}
+from scene_tables import ROCK, Tables, lattice
+
 WAVES: dict[str, Tables] = {
     "ricker": {"type": "ricker", "amplitude": 1.0, "frequency": 10.0},
     "cosine": {"type": "cosine", "amplitude": 1.0, "period": 0.08},
@@ -22,8 +21,8 @@ def lamb(sides: str, wide: float, high: float, wave: str) -> Tables:
     middle = 0.5 * wide
     tables = {"type": sides} | ({"source": [middle, high]} if sides == "viscoelastic" else {})
     return {
-        "packing": {"pattern": "A", "size": [wide, high], "radius": 0.5},
-        "material": MATERIAL,
+        "packing": lattice(wide, high, 1.0),
+        "material": ROCK,
         "boundary": {side: tables for side in ("left", "right", "bottom")},
         "wave": {"pulse": WAVES[wave]},
         "load": [
@@ -41,8 +40,8 @@ def embedded(wide: float, wave: str, force: tuple[float, float]) -> Tables:
     """A force within rock that goes on beyond all sides."""
     middle = 0.5 * wide
     return {
-        "packing": {"pattern": "A", "size": [wide, wide], "radius": 0.5},
-        "material": MATERIAL,
+        "packing": lattice(wide, wide, 1.0),
+        "material": ROCK,
         "boundary": dict.fromkeys(("left", "right", "bottom", "top"), VISCOUS),
         "wave": {"pulse": WAVES[wave]},
         "load": [{"name": "push", "force": list(force), "region": _around(middle, middle, 2.0, 2.0), "wave": "pulse"}],
@@ -66,8 +65,8 @@ def blast(sides: str, wide: float, wave: str) -> Tables:
     middle = 0.5 * wide
     tables = {"type": sides} | ({"source": [middle, middle]} if sides == "viscoelastic" else {})
     return {
-        "packing": {"pattern": "A", "size": [wide, wide], "radius": 0.5},
-        "material": MATERIAL,
+        "packing": lattice(wide, wide, 1.0),
+        "material": ROCK,
         "boundary": {side: tables for side in ("left", "right", "bottom", "top")},
         "wave": {"pulse": WAVES[wave]},
         "hole": [{"name": "cave", "type": "rectangle", "corners": _around(middle, middle, 6.0, 6.0)}],
@@ -83,8 +82,8 @@ def blast(sides: str, wide: float, wave: str) -> Tables:
 def bar(motion: str, wave: str, length: float, side: str) -> Tables:
     """A bar that is driven at its left end, and ends within rock that goes on."""
     return {
-        "packing": {"pattern": "A", "size": [length, 3.0], "radius": 0.5},
-        "material": MATERIAL,
+        "packing": lattice(length, 3.0, 1.0),
+        "material": ROCK,
         "motion": {"held": ["y" if motion == "p" else "x", "rotation"]},
         "boundary": {"left": {"type": "velocity", f"wave_{motion}": "pulse"}, "right": {"type": side}},
         "wave": {"pulse": WAVES[wave]},
@@ -96,8 +95,8 @@ def bar(motion: str, wave: str, length: float, side: str) -> Tables:
 def ground(wave: str, hole: bool) -> Tables:
     """Ground under an S wave from below: level with a free field, or with a rectangular tunnel in a continuum."""
     tables: Tables = {
-        "packing": {"pattern": "A", "size": [60.0, 40.0], "radius": 0.5},
-        "material": MATERIAL,
+        "packing": lattice(60.0, 40.0, 1.0),
+        "material": ROCK,
         "boundary": {
             "left": {"type": "free_field"},
             "right": {"type": "free_field"},
@@ -119,13 +118,13 @@ def ground(wave: str, hole: bool) -> Tables:
 def confined(tables: Tables, stress: float) -> Tables:
     """The same under a pressure (Pa) at rest, with contacts that may open or slide, and bonds that may break."""
     strength = {"law": "linearpbond", "fric": 0.5, "pb_ten": 2.0 * stress, "pb_coh": 2.0 * stress, "pb_fa": 30.0}
-    return tables | {"material": MATERIAL | strength, "static": {"stress": [-stress, -stress, 0.0]}}
+    return tables | {"material": ROCK | strength, "static": {"stress": [-stress, -stress, 0.0]}}
 
 
 def bonded(tables: Tables) -> Tables:
     """The same with bonds alone, that may break."""
     strength = {"law": "linearpbond", "contact_share": 0.0, "pb_ten": 1e8, "pb_coh": 1e8}
-    return tables | {"material": MATERIAL | strength}
+    return tables | {"material": ROCK | strength}
 
 
 def lasting(tables: Tables, duration: float) -> Tables:

@@ -1,5 +1,6 @@
 """The base of every table of a case file: frozen, and without unknown keys; and the kinds of values they share."""
 
+import math
 import re
 import warnings
 from collections.abc import Collection, Iterable, Mapping
@@ -151,6 +152,14 @@ def one_of(key: str, types: Iterable[type[Any]]) -> Any:
 
 Box = tuple[float, float, float, float]
 """A rectangle, with its edges: left, bottom, right and top, m."""
+
+EVERYWHERE: Box = (-math.inf, -math.inf, math.inf, math.inf)
+"""The rectangle that contains all places."""
+
+
+def is_within(box: Box, x: Any, y: Any) -> Any:
+    """Whether places (m), numbers or arrays, are in a rectangle or on its edge."""
+    return (box[0] <= x) & (x <= box[2]) & (box[1] <= y) & (y <= box[3])
 
 
 def shifted_place(place: tuple[float, float], by: tuple[float, float]) -> tuple[float, float]:

@@ -64,7 +64,7 @@ def _changed(text: str, changes: Mapping[str, Any]) -> str:
         key = _key(table, last, dotted)
         table[key] = deepcopy(value)  # as a later change may modify it
         if value is None:
-            del table[key]
+            del table[key]  # which may not have been there, either
     return tomli_w.dumps(data)
 
 

@@ -20,9 +20,9 @@ Error = Annotated[
         "--error",
         metavar="ERROR",
         help="Largest error of velocity and displacement at all monitors, RMS over RMS, such as 1% or 0.01. "
-        "Sides, their distance, the box of disks, the diameter of a lattice, elements beyond it, [reduce], the law "
-        "where nothing opens, of a bar spacing, time step and absorbing ends, and an end once monitors are silent are "
-        "chosen as cheaply as this allows; waves, stiffness, loads, holes and monitors remain.",
+        "Sides, their distance, the box of disks, the diameter of a lattice, elements beyond it, half of a symmetric "
+        "scene, the law where nothing opens, of a bar spacing, time step and absorbing ends, and an end once monitors "
+        "are silent are chosen as cheaply as this allows; waves, stiffness, loads, holes and monitors remain.",
     ),
 ]
 Keep = Annotated[

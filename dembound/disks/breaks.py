@@ -4,12 +4,10 @@ import numpy as np
 
 from dembound.motion.kind import Finding
 from dembound.motion.trackers import Run
-from dembound.table import Box
+from dembound.table import EVERYWHERE, Box, is_within
 
 BREAK_TIME, BREAK_X, BREAK_Y = "break time", "break x", "break y"
 """Names of what is found about the first broken bonds."""
-
-EVERYWHERE: Box = (-np.inf, -np.inf, np.inf, np.inf)
 
 
 def first_break(run: Run, inside: Box | None = None) -> dict[str, Finding]:
@@ -21,8 +19,7 @@ def first_break(run: Run, inside: Box | None = None) -> dict[str, Finding]:
     cracks = run.system.take_cracks(run.state.step)
     settled = 0.5 * run.state.datum[:2, cracks.pair].sum(axis=2).T
     places = cracks.position - settled
-    x0, y0, x1, y1 = inside or EVERYWHERE
-    counted = np.all((places >= [x0, y0]) & (places <= [x1, y1]), axis=1)
+    counted = is_within(inside or EVERYWHERE, *places.T)
     if not counted.any():
         return {}
     step = int(cracks.step[counted].min())

@@ -6,7 +6,7 @@ factor known in closed form. The least over all pairs, limits and steps is the l
 beyond, a limit at rest.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from dembound.kernels.tables import Limits
 from dembound.motion.kind import Finding
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Every, Run
-from dembound.table import Box
+from dembound.table import EVERYWHERE, Box, is_within
 
 LIMITS = ("opens", "slides", "slides", "breaks in tension", "breaks in tension", "breaks in shear", "breaks in shear")
 """What a pair does at each limit of `limit_lines`."""
@@ -138,14 +138,9 @@ def least_load_factor(run: Run, inside: Box | None = None) -> dict[str, Finding]
     """The load factor as a number that is compared between runs; empty without one, or if it is not reached inside."""
     tracker = load_factor_of(run)
     found = None if tracker is None else tracker.describe(run)
-    if found is None or (inside is not None and not _is_inside(found["position"], inside)):
+    if found is None or not is_within(inside or EVERYWHERE, *found["position"]):
         return {}
     return {LOAD_FACTOR: Finding(found["factor"], "1")}
-
-
-def _is_inside(place: Sequence[float], box: Box) -> bool:
-    """Whether a place (2,) m is in a box."""
-    return box[0] <= place[0] <= box[2] and box[1] <= place[1] <= box[3]
 
 
 def limit_in_words(limit: int, constants: np.ndarray) -> str:

@@ -13,11 +13,11 @@ from dembound.disks.surroundings import Surroundings
 from dembound.errors import CaseError
 from dembound.outside.traction import Traction, traction_in
 from dembound.packings.tiling import Assembly
+from dembound.table import EVERYWHERE
 
 if TYPE_CHECKING:
     from dembound.disks.body import DiskBody
 
-EVERYWHERE = (-np.inf, -np.inf, np.inf, np.inf)
 """The region (m) of the whole plane."""
 
 ROUNDING = 1e-6

@@ -11,8 +11,8 @@ from dembound.disks.ground_waves import incident_in
 from dembound.disks.outside_mesh import medium_of
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.wave_front import front_of, slowest_speed
-from dembound.motion.paths import FULL, Source
-from dembound.table import Box
+from dembound.motion.paths import Source
+from dembound.table import EVERYWHERE, Box
 
 
 def sources_of(case: DiskCase, ground: PackedMaterial) -> list[Source]:
@@ -28,7 +28,7 @@ def sources_of(case: DiskCase, ground: PackedMaterial) -> list[Source]:
 def _sides(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
     """Driven sides, each with its waves."""
     for side, waves in case.driving.items():
-        axis, box = normal_axis(side), list(FULL)
+        axis, box = normal_axis(side), list(EVERYWHERE)
         box[axis] = box[2 + axis] = case.packing.extent[axis] if side in ("right", "top") else 0.0
         for motion, name in waves.items():
             if axis_of_motion(side, motion) not in ground.held:
@@ -44,7 +44,7 @@ def _incident(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
     width, height = case.size
     corners = np.array([(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)])
     delays, slowest = wave.delays(corners), slowest_speed(ground)
-    yield Source(FULL, signal.start + delays.min(), signal.duration() + delays.max() + height / slowest, slowest)
+    yield Source(EVERYWHERE, signal.start + delays.min(), signal.duration() + delays.max() + height / slowest, slowest)
 
 
 def _loads(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
@@ -54,9 +54,9 @@ def _loads(case: DiskCase, ground: PackedMaterial) -> Iterator[Source]:
         place = place_of(case, load)
         if load.wave is not None:
             wave = case.wave[load.wave]
-            yield Source(place, wave.start, wave.duration(), slowest, is_local=place != FULL)
+            yield Source(place, wave.start, wave.duration(), slowest, is_local=place != EVERYWHERE)
         elif case.static is None:
-            yield Source(place, 0.0, np.inf, slowest, is_local=place != FULL)
+            yield Source(place, 0.0, np.inf, slowest, is_local=place != EVERYWHERE)
 
 
 def place_of(case: DiskCase, load: Load) -> Box:
@@ -65,7 +65,7 @@ def place_of(case: DiskCase, load: Load) -> Box:
         return case.hole_of(load).box
     if load.position is not None:
         return *load.position, *load.position
-    return FULL if load.region is None else load.region
+    return EVERYWHERE if load.region is None else load.region
 
 
 def _holes(case: DiskCase, driven: list[Source], fastest: float, slowest: float) -> Iterator[Source]:

@@ -1,4 +1,4 @@
-"""When a static stage ends: at rest, or with an error that says what is not."""
+"""When a static stage ends: at rest, or with an error that names what is not."""
 
 import numpy as np
 

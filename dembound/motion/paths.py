@@ -15,9 +15,6 @@ from dembound.table import Box
 PRECURSOR = 10.0
 """Where a precursor ends, as the argument z of Airy's function: Ai(z) is 1e-9 of Ai(0) at 9.6."""
 
-FULL = (-np.inf, -np.inf, np.inf, np.inf)
-"""The rectangle of a source that is everywhere."""
-
 
 @dataclass(frozen=True)
 class Front:

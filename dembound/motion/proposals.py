@@ -7,8 +7,9 @@ import numpy as np
 
 from dembound.boundaries import SIDES, normal_axis
 from dembound.motion.kind import Plan
-from dembound.motion.paths import FULL, Front, Source, plane_needed
+from dembound.motion.paths import Front, Source, plane_needed
 from dembound.motion.silence import monitored
+from dembound.table import EVERYWHERE
 
 GAIN = 0.9
 """Share of the duration, or of a length, down to which there is nothing worth a proposal."""
@@ -140,7 +141,7 @@ def _echoes(seen: WaveScene, needed: float) -> Iterator[str]:
 def _smaller(seen: WaveScene, needed: float) -> Iterator[str]:
     """Lengths of the scene with which still no echo comes within the time needed (s)."""
     planned = seen.planned
-    if planned.kind.has_static_stage(planned.scene) or any(source.box == FULL for source in seen.sources):
+    if planned.kind.has_static_stage(planned.scene) or any(source.box == EVERYWHERE for source in seen.sources):
         return
     unit = planned.kind.unit(planned.scene)
     for axis in seen.axes:

@@ -19,6 +19,7 @@ import pytest
 import tomli_w
 from matplotlib.figure import Figure
 from PIL import Image
+from rich.text import Text
 
 from dembound import cli, starting
 from dembound.boundaries import SIDES
@@ -131,6 +132,13 @@ def test_helps_wrap_at_80_columns(dembound, command, monkeypatch) -> None:
         # line breaks of all but a first paragraph would stay
         assert not [text for text in inspect.cleandoc(each.help).split("\n\n")[1:] if "\n" in text]
     assert "\n" not in command.epilog
+
+
+def test_no_words_of_helps_are_taken_as_markup(command) -> None:
+    """Such as "[reduce]", which would not be shown."""
+    for name, each in command.commands.items():
+        for words in [each.help, *(getattr(parameter, "help", None) for parameter in each.params)]:
+            assert Text.from_markup(words or "").plain == (words or ""), name
 
 
 def test_unknown_commands_and_options_are_bad_input(dembound) -> None:

@@ -42,9 +42,12 @@ class EarlierEnd:
 
 
 def ended_earlier(
-    choice: Choice, recorded: Mapping[str, Recorded], motion: Mapping[str, Recorded], causes: Sequence[Cause],
+    choice: Choice,
+    recorded: Mapping[str, Recorded],
+    motion: Mapping[str, Recorded],
+    causes: Sequence[Cause],
     kept: Sequence[str],
-) -> Choice:  # fmt: skip
+) -> Choice:
     """A choice that keeps its bound with the earliest end with which it still does; itself without one.
 
     recorded : motion beside which errors are measured. motion : what its monitors are expected to record. causes : of
@@ -52,12 +55,10 @@ def ended_earlier(
     """
     for end in earlier_ends(choice.case, motion, choice.bound, kept) if choice.holds else []:
         error = expected([*causes, end.lost], recorded)
-        words = (
-            f"{choice.words}, until the monitors are silent after about {end.share * choice.given.run.duration:.3g} s"
-        )
-        found = replace(
-            choice, case=end.case, words=words, error=error.worst, by=error.by, cost=end.share * choice.cost
-        )
+        last = end.share * choice.given.run.duration
+        words = f"{choice.words}, until the monitors are silent after about {last:.3g} s"
+        cost = end.share * choice.cost
+        found = replace(choice, case=end.case, words=words, error=error.worst, by=error.by, cost=cost)
         if found.holds:
             return found
     return choice

@@ -103,12 +103,8 @@ def _places(companions: Companions, scene: DiskScene) -> Iterator[Cause]:
     for name, own in companions.recorded(scene).items():
         undone = error_of_delay(own.time, own.values["velocity"], partial(_constant, -late))  # v(t) − v(t − late)
         less = dict(zip(QUANTITIES, undone, strict=True))
-        errors[name] = {q: max((moved[name][q] for moved in each), key=_norm) - less[q] for q in QUANTITIES}
+        errors[name] = {q: max((moved[name][q] for moved in each), key=np.linalg.norm) - less[q] for q in QUANTITIES}
     yield Cause("places", "by the motion between the disks of companions", errors)
-
-
-def _norm(values: np.ndarray) -> float:
-    return float(np.linalg.norm(values))
 
 
 def _constant(delay: float, omega: np.ndarray) -> np.ndarray:

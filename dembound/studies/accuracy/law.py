@@ -1,10 +1,10 @@
 """The elastic law in place of one with a history, on lattices where nothing opens, slides or breaks.
 
-Whether it does is found with a companion of larger disks under the elastic law, whose load factor says up to how many
-times these waves it holds. In two dimensions the stress under a point force falls as 1/r, and that at a sharp corner
-more slowly, so that the largest stress between disks grows at most as 1/D: with disks smaller by a factor contacts and
-bonds are at most so many times nearer to their limits. At rest this does not hold beside a hole, where stress at rest
-is higher the smaller the disks are; nor on random packings, whose contacts are all loaded differently.
+Whether it does is found with a companion of larger disks under the elastic law, whose load factor is the multiple of
+these waves up to which it holds. In two dimensions the stress under a point force falls as 1/r, and that at a sharp
+corner more slowly, so that the largest stress between disks grows at most as 1/D: with disks smaller by a factor
+contacts and bonds are at most so many times nearer to their limits. At rest this does not hold beside a hole, where
+stress at rest is higher the smaller the disks are; nor on random packings, whose contacts are all loaded differently.
 
 A law whose contacts follow the motion (`geometry = "updated"`) differs from the elastic one all the same, if a body has
 come to rest under a stress p: the stress turns with the disks. S waves then come earlier or later by p/(2ρc_s²) of
@@ -30,7 +30,7 @@ from dembound.disks.stability import choose_step
 from dembound.errors import CaseError, DemboundError
 from dembound.kinds import with_changes
 from dembound.motion.kind import Plan
-from dembound.motion.paths import FULL, Source
+from dembound.motion.paths import Source
 from dembound.packings.square import Square
 from dembound.running import plan
 from dembound.studies.accuracy.differences import keeps
@@ -38,6 +38,7 @@ from dembound.studies.estimate.causes import Cause, Recorded
 from dembound.studies.estimate.coarser import coarser
 from dembound.studies.estimate.delays import error_of_delay
 from dembound.studies.estimate.pair import measured, ratios
+from dembound.table import EVERYWHERE
 
 RESERVE = 2.0
 """By how much the elastic law must hold with disks of another size: a region of a load as wide as a disk contains one
@@ -125,7 +126,7 @@ def elastic_twin(case: DiskCase, planned: Plan, most: float, kept: Sequence[str]
 
 def _way(source: Source, place: np.ndarray, size: tuple[float, float]) -> float:
     """The way (m) of waves from a source to a place; through the scene if they enter on all sides."""
-    return math.hypot(*size) if source.box == FULL else float(source.distance(place[None])[0])
+    return math.hypot(*size) if source.box == EVERYWHERE else float(source.distance(place[None])[0])
 
 
 def _may_be_elastic(case: DiskCase) -> bool:

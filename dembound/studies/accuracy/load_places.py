@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dembound.casefile.disks.load import Load
 from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 
@@ -31,7 +32,12 @@ def middles_of_loads(scene: DiskScene) -> list[tuple[np.ndarray, float]]:
             middle = np.array([0.5 * (left + right), 0.5 * (bottom + top)])
             found.append((middle, abs(load.pressure) * (right - left + top - bottom)))
         elif not load.is_everywhere:
-            nodes, forces = forces_of(load, scene)
-            strength = np.hypot(*forces[:, :2].T)
-            found.append((np.average(scene.positions[nodes], axis=0, weights=strength), float(strength.sum())))
+            found.append(middle_of_forces(load, scene))
     return found
+
+
+def middle_of_forces(load: Load, scene: DiskScene) -> tuple[np.ndarray, float]:
+    """The middle (2,) m of the disks on which a load acts, by force, and the sum of these forces, N."""
+    nodes, forces = forces_of(load, scene)
+    strength = np.hypot(*forces[:, :2].T)
+    return np.average(scene.positions[nodes], axis=0, weights=strength), float(strength.sum())

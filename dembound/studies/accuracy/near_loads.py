@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.wave_front import slowest_speed
+from dembound.studies.accuracy.load_places import middle_of_forces
 from dembound.studies.estimate.causes import Recorded
 
 NEAR, CURVED = 0.08, 0.6
@@ -40,12 +40,8 @@ def errors_near_loads(scene: DiskScene, own: Recorded) -> dict[str, float]:
 
 def _places(scene: DiskScene) -> list[np.ndarray]:
     """The middle (2,) m of each force with a wave in a place."""
-    found = []
-    for load in scene.case.load:
-        if load.wave is not None and load.pressure is None and not load.is_everywhere:
-            nodes, forces = forces_of(load, scene)
-            found.append(np.average(scene.positions[nodes], axis=0, weights=np.hypot(*forces[:, :2].T)))
-    return found
+    loads = [load for load in scene.case.load if load.wave is not None and load.pressure is None]
+    return [middle_of_forces(load, scene)[0] for load in loads if not load.is_everywhere]
 
 
 def _nearest(ray: np.ndarray, scene: DiskScene) -> np.ndarray:

@@ -86,13 +86,15 @@ def cheapest(motions: Sequence[Motion], bound: float) -> tuple[Motion, int]:
         if SAFETY * floors.of(motion.choice) > bound:
             left.append(motion)
             continue
-        found.append(motion.add_to(floors))
+        motion.add_to(floors)
+        found.append(motion)
         if SAFETY * motion.error <= bound:
             return motion, len(found)
     best = min(found, key=lambda each: each.error)
     for motion in reversed(left):  # finer nodes first
         if floors.of(motion.choice) < best.error:
-            found.append(motion.add_to(floors))
+            motion.add_to(floors)
+            found.append(motion)
             best = min(best, motion, key=lambda each: each.error)
     return best, len(found)
 
@@ -104,12 +106,11 @@ class Motion:
     choice: BarCandidate
     exact: ExactMotion
 
-    def add_to(self, floors: Floors) -> Motion:
-        """Itself; what its error says of others is known then."""
+    def add_to(self, floors: Floors) -> None:
+        """Add the error to those by which others are excluded, where the rules for this hold."""
         if is_regular(self.choice, self.exact.places):
             counted, echo = self._surely_counted, first_echo(self.choice.scene)
             floors.add(self.choice, self._error_of(counted), self._error_of(counted, echo))
-        return self
 
     @cached_property
     def error(self) -> float:

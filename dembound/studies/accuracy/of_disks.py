@@ -59,11 +59,13 @@ def best_of_disks(case: DiskCase, bound: float, kept: Sequence[str]) -> Choice:
     if twin is None:
         return _best(case, planned, bound, kept, most)
     found = _best(twin.case, twin.planned, bound, kept, most, twin)
-    steps = planned.steps / twin.planned.steps  # of the given law, which cost as much while nothing opens
-    found = replace(found, given=case, words=f"{twin.words}; {found.words}", own_cost=steps * found.own_cost)
+    own_cost = found.own_cost * planned.steps / twin.planned.steps  # steps of the given law cost as much: nothing opens
+    found = replace(found, given=case, words=f"{twin.words}; {found.words}", own_cost=own_cost)
     if found.holds or twin.stress == 0.0:
         return found
-    return min(found, _best(case, planned, bound, kept, most), key=lambda choice: choice.error)
+    other = _best(case, planned, bound, kept, most)
+    other = replace(other, cost=other.cost * own_cost / other.own_cost, own_cost=own_cost)
+    return min(found, other, key=lambda choice: choice.error)
 
 
 def _best(

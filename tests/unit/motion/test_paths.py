@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import airy
 
-from dembound.motion.paths import FULL, PRECURSOR, Front, Source, plane_needed
+from dembound.motion.paths import PRECURSOR, Front, Source, plane_needed
+from dembound.table import EVERYWHERE
 
 LEVEL = {"left": (-np.inf, 0.0, np.inf, 0.0), "bottom": (0.0, -np.inf, 0.0, np.inf)}
 """Sources that span the scene: all of the bottom beside a left or right side, all of the left beside bottom or top."""
@@ -48,11 +49,13 @@ def test_from_a_source_at_the_side_it_is_the_way_back_alone() -> None:
 
     assert source(LEVEL["left"]).distance_over("right", 10.0, place) == pytest.approx([np.hypot(3.0, 6.0)])
     assert source(LEVEL["left"]).distance_over("left", -1.0, place) == pytest.approx([np.hypot(8.0, 6.0)])
-    assert source(FULL).distance_over("top", 9.0, place) == pytest.approx([3.0])
+    assert source(EVERYWHERE).distance_over("top", 9.0, place) == pytest.approx([3.0])
 
 
 @pytest.mark.parametrize("side", ["left", "right", "bottom", "top"])
-@pytest.mark.parametrize("box", [(3.0, 2.0, 3.0, 2.0), (2.0, 1.0, 30.0, 30.0), FULL, LEVEL["left"], LEVEL["bottom"]])
+@pytest.mark.parametrize(
+    "box", [(3.0, 2.0, 3.0, 2.0), (2.0, 1.0, 30.0, 30.0), EVERYWHERE, LEVEL["left"], LEVEL["bottom"]]
+)
 def test_at_the_plane_needed_the_last_way_is_as_long_as_waves_get(side: str, box) -> None:
     rng = np.random.default_rng(3)
     places, front = rng.uniform(0.0, 10.0, (5, 2)), Front(100.0, 0.1)
@@ -67,4 +70,4 @@ def test_nothing_is_needed_where_nothing_comes() -> None:
     place = np.array([[7.0, 6.0]])
 
     assert plane_needed("right", [], place, Front(1.0, 0.1), 5.0) == -np.inf
-    assert plane_needed("left", [source(FULL, 5.0)], place, Front(1.0, 0.1), 4.0) == np.inf
+    assert plane_needed("left", [source(EVERYWHERE, 5.0)], place, Front(1.0, 0.1), 4.0) == np.inf

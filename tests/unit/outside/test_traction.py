@@ -6,9 +6,9 @@ from meshes import stepped
 
 from dembound.outside.mesh import Around, Mesh
 from dembound.outside.traction import traction_in
+from dembound.table import EVERYWHERE
 
 TOP = 2.0
-EVERYWHERE = (-np.inf, -np.inf, np.inf, np.inf)
 
 
 def ground() -> Mesh:
