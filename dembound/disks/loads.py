@@ -11,6 +11,7 @@ from dembound.casefile.disks.load import Load
 from dembound.disks.hole_wall import pressure_on
 from dembound.disks.surroundings import Surroundings
 from dembound.errors import CaseError
+from dembound.nearest import nearest
 from dembound.outside.traction import Traction, traction_in
 from dembound.packings.tiling import Assembly
 from dembound.table import EVERYWHERE
@@ -61,7 +62,7 @@ def _particles(load: Load, assembly: Assembly) -> np.ndarray:
     """Particles (k,) at the load's position or in its region."""
     positions = assembly.positions
     if load.position is not None:
-        return np.array([int(np.argmin(np.hypot(*(positions - load.position).T)))])
+        return nearest(positions, np.array([load.position]))
     if load.region is None:
         return np.arange(len(positions))
     low, high = np.array(load.region[:2]), np.array(load.region[2:])

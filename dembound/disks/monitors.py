@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.casefile.disks import DiskCase
-from dembound.casefile.disks.monitor import FREE_FIELD, Monitor
+from dembound.casefile.disks.monitor import FREE_FIELD
 from dembound.casefile.disks.reach import reach
 from dembound.disks.ground_waves import GroundWaves
 from dembound.disks.packed_material import PackedMaterial
@@ -25,6 +25,7 @@ from dembound.disks.surroundings import Surroundings
 from dembound.disks.wave_front import INDEX
 from dembound.errors import CaseError
 from dembound.motion.between import Between
+from dembound.nearest import nearest
 from dembound.outside.interpolation import interpolation, slopes
 from dembound.packings.brick import Brick
 from dembound.packings.column import Seam, nearest_in_column
@@ -45,7 +46,7 @@ def monitors_of(
     outside: Surroundings | None,
     waves: GroundWaves | None = None,
 ) -> Monitors:
-    """The particle of the body nearest to each monitor's position, or the continuum there, and their twins.
+    """The disk nearest to each monitor's position, of the body or in the continuum, and their twins.
 
     waves : with which the ground moves without the body; twins move with them, and monitors in the continuum, too.
 
@@ -53,23 +54,24 @@ def monitors_of(
     """
     if not case.monitor:
         return {}, {}
-    from scipy.spatial import cKDTree
-
     first = 0 if seam is None else seam.count
-    _, nearest = cKDTree(assembly.positions[first:]).query([m.position for m in case.monitor])
-    nodes = {m.name: first + int(node) for m, node in zip(case.monitor, nearest, strict=True)}
+    of_body = first + nearest(assembly.positions[first:], np.array([m.position for m in case.monitor]))
+    nodes = {m.name: int(node) for m, node in zip(case.monitor, of_body, strict=True)}
     twins = {} if seam is None else {name: int(seam.twin[node]) for name, node in nodes.items()}
     between: dict[str, Between] = {}
     disks = {name: (assembly.positions[node], int(assembly.brick_particle[node])) for name, node in nodes.items()}
     if outside is not None:
         around = _Around(case, ground.brick, assembly, first, outside)
-        for monitor in around.monitors():
+        around.check()
+        for monitor in case.monitor:
             name = monitor.name
-            disks[name] = place, kind = around.disk_at(monitor.position)
+            if (beyond := around.disk_at(monitor.position, disks[name][0])) is None:
+                continue
+            disks[name] = place, kind = beyond
             if seam is not None:
                 twins[name] = int(nearest_in_column(assembly, place[None])[0])
             between[name] = _in_continuum(outside, ground, place, kind, twins.get(name))
-            nodes[name] = outside.first + int(np.argmin(np.hypot(*(outside.body.mesh.positions - place).T)))
+            nodes[name] = outside.first + int(nearest(outside.body.mesh.positions, place[None])[0])
     if waves is not None:
         for name, disk in disks.items():
             moving = _moving(waves, ground, *disk)
@@ -123,8 +125,8 @@ class _Around:
         allowed[:, 1] = np.maximum(allowed[:, 1], self._lowest)
         return allowed
 
-    def monitors(self) -> list[Monitor]:
-        """Those in the continuum. Raises CaseError for places where no motion is recorded."""
+    def check(self) -> None:
+        """Raises CaseError for monitors at places where no motion is recorded."""
         monitors = self.case.monitor
         places = np.array([monitor.position for monitor in monitors])
         problems = []
@@ -135,11 +137,10 @@ class _Around:
                 if monitor.position[1] > self.outside.height_at(np.array([monitor.position]))[0]:
                     where = "above the ground, which is lower beyond this side"
                 x, y = self._rounded(monitor.position, np.array([x, y]))
-                nearest = f"the nearest place allowed is ({x:.10g}, {y:.10g}) m"
-                problems.append(f"monitor[{number}, {monitor.name}].position: lies {where}; {nearest}")
+                advice = f"the nearest place allowed is ({x:.10g}, {y:.10g}) m"
+                problems.append(f"monitor[{number}, {monitor.name}].position: lies {where}; {advice}")
         if problems:
             raise CaseError(problems)
-        return [each for each, beyond in zip(monitors, self.outside.is_beyond(places), strict=True) if beyond]
 
     def _rounded(self, position: tuple[float, float], allowed: np.ndarray) -> np.ndarray:
         """The nearest place (2,) m allowed in place of a position (m), in numbers of few digits, so beyond the limit.
@@ -151,10 +152,10 @@ class _Around:
         way = np.sign(np.subtract(allowed, position))
         return np.where(way == 0.0, allowed, way * np.ceil(way * allowed / unit - DIGITS) * unit + 0.0)  # no -0
 
-    def disk_at(self, position: tuple[float, float]) -> tuple[np.ndarray, int]:
-        """Place (2,) m, and number in the brick, of the disk nearest to a position (m).
+    def disk_at(self, position: tuple[float, float], own: np.ndarray) -> tuple[np.ndarray, int] | None:
+        """Place (2,) m, and number in the brick, of the disk in the continuum nearest to a position (m).
 
-        Disks of the body itself, those in layers, and those beyond free sides are left out, as far as others remain.
+        None if `own` (2,) m, the nearest disk of the body, is nearer. There are none in layers and beyond free sides.
         """
         case, brick, of = self.case, self.brick, self.assembly
         begin = of.positions[self.first] - brick.positions[of.brick_particle[self.first]]
@@ -165,8 +166,9 @@ class _Around:
         left, bottom, right, top = reach(case.ground, case.packing, case.boundary)
         refused = (places < (left, bottom)).any(axis=1) | (places > (right, top)).any(axis=1)
         refused |= ~self.outside.is_beyond(places) | (self._allowed(places) != places).any(axis=1)
-        best = int(np.lexsort((np.hypot(*(places - position).T), refused))[0])
-        return places[best], best % len(brick.radii)
+        there = np.flatnonzero(~refused)
+        best = int(nearest(np.vstack([own, places[there]]), np.array([position]))[0])
+        return None if best == 0 else (places[there[best - 1]], int(there[best - 1]) % len(brick.radii))
 
 
 def _in_continuum(

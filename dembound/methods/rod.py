@@ -12,6 +12,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.laws.peridynamic import families, micromodulus
 from dembound.methods.opening import AT_ONCE, Fracture
+from dembound.nearest import nearest_number
 
 
 @dataclass(frozen=True)
@@ -189,9 +190,9 @@ class Rod:
         return positions
 
     def nearest(self, place: float) -> int:
-        """The node nearest to a place (m); in the gap of a contact the one on its right."""
+        """The node nearest to a place (m), half-way the left one; in the gap of a contact the one on its right."""
         part = next((part for part in self.ranges if place <= part.end), self.ranges[-1])
-        return part.first + max(0, round((place - part.start) / part.spacing))
+        return part.first + max(0, nearest_number((place - part.start) / part.spacing))
 
     def range_of(self, plane: int) -> Range:
         """The range of a plane, which must not be that of a contact."""

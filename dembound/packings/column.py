@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.errors import PackingError
+from dembound.nearest import nearest
 from dembound.packings.brick import Brick
 from dembound.packings.cut import cut_contacts
 from dembound.packings.tiling import Assembly, Column, tile
@@ -139,14 +140,12 @@ def nearest_in_column(joint: Assembly, places: np.ndarray) -> np.ndarray:
 
     joint : a body with its column. −1 for places below the column's bottom, or above its top.
     """
-    from scipy.spatial import cKDTree
-
     column = joint.column
     assert column is not None
     width, height = column.size
     disks = joint.positions[: column.disks] - column.origin
     images = np.concatenate([disks + np.array([shift, 0.0]) for shift in (-width, 0.0, width)])
     local = places - [joint.origin[0], column.origin[1]]
-    _, found = cKDTree(images).query(np.column_stack([local[:, 0] % width, local[:, 1]]))
+    found = nearest(images, np.column_stack([local[:, 0] % width, local[:, 1]]))
     over = 0.5 * (column.extent[1] - height) + TYPED * height
     return np.where((local[:, 1] >= -over) & (local[:, 1] <= height + over), found % column.disks, -1)

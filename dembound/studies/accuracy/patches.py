@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dembound.disks.scene import DiskScene
+from dembound.nearest import nearest
 
 NINE = np.array([(across, up) for across in (-1, 0, 1) for up in (-1, 0, 1)])
 """Columns and rows of a patch, counted from its middle."""
@@ -21,14 +22,14 @@ def patch_around(scene: DiskScene, place: np.ndarray) -> np.ndarray:
     first = 0 if scene.seam is None else scene.seam.count
     disks = scene.positions[first : scene.disk_count]
     cell = scene.ground.brick.mean_diameter
-    nearest = disks[np.argmin(np.hypot(*(disks - place).T))]
-    cells = np.rint((disks - nearest) / cell).astype(int)
+    own = disks[nearest(disks, place[None])[0]]
+    cells = np.rint((disks - own) / cell).astype(int)
     present = {(int(x), int(y)) for x, y in cells[(np.abs(cells) <= 2).all(axis=1)]}
     middles = [shift for shift in NINE if all((int(x), int(y)) in present for x, y in NINE + shift)]
     if not middles:
-        return np.asarray(nearest[None])
-    middle = min(middles, key=lambda shift: float(np.hypot(*(nearest + cell * shift - place))))
-    return np.asarray(nearest + cell * (middle + NINE))
+        return np.asarray(own[None])
+    middle = middles[nearest(own + cell * np.array(middles), place[None])[0]]
+    return np.asarray(own + cell * (middle + NINE))
 
 
 def weights_at(patch: np.ndarray, place: np.ndarray) -> np.ndarray:

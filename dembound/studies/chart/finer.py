@@ -20,6 +20,7 @@ from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
+from dembound.nearest import nearest_number
 from dembound.studies.chart.measure import Gauge, Outcome
 from dembound.studies.choices import Choice
 
@@ -79,7 +80,7 @@ def _cells(of_choices: set[int]) -> int:
 
 def _node(gauge: Gauge, spacing: float, cells: int) -> int:
     """Number of the node nearest to that of a gauge; the last one for gauges of longer bars."""
-    return min(round(float(gauge.position[0]) / spacing), cells)
+    return min(nearest_number(float(gauge.position[0]) / spacing), cells)
 
 
 def _name(node: int) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
+from dembound.disks.loads import forces_of
 from dembound.disks.scene import DiskScene
 from dembound.errors import CaseError
 from dembound.exact.lamb import surface_displacement
@@ -126,7 +127,7 @@ def _line_load(scene: DiskScene) -> LineLoad:
         raise CaseError(["load: Lamb's problem has one vertical force on one place, following a wave"])
     load = driven[0]
     assert load.position is not None and load.force is not None and load.wave is not None  # noqa: PT018
-    node = int(np.argmin(np.hypot(*(scene.assembly.positions - load.position).T)))
+    node = int(forces_of(load, scene)[0][0])
     _must_be_on_top(scene, node, f"load.{load.name}.position")
     x, factor = float(scene.assembly.positions[node, 0]), 1.0
     for side, plane in (("left", 0.0), ("right", float(scene.assembly.size[0]))):

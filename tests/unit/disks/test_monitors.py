@@ -192,3 +192,40 @@ def test_check_tells_disks_from_the_continuum() -> None:
 
     assert facts["monitor in"].startswith("particle ")
     assert facts["monitor left"] == "in the continuum at (-0.250, 3.750) m"
+
+
+def between_contacts(scene: DiskScene, box: list[float], beyond: float) -> dict[str, tuple[float, float]]:
+    """Middles between two touching disks, which both are equally near to: some in a box, on its rim and beyond it."""
+    assembly = scene.assembly.part(slice(scene.seam.count, scene.disk_count))
+    middles = assembly.positions[assembly.pairs].mean(axis=1)
+    left, bottom, right, top = box
+    x, y = middles.T
+    near = (x > left - beyond) & (x < right + beyond) & (y > max(bottom - beyond, 0.5)) & (y < top + beyond)
+    away = np.maximum(np.maximum(left - x, x - right), np.maximum(bottom - y, y - top))
+    order = np.argsort(np.abs(away[near]))  # most of them where the disks of the box end
+    return {f"m{k}": tuple(place) for k, place in enumerate(middles[near][order][:60:2].tolist())}
+
+
+@pytest.mark.parametrize("pattern", ["A", "B"])
+def test_the_same_disk_is_taken_in_every_box(pattern: str) -> None:
+    """Places equally near to two disks, in bodies of the same ground that begin elsewhere: all of disks, and in boxes.
+
+    Its disk may be in the box or in the continuum.
+    """
+    grains = {"packing.pattern": "B", "packing.radius_ratio": 1.5, "packing.brick": [4.0, 4.0]}
+    ground = {"ground.size": [40.0, 24.0], "boundary.bottom": {"type": "viscous_input", "wave_s": "pulse"}}
+    ground |= {f"boundary.{side}": {"type": "free_field"} for side in ("left", "right")} | {"outside": {"element": 2.5}}
+    ground |= grains if pattern == "B" else {}
+    every = scene_of({"a": (1.0, 1.0)}, ground | {"packing.size": [40.0, 24.0]})
+    beside = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right", "top")}
+    beside["boundary.bottom"] = {"type": "outside", "wave_s": "pulse"}
+    boxes = [([16.0, 12.0], [8.0, 4.0]), ([12.0, 8.0], [12.0, 8.0])]
+    places = between_contacts(every, [16.0, 12.0, 24.0, 16.0], 1.0)
+    expected = scene_of(places, ground | {"packing.size": [40.0, 24.0]}).monitored
+    kinds = set()
+    for origin, size in boxes:
+        scene = scene_of(places, ground | beside | {"packing.origin": origin, "packing.size": size})
+        kinds |= {name in scene.between for name in places}
+        for name in places:
+            np.testing.assert_allclose(scene.monitored[name], expected[name], atol=1e-9, err_msg=name)
+    assert kinds == {True, False}
