@@ -157,28 +157,31 @@ def compare_histories(
 ) -> None:
     """Print the differences between the histories of runs and those of a reference, monitor by monitor.
 
-    RMS is that of the difference in % of the reference's, largest the largest difference in % of its peak.
+    RMS is that of the difference in % of the reference's, of the vectors and of each component; largest is the largest
+    difference in % of the peak. Of all twins in a free-field column the worst is shown.
 
-    End and reference are the values of both at the end.
+    End and reference are the values of both at the end, along the component with the largest motion.
     """
     from dembound.results.compare import compare
 
     found = compare(results_file(reference), [results_file(path) for path in results], quantity.value)
     unit = found[0].unit
-    heads = ("along", "RMS (%)", "largest (%)", f"end ({unit})", "reference")
+    components = list(dict.fromkeys(name for line in found for name in line.along))
+    parts = components if len(components) > 1 else []
+    heads = ("RMS (%)", *(f"{name} (%)" for name in parts), "largest (%)", "along", f"end ({unit})", "reference")
     names = (Column(head, overflow="fold") for head in ("run", "monitor"))
     numbers = (Column(head, no_wrap=True) for head in heads)
     table = compact_table(*names, *numbers, title=f"{quantity.value} beside {reference}")
     for line in found:
-        percents = f"{100.0 * line.rms:.3f}", f"{100.0 * line.peak:.3f}"
-        table.add_row(
-            line.run, line.monitor, line.component, *percents, f"{line.last:.4g}", f"{line.reference_last:.4g}"
-        )
+        along = (f"{100.0 * line.along[name]:.3f}" if name in line.along else "–" for name in parts)
+        ends = f"{line.last:.4g}", f"{line.reference_last:.4g}"
+        rms, peak = f"{100.0 * line.rms:.3f}", f"{100.0 * line.peak:.3f}"
+        table.add_row(line.run, line.monitor, rms, *along, peak, line.component, *ends)
     out.print(table)
     for line in found:
-        if line.place != line.reference_place:
-            places = f"at {line.place} in {line.run}, at {line.reference_place} in the reference"
-            out.print(f"{line.monitor} is {places}")
+        if line.apart > 0.0:
+            places = f"{line.place} in {line.run}, {line.reference_place} in the reference"
+            out.print(f"{line.monitor}: the places compared are {line.apart:.4g} m apart: {places}")
 
 
 def results_file(path: Path) -> Path:

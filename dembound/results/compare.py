@@ -1,31 +1,42 @@
 """Differences between histories of runs and those of a reference run."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.results.histories import UNITS, History, Quantity, read_histories
+from dembound.results.histories import FREE_FIELD, UNITS, History, Quantity, read_histories
 from dembound.results.reader import COMPONENTS, record_names
+
+SAME_PLACE = 1e-9
+"""Distance of two places over that from the origin up to which they are the same, but for rounding."""
+
+SMALL = 0.01
+"""Share of the motion in the reference below which a component has no error of its own: it is a small residual."""
 
 
 @dataclass(frozen=True)
 class Difference:
-    """One monitor of a run compared with the reference, in the component with the largest motion there.
+    """One monitor of a run compared with the reference.
 
-    rms : √(Σ(a − b)²/Σb²); peak : largest |a − b| over largest |b|; last, reference_last : the values at the end;
-    unit : theirs; place, reference_place : the positions given for the monitor in both, as text.
+    rms : √(Σ|a − b|²/Σ|b|²) of the vectors along x and y; peak : largest |a − b| over largest |b|; along : the same as
+    rms for every component that is not `SMALL` in the reference. component : that with the largest motion there; last,
+    reference_last : its values at the end; unit : theirs. apart : m, distance of the places whose motions are compared,
+    0 if it is of rounding only; place, reference_place : these, as text.
     """
 
     run: str
     monitor: str
-    component: str
     rms: float
     peak: float
+    along: Mapping[str, float]
+    component: str
     last: float
     reference_last: float
     unit: str
+    apart: float
     place: str
     reference_place: str
 
@@ -33,43 +44,60 @@ class Difference:
 def compare(reference: Path, runs: list[Path], quantity: Quantity) -> list[Difference]:
     """Differences of runs from a reference run at the monitors they share, over the time they share.
 
-    The runs' histories are interpolated at the reference's times. Raises CaseError when nothing can be compared.
+    The runs' histories are interpolated at the reference's times. Twins in a free-field column share one line for each
+    run: that of the one with the largest error. Raises CaseError when nothing can be compared.
     """
     names = record_names([reference, *runs])[1:]
     wanted = read_histories(reference, quantity)
-    found = [
-        _difference(name, monitor, history, wanted[monitor], quantity)
-        for name, path in zip(names, runs, strict=True)
-        for monitor, history in read_histories(path, quantity).items()
-        if monitor in wanted
-    ]
+    found = []
+    for name, path in zip(names, runs, strict=True):
+        own = read_histories(path, quantity).items()
+        lines = [_difference(name, key, history, wanted[key], quantity) for key, history in own if key in wanted]
+        found += _with_one_twin(lines)
     if not found:
         raise CaseError([f"{reference}: has no monitor in common with the runs to compare"])
     return found
+
+
+def _with_one_twin(lines: list[Difference]) -> list[Difference]:
+    """The lines of a run, with one in place of those of all twins."""
+    twins = [line for line in lines if line.monitor.endswith(FREE_FIELD)]
+    if not twins:
+        return lines
+    worst = max(twins, key=lambda line: line.rms)
+    name = worst.monitor if len(twins) == 1 else f"{worst.monitor}, the worst of {len(twins)}"
+    return [line for line in lines if line not in twins] + [replace(worst, monitor=name)]
 
 
 def _difference(run: str, monitor: str, history: History, reference: History, quantity: Quantity) -> Difference:
     """One monitor's difference."""
     if len(history.time) == 0 or len(reference.time) == 0:
         raise CaseError([f"monitor {monitor}: has no samples, as a run was stopped at its start"])
-    column = int(np.argmax(np.abs(reference.values[:, :2]).max(axis=0)))
-    values, expected = on_common_clock(
-        history.time, history.values[:, column], reference.time, reference.values[:, column]
-    )
+    values, expected = on_common_clock(history.time, history.values[:, :2], reference.time, reference.values[:, :2])
     if not expected.any():
         raise CaseError([f"monitor {monitor}: its {quantity} is zero in the reference"])
     rms, peak = relative_errors(values, expected)
+    sizes = np.sqrt(np.mean(expected**2, axis=0))
+    column = int(np.argmax(np.abs(expected).max(axis=0)))
+    of_twin = monitor.endswith(FREE_FIELD)  # columns beside different boxes begin elsewhere, only heights count
+    places = [each.position * [not of_twin, 1.0] for each in (history, reference)]
     return Difference(
         run=run,
         monitor=monitor,
-        component=COMPONENTS[column],
         rms=rms,
         peak=peak,
-        last=float(values[-1]),
-        reference_last=float(expected[-1]),
+        along={
+            COMPONENTS[k]: relative_errors(values[:, k], expected[:, k])[0]
+            for k in range(expected.shape[1])
+            if sizes[k] >= SMALL * np.hypot.reduce(sizes)
+        },
+        component=COMPONENTS[column],
+        last=float(values[-1, column]),
+        reference_last=float(expected[-1, column]),
         unit=UNITS[quantity][column],
-        place=history.wanted,
-        reference_place=reference.wanted,
+        apart=distance(*places),
+        place=history.place,
+        reference_place=reference.place,
     )
 
 
@@ -78,14 +106,24 @@ def on_common_clock(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Two histories at the same times (m,): those of the second one, up to the end of the shorter one.
 
-    time (k,) s and values (k,) of the first one, which is interpolated; wanted_time (l,) and wanted (l,) of the second.
+    time (k,) s and values (k,) or (k, c) of the first one, which is interpolated; wanted_time (l,) and wanted (l,) or
+    (l, c) of the second.
     """
     shared = wanted_time <= min(time[-1], wanted_time[-1])
-    return np.interp(wanted_time[shared], time, values), wanted[shared]
+    columns = [np.interp(wanted_time[shared], time, column) for column in np.atleast_2d(values.T)]
+    return np.array(columns).T.reshape(-1, *values.shape[1:]), wanted[shared]
 
 
 def relative_errors(values: np.ndarray, wanted: np.ndarray) -> tuple[float, float]:
-    """RMS of the difference over that of the wanted values (m,), and largest difference over their peak."""
-    error = values - wanted
-    rms = float(np.sqrt(np.sum(error**2) / np.sum(wanted**2)))
-    return rms, float(np.abs(error).max() / np.abs(wanted).max())
+    """RMS of the difference over that of the wanted values, and largest difference over their peak.
+
+    values, wanted : (m,), or vectors (m, c), whose lengths count.
+    """
+    error, size = (np.hypot.reduce(each.reshape(len(each), -1), axis=1) for each in (values - wanted, wanted))
+    return float(np.sqrt(np.sum(error**2) / np.sum(size**2))), float(error.max() / size.max())
+
+
+def distance(place: Sequence[float] | np.ndarray, other: Sequence[float] | np.ndarray) -> float:
+    """Distance (m) of two places (2,) m; 0 if it is of rounding only."""
+    apart = float(np.hypot(*np.subtract(place, other)))
+    return apart if apart > SAME_PLACE * float(np.hypot(*other)) else 0.0

@@ -36,12 +36,13 @@ SOURCES = {"acceleration": "velocity"}
 class History:
     """The record of one monitor in one run.
 
-    time (k,) s; values in `UNITS`, of a motion (k, 3), of a stress along x (k, 1); the position of its particle, and
-    the position given in the case, as text.
+    time (k,) s; values in `UNITS`, of a motion (k, 3), of a stress along x (k, 1); position (2,) m of its particle;
+    this and the position given in the case, as text.
     """
 
     time: np.ndarray
     values: np.ndarray
+    position: np.ndarray
     place: str
     wanted: str
 
@@ -77,4 +78,5 @@ def _read(group: h5py.Group, quantity: Quantity, size: list[float]) -> History:
     if quantity in SOURCES:
         values = np.gradient(values, time, axis=0)
     place, wanted = (place_in_words(group.attrs[name], size) for name in ("position", "wanted"))
-    return History(time, values.reshape(len(time), -1) / SCALES[quantity], place, wanted)
+    position = np.array(group.attrs["position"], dtype=np.float64)
+    return History(time, values.reshape(len(time), -1) / SCALES[quantity], position, place, wanted)

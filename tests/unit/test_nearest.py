@@ -1,4 +1,4 @@
-"""Which of the points that are equally near is taken: the same one wherever it is numbered and however it is rounded."""
+"""Of points that are equally near the same one is taken, however they are numbered and rounded."""
 
 import numpy as np
 import pytest

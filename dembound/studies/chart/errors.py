@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.results.compare import on_common_clock, relative_errors
+from dembound.results.compare import distance, on_common_clock, relative_errors
 from dembound.results.histories import Quantity
 from dembound.results.reader import COMPONENTS
 from dembound.studies.chart.measure import Gauge, Gauges, Outcome
@@ -19,9 +19,6 @@ QUIET = 0.01
 
 Relative errors there are those of a small residual motion.
 """
-
-SAME_PLACE = 1e-9
-"""Distance of two particles over that from the origin up to which they are at the same place, but for rounding."""
 
 Component = Literal["x", "y"]
 
@@ -113,8 +110,7 @@ def _error(name: str, found: Gauge, expected: Gauge, column: int, wanted: Wanted
     else:
         left, right = on_common_clock(*mine, *theirs)
     rms, peak = relative_errors(left, right)
-    apart = float(np.hypot(*(found.position - expected.position)))
-    apart = apart if apart > SAME_PLACE * float(np.hypot(*expected.position)) else 0.0
+    apart = distance(found.position, expected.position)
     component = "stress" if wanted.quantity == "stress" else COMPONENTS[column]
     return MonitorError(name, component, rms, peak, apart)
 

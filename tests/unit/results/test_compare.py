@@ -11,32 +11,64 @@ TIME = np.linspace(0.0, 1.0, 101)
 
 
 def record(path, name, histories, place=(0.0, 0.0)):
-    """A record with histories of motion along x and y, name -> (time, x, y), of monitors in one place."""
+    """A record with histories of motion along x and y, name -> (time, x, y); place : of all, or by name."""
     with h5py.File(path, "w") as file:
         file.attrs["name"], file.attrs["size"] = name, (10.0, 5.0)
         for monitor, (time, x, y) in histories.items():
             group = file.create_group(f"histories/{monitor}")
             group["time"] = time
             group["velocity"] = np.column_stack([x, y, np.zeros_like(time)])
-            group.attrs["wanted"] = group.attrs["position"] = place
+            group.attrs["wanted"] = (0.0, 0.0)
+            group.attrs["position"] = place[monitor] if isinstance(place, dict) else place
     return path
 
 
-def test_differences_are_those_of_the_liveliest_component(tmp_path):
+def test_differences_are_those_of_vectors_and_of_their_components(tmp_path):
     nothing = np.zeros_like(TIME)
-    reference = record(tmp_path / "a.h5", "a", {"P": (TIME, nothing + 0.1, TIME), "Q": (TIME, TIME, nothing)})
-    # twice as finely sampled and half as long; x is wrong too, but y moves most
+    reference = record(tmp_path / "a.h5", "a", {"P": (TIME, 0.75 * TIME, TIME), "Q": (TIME, TIME, nothing)})
+    # twice as finely sampled and half as long
     time = np.linspace(0.0, 0.5, 101)
-    histories = {"P": (time, np.zeros_like(time), 1.1 * time), "R": (time, time, time)}
-    run = record(tmp_path / "b.h5", "b", histories, (1.0, 2.0))
+    histories = {"P": (time, 0.75 * 1.2 * time, 1.1 * time), "R": (time, time, time)}
+    run = record(tmp_path / "b.h5", "b", histories, (3.0, 4.0))
 
     (found,) = compare(reference, [run], "velocity")
 
     assert (found.run, found.monitor, found.component) == ("b", "P", "y")
-    assert found.rms == pytest.approx(0.1)
-    assert found.peak == pytest.approx(0.1)
+    assert found.along == {"x": pytest.approx(0.2), "y": pytest.approx(0.1)}
+    assert found.rms == pytest.approx(np.hypot(0.15, 0.1) / np.hypot(0.75, 1.0))
+    assert found.peak == pytest.approx(found.rms)
     assert (found.last, found.reference_last) == (pytest.approx(0.55), pytest.approx(0.5))
-    assert (found.unit, found.place, found.reference_place) == ("m/s", "(1.00, 2.00) m", "(0.00, 0.00) m")
+    assert (found.unit, found.place, found.reference_place) == ("m/s", "(3.00, 4.00) m", "(0.00, 0.00) m")
+    assert found.apart == pytest.approx(5.0)
+
+
+def test_a_component_that_the_reference_hardly_has_counts_in_the_vector_alone(tmp_path):
+    wave = np.sin(6.0 * TIME)
+    reference = record(tmp_path / "a.h5", "a", {"P": (TIME, 1e-9 * wave, wave)}, (1.0, 2.0))
+    run = record(tmp_path / "b.h5", "b", {"P": (TIME, 0.3 * wave, wave)}, (1.0, 2.0 + 1e-12))
+
+    (found,) = compare(reference, [run], "velocity")
+
+    assert found.along == {"y": 0.0}
+    assert found.rms == pytest.approx(0.3)
+    assert found.apart == 0.0  # rounding
+
+
+def test_all_twins_share_one_line_for_each_run(tmp_path):
+    """That of the worst, beside columns that stand elsewhere."""
+    names = ["P", "P.free_field", "Q", "Q.free_field"]
+    still = np.zeros_like(TIME)
+    reference = record(tmp_path / "a.h5", "a", {name: (TIME, TIME, still) for name in names}, (-5.0, 2.0))
+    worse = {name: (TIME, (1.0 + 0.1 * k) * TIME, still) for k, name in enumerate(names)}
+    places = {"P": (-5.0, 2.0), "P.free_field": (-9.0, 2.0), "Q": (-5.0, 2.0), "Q.free_field": (-9.0, 2.5)}
+    runs = [record(tmp_path / f"{name}.h5", name, worse, places) for name in "bc"]
+
+    found = compare(reference, runs, "velocity")
+
+    expected = ["P", "Q", "Q.free_field, the worst of 2"]
+    assert [(line.run, line.monitor) for line in found] == [(run, name) for run in "bc" for name in expected]
+    assert found[2].rms == pytest.approx(0.3)
+    assert found[2].apart == pytest.approx(0.5)  # in height
 
 
 def test_runs_without_a_common_monitor_are_refused(tmp_path):
@@ -63,5 +95,6 @@ def test_stresses_are_compared_in_megapascals(spalled_run, tmp_path):
     (found,) = compare(spalled_run, [run], "stress")
 
     assert (found.component, found.unit, found.place) == ("x", "MPa", "0.525 m")
+    assert found.along == {"x": pytest.approx(0.25)}
     assert (found.rms, found.peak) == (pytest.approx(0.25), pytest.approx(0.25))
     assert (found.last, found.reference_last) == (pytest.approx(last), pytest.approx(last / 1.25))
