@@ -116,7 +116,12 @@ def _estimated(case: Case, folder: Path) -> Results:
 
 
 def estimate(
-    results: Path | str, budget: float | None = None, *, second_seed: bool = False, threads: int | None = None
+    results: Path | str,
+    budget: float | None = None,
+    *,
+    second_seed: bool = False,
+    repeat: bool = False,
+    threads: int | None = None,
 ) -> Estimate:
     """Estimate the errors of a complete run, as ``dembound estimate`` does; see docs/estimates.md.
 
@@ -124,12 +129,14 @@ def estimate(
     ----------
     results : folder of the results, to which the estimate is added. budget : share of the run's work that may be spent;
     by default 0.1, and that of less than a second in any case. second_seed : whether one more run with another random
-    packing is made. threads : as for `run`.
+    packing is made. repeat : whether a run with cracks is made once more with 0.98 of its time step. threads : as for
+    `run`.
 
-    Raises CaseError for a run without monitors, or that is not complete, and a second seed of a packing without one.
+    Raises CaseError for a run with neither monitors nor more than ten cracks, or that is not complete, a second seed of
+    a packing without one, and a repetition of a run without cracks.
     """
     with _threads(threads):
-        return estimate_results(Path(results), budget, second_seed)
+        return estimate_results(Path(results), budget, second_seed, repeat)
 
 
 def resume(

@@ -49,6 +49,18 @@ PUSHED: Tables = {
 }
 """A lattice of 20 × 5 disks in P and S motion."""
 
+TORN: Tables = {
+    "material.law": "linearpbond",
+    "material.pb_ten": 5e5,
+    "material.pb_coh": 5e5,
+    "wave.push.amplitude": -1.0,
+    "wave.push.start": 0.002,
+    "wave.shake.amplitude": 2.0,
+    "wave.shake.start": 0.002,
+    "output.pictures": False,
+}
+"""Changes of `PUSHED` by which its end is torn off, but not at once: more than ten bonds break."""
+
 GRAINS: Tables = {
     "packing": {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]},
     "material": PUSHED["material"],

@@ -27,11 +27,18 @@ SecondSeed = Annotated[
 ]
 
 
+Repeat = Annotated[
+    bool,
+    typer.Option("--repeat", help="Run once more with 0.98 of the time step: how much of the cracks is chance."),
+]
+
+
 @app.command("estimate", rich_help_panel="Results")
 def estimate(
     results: Annotated[list[Path], typer.Argument(metavar="RESULTS...", help="Folders of results of complete runs.")],
     budget: Budget = None,
     second_seed: SecondSeed = False,
+    repeat: Repeat = False,
     threads: Threads = None,
 ) -> None:
     """Estimate how wrong runs are: by their sides, their grid and their time step, at every monitor.
@@ -46,7 +53,7 @@ def estimate(
     for path in results:
         try:
             folder = with_name(results_file(path)).parent
-            _show(folder, estimate_results(folder, budget, second_seed))
+            _show(folder, estimate_results(folder, budget, second_seed, repeat))
         except CaseError as error:
             problems += [line for line in str(error).splitlines() if line not in problems]
     if problems:

@@ -11,6 +11,7 @@ import numpy as np
 
 from dembound.results.estimates import in_words, split_in_words
 from dembound.studies.estimate.causes import QUANTITIES, SIDES, Cause, Causes, Recorded
+from dembound.studies.estimate.repeat import Repeat
 
 
 @dataclass(frozen=True)
@@ -21,12 +22,13 @@ class Estimate:
     ----------
     recorded : monitor -> what the run has recorded, up to the time from which on nothing is estimated.
     causes : what contributes to the error.
-    cpu_seconds : CPU time that it took, s.
+    cpu_seconds : CPU time that it took, s. repeat : the run once more with a smaller time step, if that was asked for.
     """
 
     recorded: Mapping[str, Recorded]
     causes: Causes
     cpu_seconds: float = 0.0
+    repeat: Repeat | None = None
 
     def shares(self, monitor: str, quantity: str) -> dict[str, float]:
         """RMS errors over the RMS of the recorded values, by cause; only those that are known."""
@@ -96,6 +98,7 @@ class Estimate:
             "found": how,
             "not_estimated": list(self.causes.missing),
             "notes": list(self.causes.notes),
+            "repeat": None if self.repeat is None else self.repeat.summary(),
             "cost": self.causes.cost,
             "cpu_seconds": self.cpu_seconds,
         }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,7 @@ from dembound.running.recorded import recorded_case
 from dembound.studies.estimate.causes import Causes, Recorded
 from dembound.studies.estimate.estimate import Estimate
 from dembound.studies.estimate.of_run import causes_of
+from dembound.studies.estimate.repeat import Cracked, repeated
 
 UNITS = {"velocity": "m/s", "displacement": "m", "stress": "Pa"}
 """Units of the histories."""
@@ -33,20 +34,24 @@ LEAST_SAMPLES = 8
 """Fewest samples of a history whose error is estimated."""
 
 
-def estimate_results(folder: Path, budget: float | None = None, second_seed: bool = False) -> Estimate:
+def estimate_results(
+    folder: Path, budget: float | None = None, second_seed: bool = False, repeat: bool = False
+) -> Estimate:
     """Estimate the error of a complete run; writes ``estimate.h5`` and the entry ``error_estimate`` of its summary.
 
     Parameters
     ----------
     folder : of the results. budget : share of the run's work that may be spent; None: see `causes_of`. second_seed :
-    whether a second run with another random packing is made, to find how much depends on it.
+    whether a second run with another random packing is made, to find how much depends on it. repeat : whether a run
+    with cracks is repeated with a smaller time step, to find how much of them is one draw of many.
 
-    Raises CaseError for a run that is not complete or has no monitors, a budget that is none, or a second seed of a
-    packing that has none, and RecordError for a record that cannot be read.
+    Raises CaseError for a run that is not complete, that has neither monitors nor many cracks, a budget that is none, a
+    second seed of a packing that has none, or a repetition without cracks, and RecordError for a record that cannot be
+    read.
     """
     clock = Clock(time.process_time)
     with clock.with_compiling(), clock.of("estimate"):
-        found, summary = _estimated(folder, budget, second_seed)
+        found, summary = _estimated(folder, budget, second_seed, repeat)
     found = replace(found, cpu_seconds=clock.seconds["estimate"])
     _write(found, folder / FILE)
     with replacing(folder / "summary.json") as part:
@@ -54,26 +59,44 @@ def estimate_results(folder: Path, budget: float | None = None, second_seed: boo
     return found
 
 
-def _estimated(folder: Path, budget: float | None, second_seed: bool) -> tuple[Estimate, dict[str, Any]]:
+def _estimated(folder: Path, budget: float | None, second_seed: bool, repeat: bool) -> tuple[Estimate, dict[str, Any]]:
     """The estimate, and the summary of the run."""
     require_budget(budget)
     record = folder / "run.h5"
     with open_record(record) as file:
         require_run(file)
     summary = _summary(folder)
-    case, until = _until(recorded_case(record), summary), _first_break(record)
-    recorded = _recorded(record, until)
-    broken = [] if case.run.duration < until else [_broken(until)]
-    steps_in_time = min(1.0, until / case.run.duration)
-    case = replace(case, run=case.run.model_copy(update={"duration": case.run.duration * steps_in_time}))
+    case, cracked = _until(recorded_case(record), summary), Cracked.of(record)
+    recorded, lack = _recorded(record, cracked.first)
+    one_draw = list(cracked.one_draw())
+    if lack and (second_seed or not (repeat or one_draw)):
+        raise CaseError([f"{record}: {lack}"])
     work = summary["particle_steps_per_second"] * summary["seconds"]["step"]
+    again = repeated(case, record, cracked) if repeat else None
+    said = Causes([], [], one_draw) if again is None else Causes([], [], again.lines(), again.cost)
+    causes = Causes([], [lack]) if lack else _causes(case, recorded, cracked.first, summary, work, budget, second_seed)
+    return Estimate(recorded, causes + said, repeat=again), summary
+
+
+def _causes(
+    case: Case,
+    recorded: Mapping[str, Recorded],
+    until: float,
+    summary: Mapping[str, Any],
+    work: float,
+    budget: float | None,
+    second_seed: bool,
+) -> Causes:
+    """The causes of the error of a run up to its first break, at `until` (s); work : of the run."""
+    broken = [] if case.run.duration < until else [_broken(until)]
+    case = replace(case, run=case.run.model_copy(update={"duration": min(case.run.duration, until)}))
     causes = causes_of(case, recorded, summary["time_step"], work, budget)
     if second_seed:
         from dembound.studies.estimate.packing import cause_of_packing
 
         causes += cause_of_packing(case, recorded, work)
-    found = Estimate(recorded, causes + Causes([], broken, list(_law(case, summary))))
-    return replace(found, causes=found.causes + Causes([], list(_at_rest(found)))), summary
+    causes += Causes([], broken, list(_law(case, summary)))
+    return causes + Causes([], list(_at_rest(Estimate(recorded, causes))))
 
 
 def require_budget(budget: float | None) -> None:
@@ -89,9 +112,11 @@ def estimate_if_asked(case: Case, folder: Path) -> str:
     """
     if case.output.estimate:
         try:
-            estimate_results(folder)
+            found = estimate_results(folder)
         except DemboundError as error:
             return f"errors are not estimated: {'; '.join(str(error).splitlines())}"
+        if not found.recorded:
+            return f"errors are not estimated: {'; '.join(found.causes.missing)}"
     return ""
 
 
@@ -117,13 +142,6 @@ def _until(case: Case, summary: Mapping[str, Any]) -> Case:
     return replace(case, run=case.run.model_copy(update={"duration": summary["duration"]}))
 
 
-def _first_break(record: Path) -> float:
-    """The time (s) of the first broken bond, infinite without one; those of a static stage do not count."""
-    with open_record(record) as file:
-        times = file["cracks/time"][:] if "cracks" in file else np.zeros(0)
-    return float(times[times > 0.0].min(initial=np.inf))
-
-
 def _broken(first: float) -> str:
     """That nothing is known once bonds have broken, first at a time (s)."""
     return f"motion after {first:.4g} s, when the first bond broke"
@@ -142,9 +160,10 @@ def _law(case: Case, summary: Mapping[str, Any]) -> Iterator[str]:
         yield f"the elastic law holds up to {limit['factor']:.3g} times these waves, then {limit['limit']}"
 
 
-def _recorded(record: Path, until: float) -> dict[str, Recorded]:
-    """What the monitors have recorded up to a time (s); raises CaseError where that is nothing, or too little."""
-    found, most = {}, 0
+def _recorded(record: Path, until: float) -> tuple[dict[str, Recorded], str]:
+    """What the monitors have recorded up to a time (s); where that is nothing, or too little, why."""
+    found: dict[str, Recorded] = {}
+    samples = []
     with open_record(record) as file:
         for name, group in file.get("histories", {}).items():
             if name.endswith(FREE_FIELD):
@@ -155,35 +174,39 @@ def _recorded(record: Path, until: float) -> dict[str, Recorded]:
                     times, motion = history_of(group, quantity)
                     kept = times < until
                     values[quantity] = motion.reshape(len(motion), -1)[kept][:, :2]
-            most = max(most, int(np.count_nonzero(kept)) if values else 0)
-            if values and np.count_nonzero(kept) >= LEAST_SAMPLES:
+            samples.append(int(np.count_nonzero(kept)) if values else 0)
+            if samples[-1] >= LEAST_SAMPLES:
                 place = np.atleast_1d(group.attrs["position"])
                 found[name] = Recorded(np.array([*place, 0.0][:2]), times[kept], values)
-    if not found:
-        raise CaseError([f"{record}: {_too_little(most, until)}"])
-    return found
+    return found, "" if found else _too_little(samples, until)
 
 
-def _too_little(samples: int, until: float) -> str:
-    """Why histories with so many samples up to a time (s) are not enough."""
-    if samples == 0 and math.isinf(until):
+def _too_little(samples: Sequence[int], until: float) -> str:
+    """Why histories of monitors, each with so many samples up to a time (s), are not enough."""
+    most = max(samples, default=0)
+    if not samples or (most == 0 and math.isinf(until)):
         return "has no monitor whose error could be estimated"
     needed = f"an estimate needs {LEAST_SAMPLES}"
     if math.isfinite(until):
-        return f"the first bond broke at {until:.4g} s, after {samples} samples of the monitors; {needed}"
-    return f"has {samples} samples of its monitors (output.history_interval); {needed}"
+        return f"the first bond broke at {until:.4g} s, after {most} samples of the monitors; {needed}"
+    return f"has {most} samples of its monitors (output.history_interval); {needed}"
 
 
 def _write(found: Estimate, path: Path) -> None:
-    """Write the histories of the errors, and those without the error of the sides where it is known."""
+    """Write the histories of errors, those without that of the sides where it is known, and the cracks of a repeat."""
     import h5py
 
     with replacing(path) as part, h5py.File(part, "w") as file:
+        file.create_group("histories")
         for name, recorded in found.recorded.items():
             group = file.create_group(f"histories/{name}")
             write(group, "time", recorded.time, "s")
             for quantity in found.quantities(name):
                 _write_quantity(group, found, name, quantity)
+        if found.repeat is not None:
+            group = file.create_group("repeat")
+            write(group, "time", found.repeat.other.times, "s")
+            write(group, "position", found.repeat.other.places, "m")
 
 
 def _write_quantity(group: Any, found: Estimate, name: str, quantity: str) -> None:

@@ -4,7 +4,7 @@ import json
 
 import h5py
 import numpy as np
-from small_cases import PUSHED, small
+from small_cases import PUSHED, TORN, small
 
 LOOSE = {"boundary.right.beta_p": 0.5, "boundary.right.beta_s": 0.5, "run.duration": 0.03}
 """Dashpots that return a third of waves, and time for it."""
@@ -63,3 +63,18 @@ def test_what_cannot_be_estimated_is_one_line(dembound, tmp_path):
     assert answer.code == 2
     assert first == "nowhere: contains no results, must be a folder with run.h5 or calibration.h5"
     assert second.endswith("run.h5: has no monitor whose error could be estimated")
+
+
+def test_a_run_with_cracks_is_repeated_on_request(dembound, tmp_path):
+    (tmp_path / "torn.toml").write_text(small(PUSHED, "torn", TORN).text)
+    assert "bonds break: which ones" in dembound("run", "torn.toml", "--estimate").out
+    answer = dembound("estimate", "results/torn", "--repeat")
+    assert answer.code == 0, answer.err
+    said = " ".join(answer.out.split())
+    assert "torn: repeated at 0.98 of the time step: " in said
+    assert "bonds break: which ones" not in said
+    written(tmp_path, **{"output.pictures": False})
+    dembound("run", "bar.toml")
+    answer = dembound("estimate", "results/bar", "--repeat")
+    assert answer.code == 2
+    assert answer.err.strip().endswith("run.h5: has no broken bonds that --repeat could compare")
