@@ -157,10 +157,11 @@ def compare_histories(
 ) -> None:
     """Print the differences between the histories of runs and those of a reference, monitor by monitor.
 
-    RMS is that of the difference in % of the reference's, of the vectors and of each component; largest is the largest
-    difference in % of the peak. Of all twins in a free-field column the worst is shown.
+    RMS is that of the difference of vectors in % of the reference's, largest the largest difference in % of its peak.
 
     End and reference are the values of both at the end, along the component with the largest motion.
+
+    All twins in a free-field column have one line, that of the one with the largest RMS.
     """
     from dembound.results.compare import compare
 

@@ -6,6 +6,9 @@ from typing import Any
 from dembound.disks.load_factor import load_factor_in_words
 from dembound.results.reader import laws_in_words
 
+MANY = 10
+"""Bonds broken in a run up to which it is not said to be one draw of many."""
+
 
 def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
     """Reductions, the static stage, changes of law, broken bonds and the energy error."""
@@ -33,7 +36,8 @@ def _broken(cracks: Mapping[str, int], static: Mapping[str, Any] | None) -> list
     stages = [] if static is None else [each["cracks"] for each in (static, static["before"]) if each is not None]
     if [count] == stages:
         return [f"bonds broke only while settling {modes}"]
-    return [f"{count:,} bonds broke{' in all' if any(stages) else ''} {modes}"]
+    draw = ", one draw of many: see dembound estimate --repeat" if count - sum(stages) > MANY else ""
+    return [f"{count:,} bonds broke{' in all' if any(stages) else ''} {modes}{draw}"]
 
 
 def _settled(static: Mapping[str, Any], words: str) -> list[str]:

@@ -283,7 +283,7 @@ def test_a_run_ends_by_telling_what_happened(dembound, written, tmp_path) -> Non
     assert laws == f"elastic law to {found['laws'][1]['from']:.3g} s, then linearpbond"
     count = found["cracks"]["tension"]
     assert count > 0
-    assert cracks == f"{count} bonds broke ({count} tension, 0 shear)"
+    assert cracks.split(", one draw")[0] == f"{count} bonds broke ({count} tension, 0 shear)"
     assert energy == f"energy closes to {100.0 * found['energy']['relative_error']:.2g} %"
 
 

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile import Case
+from dembound.disks.outcome import MANY
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
 from dembound.results.compare import on_common_clock, relative_errors
@@ -23,9 +24,6 @@ from dembound.results.histories import FREE_FIELD, Quantity, read_histories
 from dembound.results.reader import energy_of, is_line, open_record, text_of
 from dembound.running import run_case
 from dembound.studies.chart.finer import DROPPED
-
-MANY = 10
-"""Cracks up to which a run is not said to be one draw of many."""
 
 SHORTER = 0.98
 """Time step of the second run over that of the first: no simple ratio, and its own error hardly differs."""
