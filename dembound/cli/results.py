@@ -169,15 +169,15 @@ def compare_histories(
     unit = found[0].unit
     components = list(dict.fromkeys(name for line in found for name in line.along))
     parts = components if len(components) > 1 else []
-    heads = ("RMS (%)", *(f"{name} (%)" for name in parts), "largest (%)", "along", f"end ({unit})", "reference")
+    heads = ("RMS (%)", *parts, "largest (%)", f"end ({unit})", "reference")
     names = (Column(head, overflow="fold") for head in ("run", "monitor"))
     numbers = (Column(head, no_wrap=True) for head in heads)
     table = compact_table(*names, *numbers, title=f"{quantity.value} beside {reference}")
     for line in found:
         along = (f"{100.0 * line.along[name]:.3f}" if name in line.along else "–" for name in parts)
-        ends = f"{line.last:.4g}", f"{line.reference_last:.4g}"
+        ends = f"{line.component} {line.last:.4g}", f"{line.reference_last:.4g}"
         rms, peak = f"{100.0 * line.rms:.3f}", f"{100.0 * line.peak:.3f}"
-        table.add_row(line.run, line.monitor, rms, *along, peak, line.component, *ends)
+        table.add_row(line.run, line.monitor, rms, *along, peak, *ends)
     out.print(table)
     for line in found:
         if line.apart > 0.0:

@@ -65,7 +65,7 @@ def _with_one_twin(lines: list[Difference]) -> list[Difference]:
     if not twins:
         return lines
     worst = max(twins, key=lambda line: line.rms)
-    name = worst.monitor if len(twins) == 1 else f"{worst.monitor}, the worst of {len(twins)}"
+    name = worst.monitor if len(twins) == 1 else f"*{FREE_FIELD} ({len(twins)})"
     return [line for line in lines if line not in twins] + [replace(worst, monitor=name)]
 
 

@@ -65,7 +65,7 @@ def test_all_twins_share_one_line_for_each_run(tmp_path):
 
     found = compare(reference, runs, "velocity")
 
-    expected = ["P", "Q", "Q.free_field, the worst of 2"]
+    expected = ["P", "Q", "*.free_field (2)"]
     assert [(line.run, line.monitor) for line in found] == [(run, name) for run in "bc" for name in expected]
     assert found[2].rms == pytest.approx(0.3)
     assert found[2].apart == pytest.approx(0.5)  # in height
