@@ -213,3 +213,22 @@ def test_monitors_of_the_other_side_are_shown_with_their_signs(scene) -> None:
     assert half.probes.tolist() == [half.monitors["l"]] * 2
     assert half.observed(record, np.zeros(1))[0, 0].tolist() == [1.0] * 6
     assert half.observed(record, np.zeros(1))[0, 1].tolist() == [-1.0, 1.0, -1.0] * 2
+
+
+@pytest.mark.parametrize("width", [EVEN, ODD])
+def test_a_monitor_between_disks_has_the_same_disk_in_half_of_them(scene, width) -> None:
+    """Places equally near to two or four disks, also on the mirror line: the motion is that of the whole scene's."""
+    x, y = np.meshgrid(np.arange(0.5, width, 0.5), [0.5, 1.0, 1.25])
+    places = [{"name": f"m{k}", "position": list(place)} for k, place in enumerate(zip(x.flat, y.flat, strict=True))]
+    whole = scene(width, {"monitor": places})
+    half = reduced(whole).scene
+    motion = np.random.default_rng(0).normal(size=(half.count, 3))
+    record = np.tile(motion[half.probes], 2)[None]
+
+    np.testing.assert_array_equal(
+        half.observed(record, np.zeros(1))[0, :, :3], half.widened("velocity", motion)[whole.probes]
+    )
+    taken = whole.positions[whole.probes]
+    np.testing.assert_allclose(taken, np.column_stack([x.flat, y.flat]) - [0.25, 0.0], atol=0.251)
+    assert (taken[:, 0] < x.flat).all()  # the left one
+    assert (taken[y.flat != 1.25, 1] < y.flat[y.flat != 1.25]).all()  # the lower one

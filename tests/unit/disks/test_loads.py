@@ -55,6 +55,8 @@ def test_a_position_means_the_nearest_disk(row: SimpleNamespace) -> None:
     nodes, forces = forces_of(Load(name="a", force=(7.0, 0.0), position=(2.6, 5.0)), row)
 
     assert (nodes.tolist(), forces.tolist()) == ([2], [[7.0, 0.0, 0.0]])
+    half_way = forces_of(Load(name="a", force=(7.0, 0.0), position=(2.5 + 1e-12, 5.0)), row)[0]
+    assert half_way.tolist() == [1]  # the left one, as for monitors
 
 
 def test_disks_centred_on_the_rim_of_a_region_are_in_it(row: SimpleNamespace) -> None:

@@ -31,7 +31,22 @@ def test_arrays_of_nodes_and_planes_are_those_of_their_ranges() -> None:
 
 
 @pytest.mark.parametrize(
-    ("place", "node"), [(0.0, 0), (9.7, 19), (9.8, 20), (10.1, 20), (10.2, 21), (17.6, 51), (17.9, 52), (20.25, 61)]
+    ("place", "node"),
+    [
+        (0.0, 0),
+        (0.25, 0),
+        (0.75, 1),
+        (0.75 + 1e-12, 1),
+        (10.125, 20),
+        (10.375, 21),
+        (9.7, 19),
+        (9.8, 20),
+        (10.1, 20),
+        (10.2, 21),
+        (17.6, 51),
+        (17.9, 52),
+        (20.25, 61),
+    ],
 )
 def test_a_place_is_that_of_the_nearest_node(place: float, node: int) -> None:
     assert ROD.nearest(place) == node

@@ -8,7 +8,7 @@ import pytest
 from dembound.errors import PackingError
 from dembound.packings import Square
 from dembound.packings.brick import Brick
-from dembound.packings.column import Seam, with_column
+from dembound.packings.column import Seam, nearest_in_column, with_column
 from dembound.packings.tiling import Assembly, tile
 
 OPEN = (False, False)
@@ -192,3 +192,14 @@ def test_beyond_all_four_sides_are_the_column_s_own_disks(brick, rows):
 def test_a_body_that_is_not_within_the_column_is_refused(dense_brick, rows):
     with pytest.raises(PackingError, match="have no twin in the free-field column"):
         with_column(dense_brick, tile(dense_brick, (2, 3), OPEN), BOTH, rows)
+
+
+@pytest.mark.parametrize("size", [1.0, 0.1, 1.0 / 3.0])
+def test_places_between_rows_have_the_lower_disk_of_the_column(size):
+    """However far away they are, where their coordinates are rounded otherwise."""
+    brick = Square(pattern="A", size=(2 * size, 9 * size), radius=0.5 * size).pack(1.0)
+    joint, _ = with_column(brick, tile(brick, (2, 9), (False, False)), ("left", "right"))
+    rows = np.arange(1, 9)
+    for away in (0.0, 77.5, -1e4):
+        found = nearest_in_column(joint, size * np.column_stack([np.full(8, away), rows]))
+        np.testing.assert_allclose(joint.positions[found, 1], size * (rows - 0.5), rtol=1e-12)
