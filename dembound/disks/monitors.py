@@ -18,7 +18,7 @@ import numpy as np
 
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.monitor import FREE_FIELD
-from dembound.casefile.disks.reach import reach
+from dembound.casefile.disks.reach import is_in, reach
 from dembound.disks.ground_waves import GroundWaves
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.surroundings import Surroundings
@@ -155,7 +155,8 @@ class _Around:
     def disk_at(self, position: tuple[float, float], own: np.ndarray) -> tuple[np.ndarray, int] | None:
         """Place (2,) m, and number in the brick, of the disk in the continuum nearest to a position (m).
 
-        None if `own` (2,) m, the nearest disk of the body, is nearer. There are none in layers and beyond free sides.
+        None if `own` (2,) m, the nearest disk of the body, is nearer. There are none in layers and beyond free sides,
+        and for places in the ground, or on its rim, none beyond, as there are none where disks fill all of it.
         """
         case, brick, of = self.case, self.brick, self.assembly
         begin = of.positions[self.first] - brick.positions[of.brick_particle[self.first]]
@@ -163,7 +164,10 @@ class _Around:
         tile = np.floor((np.array(position) - begin) / brick.size)
         tiles = tile + np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)])
         places = (begin + brick.size * tiles[:, None] + brick.positions).reshape(-1, 2)
-        left, bottom, right, top = reach(case.ground, case.packing, case.boundary)
+        in_ground = is_in((0.0, 0.0, *case.size), position)
+        left, bottom, right, top = (
+            (0.0, 0.0, *case.size) if in_ground else reach(case.ground, case.packing, case.boundary)
+        )
         refused = (places < (left, bottom)).any(axis=1) | (places > (right, top)).any(axis=1)
         refused |= ~self.outside.is_beyond(places) | (self._allowed(places) != places).any(axis=1)
         there = np.flatnonzero(~refused)

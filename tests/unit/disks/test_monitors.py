@@ -220,7 +220,7 @@ def test_the_same_disk_is_taken_in_every_box(pattern: str) -> None:
     beside = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right", "top")}
     beside["boundary.bottom"] = {"type": "outside", "wave_s": "pulse"}
     boxes = [([16.0, 12.0], [8.0, 4.0]), ([12.0, 8.0], [12.0, 8.0])]
-    places = between_contacts(every, [16.0, 12.0, 24.0, 16.0], 1.0)
+    places = between_contacts(every, [16.0, 12.0, 24.0, 16.0], 1.0) | {"rim": (0.0, 14.0), "corner": (40.0, 24.0)}
     expected = scene_of(places, ground | {"packing.size": [40.0, 24.0]}).monitored
     kinds = set()
     for origin, size in boxes:
