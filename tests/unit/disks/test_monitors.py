@@ -53,7 +53,8 @@ def moved(scene: DiskScene, motion: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def test_a_monitor_beside_the_body_stands_for_the_disk_of_the_lattice_there() -> None:
-    scene = scene_of({"in": (0.3, 3.9), "left": (-0.3, 3.9), "low": (9.1, -1.2), "rim": (8.0, 2.1), "at": (-3.99, 4.0)})
+    rims = {"rim": (8.0, 2.1), "corner": (0.0, 0.0)}
+    scene = scene_of({"in": (0.3, 3.9), "left": (-0.3, 3.9), "low": (9.1, -1.2), **rims, "at": (-3.99, 4.0)})
     places = scene.monitored
 
     assert list(scene.between) == ["left", "low", "at"]
@@ -64,6 +65,7 @@ def test_a_monitor_beside_the_body_stands_for_the_disk_of_the_lattice_there() ->
     np.testing.assert_allclose(places["left"], [-0.25, 3.75], atol=1e-12)
     np.testing.assert_allclose(places["low"], [9.25, -1.25], atol=1e-12)
     assert places["rim"][0] == 7.75  # its sides belong to the body
+    assert places["corner"].tolist() == [0.25, 0.25]
     np.testing.assert_allclose(places["at"], [-3.75, 3.75], atol=1e-12)  # neither above the surface nor in the layer
 
 
@@ -220,7 +222,7 @@ def test_the_same_disk_is_taken_in_every_box(pattern: str) -> None:
     beside = {f"boundary.{side}": {"type": "outside"} for side in ("left", "right", "top")}
     beside["boundary.bottom"] = {"type": "outside", "wave_s": "pulse"}
     boxes = [([16.0, 12.0], [8.0, 4.0]), ([12.0, 8.0], [12.0, 8.0])]
-    places = between_contacts(every, [16.0, 12.0, 24.0, 16.0], 1.0) | {"rim": (0.0, 14.0), "corner": (40.0, 24.0)}
+    places = between_contacts(every, [16.0, 12.0, 24.0, 16.0], 1.0)
     expected = scene_of(places, ground | {"packing.size": [40.0, 24.0]}).monitored
     kinds = set()
     for origin, size in boxes:
