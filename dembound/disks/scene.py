@@ -222,7 +222,9 @@ def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> Bounda
         between = ground.law.stiffness(ground.moduli, 0.5 * diameters, 0.5 * diameters, diameters)
         return between.normal, between.bending
 
-    return BoundaryMedium(ground.density, p_speed, s_speed, mirror_stiffness)
+    return BoundaryMedium(
+        ground.density, p_speed, s_speed, mirror_stiffness, own_speeds=lambda: ground.wave_speeds(axis)
+    )
 
 
 def _supports(scene: DiskScene) -> Supports:

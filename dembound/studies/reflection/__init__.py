@@ -10,11 +10,12 @@ import numpy as np
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
+from dembound.disks.frequencies import frequencies_of
 from dembound.disks.matching import homogenised_beta
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
-from dembound.studies.reflection.arrivals import Arrival, arrivals_of, frequencies_of
+from dembound.studies.reflection.arrivals import Arrival, arrivals_of
 from dembound.studies.reflection.bricks import BrickInRow, end_of, end_scene
 from dembound.studies.reflection.continuum_end import ContinuumEnd, beside_elements
 from dembound.studies.reflection.meter import End, Meter, Reflections

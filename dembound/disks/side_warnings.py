@@ -1,0 +1,38 @@
+"""Warnings about sides that stand in for the ground beyond, and do so badly."""
+
+import math
+from collections.abc import Iterator
+
+from dembound.boundaries import Motion
+from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected
+from dembound.disks.frequencies import mean_frequency
+from dembound.disks.matching import factors_in, homogenised_beta, sent_back
+from dembound.disks.scene import DiskScene
+
+
+def side_warnings(scene: DiskScene) -> Iterator[str]:
+    """All of them, one line each."""
+    yield from _send_back(scene)
+
+
+def _send_back(scene: DiskScene) -> Iterator[str]:
+    """Dashpots and springs that send back much of plane waves along the side's normal, whoever chose their factors."""
+    sides = [side for side in scene.edges if scene.case.side(side).factors]
+    frequency = mean_frequency(scene.case) if sides else math.nan
+    for side in sides:
+        for motion, beta in factors_in(scene, side).items():
+            share = sent_back(scene, side, motion, frequency)
+            if share > TOO_MUCH:  # nan where the motion is held
+                yield f"boundary.{side}: {_reason(scene, side, motion, beta, share, frequency)}"
+
+
+def _reason(scene: DiskScene, side: str, motion: Motion, beta: float, share: float, frequency: float) -> str:
+    """What a side sends back, and why: its factor, or else its springs or disks."""
+    matched = homogenised_beta(scene, side, motion)
+    if abs(reflected(beta, matched)) > TOO_MUCH:
+        return poor_factor(motion, share, beta, matched, scene.case.side(side).waves.get(motion))
+    return (
+        f"sends back {100.0 * share:.0f} % of the amplitude of {motion.upper()} waves along its normal at their mean "
+        f"frequency, {frequency:.3g} Hz, as its springs hold; "
+        'take springs of a larger distance, or "outside"'
+    )
