@@ -3,8 +3,9 @@
 import math
 from collections.abc import Iterator
 
-from dembound.boundaries import Motion
+from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected
+from dembound.disks.beside_wave import taken_from_waves
 from dembound.disks.frequencies import mean_frequency
 from dembound.disks.matching import factors_in, homogenised_beta, sent_back
 from dembound.disks.scene import DiskScene
@@ -13,6 +14,11 @@ from dembound.disks.scene import DiskScene
 def side_warnings(scene: DiskScene) -> Iterator[str]:
     """All of them, one line each."""
     yield from _send_back(scene)
+    yield from _take_from_waves(scene)
+
+
+TAKEN = 0.1
+"""Share of a wave's velocity that sides along it may take without a warning; foreseen to within that."""
 
 
 def _send_back(scene: DiskScene) -> Iterator[str]:
@@ -36,3 +42,19 @@ def _reason(scene: DiskScene, side: str, motion: Motion, beta: float, share: flo
         f"frequency, {frequency:.3g} Hz, as its springs hold; "
         'take springs of a larger distance, or "outside"'
     )
+
+
+def _take_from_waves(scene: DiskScene) -> Iterator[str]:
+    """Dashpots and springs at sides along the wave of a driven side."""
+    for found in taken_from_waves(scene):
+        place, most = max(found.shares.items(), key=lambda each: each[1])
+        if most <= TAKEN:
+            continue
+        least = f" and {100.0 * min(found.shares.values()):.0f} % where least" if len(found.shares) > 1 else ""
+        sides = " and ".join(f"boundary.{side}" for side in found.sides)
+        upright = normal_axis(found.driven) == 1
+        cure = f'"free_field", or "outside" there and at {found.driven}' if upright else '"periodic"'
+        yield (
+            f"{sides}: hold the ground back along wave {' and '.join(found.waves)} from {found.driven} and take about "
+            f"{100.0 * most:.0f} % of it at {place}{least} (RMS of the velocity); take {cure}"
+        )

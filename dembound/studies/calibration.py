@@ -134,7 +134,7 @@ def calibrate(
     "impedance" solves the end's impedance relation for β0 and checks it; "ratio" multiplies β by
         M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised" takes β0 = (c_eff/c)·H/ΣD, that of
         "matched", from brick and side alone, without a run.
-    start : first β; by default the case's, where that is "matched" the strip's.
+    start : first β; by default the case's. Where that is "matched", β0 of the strip, and it is refined once at least.
     tolerance : ends when |M_out/M_in − 1| is below it.
     full : use the whole scene, with its own boundaries all around, instead of a strip.
     report : called after every pass.
@@ -165,6 +165,7 @@ def calibrate(
         shortened=[*shortened, *reduced(scene).scene.reduced, *left_out],
         particles=scene.count,
     )
+    foretold = start is None and table.factors[motion] == "matched"
     beta = factors_in(scene, side)[motion] if start is None else start
     if not 0.0 < beta < np.inf:
         raise CaseError([f"boundary.{side}.{found.factor}: is {beta:g}, must be above 0 to start a calibration"])
@@ -177,7 +178,7 @@ def calibrate(
         found.steps += steps
         if report is not None:
             report(found)
-        if abs(found.ratio[-1] - 1.0) < tolerance:
+        if abs(found.ratio[-1] - 1.0) < tolerance and not (foretold and len(found.beta) == 1):
             found.result = beta
             return found
         beta = _next_beta(found)
