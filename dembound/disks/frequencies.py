@@ -29,7 +29,7 @@ def frequencies_of(case: DiskCase, ground: PackedMaterial, count: int) -> np.nda
 def mean_frequency(case: DiskCase) -> float:
     """Mean frequency (Hz) of the energy of the case's waves and forces; nan without a spectrum of finite energy."""
     spectra = [choice.energies(signal) for signal in signals_of(case) if not choice.jumps(signal)]
-    means = [float(frequencies @ energy / energy.sum()) for frequencies, energy in spectra]
+    means = [float(frequencies @ energy / energy.sum()) for frequencies, energy in spectra if energy.sum() > 0.0]
     return sum(means) / len(means) if means else math.nan
 
 

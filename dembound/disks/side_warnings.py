@@ -7,7 +7,7 @@ from dembound.boundaries import Motion, normal_axis
 from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected
 from dembound.disks.beside_wave import taken_from_waves
 from dembound.disks.frequencies import mean_frequency
-from dembound.disks.matching import factors_in, homogenised_beta, sent_back
+from dembound.disks.matching import Held, factors_in, homogenised_beta, sent_back
 from dembound.disks.scene import DiskScene
 
 
@@ -37,10 +37,15 @@ def _reason(scene: DiskScene, side: str, motion: Motion, beta: float, share: flo
     matched = homogenised_beta(scene, side, motion)
     if abs(reflected(beta, matched)) > TOO_MUCH:
         return poor_factor(motion, share, beta, matched, scene.case.side(side).waves.get(motion))
+    springs = Held.of(scene, side).stiffness.any()
+    why = (
+        'as its springs hold; take springs of a larger distance, or "outside"'
+        if springs
+        else "as its disks are whole cells, large beside such waves; take smaller ones, or half_mass on regular sides"
+    )
     return (
         f"sends back {100.0 * share:.0f} % of the amplitude of {motion.upper()} waves along its normal at their mean "
-        f"frequency, {frequency:.3g} Hz, as its springs hold; "
-        'take springs of a larger distance, or "outside"'
+        f"frequency, {frequency:.3g} Hz, {why}"
     )
 
 

@@ -1,4 +1,4 @@
-"""What sides along a plane wave take from it is foreseen without a run; beside runs with a free field at these sides."""
+"""What sides along a plane wave take from it is foreseen without a run; beside runs with free fields at these sides."""
 
 import numpy as np
 import pytest

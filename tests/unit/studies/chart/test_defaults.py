@@ -13,7 +13,7 @@ from dembound.studies.choices import choices_of
 
 @pytest.mark.parametrize("name", names())
 def test_every_shipped_case_has_some(name: str, monkeypatch) -> None:
-    monkeypatch.setattr(chosen, "_homogenised_factors", lambda case: iter(()))  # they need the packing
+    monkeypatch.setattr(chosen, "_matched_factors", lambda case: iter(()))  # they need the packing
     case = load(folder() / f"{name}.toml")
     choices, _ = choices_of(case, defaults(case))
     assert len(choices) >= 4
@@ -44,7 +44,7 @@ def test_matched_factors_are_a_choice_where_others_are_given(bar) -> None:
 
 
 def test_rows_of_frames_are_coarsened_with_the_disks(monkeypatch) -> None:
-    monkeypatch.setattr(chosen, "_homogenised_factors", lambda case: iter(()))
+    monkeypatch.setattr(chosen, "_matched_factors", lambda case: iter(()))
     case = load(folder() / "zhou2018" / "long_bar_c.toml")
     (changes,) = (changes for changes in defaults(case).values() if changes.get("packing.radius") == 0.3125)
     assert changes["packing.edge_radius"] == 1.25 * case.packing.edge_radius
