@@ -82,6 +82,12 @@ class Boundary(Table):
             for motion, factor in self.factors.items()
         }
 
+    def with_numbers(self, edge: Edge, medium: BoundaryMedium) -> Self:
+        """The side with the factors β that it has at an edge as numbers."""
+        return self.model_copy(
+            update={f"beta_{motion}": beta for motion, beta in self.factors_at(edge, medium).items()}
+        )
+
     @property
     def is_artificial(self) -> bool:
         """Whether the side stands in for ground or rock beyond it, so that it may be farther away; by default not."""
