@@ -108,11 +108,15 @@ class Grid:
         weights[[0, -1]] *= 0.5
         return weights
 
-    def node_at(self, position: Sequence[float]) -> tuple[int, int]:
-        """The node next to a place (m) of the scene, and its row."""
-        place = np.array(position)[[0, 1] if self.axis == 1 else [1, 0]] - self.origin
-        across, along = np.clip(np.rint(place / self.spacing).astype(int), 0, self.cells)
-        return int(along * (self.cells[0] + 1) + across), int(along)
+    def around(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Nodes (m, 4) round places (m, 2) m of the scene, their weights (m, 4), and heights (m,) in elements."""
+        places = (positions[:, [0, 1] if self.axis == 1 else [1, 0]] - self.origin) / self.spacing
+        places = np.clip(places, 0.0, self.cells)
+        first = np.minimum(places.astype(int), self.cells - 1)
+        (x, y), row = (places - first).T, self.cells[0] + 1
+        nodes = (first @ [1, row])[:, None] + np.array([0, 1, row, row + 1])
+        weights = np.stack([(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y], axis=1)
+        return nodes, weights, places[:, 1]
 
     @property
     def time_step(self) -> float:
@@ -199,8 +203,13 @@ def undisturbed(grid: Grid, driven: str, incoming: np.ndarray, shifts: np.ndarra
     return Ground(u, v)
 
 
-def error_beside(grid: Grid, sides: Sequence[str], ground: Ground, nodes: Sequence[int], step: float) -> np.ndarray:
-    """Velocities (n, m, 2) at nodes (m,) that sides along the wave add to those of the undisturbed ground."""
+def error_beside(
+    grid: Grid, sides: Sequence[str], ground: Ground, nodes: np.ndarray, weights: np.ndarray, step: float
+) -> np.ndarray:
+    """Velocities (n, m, 2) that sides along the wave add to those of the undisturbed ground.
+
+    nodes, weights : (m, 4) of the places, see `Grid.around`.
+    """
     matrix, shape = _stiffness(grid), (grid.nodes, 2)
     mass, damping, springs, moves = (
         np.zeros((grid.nodes, 1)),
@@ -212,12 +221,12 @@ def error_beside(grid: Grid, sides: Sequence[str], ground: Ground, nodes: Sequen
     for corner in (numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, :-1], numbers[1:, 1:]):
         mass[corner.ravel()] += 0.25 * grid.density * float(np.prod(grid.spacing))
     for side, end in grid.ends.items():
-        row, weights = grid.row(side), grid.weights(side)
-        damping[row] += end.damping * weights
-        springs[row] += end.stiffness * weights
+        row = grid.row(side)
+        damping[row] += end.damping * grid.weights(side)
+        springs[row] += end.stiffness * grid.weights(side)
         moves[row] &= end.moves
     taken, kept = mass / step + 0.5 * damping, mass / step - 0.5 * damping
-    loads = _loads(grid, sides, ground)
+    loads, weights = _loads(grid, sides, ground), weights[:, :, None]
     found = np.zeros((len(ground.u), len(nodes), 2))
     now, speed = np.zeros(shape), np.zeros(shape)
     for n in range(len(found)):
@@ -226,7 +235,7 @@ def error_beside(grid: Grid, sides: Sequence[str], ground: Ground, nodes: Sequen
             force[grid.row(side)] += load[n]
         speed = np.where(moves, (kept * speed + force) / taken, 0.0)
         now += step * speed
-        found[n] = speed[list(nodes)]
+        found[n] = np.sum(weights * speed[nodes], axis=1)
     return found
 
 
@@ -272,9 +281,9 @@ def taken_from_waves(scene: DiskScene) -> Iterator[Taken]:
 def _shares(scene: DiskScene, driven: str, waves: Mapping[Motion, str], sides: Sequence[str]) -> dict[str, float]:
     """The shares at the monitors, without any in the middle of the body; empty where nothing moves."""
     case, grid = scene.case, Grid.of(scene, normal_axis(driven))
-    places = {f"monitor {monitor.name}": monitor.position for monitor in case.monitor}
     left, bottom, right, top = case.packing.box
-    places = places or {"the middle": (0.5 * (left + right), 0.5 * (bottom + top))}
+    places = {f"monitor {monitor.name}": np.array(scene.monitored[monitor.name]) for monitor in case.monitor}
+    places = places or {"the middle": 0.5 * np.array([left + right, bottom + top])}
     chosen = {motion: case.wave[name] for motion, name in waves.items()}
     start, step = min(wave.start for wave in chosen.values()), grid.time_step
     steps = math.ceil(min((case.run.duration - start) / step, WORK / grid.nodes))
@@ -283,10 +292,12 @@ def _shares(scene: DiskScene, driven: str, waves: Mapping[Motion, str], sides: S
         component = 1 if motion == "p" else 0
         incoming[:, component], shifts[:, component] = wave.velocity(times), wave.displacement(times)
     ground = undisturbed(grid, driven, incoming, shifts, step)
-    nodes, rows = zip(*(grid.node_at(place) for place in places.values()), strict=True)
-    error, found = error_beside(grid, sides, ground, nodes, step), {}
-    for number, (name, row) in enumerate(zip(places, rows, strict=True)):
-        whole = np.sum(ground.v[:, row] ** 2, axis=0)
+    nodes, weights, heights = grid.around(np.array(list(places.values())))
+    error, found = error_beside(grid, sides, ground, nodes, weights, step), {}
+    for number, (name, height) in enumerate(zip(places, heights, strict=True)):
+        low = min(int(height), int(grid.cells[1]) - 1)
+        moved = ground.v[:, low] + (height - low) * (ground.v[:, low + 1] - ground.v[:, low])
+        whole = np.sum(moved**2, axis=0)
         if whole.any():
             most = int(np.argmax(whole))
             found[name] = math.sqrt(float(np.sum(error[:, number, most] ** 2)) / float(whole[most]))
