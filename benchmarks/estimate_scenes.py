@@ -9,7 +9,19 @@ from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Any
 
-from scene_tables import ISOTROPIC, ROCK, SIDES, Tables, grains, lattice, monitors, point, pulse, viscoelastic
+from scene_tables import (
+    ISOTROPIC,
+    ROCK,
+    SIDES,
+    VISCOUS,
+    Tables,
+    grains,
+    lattice,
+    monitors,
+    point,
+    pulse,
+    viscoelastic,
+)
 
 FINER = 3
 """Diameter of the disks over those of a finer reference; an odd number, so that disks of both have the same centres."""
@@ -37,7 +49,7 @@ class Scene:
 
 def bar(packing: Tables, motion: str, beta: float, end: str = "viscous") -> Tables:
     """A bar of 100 m whose left end moves and whose right one absorbs; periodic sideways."""
-    far = {"type": end, f"beta_{motion}": beta} | ({"distance": 100.0} if end == "viscoelastic" else {})
+    far = {"type": end, "beta_p": beta, "beta_s": beta} | ({"distance": 100.0} if end == "viscoelastic" else {})
     return {
         "packing": packing,
         "material": ROCK,
@@ -97,7 +109,7 @@ def lambs() -> Iterator[Scene]:
     """Lamb's problem with every kind of side."""
     top = (0.0, 20.0)
     sides: dict[str, Tables] = {
-        "viscous": {"type": "viscous"},
+        "viscous": VISCOUS,
         "viscous β 0.7": {"type": "viscous", "beta_p": 0.7, "beta_s": 0.7},
         "viscoelastic 1, 0.5": viscoelastic(top),
         "viscoelastic 2, 1": viscoelastic(top, 2.0, 1.0),
@@ -140,7 +152,7 @@ def embedded() -> Iterator[Scene]:
     first: Tables = {
         "packing": lattice(30.0, 30.0, 0.5),
         "material": ISOTROPIC,
-        "boundary": {side: {"type": "viscous"} for side in SIDES},
+        "boundary": {side: VISCOUS for side in SIDES},
         "wave": pulse(0.03, 1.0, "cubic_spline"),
         "load": [point(force, middle)],
         "monitor": monitors(above=(15.25, 20.25), beside=(22.25, 15.25), corner=(28.25, 28.25)),
@@ -151,7 +163,7 @@ def embedded() -> Iterator[Scene]:
     yield Scene("embedded A viscoelastic", first | {"boundary": springs})
     two = [point(force, (10.25, 15.25)), point((300e3, 0.0), (20.25, 10.25), "second")]
     yield Scene("embedded A viscous, two forces", first | {"load": two})
-    mixed = {side: {"type": "viscous"} for side in SIDES} | {"left": {"type": "fixed"}, "top": {"type": "free"}}
+    mixed = {side: VISCOUS for side in SIDES} | {"left": {"type": "fixed"}, "top": {"type": "free"}}
     yield Scene("embedded A, one side fixed", first | {"boundary": mixed})
     body = [{"name": "push", "acceleration": [50.0, 0.0], "region": [5.0, 5.0, 10.0, 12.0], "wave": "pulse"}]
     yield Scene("embedded A viscous, a pushed region", first | {"load": body})
@@ -177,7 +189,7 @@ def tunnel(packing: Tables, side: Tables, base: Tables, motion: str = "s") -> Ta
 
 def tunnels() -> Iterator[Scene]:
     """Tunnels under P and S waves, beside free fields and dashpots."""
-    free_field, viscous, half = {"type": "free_field"}, {"type": "viscous"}, {"half_mass": True}
+    free_field, viscous, half = {"type": "free_field"}, VISCOUS, {"half_mass": True}
     ground = lattice(60.0, 60.0, 1.0)
     yield Scene("tunnel A free field", tunnel(ground, free_field, half))
     yield Scene("tunnel A free field, P", tunnel(ground, free_field, half, "p"))
@@ -208,7 +220,7 @@ def contacts() -> Iterator[Scene]:
         "packing": lattice(20.0, 20.0, d),
         "material": ISOTROPIC | law,
         "static": {"stress": [-1e5, -1e5, 0.0], "damp": 0.3},
-        "boundary": {side: {"type": "viscous"} for side in SIDES},
+        "boundary": {side: VISCOUS for side in SIDES},
         "wave": pulse(0.03, 1.0, "cubic_spline"),
         "load": [point((0.0, 1e6), (10.25, 10.25))],
         "monitor": monitors(above=(10.25, 15.25), beside=(15.25, 10.25)),
@@ -236,7 +248,7 @@ def contacts() -> Iterator[Scene]:
     yield Scene("gravity A, S pulse", heavy)
     yield Scene("gravity A, elastic", heavy | {"material": ISOTROPIC})
     blow = heavy | {
-        "boundary": {side: {"type": "viscous"} for side in ("left", "right", "bottom")},
+        "boundary": {side: VISCOUS for side in ("left", "right", "bottom")},
         "load": [weight, point((0.0, -2e5), (20.25, 19.75))],
         "monitor": monitors(surface=(26.25, 19.75), middle=(20.25, 10.25)),
     }
@@ -303,7 +315,7 @@ def blasts() -> Iterator[Scene]:
         "hole": [{"name": "hole", "type": "circle", "centre": [15.0, 15.0], "radius": 4.0}],
         "load": [{"name": "blast", "hole": "hole", "pressure": 5e6, "wave": "pulse"}],
         "wave": pulse(0.03, 1.0, "cubic_spline"),
-        "boundary": {side: {"type": "viscous"} for side in SIDES},
+        "boundary": {side: VISCOUS for side in SIDES},
         "monitor": monitors(wall=(19.25, 15.25), rock=(24.25, 15.25), corner=(24.25, 24.25)),
         "run": {"duration": 0.1},
     }

@@ -259,8 +259,8 @@ def without_a_run(packet: Packet) -> Energies:
     return Energies(float(p), float(s), float(mean.sum()))
 
 
-VISCOUS, SOFT = {"type": "viscous"}, {"type": "viscous", "beta_p": 0.5, "beta_s": 0.5}
-SPRINGS = {"type": "viscoelastic", "distance": 5.0, "alpha_n": 1.0, "alpha_s": 0.5}
+VISCOUS, SOFT = ({"type": "viscous", "beta_p": beta, "beta_s": beta} for beta in (1.0, 0.5))
+SPRINGS = VISCOUS | {"type": "viscoelastic", "distance": 5.0, "alpha_n": 1.0, "alpha_s": 0.5}
 
 PACKETS = (
     *(Packet("A", VISCOUS, "p", angle) for angle in (30.0, 45.0, 60.0, 75.0)),

@@ -7,6 +7,7 @@ Tables = dict[str, Any]
 ROCK: Tables = {"density": 2500.0, "p_wave_speed": 1000.0}
 ISOTROPIC: Tables = ROCK | {"fric": 0.5}
 SIDES = ("left", "right", "bottom", "top")
+VISCOUS: Tables = {"type": "viscous", "beta_p": 1.0, "beta_s": 1.0}
 
 
 def lattice(wide: float, high: float, diameter: float) -> Tables:
@@ -39,4 +40,4 @@ def point(force: tuple[float, float], place: tuple[float, float], name: str = "h
 
 def viscoelastic(source: tuple[float, float], normal: float = 1.0, across: float = 0.5) -> Tables:
     """A viscoelastic side."""
-    return {"type": "viscoelastic", "alpha_n": normal, "alpha_s": across, "source": list(source)}
+    return VISCOUS | {"type": "viscoelastic", "alpha_n": normal, "alpha_s": across, "source": list(source)}

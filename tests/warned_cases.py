@@ -7,14 +7,10 @@ from dembound.running import plan
 SLOW = {"wave.pulse.period": 0.5, "run.duration": 0.5}
 """A wave far longer than the bar, nothing about which is to be warned of."""
 
-CALIBRATED = {f"boundary.{side}.beta_{motion}": 1.0 for side in ("left", "right") for motion in "ps"}
-"""Factors that somebody has chosen."""
-
 DENSE = {
     "packing": {"pattern": "B", "size": [6.0, 5.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [6.0, 5.0]},
     "monitor": [],
     **SLOW,
-    **CALIBRATED,
 }
 """A packing with its default of 10 MPa locked in."""
 

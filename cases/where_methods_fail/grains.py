@@ -46,7 +46,7 @@ def coda(wavelength: float, brick: float = 10.0) -> float:
 
 def wave_bar(pattern: str, length: float, wave: dict[str, Any], packing: dict[str, Any] | None = None) -> DiskScene:
     """A bar of this length (m), periodic sideways, into which a P wave is sent from the left."""
-    boundary = {"left": {"type": "viscous_input", "wave_p": "pulse"}} | PERIODIC
+    boundary = {"left": {"type": "viscous_input", "wave_p": "pulse", "beta_p": 1.0}} | PERIODIC
     height = 2.0 * RADIUS if pattern == "A" else 10.0
     return disks(pattern, (length, height), ("y",), boundary=boundary, wave={"pulse": wave}, packing=packing or {})
 

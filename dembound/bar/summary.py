@@ -24,7 +24,7 @@ AT_ONE_HORIZON = (
 """Added where one with a fracture energy has."""
 
 
-OF_DISKS = {"beta_s", "half_mass"}
+OF_DISKS = {"beta_s", "matched_p", "matched_s", "half_mass"}
 """Keys of sides that do not apply to bars, which move only along their axis and whose end nodes are half cells."""
 
 

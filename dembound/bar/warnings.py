@@ -12,8 +12,9 @@ from dembound.bar.banded import ROUNDING
 from dembound.bar.entering import MOMENTS, entering_pressure, moments
 from dembound.bar.facts import PERCENT, cells_of_waves
 from dembound.bar.lattice import carrying_lattices
-from dembound.bar.scene import BarScene, end_supports
+from dembound.bar.scene import BarScene, bar_medium, end_supports
 from dembound.boundaries import OPPOSITE, normal_axis
+from dembound.boundaries.words import TOO_MUCH, poor_factor, reflected
 from dembound.casefile.bar import BarCase
 from dembound.casefile.magnitudes import (
     grip_stress,
@@ -50,6 +51,7 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
         *_too_few_cells(scene, time_step),
         *(times or ends_too_soon(case)),  # with doubtful times of waves the second check means nothing
         *_dashpots_at_soft_ends(case),
+        *_unmatched_dashpots(scene),
         *_long_bonds_across_cracks(case),
         *stress_beside_strength(case),
         *_unlikely_speeds(case),
@@ -137,6 +139,15 @@ def _dashpots_at_soft_ends(case: BarCase) -> Iterator[str]:
                 f"boundary.{side}: is at a soft end of peridynamics and reflects a part of every wave; "
                 "give method.corrected_ends = true"
             )
+
+
+def _unmatched_dashpots(scene: BarScene) -> Iterator[str]:
+    """Dashpots that send back much of a wave; the matched factor of a bar is 1."""
+    for side, edge in scene.edges.items():
+        table = scene.case.side(side)
+        beta = table.factors_at(edge, bar_medium(scene.case, side)).get("p", 1.0)
+        if (share := abs(reflected(beta, 1.0))) > TOO_MUCH:
+            yield f"boundary.{side}: {poor_factor('p', share, beta, 1.0, table.waves.get('p'))}"
 
 
 def stress_beside_strength(case: BarCase) -> Iterator[str]:

@@ -1,10 +1,11 @@
 """The base of all boundary types: the properties of a side that cases, scenes and studies use."""
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Self
 
 from dembound.boundaries.layer import Layer
-from dembound.boundaries.sides import Motion
+from dembound.boundaries.sides import Factor, Motion
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import Table
 
@@ -69,9 +70,23 @@ class Boundary(Table):
         return (p, s) if normal_axis == 0 else (s, p)
 
     @property
-    def factors(self) -> Mapping[Motion, float]:
-        """The factors β of the side's dashpots: kind of wave -> β; by default it has none."""
+    def factors(self) -> Mapping[Motion, Factor]:
+        """The factors β of the side's dashpots as given: kind of wave -> β or "matched"; by default it has none."""
         return {}
+
+    def factors_at(self, edge: Edge, medium: BoundaryMedium) -> dict[Motion, float]:
+        """The factors β of the side's dashpots as numbers; where the motion is held "matched" is 1."""
+        matched = medium.matched(edge) if "matched" in self.factors.values() else {}
+        return {
+            motion: factor if factor != "matched" else 1.0 if math.isnan(matched[motion]) else matched[motion]
+            for motion, factor in self.factors.items()
+        }
+
+    def with_numbers(self, edge: Edge, medium: BoundaryMedium) -> Self:
+        """The side with the factors β that it has at an edge as numbers."""
+        return self.model_copy(
+            update={f"beta_{motion}": beta for motion, beta in self.factors_at(edge, medium).items()}
+        )
 
     @property
     def is_artificial(self) -> bool:
@@ -113,5 +128,8 @@ class Boundary(Table):
         return self
 
     def describe(self, edge: Edge, medium: BoundaryMedium) -> dict[str, Any]:
-        """The side in numbers for reports: key -> value, SI units."""
-        return {f"beta_{motion}": factor for motion, factor in self.factors.items()}
+        """The side in numbers for reports: key -> value, SI units; matched_p and matched_s are β0, null where held."""
+        matched = medium.matched(edge) if self.factors else {}
+        return {f"beta_{motion}": factor for motion, factor in self.factors_at(edge, medium).items()} | {
+            f"matched_{motion}": None if math.isnan(matched[motion]) else matched[motion] for motion in self.factors
+        }

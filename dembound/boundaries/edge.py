@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dembound.boundaries.sides import normal_axis
+from dembound.boundaries.sides import Motion, normal_axis
 
 
 @dataclass(frozen=True)
@@ -14,17 +14,32 @@ class BoundaryMedium:
 
     density kg/m³, bulk; p_wave_speed, s_wave_speed m/s, nominal; mirror_stiffness: diameters (k,) m -> stiffness of
     the contact and bond between two touching disks of that diameter, normal (k,) N/m and bending (k,) N·m/rad.
+    own_speeds: c_p and c_s of plane waves along the side's normal, m/s, nan where the motion is held; None if they are
+    the nominal ones.
     """
 
     density: float
     p_wave_speed: float
     s_wave_speed: float
     mirror_stiffness: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+    own_speeds: Callable[[], tuple[float, float]] | None = None
 
     @property
     def shear_modulus(self) -> float:
         """G = ρc_s² in Pa."""
         return self.density * self.s_wave_speed**2
+
+    def matched(self, edge: "Edge") -> dict[Motion, float]:
+        """β0 = (c_eff/c)·H/ΣD of an edge: own over nominal wave speed, times its length over the sum of diameters.
+
+        With it the dashpots have the impedance ρc_eff of plane waves along the normal. nan where the motion is held.
+        """
+        nominal = (self.p_wave_speed, self.s_wave_speed)
+        own = nominal if self.own_speeds is None else self.own_speeds()
+        pairs = zip(own, nominal, strict=True)
+        # without stiffness there is no wave, and any factor will do: the own speed is then 0, or nan
+        p, s = (mine / given if given > 0.0 else mine + 1.0 for mine, given in pairs)
+        return {"p": p / edge.diameter_sum_ratio, "s": s / edge.diameter_sum_ratio}
 
     def impedances(self, beta_p: float, beta_s: float, normal_axis: int) -> np.ndarray:
         """Dashpot constants per metre of boundary, (2,) in Pa·s/m: βρc, P along the normal, S across it."""

@@ -7,6 +7,9 @@ SIDES = ("left", "right", "bottom", "top")
 Motion = Literal["p", "s"]
 """Kind of wave: P moves particles along the normal of the side it reaches, S across it."""
 
+Factor = float | Literal["matched"]
+"""Factor β of a side's dashpots as given: a number, or that with which plane waves along the normal are absorbed."""
+
 OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 """Side -> the side across the scene."""
 

@@ -2,31 +2,35 @@
 
 Z eqs 3-6. A dashpot of constant βρcD per edge particle of diameter D represents the medium beyond: c = c_p with β_P
 along the normal, c = c_s with β_S across it. β corrects for ΣD, which differs from the length of the side if the disks
-are uneven; `dembound calibrate` computes it.
+are uneven, and for the packing's own wave speeds, see `BoundaryMedium.matched`; `dembound calibrate` refines it.
 """
 
 from collections.abc import Iterator, Mapping
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
+from pydantic import Field
 
 from dembound.boundaries.boundary import Boundary
 from dembound.boundaries.driven import Driven
-from dembound.boundaries.sides import Motion
+from dembound.boundaries.sides import Factor, Motion
 from dembound.boundaries.support import BoundaryMedium, Edge, SupportBuilder, Waves
 from dembound.table import quantity
+
+Given = Annotated[float, Field(ge=0.0)] | Literal["matched"]
+"""A factor β in a case file."""
 
 
 class Dashpots(Boundary):
     """A side with dashpots: their two calibration factors, and whether the particles have half their mass."""
 
-    beta_p: float = quantity(1.0, unit="1", help="factor of the P dashpots, along the side's normal", ge=0.0)
-    beta_s: float = quantity(1.0, unit="1", help="factor of the S dashpots, across the side's normal", ge=0.0)
+    beta_p: Given = quantity("matched", unit="1", help="factor of the P dashpots, along the side's normal")
+    beta_s: Given = quantity("matched", unit="1", help="factor of the S dashpots, across the side's normal")
     half_mass: bool = quantity(False, unit="1", help="whether the side's particles are half cells")
 
     @property
-    def factors(self) -> Mapping[Motion, float]:
-        """The factors of P and of S waves."""
+    def factors(self) -> Mapping[Motion, Factor]:
+        """The factors of P and of S waves as given."""
         return {"p": self.beta_p, "s": self.beta_s}
 
     @property
@@ -53,7 +57,8 @@ class Dashpots(Boundary):
 
     def dampings(self, edge: Edge, medium: BoundaryMedium) -> np.ndarray:
         """Dashpot constants βρcD (2, k) in N·s/m of the edge's particles along x and y (Z eq. 4); D : their widths."""
-        return np.outer(medium.impedances(self.beta_p, self.beta_s, edge.axis), edge.widths)
+        factors = self.factors_at(edge, medium)
+        return np.outer(medium.impedances(factors["p"], factors["s"], edge.axis), edge.widths)
 
 
 class Viscous(Dashpots):

@@ -3,21 +3,60 @@
 from collections.abc import Mapping
 from typing import Any
 
+from dembound.boundaries.sides import Motion
+
 FACTORS = {"beta_p": "β_P", "beta_s": "β_S"}
 """Keys of the factors of dashpots, and their symbols."""
 
 IN_WORDS = {
     *("type", "particles", "length", "diameter_min", "diameter_mean", "diameter_max", "diameter_sum_ratio"),
-    *("beta_p", "beta_s", "half_mass", "alpha_n", "alpha_s", "shear_modulus", "distance_min", "distance_max"),
+    *(
+        "beta_p",
+        "beta_s",
+        "matched_p",
+        "matched_s",
+        "half_mass",
+        "alpha_n",
+        "alpha_s",
+        "shear_modulus",
+        "distance_min",
+        "distance_max",
+    ),
 }
 """Keys of a side that are printed in another way, or by the caller."""
 
 
+TOO_MUCH = 0.2
+"""Share of the amplitude of a plane wave along its normal that an absorbing side may send back without a warning."""
+
+
+def reflected(impedance: complex, matched: complex) -> complex:
+    """Reflected over incident velocity of a plane wave, (Z0 − Z)/(Z0 + Z), at an end of impedance Z; matched is Z0."""
+    return (matched - impedance) / (matched + impedance)
+
+
+def poor_factor(motion: Motion, share: float, beta: float, matched: float, wave: str | None) -> str:
+    """That a factor β sends back a share of the amplitude; wave : name of the one that enters there, if any."""
+    enters = f" and lets in {2.0 * beta / (matched + beta):.2g} times wave {wave}" if wave else ""
+    return (
+        f"sends back {100.0 * share:.0f} % of the amplitude of {motion.upper()} waves along its normal{enters}: "
+        f'beta_{motion} is {beta:g}, matched would be {matched:.3g}; leave it out or give "matched"'
+    )
+
+
 def side_in_words(side: Mapping[str, Any]) -> str:
     """Type and numbers of a described side, except the number and sizes of its particles; see `Boundary.describe`."""
-    factors = "".join(f", {sign} = {side[key]:g}" for key, sign in FACTORS.items() if key in side)
+    there = {key: sign for key, sign in FACTORS.items() if key in side}
+    factors = "".join(f", {sign} = {side[key]:g}{_beside_matched(side, key)}" for key, sign in there.items())
     half = ", half mass" if side.get("half_mass") else ""
     return f"{side['type']}{factors}{half}{_springs_in_words(side)}{_others(side)}"
+
+
+def _beside_matched(side: Mapping[str, Any], key: str) -> str:
+    """Whether a factor is the matched one, and which is if not."""
+    if (matched := side.get(key.replace("beta", "matched"))) is None:
+        return ""
+    return " (matched)" if matched == side[key] else f" (matched: {matched:.4g})"
 
 
 def _others(side: Mapping[str, Any]) -> str:

@@ -136,12 +136,11 @@ def _percent(share: float) -> str:
 
 
 def _sentences(found: Measured) -> list[str]:
-    """What is sent back of each arrival, beside calibrated factors and a continuum."""
+    """What is sent back of each arrival, beside matched factors and a continuum."""
     lines = []
     beside: dict[str, Reflections] = {}
-    if found.calibrated is not None:
-        factors = ", ".join(f"{key} = {value:.4g}" for key, value in found.factors.items())
-        beside[f"calibrated ({factors})"] = found.calibrated
+    if found.matched is not None:
+        beside["with matched β"] = found.matched
     if found.continuum is not None:
         nodes, values = found.continuum
         beside[f"an outside of {nodes:,} nodes"] = values
@@ -166,8 +165,8 @@ def _curves(found: Measured) -> list[Curves]:
     from dembound.plot.reflection import Curves
 
     beside: dict[str, Reflections] = {}
-    if found.calibrated is not None:
-        beside["in all, calibrated"] = found.calibrated
+    if found.matched is not None:
+        beside["in all, matched β"] = found.matched
     if found.continuum is not None and len(found.continuum[1].angles) == len(found.found.angles):
         beside["in all, an outside"] = found.continuum[1]
     return [

@@ -171,7 +171,14 @@ def _print_table(found: Sequence[Calibration]) -> None:
     for (key, result), each in zip(changes_of(found).items(), found, strict=True):
         before = each.case.boundary[each.side].factors[each.motion]
         ratio = f"{each.ratio[-1]:.6f}" if each.ratio else "–"
-        table.add_row(key, each.kind, f"{result:.6f}", f"{before:g}", ratio, str(len(each.beta)))
+        table.add_row(
+            key,
+            each.kind,
+            f"{result:.6f}",
+            before if before == "matched" else f"{before:g}",
+            ratio,
+            str(len(each.beta)),
+        )
     out.print(table)
 
 

@@ -1,22 +1,69 @@
-"""How well a side's dashpots match the packing, from its homogenised stiffness alone; no wave is run."""
+"""How well what holds a side matches the packing, from its homogenised stiffness alone; no wave is run."""
 
-from dembound.boundaries import Motion
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from dembound.boundaries import Motion, axis_of_motion
+from dembound.boundaries.support import SupportBuilder, Supports
+from dembound.boundaries.words import reflected
 from dembound.disks.scene import DiskScene, boundary_medium
 
 
 def homogenised_beta(scene: DiskScene, side: str, motion: Motion) -> float:
-    """β0 = (c_eff/c)·H/ΣD: homogenised over nominal wave speed, times the side's length over the sum of diameters.
-
-    nan where the motion is held.
-    """
+    """β0 of a side, see `BoundaryMedium.matched`; nan where the motion is held."""
     edge = scene.edges[side]
-    index = 0 if motion == "p" else 1
-    own = scene.ground.wave_speeds(edge.axis)[index]
+    return boundary_medium(scene.case, scene.ground, edge.axis).matched(edge)[motion]
+
+
+def factors_in(scene: DiskScene, side: str) -> dict[Motion, float]:
+    """The factors β of a side's dashpots as numbers."""
+    edge = scene.edges[side]
+    return scene.case.side(side).factors_at(edge, boundary_medium(scene.case, scene.ground, edge.axis))
+
+
+def supports_of(scene: DiskScene, side: str) -> Supports:
+    """The support table of one side alone."""
+    edge, builder = scene.edges[side], SupportBuilder(held=scene.ground.held)
     medium = boundary_medium(scene.case, scene.ground, edge.axis)
-    nominal = (medium.p_wave_speed, medium.s_wave_speed)[index]
-    return own / nominal / edge.diameter_sum_ratio
+    scene.case.side(side).support(edge, medium, scene.case.wave, builder)
+    return builder.table()
 
 
-def reflected(beta: float, matched: float) -> float:
-    """Reflected over incident peak of a plane wave, (1 − β/β0)/(1 + β/β0), at dashpots of factor β; matched is β0."""
-    return (matched - beta) / (matched + beta)
+class Held(NamedTuple):
+    """What holds a side, per metre of it, along x and y: dashpots (2,) N·s/m² and springs (2,) N/m²."""
+
+    damping: np.ndarray
+    stiffness: np.ndarray
+
+    @classmethod
+    def of(cls, scene: DiskScene, side: str) -> "Held":
+        """The sums over the particles of a side; disks at its corners that are halved there count as whole ones."""
+        edge, table = scene.edges[side], supports_of(scene, side)
+        length = edge.length * float(np.sum(edge.widths) / np.sum(edge.diameters))
+        return cls(
+            *(
+                np.array([np.sum(values[table.component == axis]) for axis in (0, 1)]) / length
+                for values in (table.damping, table.stiffness)
+            )
+        )
+
+
+def sent_back(scene: DiskScene, side: str, motion: Motion, frequency: float) -> float:
+    """|R|, reflected over incident amplitude of plane waves along the normal of a side, at a frequency (Hz).
+
+    The impedances of dashpots, springs, and of the half of whole cells that lies beyond the last half of the packing,
+    over that of the packing. At frequency nan dashpots alone. nan where the motion is held.
+    """
+    edge, held = scene.edges[side], Held.of(scene, side)
+    axis = axis_of_motion(side, motion)
+    own = scene.ground.density * scene.ground.wave_speeds(edge.axis)[0 if motion == "p" else 1]
+    if not own > 0.0:
+        return math.nan
+    impedance = complex(held.damping[axis])
+    if math.isfinite(frequency):
+        omega = 2.0 * math.pi * frequency
+        half = 0.0 if scene.case.side(side).half_cells else 0.5 * scene.ground.density * float(edge.diameters.mean())
+        impedance += 1j * omega * half - 1j * float(held.stiffness[axis]) / omega
+    return abs(reflected(impedance / own, 1.0))

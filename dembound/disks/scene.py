@@ -154,12 +154,18 @@ def _foot(case: DiskCase, ground: PackedMaterial, assembly: Assembly, seam: Seam
 def column_alone(scene: DiskScene) -> DiskScene:
     """The free-field column of a body as a separate scene, with boundaries only at its bottom and top.
 
-    Its particles are numbered as in the body's scene; only loads that act on all particles act on it. It has no
-    continuum at its ends and no column of its own: a side of type "outside" is free.
+    Its particles are numbered as in the body's scene; only loads that act on all particles act on it. Factors of its
+    dashpots are those beside the body. It has no continuum at its ends and no column of its own: a side of type
+    "outside" is free.
     """
     case, brick = scene.case, scene.ground.brick
     sides = {"left": Periodic(type="periodic"), "right": Periodic(type="periodic")}
-    upright = {side: table for side, table in case.boundary.items() if side not in sides and not table.is_outside}
+    medium = boundary_medium(case, scene.ground, axis=1)
+    upright = {
+        side: table.with_numbers(scene.edges[side], medium) if side in scene.edges else table
+        for side, table in case.boundary.items()
+        if side not in sides and not table.is_outside
+    }
     static = case.static
     if static is not None:
         ends = {side: table for side, table in static.boundary.items() if side not in sides}
@@ -222,7 +228,9 @@ def boundary_medium(case: DiskCase, ground: PackedMaterial, axis: int) -> Bounda
         between = ground.law.stiffness(ground.moduli, 0.5 * diameters, 0.5 * diameters, diameters)
         return between.normal, between.bending
 
-    return BoundaryMedium(ground.density, p_speed, s_speed, mirror_stiffness)
+    return BoundaryMedium(
+        ground.density, p_speed, s_speed, mirror_stiffness, own_speeds=lambda: ground.wave_speeds(axis)
+    )
 
 
 def _supports(scene: DiskScene) -> Supports:

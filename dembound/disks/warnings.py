@@ -7,26 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from dembound.boundaries import SIDES, Motion
+from dembound.boundaries import SIDES
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import with_history
 from dembound.casefile.magnitudes import stress_in_words
 from dembound.casefile.messages import numbered
 from dembound.disks.continuum_facts import continuum_warnings
 from dembound.disks.load_factor import load_factor_in_words
-from dembound.disks.matching import homogenised_beta, reflected
 from dembound.disks.near_ties import near_tie_warnings
 from dembound.disks.scene import DiskScene
+from dembound.disks.side_warnings import side_warnings
 from dembound.disks.wave_front import slowest_speed
 from dembound.disks.wave_warnings import wave_warnings
 from dembound.results.reader import cracks_until, open_record
 from dembound.results.warnings import still_moving
-
-REFLECTED = 0.02
-"""Share of a wave that a side with default factors may reflect without a warning.
-
-Homogenised and calibrated β differ by 0.5 % at most, 2 % in bars of 20 disks, which is half of that in the reflection.
-"""
 
 LARGEST_PULL = 3.5
 """Largest tensile stress of a bond over the mean one, where contacts under a locked-in stress relax.
@@ -53,7 +47,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *_locked_in(scene),
         *_settles_in_tension(scene),
         *wave_warnings(scene, time_step),
-        *_default_factors(scene),
+        *side_warnings(scene),
         *_speed_of_the_packing(scene),
         *continuum_warnings(scene, scene.case.run.duration / time_step),
     ]
@@ -120,41 +114,6 @@ def _settles_in_tension(scene: DiskScene) -> Iterator[str]:
             f"static.stress: has a tension of {stress_in_words(largest)}, above material.pb_ten = "
             f"{stress_in_words(strength)}; bonds break in the static stage"
         )
-
-
-def _default_factors(scene: DiskScene) -> Iterator[str]:
-    """Sides with default factors on packings that need other factors."""
-    wrong = {side: found for side in scene.edges if (found := _factors_off(scene, side))}
-    each = [f"--boundary {side} --wave {motion}" for side, found in wrong.items() for motion in found]
-    which = "--all" if len(each) > 1 else "".join(each)
-    for side, found in wrong.items():
-        factors = scene.case.side(side).factors
-        waves = " and ".join(
-            f"{100.0 * abs(reflected(factors[motion], matched)):.2g} % of {motion.upper()}"
-            for motion, matched in found.items()
-        )
-        defaults = " and ".join(
-            f"beta_{motion} = {factors[motion]:g} (matched: about {matched:.3g})" for motion, matched in found.items()
-        )
-        yield (
-            f"boundary.{side}: reflects {waves} waves with the default {defaults}; "
-            f"run: dembound calibrate {scene.case.file or 'CASE'} {which}"
-        )
-
-
-def _factors_off(scene: DiskScene, side: str) -> dict[Motion, float]:
-    """Kinds of waves whose factor of a side is the default and reflects too much -> the matched factor."""
-    table = scene.case.side(side)
-    matched = {
-        motion: homogenised_beta(scene, side, motion)
-        for motion in table.factors
-        if f"beta_{motion}" not in table.model_fields_set
-    }
-    return {
-        motion: beta
-        for motion, beta in matched.items()
-        if abs(reflected(table.factors[motion], beta)) > REFLECTED  # nan where the motion is held
-    }
 
 
 def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:

@@ -92,7 +92,7 @@ def _passed(seen: WaveScene) -> float | None:
     mirrors: dict[int, list[float]] = {axis: [] for axis in seen.axes}
     for side in SIDES:
         table, axis = case.side(side), normal_axis(side)
-        if axis in mirrors and not (table.layer or any(factor > 0.0 for factor in table.factors.values())):
+        if axis in mirrors and not (table.layer or any(factor != 0.0 for factor in table.factors.values())):
             mirrors[axis].append(seen.plane(side))
     if any(len(planes) > 1 for planes in mirrors.values()):
         return None  # periodic sides, too

@@ -18,7 +18,7 @@ import numpy as np
 
 from dembound.boundaries import OPPOSITE, Boundary, Motion, axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
-from dembound.disks.matching import homogenised_beta
+from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.reduction import reduced
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
@@ -132,9 +132,9 @@ def calibrate(
     ----------
     motion : by default P, or S if the motion along the normal is held or only S waves run along it. method :
     "impedance" solves the end's impedance relation for β0 and checks it; "ratio" multiplies β by
-        M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised" takes β0 = (c_eff/c)·H/ΣD from the
-        brick alone, without a run.
-    start : first β; by default the case's.
+        M_out/M_in (Z fig. 5; M_in/M_out on an input side); "homogenised" takes β0 = (c_eff/c)·H/ΣD, that of
+        "matched", from brick and side alone, without a run.
+    start : first β; by default the case's. Where that is "matched", β0 of the strip, and it is refined once at least.
     tolerance : ends when |M_out/M_in − 1| is below it.
     full : use the whole scene, with its own boundaries all around, instead of a strip.
     report : called after every pass.
@@ -148,6 +148,11 @@ def calibrate(
     motion = motion or _default_motion(case, side)
     _must_move(case, side, motion)
     pulse = calibration_pulse(case, side, motion)
+    kind: Literal["absorbing", "input"] = "input" if table.waves else "absorbing"
+    if method == "homogenised":
+        scene = build(case)
+        beta = homogenised_beta(scene, side, motion)
+        return Calibration(case, side, motion, method, kind, pulse.peak(), [], result=beta, particles=scene.count)
     strip, shortened = full_scene(plain, side, motion, pulse) if full else short_strip(plain, side, motion, pulse)
     scene = build(strip)
     found = Calibration(
@@ -155,15 +160,13 @@ def calibrate(
         side=side,
         motion=motion,
         method=method,
-        kind="input" if table.waves else "absorbing",
+        kind=kind,
         incident=pulse.peak(),
         shortened=[*shortened, *reduced(scene).scene.reduced, *left_out],
         particles=scene.count,
     )
-    if method == "homogenised":
-        found.result = homogenised_beta(scene, side, motion)
-        return found
-    beta = table.factors[motion] if start is None else start
+    foretold = start is None and table.factors[motion] == "matched"
+    beta = factors_in(scene, side)[motion] if start is None else start
     if not 0.0 < beta < np.inf:
         raise CaseError([f"boundary.{side}.{found.factor}: is {beta:g}, must be above 0 to start a calibration"])
     time_step, _ = choose_step(scene)  # it does not depend on β: centred dashpots do not reduce the stability limit
@@ -175,7 +178,7 @@ def calibrate(
         found.steps += steps
         if report is not None:
             report(found)
-        if abs(found.ratio[-1] - 1.0) < tolerance:
+        if abs(found.ratio[-1] - 1.0) < tolerance and not (foretold and len(found.beta) == 1):
             found.result = beta
             return found
         beta = _next_beta(found)

@@ -770,11 +770,11 @@ def test_what_sides_send_back_is_printed_drawn_and_written(dembound, written, tm
         "wrote table_top.csv",
     ]
     # S: (1 − β)/(1 + β) = 1/3 of the amplitude for β = 0.5; tan(qa/4) = 1 % for a whole last mass
-    assert "returns 11.1 % of the energy, 33.4 % of the amplitude; calibrated (beta_s = 1) 0.00992 %" in answer.out
+    assert "returns 11.1 % of the energy, 33.4 % of the amplitude; with matched β 0.00992 %" in answer.out
     assert "30°" not in answer.out  # as y is held
     assert "copies of the brick" not in answer.out
     quick = dembound("boundary", path, *sides, "--angle", 0, "--frequency", 5, "--quick")
-    assert "returns 11.1 % of the energy, 33.3 % of the amplitude; calibrated (beta_s = 1) 0 %" in quick.out
+    assert "returns 11.1 % of the energy, 33.3 % of the amplitude; with matched β 0 %" in quick.out
     short = dembound("boundary", path, "--side", "right", "--angle", 0, "--frequency", 990)
     assert "copies of the brick send back" in short.out
     assert dembound("boundary", path, "--side", "left", "--set", 'boundary.left={type="periodic"}').code == 2

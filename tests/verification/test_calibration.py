@@ -45,6 +45,15 @@ def test_impedance_method_needs_two_passes(calibrated):
     assert abs(found.ratio[-1] - 1.0) < 1e-3
 
 
+def test_matched_factors_let_a_wave_in_or_out_as_it_is(calibrated):
+    """The first pass has the default of all sides; the second confirms or refines it."""
+    found = calibrated(0.2)
+    assert len(found.beta) == 2
+    # grains scatter some (qD)² = 1e-3 of a pulse of 400 disks; half of the difference of β shows in the ratio
+    assert abs(found.ratio[0] - 1.0) < 2.5e-3
+    assert found.beta[0] == pytest.approx(found.result, rel=5e-3)
+
+
 @pytest.mark.parametrize("start", [0.5, 2.0])
 @pytest.mark.parametrize("length", [40.0, 200.0])
 @pytest.mark.parametrize("kind", KINDS)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from small_cases import small
 
+from dembound.disks.frequencies import frequencies_of
 from dembound.disks.scene import build
 from dembound.disks.stability import choose_step
 from dembound.motion.simulation import Simulation
-from dembound.studies.reflection.arrivals import frequencies_of
 from dembound.studies.reflection.bricks import end_scene
 from dembound.studies.reflection.meter import Meter
 

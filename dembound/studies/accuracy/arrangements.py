@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile.disks import DiskCase
-from dembound.disks.matching import homogenised_beta
 from dembound.disks.outside_settings import extents
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.smallest_box import box_tables, boxes, may_be_boxed
@@ -62,22 +61,9 @@ def _dashpots(case: DiskCase, silent: Mapping[str, Boundary]) -> Iterator[Arrang
             side: {"type": kind, **extra} | ({"half_mass": True} if side in case.packing.regular_sides else {})
             for side in silent
         }
-        if (changes := _matched(case, tables)) is not None:
+        changes = {f"boundary.{side}": table for side, table in tables.items()}
+        if _is_valid(case, changes, build):
             yield Arrangement(f"{kind} sides", changes, may_widen=True)
-
-
-def _matched(case: DiskCase, tables: Mapping[str, Mapping[str, Any]]) -> dict[str, Any] | None:
-    """Changes to these tables of sides, with the β of the packing's homogenised stiffness; None if they are invalid."""
-    try:
-        scene = build(_changed(case, {f"boundary.{side}": dict(table) for side, table in tables.items()}))
-    except CaseError:
-        return None
-    betas = {side: {m: homogenised_beta(scene, side, m) for m in ("p", "s")} for side in tables}
-    return {
-        f"boundary.{side}": {**table}
-        | {f"beta_{motion}": round(beta, 6) for motion, beta in betas[side].items() if np.isfinite(beta)}
-        for side, table in tables.items()
-    }
 
 
 def _continuum(case: DiskCase, scene: DiskScene, silent: Mapping[str, Boundary], bound: float) -> Iterator[Arrangement]:
@@ -141,10 +127,10 @@ def _changed(case: DiskCase, changes: Mapping[str, Any]) -> DiskCase:
     return found
 
 
-def _is_valid(case: DiskCase, changes: Mapping[str, Any]) -> bool:
-    """Whether the changed case has no mistake."""
+def _is_valid(case: DiskCase, changes: Mapping[str, Any], use: Callable[[DiskCase], object] = bool) -> bool:
+    """Whether the changed case has no mistake; nor has it one that only its use, such as `build`, finds."""
     try:
-        _changed(case, changes)
+        use(_changed(case, changes))
     except CaseError:
         return False
     return True

@@ -5,12 +5,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import islice
 from typing import Any, get_args
 
+from dembound.boundaries import Motion
 from dembound.boundaries.boundary import Boundary
 from dembound.casefile import Case
 from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
-from dembound.disks.matching import homogenised_beta
-from dembound.disks.scene import build
+from dembound.disks.matching import factors_in, homogenised_beta
+from dembound.disks.scene import DiskScene, build
 from dembound.disks.smallest_box import box_tables, cheapest_box, may_be_boxed
 from dembound.errors import CaseError
 from dembound.kinds import with_changes
@@ -27,7 +28,7 @@ FRACTION = 0.5
 """Factor of the second step fraction."""
 
 UNMATCHED = 0.01
-"""Relative difference of β from the homogenised one from which on that is another choice: it reflects half of it."""
+"""Relative difference of β from the matched one from which on that is another choice: it reflects half of it."""
 
 HORIZON = 3
 """Horizon of bars' methods where the case has none."""
@@ -45,7 +46,7 @@ Named = Iterator[tuple[str, dict[str, Any]]]
 def defaults(case: Case) -> dict[str, dict[str, Any]]:
     """Changes of keys by the name of the choice.
 
-    The case itself. Of disks: coarser radii; half the step; homogenised factors β; for its absorbing sides each other
+    The case itself. Of disks: coarser radii; half the step; matched factors β; for its absorbing sides each other
     type; and the smallest box of disks in the ground, one change at a time. Of a bar: every method with every spacing,
     each at its automatic step, and finite differences at ν = 1.
     """
@@ -62,24 +63,28 @@ def _of_disks(case: Case) -> Named:
     step = "run.safety" if case.run.time_step == "auto" else "run.time_step"
     changes = {step: FRACTION * (case.run.safety if case.run.time_step == "auto" else case.run.time_step)}
     yield label(case, changes), changes
-    yield from _homogenised_factors(case)
+    yield from _matched_factors(case)
     yield from _other_sides(case)
 
 
-def _homogenised_factors(case: DiskCase) -> Named:
-    """Factors β of the homogenised stiffness for all sides that have others; where a wave enters, it would change."""
+def _matched_factors(case: DiskCase) -> Named:
+    """Matched factors β for all sides that have others; where a wave enters, it would change."""
     absorbing = {side: table for side, table in case.boundary.items() if table.factors and not table.waves}
     if not absorbing:
         return
-    scene, found = build(case), {}
-    for side, table in absorbing.items():
-        for motion, beta in table.factors.items():
-            matched = homogenised_beta(scene, side, motion)
-            if abs(matched - beta) > UNMATCHED * matched:  # not where the motion is held, for which it is nan
-                found[side, motion] = round(matched, 4)
+    scene = build(case)
+    found = [(side, motion) for side in absorbing for motion in _unmatched(scene, side)]
     sides = " and ".join(dict.fromkeys(side for side, _ in found))
     if found:
-        yield f"{sides}, homogenised β", {f"boundary.{side}.beta_{m}": beta for (side, m), beta in found.items()}
+        yield f"{sides}, matched β", {f"boundary.{side}.beta_{motion}": "matched" for side, motion in found}
+
+
+def _unmatched(scene: DiskScene, side: str) -> Iterator[Motion]:
+    """Kinds of waves whose factor of a side differs from the matched one, which is nan where the motion is held."""
+    for motion, beta in factors_in(scene, side).items():
+        matched = homogenised_beta(scene, side, motion)
+        if abs(matched - beta) > UNMATCHED * matched:
+            yield motion
 
 
 def _other_sides(case: DiskCase) -> Named:

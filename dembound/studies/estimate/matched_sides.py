@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dembound.boundaries import Motion
-from dembound.disks.matching import homogenised_beta
+from dembound.disks.frequencies import frequencies_of
+from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.scene import DiskScene, with_boundaries
 from dembound.errors import CaseError
-from dembound.studies.reflection.arrivals import frequencies_of
 from dembound.studies.reflection.bricks import end_scene
 from dembound.studies.reflection.meter import Meter
 
@@ -56,7 +56,7 @@ def reflected(scene: DiskScene, side: str, time_step: float) -> dict[Motion, Ref
     table = case.side(side).dashpots_alone()
     end = end_scene(replace(case, boundary={**case.boundary, side: table}), side)
     matched, wide = ({m: homogenised_beta(each, side, m) for m in table.factors} for each in (scene, end))
-    known = {motion: factor for motion, factor in table.factors.items() if math.isfinite(matched[motion])}
+    known = {motion: factor for motion, factor in factors_in(scene, side).items() if math.isfinite(matched[motion])}
     # sides of narrow bodies have more disks for their length than those of a periodic one
     equal = {f"beta_{motion}": factor * wide[motion] / matched[motion] for motion, factor in known.items()}
     end = with_boundaries(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,11 +10,12 @@ import numpy as np
 from dembound.boundaries import normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
-from dembound.disks.matching import homogenised_beta
+from dembound.disks.frequencies import frequencies_of
+from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.scene import DiskScene, build, with_boundaries
 from dembound.disks.stability import choose_step
 from dembound.errors import CaseError
-from dembound.studies.reflection.arrivals import Arrival, arrivals_of, frequencies_of
+from dembound.studies.reflection.arrivals import Arrival, arrivals_of
 from dembound.studies.reflection.bricks import BrickInRow, end_of, end_scene
 from dembound.studies.reflection.continuum_end import ContinuumEnd, beside_elements
 from dembound.studies.reflection.meter import End, Meter, Reflections
@@ -30,13 +31,16 @@ ANGLES = (0.0, 10.0, 15.0, 20.0, 30.0, 40.0, 45.0, 50.0, 60.0, 70.0, 75.0, 80.0,
 FREQUENCIES = 12
 """Number of frequencies by default."""
 
+ROUNDING = 1e-9
+"""Relative difference of factors β up to which they are the same."""
+
 
 @dataclass(frozen=True)
 class Measured:
     """Reflections of a side of a case.
 
-    side, type : of the side. found : the reflections. calibrated : the same with calibrated factors, given by key; None
-    for other sides. continuum : the same, with the number of nodes, if the side and all that absorb were of type
+    side, type : of the side. found : the reflections. matched : the same with matched factors; None for sides without
+    factors, or with these. continuum : the same, with the number of nodes, if the side and all that absorb were of type
     "outside"; None where they cannot be, and beside a body that is periodic and narrow only for the angle 0. arrivals :
     what reaches the side. gaps : Hz, the lowest at which copies of the brick send waves of a type back by themselves,
     c/2L for bricks of length L along the normal.
@@ -45,8 +49,7 @@ class Measured:
     side: str
     type: str
     found: Reflections
-    factors: dict[str, float]
-    calibrated: Reflections | None
+    matched: Reflections | None
     continuum: tuple[int, Reflections] | None
     arrivals: list[Arrival]
     gaps: dict[str, float]
@@ -93,16 +96,17 @@ def measure_side(
     gaps = {kind: 0.5 * speed / float(ground.brick.size[axis]) for kind, speed in zip("ps", speeds, strict=True)}
     if table.is_outside:
         (found,) = _of_continuum(whole, side, choose_step(whole)[0], chosen, angles, report)
-        return Measured(side, table.type, found, {}, None, None, arrivals, gaps)
+        return Measured(side, table.type, found, None, None, arrivals, gaps)
     if table.is_periodic:
         raise CaseError([f"--side: is {side}, which is periodic; must be a side at which the body ends"])
     scene = end_scene(case, side)
-    best = {f"beta_{motion}": homogenised_beta(scene, side, motion) for motion in table.factors}
-    factors = {key: float(value) for key, value in best.items() if np.isfinite(value)}
-    scenes = [scene, *([_with_factors(scene, side, factors)] if factors else [])]
+    own = factors_in(scene, side)
+    best = {motion: homogenised_beta(scene, side, motion) for motion in own}  # nan where the motion is held
+    unmatched = any(abs(beta - best[motion]) > ROUNDING * best[motion] for motion, beta in own.items())
+    scenes = [scene, *([_matched(scene, side)] if unmatched else [])]
     if quick:
         found, *others = (by_smeared_supports(each, side, chosen, angles) for each in scenes)
-        return Measured(side, table.type, found, factors, others[0] if factors else None, None, arrivals, {})
+        return Measured(side, table.type, found, others[0] if unmatched else None, None, arrivals, {})
     step, row, other = choose_step(whole)[0], BrickInRow(ground, side), _as_continuum(case, side)
     ends: list[End] = [end_of(each, row) for each in scenes]
     at_once = other is not None and not _is_narrow(other) and beside_elements(ground, side, other.continua[0]) is ground
@@ -112,7 +116,7 @@ def measure_side(
     if other is not None and not at_once:
         others += _of_continuum(other, side, step, chosen, angles, report)
     continuum = None if other is None else (other.continua[0].count, others[-1])
-    return Measured(side, table.type, found, factors, others[0] if factors else None, continuum, arrivals, gaps)
+    return Measured(side, table.type, found, others[0] if unmatched else None, continuum, arrivals, gaps)
 
 
 def _of_continuum(
@@ -141,8 +145,9 @@ def beyond(scene: DiskScene, side: str, time_step: float) -> Meter:
     return Meter(row, time_step, ContinuumEnd(scene.outside, row))
 
 
-def _with_factors(scene: DiskScene, side: str, factors: Mapping[str, float]) -> DiskScene:
-    """The same scene with other factors of the dashpots of a side."""
+def _matched(scene: DiskScene, side: str) -> DiskScene:
+    """The same scene with matched factors of the dashpots of a side."""
+    factors = {f"beta_{motion}": "matched" for motion in scene.case.side(side).factors}
     table = scene.case.side(side).model_copy(update=factors)
     return with_boundaries(scene, replace(scene.case, boundary={**scene.case.boundary, side: table}))
 

@@ -1,4 +1,4 @@
-"""What reaches a side in a case: frequencies of its waves and forces, and the angles at which they arrive."""
+"""What reaches a side in a case: its waves and forces, and the angles at which they arrive."""
 
 from __future__ import annotations
 
@@ -11,19 +11,13 @@ import numpy as np
 
 from dembound.boundaries import Motion, axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
-from dembound.disks.outside_settings import signals_of
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.sources import place_of
-from dembound.outside import choice
-from dembound.outside.choice import Signal
 from dembound.studies.reflection.bricks import is_outwards
 from dembound.studies.reflection.meter import Kind, Reflections
 
 PLACES = 200
 """Places along a side at which waves of a source arrive."""
-
-LENGTHS = (200.0, 20.0)
-"""Longest and shortest wave, in mean diameters, where a case has no waves with a spectrum of finite energy."""
 
 FLATTEST = 85.0
 """Largest angle (degrees) from the normal that counts: flatter waves run along the side rather than reach it."""
@@ -98,22 +92,3 @@ def _spreading(case: DiskCase, side: str) -> Iterator[Arrival]:
         if near.any():
             kinds: tuple[Kind, ...] = get_args(Motion)
             yield Arrival(f"waves from {name}", kinds, angles[near], shares[near] / shares[near].sum())
-
-
-def frequencies_of(case: DiskCase, ground: PackedMaterial, count: int) -> np.ndarray:
-    """So many frequencies (Hz), each for an equal share of the energy of the case's waves and forces.
-
-    Without a spectrum of finite energy they are those of waves from `LENGTHS` diameters long, evenly spaced.
-    """
-    signals = [signal for signal in signals_of(case) if not choice.jumps(signal)]
-    highest = float(np.nanmax(ground.wave_speeds(0))) / (LENGTHS[1] * ground.brick.mean_diameter)
-    if not signals:
-        return np.linspace(LENGTHS[1] / LENGTHS[0], 1.0, count) * highest
-    return np.sort(np.mean([_quantiles(signal, count) for signal in signals], axis=0))
-
-
-def _quantiles(signal: Signal, count: int) -> np.ndarray:
-    """Frequencies (count,) in the middle of equal shares of a signal's energy."""
-    frequencies, energy = choice.energies(signal)
-    share = np.concatenate([[0.0], np.cumsum(energy) / energy.sum()])
-    return np.interp((np.arange(count) + 0.5) / count, share, np.concatenate([[0.0], frequencies]))

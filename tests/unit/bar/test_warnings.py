@@ -30,6 +30,20 @@ def test_a_bar_that_spalls_is_not_warned_of(spalling) -> None:
     assert bar_warnings(build_bar(spalling(EXACT)), 2.5e-5) == []
 
 
+@pytest.mark.parametrize(("beta", "share"), [(1.0, None), (0.7, None), ("matched", None), (0.6, 25), (5.0, 67)])
+def test_a_factor_that_sends_back_much_is_warned_of(spalling, beta: float | str, share: int | None) -> None:
+    end = {"boundary.right": {"type": "viscous", "beta_p": beta}}
+    found = of_key("boundary.right", bar_warnings(build_bar(spalling({**EXACT, **end})), 2.5e-5))
+
+    # (1 − β)/(1 + β): 0.176 at 0.7
+    start = (
+        f"boundary.right: sends back {share} % of the amplitude of P waves along its normal: beta_p is {beta:g}"
+        if share
+        else ""
+    )
+    assert [line.startswith(start) for line in found] == ([] if share is None else [True])
+
+
 @pytest.mark.parametrize(("share", "warned"), [(0.99, True), (1.01, False)])
 def test_waves_too_short_for_the_nodes_are_warned_of(spalling, share: float, warned: bool) -> None:
     _, needed = cells_of_waves(build_bar(spalling()), 0.8 * 2.5e-5)["hit"]

@@ -1,5 +1,7 @@
 """A side of the scene and the medium that it represents: impedances by hand, normals, cover."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -21,6 +23,18 @@ def test_a_medium_gives_p_dashpots_along_the_normal_and_s_across() -> None:
 
 def test_a_medium_has_the_shear_modulus_of_its_s_waves() -> None:
     assert MEDIUM.shear_modulus == 5e8  # 2000·500²
+
+
+def test_matched_factors_make_up_for_speeds_and_for_what_the_disks_cover() -> None:
+    edge = Edge("right", np.arange(2), positions=np.zeros((2, 2)), diameters=np.array([0.5, 1.0]), length=1.2)
+
+    # ΣD/H = 1.25; own speeds of 900 and 600 m/s where 1000 and 500 are nominal
+    assert MEDIUM.matched(edge) == pytest.approx({"p": 0.8, "s": 0.8}, rel=1e-15)
+    own = replace(MEDIUM, own_speeds=lambda: (900.0, 600.0))
+    assert own.matched(edge) == pytest.approx({"p": 0.72, "s": 0.96}, rel=1e-15)
+    # no S waves in the medium, and a held motion
+    fluid = replace(MEDIUM, s_wave_speed=0.0, own_speeds=lambda: (np.nan, 0.0))
+    assert fluid.matched(edge) == pytest.approx({"p": np.nan, "s": 0.8}, rel=1e-15, nan_ok=True)
 
 
 @pytest.mark.parametrize(("side", "axis"), [("left", 0), ("right", 0), ("bottom", 1), ("top", 1)])

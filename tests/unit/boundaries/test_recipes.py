@@ -106,6 +106,31 @@ def test_an_input_side_also_pushes_with_twice_the_incident_wave(side: str, norma
     np.testing.assert_allclose(column(supports, "push", 1 - normal), 2.0 * 0.4 * S * 30.0, rtol=1e-15)
 
 
+@pytest.mark.parametrize(
+    "table",
+    [
+        Viscous(type="viscous"),
+        ViscousInput(type="viscous_input", wave_p="push", beta_s="matched"),
+        Viscoelastic(type="viscoelastic", distance=3.0),
+        ViscoelasticInput(type="viscoelastic_input", wave_p="push", distance=3.0),
+        FreeField(type="free_field"),
+    ],
+    ids=lambda table: table.type,
+)
+def test_matched_dashpots_have_the_impedance_of_the_packing(table: Boundary) -> None:
+    builder, medium = SupportBuilder(), replace(MEDIUM, own_speeds=lambda: (900.0, 600.0))
+    table.support(Edge("left", np.array([5, 6]), POSITIONS, DIAMETERS, 1.2), medium, WAVES, builder)
+    supports = builder.table()
+
+    # ρ c_eff H of both kinds of waves, on disks that cover 1.5 m of 1.2 m; an incident wave enters with twice that
+    assert column(supports, "damping", 0).sum() == pytest.approx(2000.0 * 900.0 * 1.2, rel=1e-15)
+    assert column(supports, "damping", 1).sum() == pytest.approx(2000.0 * 600.0 * 1.2, rel=1e-15)
+    if table.waves:
+        springs = column(supports, "stiffness", 0).sum() * 0.5 * TIME**2
+        pushed = column(supports, "push", 0).sum() - springs
+        assert pushed == pytest.approx(2.0 * 2000.0 * 900.0 * 1.2 * TIME, rel=1e-12)
+
+
 def test_an_input_side_only_absorbs_in_the_direction_without_a_wave() -> None:
     supports = rows(ViscousInput(type="viscous_input", wave_s="shake"), "bottom")
 

@@ -99,7 +99,7 @@ def test_optional_tables_may_be_absent() -> None:
         (
             'type = "viscous"\n',
             'type = "viscous"\nbeta_p = -1\n',
-            "boundary.right.beta_p: is -1, must be at least 0",
+            'boundary.right.beta_p: is -1, must be a number no less than 0 or "matched"',
         ),
         # values of the wrong kind
         (

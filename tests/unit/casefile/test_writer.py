@@ -54,7 +54,7 @@ def test_changes_replace_and_add_keys_and_touch_nothing_else() -> None:
     before["boundary"]["right"] = right
     before["run"]["duration"] = 2
     assert after == before
-    undone = {"boundary.left.beta_p": 1.0, "run.duration": 0.3, "boundary.right": {"type": "viscous"}}
+    undone = {"boundary.left.beta_p": "matched", "run.duration": 0.3, "boundary.right": {"type": "viscous"}}
     assert with_changes(changed, undone) == case
     assert changed != case
 

@@ -23,7 +23,7 @@ def test_facts_are_those_of_the_scene(bar) -> None:
     assert facts["contacts"] == "58"
     assert "c_p = 1000.0 m/s" in facts["wave speeds"]
     assert "c_s" not in facts["wave speeds"]  # y is held
-    assert facts["right side"].startswith("viscous, β_P = 0.9, β_S = 1; 2 particles")
+    assert facts["right side"].startswith("viscous, β_P = 0.9 (matched: 1), β_S = 1; 2 particles")
     assert facts["top side"].startswith("free; 20 particles")
     # the disk nearest to (5, 0.5) is one of four at the same distance
     assert facts["monitor middle"].split(" at ")[1] in {
@@ -34,7 +34,7 @@ def test_facts_are_those_of_the_scene(bar) -> None:
 def test_a_side_says_that_its_masses_are_halved(bar) -> None:
     facts = facts_of(bar({"boundary.right.half_mass": True}))
 
-    assert facts["right side"].startswith("viscous, β_P = 1, β_S = 1, half mass; 2 particles")
+    assert facts["right side"].startswith("viscous, β_P = 1 (matched), β_S = 1, half mass; 2 particles")
 
 
 def test_a_periodic_side_is_no_side(bar) -> None:

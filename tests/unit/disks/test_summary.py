@@ -32,6 +32,8 @@ def test_a_side_is_described_by_its_particles_and_its_keys(bar) -> None:
         "diameter_sum_ratio": 1.0,
         "beta_p": 0.9,
         "beta_s": 1.0,
+        "matched_p": pytest.approx(1.0, rel=1e-12),
+        "matched_s": None,  # y is held
         "half_mass": True,
     }
     assert set(describe_side(scene, "top")) & {"beta_p", "half_mass", "alpha_n"} == set()

@@ -1,17 +1,13 @@
 """Probable mistakes in a case of disks: loads, stages, holes, factors and speeds."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from small_cases import SURROUNDED, small
-from warned_cases import CALIBRATED, DENSE, SLOW, warned
+from warned_cases import DENSE, SLOW, warned
 
-from dembound.casefile import Case
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import build
 from dembound.disks.warnings import _steady_without_static
-from dembound.running import plan
 
 PERIODIC = {f"boundary.{side}": {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
 
@@ -49,7 +45,7 @@ def test_locked_in_stress_that_breaks_bonds_is_warned_of(bar, changes: dict, bey
 )
 def test_settling_under_a_tension_above_the_strength_is_warned_of(bar, stress, tension) -> None:
     brittle = {"material.law": "linearpbond", "material.pb_ten": 1e6, "material.pb_coh": 2e6}
-    found = warned(bar({**brittle, **SLOW, **CALIBRATED, "motion.held": [], "static": {"stress": stress}}))
+    found = warned(bar({**brittle, **SLOW, "motion.held": [], "static": {"stress": stress}}))
     said = f"static.stress: has a tension of {tension}, above material.pb_ten = 1 MPa; bonds break in the static stage"
 
     assert [line for line in found if "tension of" in line] == ([] if tension is None else [said])
@@ -85,76 +81,10 @@ def test_what_moves_on_under_a_steady_load_is_said(changes: dict, said: str) -> 
     assert line.endswith(said) or "as long as the run lasts" in line
 
 
-RANDOM = {**DENSE, "boundary.left": {"type": "viscous_input", "wave_p": "pulse", "beta_p": 0.7, "beta_s": 0.7}}
-
-
-def test_factors_that_nobody_has_chosen_are_warned_of(bar) -> None:
-    from_file = {"boundary.right": {"type": "viscous"}, "motion.held": []}
-    (found,) = warned(bar({**RANDOM, **from_file}))
-    matched = {motion: _matched(bar({**RANDOM, **from_file}), motion) for motion in "ps"}
-    shares = {motion: (1.0 - beta) / (1.0 + beta) for motion, beta in matched.items()}
-
-    assert found == (
-        f"boundary.right: reflects {100 * shares['p']:.2g} % of P and {100 * shares['s']:.2g} % of S waves with the "
-        f"default beta_p = 1 (matched: about {matched['p']:.3g}) and beta_s = 1 (matched: about {matched['s']:.3g}); "
-        "run: dembound calibrate CASE --all"
-    )
-    assert min(shares.values()) > 0.02
-
-
-def test_the_file_to_calibrate_is_named_where_it_is_there(bar, tmp_path) -> None:
-    case = replace(bar({**RANDOM, "boundary.right": {"type": "viscous"}}), folder=tmp_path)
-    assert warned(case)[0].endswith("run: dembound calibrate CASE --boundary right --wave p")
-    (tmp_path / "bar.toml").touch()
-    assert warned(case)[0].endswith(f"run: dembound calibrate {tmp_path / 'bar.toml'} --boundary right --wave p")
-
-
-def _matched(case: Case, motion: str) -> float:
-    """H/ΣD of the right side times the packing's own speed over the nominal one."""
-    scene = plan(case).scene
-    edge, own = scene.edges["right"], scene.ground.wave_speeds(0)["ps".index(motion)]
-    return own / (1000.0 if motion == "p" else own) * edge.length / edge.diameters.sum()
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"boundary.right": {"type": "viscous", "beta_p": 1.0}},  # y is held
-        {"boundary.right": {"type": "viscous", "beta_p": 1.0, "beta_s": 1.0}, "motion.held": []},
-        {"boundary.right": {"type": "free"}, "motion.held": []},
-    ],
-    ids=str,
-)
-def test_factors_that_were_chosen_or_make_no_difference_are_not(bar, changes: dict) -> None:
-    assert warned(bar({**RANDOM, **changes})) == []
-
-
-@pytest.mark.parametrize("side", ["viscoelastic", "free_field"])
-def test_every_kind_of_absorbing_side_has_factors(bar, side: str) -> None:
-    springs = {"distance": 10.0} if side == "viscoelastic" else {}
-    sides = {"boundary.bottom": {"type": "viscous_input", "wave_p": "pulse", "beta_p": 1.0, "beta_s": 1.0}}
-    sides |= {"boundary.left": {"type": "free"}, "boundary.right": {"type": side, "beta_s": 1.0, **springs}}
-    (found,) = warned(bar({**DENSE, **sides, "motion.held": []}))
-
-    assert found.startswith("boundary.right: reflects ")
-    assert found.endswith("run: dembound calibrate CASE --boundary right --wave p")
-
-
-@pytest.mark.parametrize(("speed", "other"), [(960.0, True), (962.0, False), (1040.0, False), (1042.0, True)])
-def test_reflections_of_two_per_cent_are_warned_of(bar, speed: float, other: bool) -> None:
-    # β0 of the lattice is its own S speed of 500 m/s over the one given
-    s_wave = {"motion.held": [], "material.s_wave_speed": 0.5 * speed}
-    found = warned(bar({**SLOW, **s_wave}))
-
-    # (1 − β)/(1 + β) is 0.02 at β = 0.98/1.02 = 0.9608 and at its inverse, 1.0408
-    assert [warning.split(":")[0] for warning in found] == other * ["boundary.left", "boundary.right"]
-    assert all(warning.endswith("run: dembound calibrate CASE --all") for warning in found)
-
-
 @pytest.mark.parametrize(("ratio", "other"), [(1.09, False), (1.11, True), (0.91, False), (0.89, True)])
 def test_a_packing_of_another_speed_is_warned_of(bar, monkeypatch, ratio: float, other: bool) -> None:
     monkeypatch.setattr(PackedMaterial, "wave_speeds", lambda self, axis: (1000.0 * ratio, np.nan))
-    found = [each for each in warned(bar({**SLOW, **CALIBRATED})) if each.startswith("material")]
+    found = [each for each in warned(bar({**SLOW})) if each.startswith("material")]
 
     assert found == other * [
         f"material.p_wave_speed: is 1000 m/s of the square lattice; P waves along x run at {1000 * ratio:.4g} m/s in "
@@ -167,7 +97,7 @@ def test_the_speed_along_y_counts_where_waves_go_there(bar, monkeypatch) -> None
     tap = {"name": "tap", "force": [1.0, 0.0], "position": [5.0, 0.5], "wave": "pulse"}
     below = {"boundary.bottom": {"type": "velocity", "wave_p": "pulse"}, "motion.held": []}
     for changes, there in (({}, False), ({"load": [tap]}, True), (below, True)):
-        found = warned(bar({**SLOW, **CALIBRATED, **changes}))
+        found = warned(bar({**SLOW, **changes}))
         assert any("along y run at 1200 m/s" in each for each in found) == there
 
 

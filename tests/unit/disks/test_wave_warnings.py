@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from warned_cases import CALIBRATED, DENSE, SLOW, warned
+from warned_cases import DENSE, SLOW, warned
 
 from dembound.casefile import Case
 from dembound.casefile.magnitudes import stress_in_words
@@ -76,7 +76,7 @@ def test_a_wave_stronger_than_the_locked_in_stress_is_warned_of(bar) -> None:
 def test_a_wave_stronger_than_the_stress_it_comes_upon_is_warned_of(bar, amplitude: float, strong: bool) -> None:
     # ρcv = 2500·1000·v reaches the mean of 1 and 3 MPa at 0.8 m/s; 0.81 m/s make 2.025
     static = {"stress": [-1e6, -3e6, 0.5e6]}
-    found = warned(bar({**SLOW, **CALIBRATED, "motion.held": [], "wave.pulse.amplitude": amplitude, "static": static}))
+    found = warned(bar({**SLOW, "motion.held": [], "wave.pulse.amplitude": amplitude, "static": static}))
     said = "wave.pulse: has a stress ρcv of 2.03 MPa, above the confining stress of 2 MPa; "
     assert [warning[: len(said)] for warning in found if warning.startswith("wave")] == strong * [said]
 

@@ -277,7 +277,11 @@ def test_a_horizon_may_be_half_the_bar() -> None:
             'type = "viscous"\nbeta_s = 0.5\n',
             "boundary.right.beta_s: is for waves across, and a bar moves only along its axis; use beta_p",
         ),
-        ('type = "viscous"\n', 'type = "viscous"\nbeta_p = -1\n', "boundary.right.beta_p: is -1, must be at least 0"),
+        (
+            'type = "viscous"\n',
+            'type = "viscous"\nbeta_p = -1\n',
+            'boundary.right.beta_p: is -1, must be a number no less than 0 or "matched"',
+        ),
         (
             'wave_p = "pulse"',
             'wave_s = "pulse"',

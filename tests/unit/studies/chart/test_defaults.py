@@ -13,7 +13,7 @@ from dembound.studies.choices import choices_of
 
 @pytest.mark.parametrize("name", names())
 def test_every_shipped_case_has_some(name: str, monkeypatch) -> None:
-    monkeypatch.setattr(chosen, "_homogenised_factors", lambda case: iter(()))  # they need the packing
+    monkeypatch.setattr(chosen, "_matched_factors", lambda case: iter(()))  # they need the packing
     case = load(folder() / f"{name}.toml")
     choices, _ = choices_of(case, defaults(case))
     assert len(choices) >= 4
@@ -25,24 +25,26 @@ def test_of_disks_one_thing_changes_at_a_time(bar) -> None:
         "as in the case": {},
         "radius 0.5 m": {"packing.radius": 0.5},  # ×1.25 and ×1.5 do not divide 10 m × 1 m
         "safety 0.45": {"run.safety": 0.45},
-        "right, homogenised β": {"boundary.right.beta_p": 1.0},
+        "right, matched β": {"boundary.right.beta_p": "matched"},
         "right viscoelastic": {"boundary.right": {"type": "viscoelastic", "distance": 5.0, "beta_p": 0.8}},
         "right free": {"boundary.right": {"type": "free"}},
     }
 
 
-def test_homogenised_factors_are_a_choice_where_others_are_given(bar) -> None:
+def test_matched_factors_are_a_choice_where_others_are_given(bar) -> None:
     packing = {"pattern": "B", "size": [9.0, 3.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [3.0, 3.0], "seed": 1}
-    case = bar({"packing": packing, "motion.held": ["y", "rotation"], "boundary.right": {"type": "viscous"}})
-    found = defaults(case)["right, homogenised β"]  # not the left side, where the wave enters
-    assert found == {"boundary.right.beta_p": round(homogenised_beta(build(case), "right", "p"), 4)}  # y is held
-    assert 0.5 < found["boundary.right.beta_p"] < 0.95
-    near = {key: 1.005 * beta for key, beta in found.items()}
-    assert not any("homogenised" in name for name in defaults(with_changes(case, near)))
+    own = bar({"packing": packing, "motion.held": ["y", "rotation"], "boundary.right": {"type": "viscous"}})
+    beta = homogenised_beta(build(own), "right", "p")
+    assert 0.5 < beta < 0.95
+    other = with_changes(own, {"boundary.right.beta_p": 1.0, "boundary.left.beta_p": 1.0})
+    # not the left side, where the wave enters; y is held
+    assert defaults(other)["right, matched β"] == {"boundary.right.beta_p": "matched"}
+    for near in (own, with_changes(own, {"boundary.right.beta_p": 1.005 * beta})):
+        assert not any("matched" in name for name in defaults(near))
 
 
 def test_rows_of_frames_are_coarsened_with_the_disks(monkeypatch) -> None:
-    monkeypatch.setattr(chosen, "_homogenised_factors", lambda case: iter(()))
+    monkeypatch.setattr(chosen, "_matched_factors", lambda case: iter(()))
     case = load(folder() / "zhou2018" / "long_bar_c.toml")
     (changes,) = (changes for changes in defaults(case).values() if changes.get("packing.radius") == 0.3125)
     assert changes["packing.edge_radius"] == 1.25 * case.packing.edge_radius

@@ -1,4 +1,4 @@
-"""What reaches a side: kinds, angles and frequencies."""
+"""What reaches a side: kinds and angles."""
 
 import math
 
@@ -7,7 +7,7 @@ import pytest
 from small_cases import GRAINS, small
 
 from dembound.disks.scene import ground_of
-from dembound.studies.reflection.arrivals import Arrival, arrivals_of, frequencies_of
+from dembound.studies.reflection.arrivals import Arrival, arrivals_of
 from dembound.studies.reflection.meter import Reflections
 
 POINT = {"name": "blow", "position": [2.0, 4.0], "force": [0.0, -1e3], "wave": "pulse"}
@@ -51,26 +51,3 @@ def test_shares_are_means_over_kinds_frequencies_and_angles_of_what_is_known() -
     # p: 0.2 at 0°, 0.3 at 60°, 0.25 between; s: 0.4 and 0.5
     assert half.sent_back(found) == pytest.approx(0.5 * (0.225 + 0.45))
     assert math.isnan(Arrival("none", ("s",), np.zeros(1), np.ones(1)).sent_back(reflections(p=np.ones((2, 2)))))
-
-
-def test_frequencies_share_the_energy_of_the_waves_evenly() -> None:
-    case = small(GRAINS)
-    found = frequencies_of(case, ground_of(case), 200)
-    wave = case.wave["pulse"]
-    t = np.linspace(0.0, 0.64, 2**17, endpoint=False)
-    energy = np.abs(np.fft.rfft(wave.velocity(t))) ** 2
-    share = np.cumsum(energy) / energy.sum()
-    frequencies = np.fft.rfftfreq(len(t), t[1])
-    for number in (20, 100, 180):
-        expected = np.interp((number + 0.5) / 200, share, frequencies)
-        # one line of either spectrum at most
-        assert found[number] == pytest.approx(expected, abs=2.0 / 0.64)
-    assert (np.diff(found) > 0.0).all()
-
-
-def test_without_waves_they_are_those_of_twenty_to_two_hundred_diameters() -> None:
-    case = small({key: value for key, value in GRAINS.items() if key not in ("wave", "boundary")})
-    ground = ground_of(case)
-    found = frequencies_of(case, ground, 5)
-    lengths = ground.wave_speeds(0)[0] / found / ground.brick.mean_diameter
-    np.testing.assert_allclose(lengths[[0, -1]], [200.0, 20.0])

@@ -73,7 +73,8 @@ def test_copies_of_a_brick_as_one_brick_are_the_same_packing(name) -> None:
 def test_beside_a_narrow_body_only_waves_along_the_normal_are_measured() -> None:
     """Periodic and as wide as one element: its ties have the mean motion, as in a run."""
     lateral = {"type": "periodic"}
-    ends = {"right": {"type": "outside"}, "left": {"type": "viscous"}, "bottom": lateral, "top": lateral}
+    ends = {"right": {"type": "outside"}, "left": {"type": "viscous", "beta_p": 1.0}}
+    ends |= {"bottom": lateral, "top": lateral}
     case = small({**GRAINS, "boundary": ends, "outside": {"element": 4.0}})
     found = measure_side(case, "right", [0.0, 30.0], [30.0])
     assert found.found.angles.tolist() == [0.0]

@@ -57,13 +57,14 @@ def test_dashpots_of_a_random_packing_send_back_nearly_as_much_as_beside_disks(s
         np.testing.assert_allclose(found.converted[wave], expected.converted[wave], rtol=0.1, atol=3e-4)
 
 
-def test_a_side_is_answered_quickly_beside_calibrated_factors() -> None:
-    case = small(GRAINS)
+def test_a_side_is_answered_quickly_beside_matched_factors() -> None:
+    case = small(GRAINS, changes={"boundary.right.beta_p": 1.0})
     found = measure_side(case, "right", [0.0, 30.0], 3, quick=True)
-    assert found.calibrated is not None
+    assert found.matched is not None
     assert found.continuum is None
     # at its own factors nothing comes back, but for what cut bonds turn of P into S
-    assert found.calibrated.total("p")[:, 0].max() < 1e-4 < found.found.total("p")[:, 0].min()
+    assert found.matched.total("p")[:, 0].max() < 1e-4 < found.found.total("p")[:, 0].min()
+    assert measure_side(small(GRAINS), "right", [0.0], 3, quick=True).matched is None  # it has these factors
     outside = small({**GRAINS, "boundary": {"right": {"type": "outside"}}})
     with pytest.raises(CaseError, match="--quick: is not possible for side right"):
         measure_side(outside, "right", quick=True)
