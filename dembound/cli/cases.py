@@ -27,7 +27,7 @@ from dembound.cli.app import (
 from dembound.cli.console import compact_table, err, out
 from dembound.cli.estimate import Budget, print_estimate
 from dembound.errors import CaseError
-from dembound.results.interrupts import exit_code_of
+from dembound.interrupts import exit_code_of
 from dembound.version import IMPORT_BEGAN
 
 if TYPE_CHECKING:

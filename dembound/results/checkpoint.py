@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.errors import CaseError, RecordError
+from dembound.interrupts import Stopped, caught
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
-from dembound.results.interrupts import Interrupts, Stopped
 from dembound.results.reader import replacing
 from dembound.version import __version__
 
@@ -71,33 +71,30 @@ class Checkpoint:
 
 
 class Checkpoints(Tracker):
-    """Writes a checkpoint at intervals of wall time, and when a signal ends the run; the last tracker of a run.
+    """Writes a checkpoint at intervals of wall time, and when a run is requested to end; the last tracker of a run.
 
     Parameters
     ----------
     path : file of the checkpoint. None: none are written.
     interval : s of wall time from one to the next.
-    interrupts : notes the signals.
     facts : returns the facts of the present state, after everything before it has been recorded; its second argument is
     whether to wait until the disk has the record.
     """
 
     name = "checkpoints"
 
-    def __init__(
-        self, path: Path | None, interval: float, interrupts: Interrupts, facts: Callable[[Run, bool], dict[str, Any]]
-    ) -> None:
-        self._path, self._interval, self._interrupts, self._facts = path, interval, interrupts, facts
+    def __init__(self, path: Path | None, interval: float, facts: Callable[[Run, bool], dict[str, Any]]) -> None:
+        self._path, self._interval, self._facts = path, interval, facts
         self._written = time.monotonic()
 
     def handle(self, run: Run) -> None:
         """Does nothing, as it is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
-        """Write a checkpoint if the last one is old; raises Stopped, after a checkpoint, if a signal was caught."""
-        if self._interrupts.caught is not None:
+        """Write a checkpoint if the last one is old; raises Stopped, after a checkpoint, if it is to end."""
+        if (number := caught()) is not None:
             self.write(run)
-            raise Stopped(self._interrupts.caught)
+            raise Stopped(number)
         if time.monotonic() - self._written >= self._interval:
             self.write(run)
 

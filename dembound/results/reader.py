@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dembound.errors import CaseError, DemboundError, RecordError
+from dembound.interrupts import look
 from dembound.results.committed import CommittedFile, log_of
 from dembound.results.damage import damage_in_words, is_of_checksum, require_readable
 from dembound.results.datasets import datasets_of
@@ -60,6 +61,7 @@ def reading(path: Path) -> Iterator[h5py.File]:
     """
     import h5py
 
+    look()
     if not path.is_file():
         raise RecordError([f"{path}: cannot be read as a record of results: there is no such file"])
     try:
