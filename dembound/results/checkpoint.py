@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import os
 import time
 import zipfile
@@ -57,17 +58,34 @@ class Checkpoint:
     def read(cls, path: Path) -> Checkpoint:
         """Read a checkpoint; raises RecordError for a file that is damaged, CaseError for one of another version."""
         try:
-            with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
+            content = path.read_bytes()
+            _require_small(content)
+            with np.load(io.BytesIO(content), allow_pickle=False) as archive:
                 arrays = {name: archive[name] for name in archive.files}
             facts = json.loads(arrays.pop(FACTS).tobytes())
             version = facts["version"]
         except (KeyError, zipfile.BadZipFile) as error:
             raise RecordError([f"{path}: is damaged: {error}"]) from None
-        except (ValueError, EOFError, NotImplementedError):  # whose messages are about numpy's options
+        except (ValueError, TypeError, EOFError, NotImplementedError, MemoryError, RecursionError, AttributeError):
+            # whose messages are about numpy's options
             raise RecordError([f"{path}: is damaged, no archive of arrays"]) from None
         if version != __version__:
             raise CaseError([f"{path}: is of dembound {version}, this is {__version__}; run the case anew"])
         return cls(facts, arrays)
+
+
+def _require_small(content: bytes) -> None:
+    """Raise ValueError for an archive that is compressed, as none is, or whose arrays declare more than is in it."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        for each in archive.infolist():
+            if each.compress_type != zipfile.ZIP_STORED:
+                raise ValueError("compressed")
+            with archive.open(each) as file:
+                version = np.lib.format.read_magic(file)
+                read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+                shape, _, dtype = read(file)
+            if dtype.itemsize * math.prod(shape) > each.file_size:
+                raise ValueError("declares more than it has")
 
 
 class Checkpoints(Tracker):

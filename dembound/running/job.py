@@ -21,7 +21,7 @@ from dembound.results.checkpoint import Checkpoints, facts_of
 from dembound.results.folder import Folder
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.kept_stages import KeptStages
-from dembound.results.reader import open_record, replacing, trust
+from dembound.results.reader import open_record, replacing, trust, understood
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
@@ -188,7 +188,8 @@ class _Job:
                 simulation.track(Histories(recorder), ledger, snapshots, Reports(self.progress, steps))
                 simulation.track(*planned.kind.trackers(simulation), checkpoints)
                 if found is not None and counts is not None:
-                    simulation.state.take(found.arrays())
+                    with understood(found.path / CHECKPOINT):
+                        simulation.state.take(found.arrays())
             simulation.run(steps)
             with put_off():
                 checkpoints.write(simulation, durable=False)

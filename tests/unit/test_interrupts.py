@@ -24,43 +24,64 @@ def send(number: int = signal.SIGINT) -> None:
 
 
 def test_nothing_is_raised_before_it_is_looked_for() -> None:
-    with pytest.raises(Stopped) as stop, Interrupts():
-        look()
-        send(signal.SIGTERM)
-        assert caught() == signal.SIGTERM
-        with put_off():
+    def work() -> None:
+        with Interrupts():
             look()
-        look()
-        pytest.fail("must not be reached")
+            send(signal.SIGTERM)
+            assert caught() == signal.SIGTERM
+            with put_off():
+                look()
+            look()
+            pytest.fail("must not be reached")
+
+    with pytest.raises(Stopped) as stop:
+        work()
     assert stop.value.exit_code == 143
     look()
 
 
 def test_a_signal_that_nobody_looks_at_is_raised_at_the_end() -> None:
-    with pytest.raises(Stopped), Interrupts():
-        send()
-    with pytest.raises(ValueError, match="mine"), Interrupts():
-        send()
-        raise ValueError("mine")
+    def work(error: Exception | None) -> None:
+        with Interrupts():
+            send()
+            if error is not None:
+                raise error
+
+    with pytest.raises(Stopped):
+        work(None)
+    with pytest.raises(ValueError, match="mine"):
+        work(ValueError("mine"))
 
 
 def test_a_second_signal_acts_at_once_unless_it_is_the_same_request() -> None:
-    with pytest.raises(KeyboardInterrupt) as stop, Interrupts() as interrupts:
-        timer = threading.Timer(0.3 * TOGETHER, os.kill, (os.getpid(), signal.SIGINT))
-        timer.start()
-        send()  # returns after TOGETHER, within which the second one comes
-        timer.join()
-        assert interrupts.caught == signal.SIGINT
-        send()
-        pytest.fail("must not be reached")
+    done = []
+
+    def work() -> None:
+        with Interrupts():
+            timer = threading.Timer(0.3 * TOGETHER, os.kill, (os.getpid(), signal.SIGINT))
+            timer.start()
+            send()  # returns after TOGETHER, within which the second one comes
+            timer.join()
+            done.append(caught())
+            send()
+            done.append("must not be reached")
+
+    with pytest.raises(KeyboardInterrupt) as stop:
+        work()
     assert type(stop.value) is KeyboardInterrupt
+    assert done == [signal.SIGINT]
 
 
 def test_requests_to_an_outer_statement_are_seen_within() -> None:
-    with pytest.raises(Stopped), Interrupts(), Interrupts() as inner:
-        send()
-        assert inner.caught == signal.SIGINT
-        look()
+    def work() -> None:
+        with Interrupts(), Interrupts() as inner:
+            send()
+            assert inner.caught == signal.SIGINT
+            look()
+            pytest.fail("must not be reached")
+
+    with pytest.raises(Stopped):
+        work()
 
 
 def test_a_file_is_a_request_in_its_thread_alone(tmp_path) -> None:

@@ -19,6 +19,7 @@ from dembound.kinds import loads
 from dembound.motion.trackers import Run
 from dembound.results.folder import Folder
 from dembound.results.reader import replacing
+from dembound.results.summary_file import read_summary
 from dembound.running import Progress, Shared, resume_case, run_case
 from dembound.studies.choices import digest
 from dembound.studies.estimate import estimate_if_asked
@@ -149,7 +150,7 @@ def _run(task: Task) -> tuple[dict[str, float], list[str]]:
     if folder is None:
         folder = run_case(case, results, progress, shared=shared)
     failed = estimate_if_asked(case, folder)
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary = read_summary(folder)
     return values_of_run(folder, summary), [*summary["warnings"], *([failed] if failed else [])]
 
 
