@@ -1,13 +1,19 @@
 """Whatever a file of results is made to be, a command ends soon, in bounded memory, with its work done or one line."""
 
-import multiprocessing
+import io
+import json
 import os
 import random
 import resource
 import shutil
+import subprocess
+import sys
+import threading
 import time
+import traceback
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
@@ -45,9 +51,8 @@ READING: Sequence[tuple[str, ...]] = (
     ("resume", "{}", "--until", "0.004"),
     ("estimate", "{}"),
 )
-CHARTED: Sequence[tuple[str, ...]] = (
-    ("chart", "bar.toml", "--vary", "run.courant=0.5,0.6", "--resume", "--repeats", "1"),
-)
+CHART = ("chart", "bar.toml", "--vary", "run.courant=0.5,0.6", "--repeats", "1")
+CHARTED: Sequence[tuple[str, ...]] = ((*CHART, "--resume"),)
 
 
 def made(folder: Path) -> None:
@@ -62,9 +67,6 @@ def made(folder: Path) -> None:
 
 def ended(words: Sequence[str]) -> tuple[int, str]:
     """Exit code and messages of a command, run in this process; an error of no message is re-raised."""
-    import io
-    from contextlib import redirect_stderr, redirect_stdout
-
     from dembound.cli import app
     from dembound.errors import DemboundError
 
@@ -80,68 +82,65 @@ def ended(words: Sequence[str]) -> tuple[int, str]:
     return 0, ""
 
 
-def worked(folder: str, seed: int, count: int, results: "multiprocessing.Queue") -> None:
-    """Craft results and read them; what a command needed and how it ended goes to the queue."""
+def worked(folder: Path, count: int) -> None:
+    """Craft results and read them; prints what was done, and how each command ended, in lines of JSON."""
     os.chdir(folder)
-    os.environ["MPLBACKEND"] = "Agg"
-    made(Path(folder))
-    draw = random.Random(seed)
+    made(folder)
+    draw = random.Random(count)
     for words in READING:  # import all that they need
         for kind in ("bar", "disks"):
             ended([word.format(f"sound-{kind}", kind=kind) for word in words])
-    base = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-    limit = base + 4 * BYTES
-    resource.setrlimit(resource.RLIMIT_DATA, (int(limit), int(limit)))
+    limit = int(most_memory() + 4 * BYTES)
+    resource.setrlimit(resource.RLIMIT_AS, (limit + 2**36, limit + 2**36))
+    resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
     for number in range(count):
         kind = draw.choice(("bar", "disks", "disks", "bar", "chart"))
         target = copied(Path(f"sound-{kind}"), Path("results/bar_chart" if kind == "chart" else "crafted"))
         what = crafted(target, draw)
         words = [w.format("crafted", kind=kind) for w in draw.choice(CHARTED if kind == "chart" else READING)]
-        results.put((number, what, words))
-        began = time.process_time()
-        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        print(json.dumps({"number": number, "what": what, "words": words}), flush=True)
+        began, before = time.process_time(), most_memory()
         try:
             code, said = ended(words)
         except BaseException as error:
-            code, said = 1, f"{type(error).__name__}: {error}"
-        grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024
-        results.put((number, code, said, time.process_time() - began, grown))
-    results.put(None)
+            code, said = 1, f"{type(error).__name__}: {error}\n{traceback.format_exc()[-1500:]}"
+        took, grown = time.process_time() - began, most_memory() - before
+        print(json.dumps({"code": code, "said": said, "took": took, "grown": grown}), flush=True)
+
+
+def most_memory() -> int:
+    """The most bytes of memory that this process has had."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 
 
 @pytest.mark.parametrize("count", [60, pytest.param(1000, marks=pytest.mark.slow)])
 def test_crafted_results_are_refused_in_a_line_or_used(tmp_path, count) -> None:
-    context = multiprocessing.get_context("spawn")
-    results = context.Queue()
-    process = context.Process(target=worked, args=(str(tmp_path), count, count, results))
-    process.start()
-    codes, bad, most_time, most_memory, what = Counter(), [], 0.0, 0, None
-    while (found := received(results, process, what)) is not None:
-        if len(found) == 3:
-            what = found
-            continue
-        _, code, said, took, grown = found
-        codes[code] += 1
-        most_time, most_memory = max(most_time, took), max(most_memory, grown)
-        if code not in (0, 2, 3, 5) or len(said.splitlines()) > 5 or took > SECONDS or grown > BYTES:
-            bad.append((what, found))
-    process.join()
-    print(dict(codes), f"{most_time:.1f} s, {most_memory / 1e6:.0f} MB at most")
-    for each in bad:
-        print(each)
+    environment = os.environ | {"MPLBACKEND": "Agg", "PYTHONPATH": str(Path(__file__).parents[1])}
+    words = [sys.executable, __file__, str(tmp_path), str(count)]
+    codes, bad, what, times, sizes = Counter(), [], None, [0.0], [0]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=environment) as process:
+        for line in process.stdout:
+            found = json.loads(line)
+            if "what" in found:
+                what = found
+                timer = threading.Timer(40.0 * SECONDS, process.kill)  # on a machine that does much else
+                timer.start()
+                continue
+            timer.cancel()
+            codes[found["code"]] += 1
+            times.append(found["took"])
+            sizes.append(found["grown"])
+            is_one_line = len(found["said"].splitlines()) <= 1 + found["code"] * (found["code"] in (2, 3))
+            if not (found["code"] in (0, 2, 3, 5) and is_one_line and times[-1] < SECONDS and sizes[-1] < BYTES):
+                bad.append((what, found))
+    print(dict(codes), f"{max(times):.1f} s and {max(sizes) / 1e6:.0f} MB at most, {len(bad)} wrong")
+    for before, after in bad:
+        print(before, after["code"], after["took"], after["grown"], after["said"], sep="\n  ")
+    assert process.returncode == 0, what
     assert not bad
     assert codes.total() == count
+    assert codes[5] > 0.3 * count
 
 
-def received(results, process, what):
-    """The next message of the worker; fails if that has died or needs much longer than it may."""
-    import queue
-
-    for _ in range(240):
-        try:
-            return results.get(timeout=0.5 if what else 2.0)
-        except queue.Empty:
-            if not process.is_alive():
-                pytest.fail(f"the process has ended with {process.exitcode} at {what}")
-    process.kill()
-    pytest.fail(f"does not end: {what}")
+if __name__ == "__main__":
+    worked(Path(sys.argv[1]), int(sys.argv[2]))
