@@ -27,7 +27,13 @@ def crafted(folder: Path, draw: random.Random) -> str:
         change = draw.choice(CHANGES if path.suffix == ".h5" else FILES)
         try:
             done.append(f"{path.relative_to(folder)}: {change.__name__} {change(path, draw)}")
-        except (LookupError, OSError, TypeError, ValueError, RuntimeError) as error:  # what an earlier change has made so
+        except (
+            LookupError,
+            OSError,
+            TypeError,
+            ValueError,
+            RuntimeError,
+        ) as error:  # what an earlier change has made so
             done.append(f"{change.__name__} failed: {type(error).__name__}")
     return "; ".join(done)
 
