@@ -33,7 +33,7 @@ def crafted(folder: Path, draw: random.Random) -> str:
             TypeError,
             ValueError,
             RuntimeError,
-        ) as error:  # what an earlier change has made so
+        ) as error:
             done.append(f"{change.__name__} failed: {type(error).__name__}")
     return "; ".join(done)
 
