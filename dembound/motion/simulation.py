@@ -18,11 +18,11 @@ from dembound.motion.supports import NodeSupports
 from dembound.motion.threads import threads_for
 from dembound.motion.trackers import Records, Tracker, Watch
 
-AT_ONCE = 5_000_000
-"""Nodes times steps between two looks for a request to end: 0.05 s to 0.5 s on one core."""
+AT_ONCE = 20_000_000
+"""Nodes times steps between two looks for a request to end: 0.2 s to 2 s on one core."""
 
-LEAST_AT_ONCE = 8
-"""Steps in any case, as the loop copies all displacements once or not at all when it returns."""
+LEAST_AT_ONCE = 128
+"""Steps in any case: a return of the loop takes as long as one or two of them."""
 
 
 class Simulation:

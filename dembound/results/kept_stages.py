@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 from dembound.errors import CaseError
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
+from dembound.results.checkpoint import FILE as CHECKPOINT
 from dembound.results.checkpoint import Checkpoint, Checkpoints, differences
+from dembound.results.reader import understood
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -72,7 +74,8 @@ class KeptStages(Stages):
         self._begun = simulation, self._checkpoints(name)
         simulation.track(self._begun[1])
         if self._unfinished is not None and self._unfinished[0] == name:
-            simulation.state.take(self._unfinished[1]())
+            with understood(Path(CHECKPOINT)):
+                simulation.state.take(self._unfinished[1]())
             self._unfinished = None
 
     def finish(self, name: str, arrays: Arrays) -> None:

@@ -67,7 +67,7 @@ def sweep(members: Sequence[Member], options: Options, folder: Path, report: Rep
 
     The second and later members begin when the first one is stepped, as its code is compiled then. A member whose
     process ends without an outcome is repeated once. After Ctrl-C or SIGTERM all members write a checkpoint;
-    KeyboardInterrupt is raised when they have ended, and a second signal kills them.
+    KeyboardInterrupt is raised when they have ended; a second one kills them.
 
     Raises CaseError for a folder that another sweep uses, or that holds something else.
     """
