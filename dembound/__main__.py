@@ -5,16 +5,16 @@ Ctrl-C ends it with exit code 130 at any time, also while packages are imported,
 
 import sys
 
-from dembound.results.interrupts import end_at_signals, exit_code_of
+from dembound.interrupts import exit_code_of, whole_process
 
 
 def main() -> None:
     """Import and run the command line."""
     try:
-        end_at_signals()
-        from dembound.cli import main as run
+        with whole_process():
+            from dembound.cli import main as run
 
-        run()
+            run()
     except KeyboardInterrupt as stop:
         print("dembound: stopped", file=sys.stderr)
         sys.exit(exit_code_of(stop))

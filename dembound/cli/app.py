@@ -19,8 +19,8 @@ from typer.core import TyperGroup
 
 from dembound.cli.console import err, escape_unprintable, out
 from dembound.errors import CaseError, DemboundError, UnusableTypeWarning
+from dembound.interrupts import exit_code_of
 from dembound.machine import give_back_at_once
-from dembound.results.interrupts import exit_code_of
 from dembound.version import __version__
 
 if TYPE_CHECKING:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import json
 import time
 from collections.abc import Callable
 from functools import partial
@@ -27,7 +26,7 @@ from dembound.cli.app import (
 from dembound.cli.console import compact_table, err, out
 from dembound.cli.estimate import Budget, print_estimate
 from dembound.errors import CaseError
-from dembound.results.interrupts import exit_code_of
+from dembound.interrupts import exit_code_of
 from dembound.version import IMPORT_BEGAN
 
 if TYPE_CHECKING:
@@ -214,8 +213,9 @@ def _print_results(folder: Path) -> None:
     """Print the outcome of a run and its folder."""
     from dembound.kinds import kind_of_record
     from dembound.results.summary import end_in_words
+    from dembound.results.summary_file import read_summary
 
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary = read_summary(folder)
     name = summary["name"]
     facts = [*end_in_words(summary), *kind_of_record(folder / "run.h5").outcome(summary)]
     if facts:

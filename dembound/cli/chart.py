@@ -13,7 +13,7 @@ from rich.table import Column
 
 from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, load_case, prepare_computing
 from dembound.cli.console import compact_table, err, out
-from dembound.results.interrupts import exit_code_of
+from dembound.interrupts import exit_code_of
 
 if TYPE_CHECKING:
     from dembound.running import Progress

@@ -10,7 +10,7 @@ import typer
 from dembound.cli.app import Threads, app, prepare_computing
 from dembound.cli.console import err, out
 from dembound.cli.results import results_file
-from dembound.errors import CaseError, DemboundError
+from dembound.errors import CaseError, DemboundError, RecordError
 
 if TYPE_CHECKING:
     from dembound.studies.estimate import Estimate
@@ -49,15 +49,17 @@ def estimate(
     from dembound.studies.estimate import estimate_results
 
     prepare_computing(threads)
-    problems = []
+    problems: list[str] = []
+    failure: type[CaseError] = RecordError  # if all are errors of files
     for path in results:
         try:
             folder = with_name(results_file(path)).parent
             _show(folder, estimate_results(folder, budget, second_seed, repeat))
         except CaseError as error:
             problems += [line for line in str(error).splitlines() if line not in problems]
+            failure = failure if isinstance(error, RecordError) else CaseError
     if problems:
-        raise CaseError(problems)
+        raise failure(problems)
 
 
 def print_estimate(folder: Path, budget: float | None = None) -> None:

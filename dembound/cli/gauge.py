@@ -103,23 +103,25 @@ def gauge(
     """
     from dembound.gauge.gauge_io import read_free_end, read_gauge
     from dembound.gauge.spalling import evaluate
+    from dembound.results.reader import understood
 
     path = results_file(record) if record.is_dir() else record
     wired = bridge_of(gauge_factor, bridge, excitation, gain, poisson)
     reading = reading_of(column, time_column, time_unit, unit, wired, scale)
     treatment = treatment_of(no_baseline, no_drift, no_hum, low_pass, high_pass, band, notch)
     bar = (position, length, density)
-    gauge = read_gauge(path, monitor, *bar, reading, treatment, youngs_modulus, may_be_clipped=clipped)
-    found = evaluate(
-        gauge,
-        spall=spall,
-        free_end=None if free_end is None else read_free_end(path, free_end),
-        estimate=estimate,
-        count=peaks,
-        pulse_end=pulse_end,
-        speed=wave_speed,
-        coefficient=attenuation,
-    )
+    with understood(path):
+        gauge = read_gauge(path, monitor, *bar, reading, treatment, youngs_modulus, may_be_clipped=clipped)
+        found = evaluate(
+            gauge,
+            spall=spall,
+            free_end=None if free_end is None else read_free_end(path, free_end),
+            estimate=estimate,
+            count=peaks,
+            pulse_end=pulse_end,
+            speed=wave_speed,
+            coefficient=attenuation,
+        )
     if peaks is not None and found.peaks is not None and len(found.peaks.time) < peaks:
         err.print(f"--peaks: asks for {peaks} tension peaks, there are {len(found.peaks.time)}")
     for warning in found.warnings:

@@ -67,9 +67,11 @@ def respond(
     They are those of a direct run with the record as a file wave, to rounding, and are plotted and compared like it.
     """
     from dembound.results.folder import Folder
+    from dembound.results.reader import understood
     from dembound.studies.library import Library, load_factor, read_records, watched_contacts, write_response
 
-    made = Library(folder)
+    with understood(folder):
+        made = Library(folder)
     given = read_records(records, made.inputs, made.clock)
     for record in given:
         Folder(output, record.name).check()

@@ -73,14 +73,16 @@ def plot(
     """
     from dembound.plot.style import save
     from dembound.plot.table import write_lines
+    from dembound.results.reader import understood
 
     files = [results_file(path) for path in results]
     asked = Plotted(quantity, component, monitor, boundary, energy, field, snapshot, table)
     kind = _common_kind(files)
     if problems := list(asked.problems(kind, len(files))):
         raise CaseError(problems)
-    figure = asked.draw(files, kind)
-    save(figure, output, title)
+    with understood(*files):
+        figure = asked.draw(files, kind)
+        save(figure, output, title)
     out.print(f"wrote {output}")
     if table is not None:
         write_lines(figure, table)
@@ -124,9 +126,12 @@ def view_disks(
 
     A window needs a display; without one, --output draws a picture.
     """
+    from dembound.results.reader import understood
     from dembound.results.view import view
 
-    view(results_file(results), snapshot, field.value, picture, exaggerate)
+    file = results_file(results)
+    with understood(file):
+        view(file, snapshot, field.value, picture, exaggerate)
     if picture is not None:
         out.print(f"wrote {picture}")
 
@@ -164,8 +169,11 @@ def compare_histories(
     All twins in a free-field column have one line, that of the one with the largest RMS.
     """
     from dembound.results.compare import compare
+    from dembound.results.reader import understood
 
-    found = compare(results_file(reference), [results_file(path) for path in results], quantity.value)
+    files = [results_file(path) for path in (reference, *results)]
+    with understood(*files):
+        found = compare(files[0], files[1:], quantity.value)
     unit = found[0].unit
     components = list(dict.fromkeys(name for line in found for name in line.along))
     parts = components if len(components) > 1 else []

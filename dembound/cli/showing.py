@@ -82,17 +82,20 @@ def movie(
     There is a frame for each snapshot: run the case with --set output.snapshots=100 or so.
     """
     from dembound.report.movie import movie_of, write_movie
+    from dembound.results.reader import understood
 
-    shown = movie_of(
-        results_file(results),
-        field=None if field is None else field.value,
-        exaggerate=exaggerate,
-        monitors=(monitor or None) if histories else [],
-        every=every,
-        pixels=size,
-    )
-    with _counted(len(shown)) as progress:
-        write_movie(shown, output, fps, progress)
+    file = results_file(results)
+    with understood(file):
+        shown = movie_of(
+            file,
+            field=None if field is None else field.value,
+            exaggerate=exaggerate,
+            monitors=(monitor or None) if histories else [],
+            every=every,
+            pixels=size,
+        )
+        with _counted(len(shown)) as progress:
+            write_movie(shown, output, fps, progress)
     out.print(f"wrote {output} ({len(shown)} frames, {output.stat().st_size / 1e6:.1f} MB)")
 
 

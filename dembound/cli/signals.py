@@ -56,10 +56,13 @@ def signals(
     """
     from dembound.plot.style import save
     from dembound.plot.table import write_lines
+    from dembound.results.reader import understood
 
     _require_fitting(show, quantity, component, reference)
-    figure = _drawn([results_file(path) for path in results], show, quantity, component, monitor, reference)
-    save(figure, output, title)
+    files = [results_file(path) for path in results]
+    with understood(*files):
+        figure = _drawn(files, show, quantity, component, monitor, reference)
+        save(figure, output, title)
     out.print(f"wrote {output}")
     table = output.with_suffix(".csv")
     write_lines(figure, table)

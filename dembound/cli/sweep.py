@@ -16,7 +16,7 @@ from dembound.cli.app import Name, Output, PictureTitle, Settings, Vary, app, lo
 from dembound.cli.calibration import CalibrationMethod
 from dembound.cli.console import INTERVAL, compact_table, err, out
 from dembound.errors import CaseError
-from dembound.results.interrupts import exit_code_of
+from dembound.interrupts import exit_code_of
 
 if TYPE_CHECKING:
     from dembound.studies.sweep.statistics import Statistic

@@ -7,6 +7,7 @@ supports.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from dembound.disks.until_at_rest import UntilAtRest
 from dembound.motion.kind import OnLook
 from dembound.motion.simulation import Simulation
 from dembound.motion.stages import Stages
+from dembound.results.reader import understood
 
 SAFETY = 0.9
 """Time step over the stability limit."""
@@ -105,7 +107,8 @@ def _settle(
     starting : returns its start, None for the scene as built. tractions : (3,) Pa, if they have been corrected.
     """
     if (kept := stage.stages.finished(stage.key)) is not None:
-        return Settled.recalled(scene, kept)
+        with understood(Path(f"{stage.key}.npz")):
+            return Settled.recalled(scene, kept)
     static, start = scene.case.static, starting()
     assert static is not None
     body = StaticScene(scene, static, tractions)

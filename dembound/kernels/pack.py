@@ -164,16 +164,17 @@ def downhill(pace):
 
 
 @njit(**EXACT_MAKES)
-def relax(places, velocities, held, pairs, leash, tolerance, faint, max_steps, pace):
-    """Run FIRE until the forces balance, a disk has moved by `leash`, or `max_steps` are done.
+def relax(places, velocities, held, pairs, origin, leash, tolerance, faint, max_steps, pace):
+    """Run FIRE until the forces balance, a disk has moved by `leash` from `origin`, or `max_steps` are done.
 
     places, velocities (2, n) change in place; the first `held` disks do not move; pairs lists every pair that can come
-    into contact before a disk has moved by `leash`. pace = [dt, mix, downhill steps] keeps FIRE's state between calls.
-    Returns (mean unbalanced force / mean contact force, steps done); balance is reached when the ratio is at most
-    `tolerance`. Contact forces below `faint` count as `faint`: disks with free space lose their last contacts only
-    slowly, so that waiting for them would take too long.
+    into contact before a disk has moved by `leash` from origin (2, n). pace = [dt, mix, downhill steps] keeps FIRE's
+    state between calls: several of fewer steps do the same as one. Returns (mean unbalanced force / mean contact force,
+    steps done, whether `max_steps` alone ended them); balance is reached when the ratio is at most `tolerance`. Contact
+    forces below `faint` count as `faint`: disks with free space lose their last contacts only slowly, so that waiting
+    for them would take too long.
     """
-    forces, origin, work = np.zeros_like(places), places.copy(), np.empty((3, BLOCK))
+    forces, work = np.zeros_like(places), np.empty((3, BLOCK))
     free = max(places.shape[1] - held, 1)
     ratio = 0.0
     for step in range(max_steps):
@@ -182,7 +183,7 @@ def relax(places, velocities, held, pairs, leash, tolerance, faint, max_steps, p
         unbalanced, power, ff, vv = sums(velocities, forces, held, dt)
         ratio = unbalanced / free / max(mean, faint)
         if ratio <= tolerance:
-            return ratio, step
+            return ratio, step, False
         if power > 0.0:
             pace[0], pace[1], pace[2] = dt, mix, pace[2] + 1.0
         else:  # uphill: go back half a step, stop, and start again with a smaller step
@@ -196,5 +197,5 @@ def relax(places, velocities, held, pairs, leash, tolerance, faint, max_steps, p
             accelerate(velocities[axis], forces[axis], held, pace[0], pace[1], turn)
             drift(places[axis], velocities[axis], held, pace[0])
         if farthest(places, origin) > leash:
-            return ratio, step + 1
-    return ratio, max_steps
+            return ratio, step + 1, False
+    return ratio, max_steps, True

@@ -7,6 +7,8 @@ from contextlib import contextmanager
 
 from numba.core import event
 
+from dembound.motion import compiling as compiling  # kernels are not compiled without a clock, nor without looking
+
 
 class Clock:
     """Adds up the seconds spent in sections; time in a nested section is not counted for the outer one.

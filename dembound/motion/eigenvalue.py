@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from dembound.errors import RunError
+from dembound.interrupts import look
 from dembound.kernels.lanczos import next_vector, work
 from dembound.motion.layout import Layout, aligned_zeros
 from dembound.motion.threads import threads_for
@@ -61,6 +62,7 @@ def largest_eigenvalue(
     size_before = 1.0
     with threads_for(len(layout.slot)):
         while size > 0.0 and len(diagonal) < MOST:
+            look()
             fill_forces(u, force)
             diagonal.append(-work(u, force) / size**2)
             factors = -1.0 / size, diagonal[-1] / size, size / size_before

@@ -51,6 +51,10 @@ class Samples(NamedTuple):
         first, last = (-(-of // max(1, every)) for of in (step, later))
         return cls(every, first, np.empty((last - first if every > 0 else 0, sides, 5)))
 
+    def before(self, later: int) -> Samples:
+        """Those before a step, such as the last one that was done."""
+        return self._replace(record=self.record[: max(0, -(-later // max(1, self.every)) - self.first)])
+
     @property
     def steps(self) -> np.ndarray:
         """Their steps, (rows,)."""

@@ -1,9 +1,11 @@
 """The loop: advances a scene in time, up to the steps at which trackers are due."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 
 import numpy as np
 
+from dembound.interrupts import Stopped, look, put_off
 from dembound.kernels import loop, tables
 from dembound.motion.clock import Clock
 from dembound.motion.layout import aligned_zeros
@@ -15,6 +17,12 @@ from dembound.motion.state import State
 from dembound.motion.supports import NodeSupports
 from dembound.motion.threads import threads_for
 from dembound.motion.trackers import Records, Tracker, Watch
+
+AT_ONCE = 20_000_000
+"""Nodes times steps between two looks for a request to end: 0.2 s to 2 s on one core."""
+
+LEAST_AT_ONCE = 128
+"""Steps in any case: a return of the loop takes as long as one or two of them."""
 
 
 class Simulation:
@@ -103,13 +111,15 @@ class Simulation:
     def run(self, steps: int) -> None:
         """Advance to `steps` steps in all, or until a tracker ends the run; trackers are called when they are due.
 
-        Raises the errors of trackers: RunError, with time and place, when the motion grows without bound.
+        Raises the errors of trackers: RunError, with time and place, when the motion grows without bound, and Stopped
+        after a request to end, when the trackers have received all steps that were done.
         """
         self._hand_round(None)
         while self.state.step < steps and not self.stopped:
             with self.clock.of("step"):
                 record = self._advance_to(min(steps, *(tracker.due for tracker in self.trackers)))
             self._hand_round(record)
+            look()
 
     def advance(self, steps: int) -> np.ndarray:
         """Advance by `steps` steps; returns (steps, p, 6): displacement and velocity of the probes before each.
@@ -132,7 +142,7 @@ class Simulation:
 
     def _hand_round(self, record: np.ndarray | None) -> None:
         """Pass the last record of the probes, if any, to all trackers, and call those that are due."""
-        with self.clock.of("record"):
+        with self.clock.of("record"), put_off():
             for tracker in self.trackers:
                 if record is not None:
                     tracker.observe(self, record)
@@ -141,14 +151,19 @@ class Simulation:
                     tracker.handle(self)
 
     def _advance_to(self, step: int) -> np.ndarray:
-        """Advance to a step; returns the record of the probes, see `advance`."""
-        record = np.empty((step - self.state.step, len(self.probes), self.scene.record_width))
+        """Advance to a step, or less far after a request to end; returns the record of the probes, see `advance`."""
+        begun = self.state.step
+        record = np.empty((step - begun, len(self.probes), self.scene.record_width))
         names = [] if self.sides is None else self.sides.names
-        self.side_samples = Samples.between(self.state.step, step, self._side_stride, len(names))
-        at_once = max(1, int(DRIVEN_BYTES / (24 * max(1, len(self._supports.nodes)))))
-        with threads_for(self.scene.count):
+        self.side_samples = Samples.between(begun, step, self._side_stride, len(names))
+        most_driven = int(DRIVEN_BYTES / (24 * max(1, len(self._supports.nodes))))
+        at_once = max(1, min(most_driven, max(LEAST_AT_ONCE, AT_ONCE // self.scene.count)))
+        with threads_for(self.scene.count), suppress(Stopped):  # also while kernels are compiled
             for first in range(0, len(record), at_once):
+                look()
                 self._advance(record[first : first + at_once])
+        record = record[: self.state.step - begun]
+        self.side_samples = self.side_samples.before(self.state.step)
         if self.sides is not None:
             self.side_samples.record[..., :3] -= self.sides.origin(self.state.datum)
         record[..., :3] -= self.state.datum[:, self.probes].T
@@ -191,6 +206,7 @@ class Simulation:
         )
         if turning is not None and system.turning is not None and not state.layout.is_plain:
             system.steady[:2, system.turning.node] = load[:2, turning.node]
-        state.step += int(done)
-        system.react(int(why), int(done), state)
+        with put_off():
+            state.step += int(done)
+            system.react(int(why), int(done), state)
         return int(done)

@@ -104,6 +104,8 @@ class State:
     def take(self, arrays: Arrays) -> None:
         """Restore what `arrays` has returned in another run of the same case."""
         for name in _ARRAYS:
+            if name != "switch_velocity" and arrays[name].shape != getattr(self, name).shape:  # absent at first
+                raise ValueError(f"{name} has the shape {arrays[name].shape}, must have {getattr(self, name).shape}")
             setattr(self, name, arrays[name].copy())
         self.work = np.stack([arrays[f"work/{name}"] for name in WORK], axis=1)
         self.step = int(arrays["step"])

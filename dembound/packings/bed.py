@@ -6,10 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.errors import PackingError
+from dembound.interrupts import look
 from dembound.packings.brick import contact_stress, contact_vectors
 from dembound.packings.contacts import listed, near_pairs, wrap
 
 SKIN = 0.5  # largest gap in neighbour lists over the mean radius
+AT_ONCE = 50_000_000  # disks and pairs times steps between two looks for a request to end, some 0.2 s
 MAX_STEPS = 400_000  # of one relaxation; 10,000 disks at rest within 1e-9 take 1,500 to 15,000
 MAX_ADJUSTMENTS = 60  # of the radii; about 5 are usual
 GROWTH = 1.02  # of a loose disk per round: the gaps around it close by about one usual overlap
@@ -72,9 +74,15 @@ class Bed:
         while left > 0:
             _, _, pairs = listed(self.positions, self.radii, self.box, skin)
             places = self.positions.T.copy()
-            ratio, steps = pack.relax(places, velocities, self.held, pairs, 0.5 * skin, tolerance, faint, left, pace)
+            origin, at_once = places.copy(), max(1, AT_ONCE // (len(pairs.first) + len(self.radii)))
+            is_cut = True
+            while is_cut and left > 0:
+                look()
+                ratio, steps, is_cut = pack.relax(
+                    places, velocities, self.held, pairs, origin, 0.5 * skin, tolerance, faint, min(at_once, left), pace
+                )
+                left -= steps
             self.positions = wrap(np.ascontiguousarray(places.T), self.box)
-            left -= steps
             if ratio <= tolerance:
                 return
         raise PackingError(

@@ -19,11 +19,15 @@ import numpy as np
 import platformdirs
 from filelock import FileLock, Timeout
 
+from dembound.interrupts import look
 from dembound.packings.brick import Brick
 
 LOGGER = logging.getLogger(__name__)
 
 FORMAT = 3  # raise it whenever the packing procedure or the file layout changes
+
+LOOK = 0.5
+"""Seconds between two looks for a request to end, while another process packs."""
 
 DIGEST = hashlib.sha256
 """Computes the digest at the end of a file, which is still an NPZ file: such files may be followed by anything."""
@@ -64,7 +68,10 @@ def _alone(path: Path) -> Iterator[bool]:
             lock.acquire(blocking=False)
         except Timeout:
             waited = True
-            lock.acquire()
+            while not lock.is_locked:
+                look()
+                with contextlib.suppress(Timeout):
+                    lock.acquire(timeout=LOOK)
     try:
         yield waited
     finally:

@@ -14,6 +14,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from dembound.plot.style import COLOURS, REFERENCE, new_figure, styled
 from dembound.results.reader import open_record
+from dembound.results.structure import run_of
 
 LEVELS = (1.0, 0.1)
 """Errors (%) marked by horizontal lines."""
@@ -103,7 +104,7 @@ def plot_chart(path: Path, title: str | None = None) -> Figure:
     Raises CaseError when the file cannot be read.
     """
     with open_record(path) as file:
-        dots = [_read(number, group) for number, group in enumerate(file["choices"].values(), start=1)]
+        dots = [_read(number, file["choices"][name], file) for number, name in enumerate(file["choices"], start=1)]
         reference, own = str(file["reference"].attrs["sentence"]), {k + 1 for k in file["reference"].attrs["choices"]}
         quantity, title = str(file.attrs["quantity"]), title or str(file.attrs["title"] or file.attrs["name"])
         sentence, threads = str(file.attrs["sentence"]), _threads(file)
@@ -126,7 +127,7 @@ def plot_chart(path: Path, title: str | None = None) -> Figure:
     return figure
 
 
-def _read(number, group) -> Dot:  # type: ignore[no-untyped-def]
+def _read(number, group, file) -> Dot:  # type: ignore[no-untyped-def]
     """A choice of an open record."""
     failure = str(group.attrs["failure"])
     if failure:
@@ -134,7 +135,8 @@ def _read(number, group) -> Dot:  # type: ignore[no-untyped-def]
     monitor = f"{group['monitor'].asstr()[0]} ({group['component'].asstr()[0]})"
     on_front, error = bool(group.attrs["on_front"]), 100.0 * float(group["rms"][0])
     found, apart = str(group.attrs["found"]), float(np.max(group["apart"]))
-    return Dot(number, str(group.attrs["name"]), on_front, "", error, group["run/cpu"][:], monitor, found, apart)
+    cpu = file["runs"][run_of(group)]["cpu"][:]
+    return Dot(number, str(group.attrs["name"]), on_front, "", error, cpu, monitor, found, apart)
 
 
 def _threads(file) -> int:  # type: ignore[no-untyped-def]

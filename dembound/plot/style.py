@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import get_font_names
 from matplotlib.ticker import ScalarFormatter
 
+from dembound.interrupts import look
 from dembound.results.reader import replacing
 
 # Okabe & Ito: distinct with every kind of colour vision; without yellow, which is too pale for lines on white
@@ -166,9 +167,11 @@ def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None
 
 def save(figure: Figure, path: Path, title: str | None = None) -> None:
     """Write the figure as a PNG file, either completely or not at all; `title` replaces the title of the figure."""
+    look()
     if title is not None:
         figure.suptitle(title, fontsize=11, parse_math=False)
     lay_out(figure)
+    look()
     with replacing(path) as part:  # by the canvas, as savefig draws everything twice
         FigureCanvasAgg(figure).print_png(part, pil_kwargs={"compress_level": COMPRESSION})
 
@@ -182,6 +185,7 @@ def lay_out(figure: Figure) -> None:
 
 def pixels_of(figure: Figure) -> np.ndarray:
     """The picture (rows, columns, 3) of a figure as it is now, red, green and blue from 0 to 255."""
+    look()
     lay_out(figure)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()

@@ -18,9 +18,9 @@ from dembound.plot.histories import largest_values, plot_histories
 from dembound.plot.linear_spectra import plot_spectra
 from dembound.report import tables
 from dembound.report.pictures import Picture, picture_of, uri_of
-from dembound.report.runs import ReportedRun, read_runs, understood
+from dembound.report.runs import ReportedRun, read_runs
 from dembound.results.histories import read_histories
-from dembound.results.reader import replacing, require_folder
+from dembound.results.reader import replacing, require_folder, understood
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -85,7 +85,8 @@ def write_report(records: Sequence[Path], path: Path, say: Callable[[str], None]
     """
     require_folder(path)
     runs = read_runs(records)
-    text = _render(runs, say)
+    with understood(*records):
+        text = _render(runs, say)
     with replacing(path) as part:
         part.write_text(text, encoding="utf-8")
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 from dembound.errors import CaseError, RecordError
 from dembound.kinds import kind_of_record
 from dembound.motion.kind import Kind
-from dembound.results.reader import record_names
+from dembound.results.reader import record_names, understood
 from dembound.results.results import Results
 
 
@@ -78,13 +77,3 @@ def _read(record: Path) -> tuple[Kind[Any, Any], Results, Mapping[str, Any]]:
     with understood(record):
         _ = summary["version"]  # which every summary has
         return kind, results, dict(summary)
-
-
-@contextmanager
-def understood(record: Path) -> Iterator[None]:
-    """Raise RecordError, in one line, for everything that a foreign record or summary raises."""
-    try:
-        yield
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-        what = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise RecordError([f"{record}: it or its summary.json is not of this version of dembound ({what})"]) from error

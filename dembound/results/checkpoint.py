@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import os
 import time
 import zipfile
@@ -19,9 +20,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.errors import CaseError, RecordError
+from dembound.interrupts import Stopped, caught
 from dembound.motion.state import Arrays
 from dembound.motion.trackers import Run, Tracker
-from dembound.results.interrupts import Interrupts, Stopped
 from dembound.results.reader import replacing
 from dembound.version import __version__
 
@@ -57,47 +58,61 @@ class Checkpoint:
     def read(cls, path: Path) -> Checkpoint:
         """Read a checkpoint; raises RecordError for a file that is damaged, CaseError for one of another version."""
         try:
-            with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
+            content = path.read_bytes()
+            _require_small(content)
+            with np.load(io.BytesIO(content), allow_pickle=False) as archive:
                 arrays = {name: archive[name] for name in archive.files}
             facts = json.loads(arrays.pop(FACTS).tobytes())
             version = facts["version"]
         except (KeyError, zipfile.BadZipFile) as error:
             raise RecordError([f"{path}: is damaged: {error}"]) from None
-        except (ValueError, EOFError, NotImplementedError):  # whose messages are about numpy's options
+        except (ValueError, TypeError, EOFError, NotImplementedError, MemoryError, RecursionError, AttributeError):
+            # whose messages are about numpy's options
             raise RecordError([f"{path}: is damaged, no archive of arrays"]) from None
         if version != __version__:
             raise CaseError([f"{path}: is of dembound {version}, this is {__version__}; run the case anew"])
         return cls(facts, arrays)
 
 
+def _require_small(content: bytes) -> None:
+    """Raise ValueError for an archive that is compressed, as none is, or whose arrays declare more than is in it."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        for each in archive.infolist():
+            if each.compress_type != zipfile.ZIP_STORED:
+                raise ValueError("compressed")
+            with archive.open(each) as file:
+                version = np.lib.format.read_magic(file)
+                read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+                shape, _, dtype = read(file)
+            if dtype.itemsize * math.prod(shape) > each.file_size:
+                raise ValueError("declares more than it has")
+
+
 class Checkpoints(Tracker):
-    """Writes a checkpoint at intervals of wall time, and when a signal ends the run; the last tracker of a run.
+    """Writes a checkpoint at intervals of wall time, and when a run is requested to end; the last tracker of a run.
 
     Parameters
     ----------
     path : file of the checkpoint. None: none are written.
     interval : s of wall time from one to the next.
-    interrupts : notes the signals.
     facts : returns the facts of the present state, after everything before it has been recorded; its second argument is
     whether to wait until the disk has the record.
     """
 
     name = "checkpoints"
 
-    def __init__(
-        self, path: Path | None, interval: float, interrupts: Interrupts, facts: Callable[[Run, bool], dict[str, Any]]
-    ) -> None:
-        self._path, self._interval, self._interrupts, self._facts = path, interval, interrupts, facts
+    def __init__(self, path: Path | None, interval: float, facts: Callable[[Run, bool], dict[str, Any]]) -> None:
+        self._path, self._interval, self._facts = path, interval, facts
         self._written = time.monotonic()
 
     def handle(self, run: Run) -> None:
         """Does nothing, as it is never due."""
 
     def observe(self, run: Run, record: np.ndarray) -> None:
-        """Write a checkpoint if the last one is old; raises Stopped, after a checkpoint, if a signal was caught."""
-        if self._interrupts.caught is not None:
+        """Write a checkpoint if the last one is old; raises Stopped, after a checkpoint, if it is to end."""
+        if (number := caught()) is not None:
             self.write(run)
-            raise Stopped(self._interrupts.caught)
+            raise Stopped(number)
         if time.monotonic() - self._written >= self._interval:
             self.write(run)
 

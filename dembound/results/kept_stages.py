@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 from dembound.errors import CaseError
 from dembound.motion.stages import Stages
 from dembound.motion.state import Arrays
+from dembound.results.checkpoint import FILE as CHECKPOINT
 from dembound.results.checkpoint import Checkpoint, Checkpoints, differences
+from dembound.results.reader import understood
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -69,14 +71,18 @@ class KeptStages(Stages):
 
     def begin(self, name: str, simulation: Simulation) -> None:
         """Write checkpoints of the stage, and continue it where it was left."""
-        simulation.track(self._checkpoints(name))
+        self._begun = simulation, self._checkpoints(name)
+        simulation.track(self._begun[1])
         if self._unfinished is not None and self._unfinished[0] == name:
-            simulation.state.take(self._unfinished[1]())
+            with understood(Path(CHECKPOINT)):
+                simulation.state.take(self._unfinished[1]())
             self._unfinished = None
 
     def finish(self, name: str, arrays: Arrays) -> None:
-        """Keep the stage."""
+        """Keep the stage, and a checkpoint of it, with which a run that is not begun can be resumed."""
         if self._folder is not None:
             self._folder.mkdir(parents=True, exist_ok=True)
             facts = {"version": __version__, "keys": self._keys}
             Checkpoint(facts, arrays).write(self._folder / f"{name}.npz")
+            simulation, checkpoints = self._begun
+            checkpoints.write(simulation, durable=False)

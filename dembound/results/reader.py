@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dembound.errors import CaseError, DemboundError, RecordError
+from dembound.interrupts import look
 from dembound.results.committed import CommittedFile, log_of
 from dembound.results.damage import damage_in_words, is_of_checksum, require_readable
 from dembound.results.datasets import datasets_of
+from dembound.results.structure import require_structure
 
 if TYPE_CHECKING:
     import h5py
@@ -30,11 +32,11 @@ _sound: set[tuple[int, ...]] = set()
 def open_record(path: Path) -> Iterator[h5py.File]:
     """Open a record (``run.h5``, ``calibration.h5``) for reading in a ``with`` statement; errors as of `reading`.
 
-    The first time it is searched for damage, which takes 0.2 ms for each dataset.
+    The first time it is searched for damage and for what no record has, which takes some 0.2 ms for each dataset.
     """
     with reading(path) as file:
         if _state_of(path) not in _sound:
-            require_sound(file)
+            require_structure(file, path.stat().st_size)
             require_equal_rows(file)
             trust(path)
         yield file
@@ -60,6 +62,7 @@ def reading(path: Path) -> Iterator[h5py.File]:
     """
     import h5py
 
+    look()
     if not path.is_file():
         raise RecordError([f"{path}: cannot be read as a record of results: there is no such file"])
     try:
@@ -78,18 +81,16 @@ def reading(path: Path) -> Iterator[h5py.File]:
         raise RecordError([f"{path}: {damage_in_words(error, path.stat().st_size)}"]) from error
 
 
-def require_sound(file: h5py.File) -> None:
-    """Open every group, dataset and attribute of a file once, as methods such as ``items`` leave out damaged ones.
-
-    Raises what h5py raises for them.
-    """
-    waiting = [file]
-    while waiting:
-        item = waiting.pop()
-        for name in item.attrs:
-            _ = item.attrs[name]
-        if hasattr(item, "keys"):
-            waiting += [item[name] for name in item]
+@contextmanager
+def understood(*records: Path) -> Iterator[None]:
+    """Raise RecordError, in one line, for all that foreign records or summaries raise in what is made of them."""
+    try:
+        yield
+    except (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError, MemoryError) as error:
+        what = f"{type(error).__name__}: {error}".splitlines()[0][:200]
+        names = ", ".join(map(str, records))
+        reason = f"it or its summary.json is not of this version of dembound ({what})"
+        raise RecordError([f"{names}: {reason}"]) from error
 
 
 def text_of(value: str | bytes) -> str:

@@ -1,6 +1,5 @@
 """The results of a run as arrays, for Python: the same names as in ``run.h5`` (docs/results.md)."""
 
-import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -8,7 +7,6 @@ from typing import Any
 import h5py
 import numpy as np
 
-from dembound.errors import CaseError, RecordError
 from dembound.results.reader import (
     datasets_in,
     energy_of,
@@ -19,6 +17,7 @@ from dembound.results.reader import (
     snapshots_of,
     text_of,
 )
+from dembound.results.summary_file import read_summary
 
 
 class Arrays(Mapping[str, np.ndarray]):
@@ -107,14 +106,7 @@ class Results:
     @property
     def summary(self) -> dict[str, Any]:
         """The contents of ``summary.json``; raises CaseError for a run that is not complete, which has none."""
-        path = self.folder / "summary.json"
-        if not path.is_file():
-            raise CaseError([f"{path}: is missing, the run is not complete"])
-        try:
-            found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        except ValueError:
-            raise RecordError([f"{path}: is damaged, no JSON"]) from None
-        return found
+        return read_summary(self.folder)
 
     @property
     def energy(self) -> dict[str, np.ndarray]:

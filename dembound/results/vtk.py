@@ -24,6 +24,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from dembound.interrupts import look
 from dembound.motion.kind import Kind
 from dembound.motion.state import Arrays
 from dembound.results.reader import cracks_until, datasets_in, open_record, replacing, snapshots_of, until
@@ -64,6 +65,7 @@ def write_vtu(run: Path, folder: Path, kind: Kind[Any, Any]) -> Path | None:
         with ExitStack() as stack:
             series: dict[str, Callable[[str, float, meshio.Mesh], None]] = {}
             for number, snapshot in snapshots.items():
+                look()
                 time = float(snapshot.attrs["time"])
                 fields = {name: dataset[:] for name, dataset in datasets_in(snapshot).items()}
                 for name, mesh in kind.meshes(particles, fields, until(cracks, time)).items():

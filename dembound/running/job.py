@@ -10,6 +10,7 @@ from typing import Any
 
 from dembound.casefile import Case
 from dembound.errors import CaseError, RunError
+from dembound.interrupts import Interrupts, put_off
 from dembound.kinds import kind_of
 from dembound.motion.clock import Clock
 from dembound.motion.kind import Beginning, Kind, Plan, StalledError
@@ -18,10 +19,9 @@ from dembound.motion.trackers import Run
 from dembound.results.checkpoint import FILE as CHECKPOINT
 from dembound.results.checkpoint import Checkpoints, facts_of
 from dembound.results.folder import Folder
-from dembound.results.interrupts import Interrupts
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.kept_stages import KeptStages
-from dembound.results.reader import open_record, replacing, trust
+from dembound.results.reader import open_record, replacing, trust, understood
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
@@ -119,7 +119,7 @@ class _Job:
     def run(self) -> Path:
         """Run it, and write all files; returns the folder of the complete results."""
         case, clock = self.case, self.clock
-        with clock.with_compiling():
+        with Interrupts(), clock.with_compiling():
             planned = self._plan()
             require_stages(planned)
             self._announce_size(planned)
@@ -174,28 +174,30 @@ class _Job:
         """Start from the state given by the kind of body, or from a checkpoint, and advance to the end."""
         case, steps, found = planned.scene.case, planned.steps, self.found
         counts = None if found is None else found.facts["counts"]
-        with self.shared.interrupts() as interrupts:
-            beginning = self._begin(planned, partial, interrupts)
-            simulation, ledger = simulation_of(planned, beginning, self.clock)
-            with Recorder(
-                partial / "run.h5", simulation, planned.step_limit, case.output.history_interval, ledger,
-                beginning.stages, counts,
-            ) as recorder:  # fmt: skip
+        beginning = self._begin(planned, partial)
+        simulation, ledger = simulation_of(planned, beginning, self.clock)
+        with Recorder(
+            partial / "run.h5", simulation, planned.step_limit, case.output.history_interval, ledger,
+            beginning.stages, counts,
+        ) as recorder:  # fmt: skip
+            with put_off():  # until there is a checkpoint for the record
                 if planned.regular_steps != steps:
                     recorder.note({"regular_steps": planned.regular_steps})
-                checkpoints = self._checkpoints(planned, partial, interrupts, None, recorder)
+                checkpoints = self._checkpoints(planned, partial, None, recorder)
                 snapshots = Snapshots(recorder, case.output.snapshots, planned.regular_steps)
                 simulation.track(Histories(recorder), ledger, snapshots, Reports(self.progress, steps))
                 simulation.track(*planned.kind.trackers(simulation), checkpoints)
                 if found is not None and counts is not None:
-                    simulation.state.take(found.arrays())
-                simulation.run(steps)
+                    with understood(found.path / CHECKPOINT):
+                        simulation.state.take(found.arrays())
+            simulation.run(steps)
+            with put_off():
                 checkpoints.write(simulation, durable=False)
                 if simulation.stopped:
                     snapshots.take_last(simulation)
         return simulation, beginning
 
-    def _begin(self, planned: Plan, partial: Path, interrupts: Interrupts) -> Beginning:
+    def _begin(self, planned: Plan, partial: Path) -> Beginning:
         """The state at which the run begins; if a stage before it stalls, its state is written to the record."""
         case, kind, found = self.case, planned.kind, self.found
         in_stage = None if found is None or found.stage is None else (found.stage, found.arrays)
@@ -204,21 +206,19 @@ class _Job:
         stages = KeptStages(
             self.shared.stages(keys) or own,
             keys,
-            lambda name: self._checkpoints(planned, partial, interrupts, name, None),
+            lambda name: self._checkpoints(planned, partial, name, None),
             kind.stages_from(case),
             in_stage,
         )
         try:
-            with self.clock.of("settle"), self.shared.settling(keys, interrupts):
+            with self.clock.of("settle"), self.shared.settling(keys):
                 return kind.begin(planned.stepped, planned.time_step, self.progress.settling, stages)
         except StalledError as stalled:
             with Recorder(partial / "run.h5", stalled.run, planned.step_limit) as recorder:
                 recorder.stalled_snapshot(stalled)
                 raise RunError(f"{stalled}\nto see it: dembound plot {partial} --field unbalanced") from None
 
-    def _checkpoints(
-        self, planned: Plan, partial: Path, interrupts: Interrupts, stage: str | None, recorder: Recorder | None
-    ) -> Checkpoints:
+    def _checkpoints(self, planned: Plan, partial: Path, stage: str | None, recorder: Recorder | None) -> Checkpoints:
         """The tracker that writes checkpoints of the run, or of a stage before it."""
         interval = self.case.run.checkpoint
 
@@ -235,7 +235,7 @@ class _Job:
                 "seconds": {name: self.clock.seconds[name] for name in RESUMED_SECTIONS},
             }
 
-        return Checkpoints(partial / CHECKPOINT if interval > 0.0 else None, interval, interrupts, facts)
+        return Checkpoints(partial / CHECKPOINT if interval > 0.0 else None, interval, facts)
 
     def _export(self, partial: Path) -> None:
         """Write the files that are made from the record."""

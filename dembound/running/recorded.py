@@ -1,13 +1,16 @@
 """The case of a record: everything that is needed to run it again."""
 
-import tomllib
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import tomli_w
 
 from dembound.casefile import Case
-from dembound.errors import CaseError
+from dembound.casefile.toml import parsed
+from dembound.errors import CaseError, RecordError
 from dembound.kinds import loads
+from dembound.results.folder import problem_of
 from dembound.results.reader import open_record, text_of
 
 
@@ -17,17 +20,36 @@ def recorded_case(record: Path) -> Case:
     A settled state of another run (``static.from``) is not used, as it is not in the record; the body settles itself,
     with the same result.
 
-    Raises CaseError if there is no record with a case.
+    Raises CaseError if there is no record with a case, RecordError, in one line, if that cannot be read.
     """
     with open_record(record) as file:
         if "case" not in file.attrs or "inputs" not in file:
             raise CaseError([f"{record}: has no case that could be run again"])
         text, name = text_of(file.attrs["case"]), text_of(file.attrs["name"])
         files = {text_of(given.attrs["path"]): given[()].tobytes().decode() for given in file["inputs"].values()}
-    data = tomllib.loads(text)
-    if data.get("static", {}).pop("from", None) is not None:
+    data = tables_of(text, record)
+    if isinstance(static := data.get("static"), dict) and static.pop("from", None) is not None:
         text = tomli_w.dumps(data)
-    return loads(text, name=name, files=files)
+    return case_of(text, record, name, files)
+
+
+def tables_of(text: str, record: Path) -> dict[str, Any]:
+    """The tables of a recorded case; raises RecordError for a text that is no case."""
+    try:
+        return parsed(text)
+    except CaseError as error:
+        raise RecordError([f"{record}: the case in it is damaged: {error.problems[0]}"]) from None
+
+
+def case_of(text: str, record: Path, name: str, files: Mapping[str, str]) -> Case:
+    """A recorded case; raises RecordError for one that this version cannot read, with its first mistake."""
+    if problem := problem_of(name):
+        raise RecordError([f"{record}: its name is {name!r}, {problem}"])
+    try:
+        return loads(text, name=name, files=files)
+    except CaseError as error:
+        more = f" ({len(error.problems) - 1} more)" if len(error.problems) > 1 else ""
+        raise RecordError([f"{record}: the case in it cannot be read here: {error.problems[0]}{more}"]) from None
 
 
 def recorded_beginning(record: Path) -> float | None:

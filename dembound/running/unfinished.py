@@ -1,8 +1,10 @@
 """Runs that can be continued: from a folder of results to its case and its last checkpoint."""
 
 import json
+import math
 import shutil
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,7 +12,7 @@ from typing import Any
 import tomli_w
 
 from dembound.casefile import Case
-from dembound.errors import CaseError
+from dembound.errors import CaseError, RecordError
 from dembound.kinds import loads
 from dembound.motion.state import Arrays
 from dembound.results.checkpoint import FILE, Checkpoint, differences
@@ -18,9 +20,21 @@ from dembound.results.damage import require_readable
 from dembound.results.folder import PARTIAL, Folder, with_name
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.reader import open_record, text_of
+from dembound.running.recorded import case_of
 
 SILENCE = ("until", "silent_level", "silent_for")
 """Keys of ``[run]`` that end a run before its duration."""
+
+FACTS: Mapping[str, tuple[type, ...]] = {
+    **dict.fromkeys(("name", "case"), (str,)),
+    **dict.fromkeys(("files", "keys", "seconds"), (dict,)),
+    **dict.fromkeys(("step", "regular_steps"), (int,)),
+    "time_step": (float,),
+    "stage": (str, type(None)),
+    "counts": (dict, type(None)),
+    "resumed": (list,),
+}
+"""The facts of the checkpoint of a run, and their types."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +98,7 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
     results.require_unused()
     path = _place_of_checkpoint(with_name(folder), results.partial)
     facts = dict(Checkpoint.read(path / FILE).facts)
+    _require_facts(facts, path / FILE)
     case = replace(_case_of(facts, path), name=results.name)
     is_complete = not path.name.endswith(PARTIAL)
     if until is None and is_complete:
@@ -94,6 +109,15 @@ def find_unfinished(folder: Path, until: float | None = None) -> Unfinished:
     if until is not None:
         case = _lasting(case, until)
     return Unfinished(case, results, path, facts)
+
+
+def _require_facts(facts: Mapping[str, Any], path: Path) -> None:
+    """Raise RecordError for a checkpoint that lacks one of the facts of a run, or has one of another type."""
+    for name, kinds in FACTS.items():
+        if name not in facts or not isinstance(facts[name], kinds):
+            raise RecordError([f"{path}: is damaged, or none of a run: {name} is missing, or is no such thing"])
+    if not (facts["step"] >= 0 and 0.0 < facts["time_step"] < math.inf):
+        raise RecordError([f"{path}: is damaged: its time is none"])
 
 
 def _place_of_checkpoint(folder: Path, partial: Path) -> Path:
@@ -115,22 +139,25 @@ def _case_of(facts: dict[str, Any], path: Path) -> Case:
     Raises CaseError if it is not that of the record, or has other keys here than where it was written, and RecordError
     if the record is damaged.
     """
-    case, text = loads(facts["case"], name=facts["name"], files=facts["files"]), facts["case"]
+    checkpoint = path / FILE
+    case, text = case_of(facts["case"], checkpoint, facts["name"], facts["files"]), facts["case"]
     others = [("this installation", json.loads(json.dumps(case.keys)))]
     if facts["stage"] is None:
         with open_record(path / "run.h5") as record:
             require_readable(record)
-            others.append(("run.h5", json.loads(record.attrs["keys"])))
+            others.append(("run.h5", dict(json.loads(record.attrs["keys"]))))
             text = text_of(record.attrs["case"])
     for where, keys in others:
         if different := differences(_lasting_any_time(facts["keys"]), _lasting_any_time(keys)):
             raise CaseError([f"{path}: the case of {FILE} is not that of {where}", *different])
-    return case if text == facts["case"] else loads(text, name=facts["name"], files=facts["files"])
+    return case if text == facts["case"] else case_of(text, path / "run.h5", facts["name"], facts["files"])
 
 
 def _lasting_any_time(keys: dict[str, Any]) -> dict[str, Any]:
     """The keys of a case without those that determine when its run ends."""
-    return keys | {"run": {key: value for key, value in keys["run"].items() if key not in (*SILENCE, "duration")}}
+    run = keys.get("run")
+    lasting = run if isinstance(run, dict) else {}
+    return keys | {"run": {key: value for key, value in lasting.items() if key not in (*SILENCE, "duration")}}
 
 
 def _lasting(case: Case, until: float) -> Case:

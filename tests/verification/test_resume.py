@@ -11,9 +11,9 @@ from small_cases import GRAINS, PULLED, small
 
 from dembound.check import check
 from dembound.errors import CaseError
+from dembound.interrupts import Stopped
 from dembound.results.checkpoint import Checkpoints
 from dembound.results.folder import Folder
-from dembound.results.interrupts import Stopped
 from dembound.running import job, preflight, resume_case, run_case
 from dembound.running.recorded import recorded_beginning, recorded_case
 

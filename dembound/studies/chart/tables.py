@@ -66,13 +66,11 @@ def _write_reference(group: h5py.Group, charted: Charted) -> None:
 
 
 def _write_line(group: h5py.Group, charted: Charted, number: int, line: Line) -> None:
-    """A choice: its name and changes, a link to its run, and the errors of its monitors."""
-    import h5py
-
-    group["run"] = h5py.SoftLink(f"/runs/{digest(line.choice.case)}")
+    """A choice: its name and changes, the digest of its run, and the errors of its monitors."""
     group.attrs.update(
         {
             "name": line.choice.name,
+            "digest": digest(line.choice.case),
             "changes": json.dumps(line.choice.changes),
             "on_front": number in charted.front,
             "failure": line.outcome.failure,

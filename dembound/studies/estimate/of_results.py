@@ -15,12 +15,13 @@ import numpy as np
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.types import LAWS
-from dembound.errors import CaseError, DemboundError
+from dembound.errors import CaseError, DemboundError, RecordError
 from dembound.motion.clock import Clock
 from dembound.results.datasets import describe, write
 from dembound.results.estimates import FILE, KEY
 from dembound.results.histories import FREE_FIELD
 from dembound.results.reader import history_of, open_record, replacing, require_run
+from dembound.results.summary_file import read_summary
 from dembound.running.recorded import recorded_case
 from dembound.studies.estimate.causes import Causes, Recorded
 from dembound.studies.estimate.estimate import Estimate
@@ -130,10 +131,10 @@ def _at_rest(found: Estimate) -> Iterator[str]:
 
 def _summary(folder: Path) -> dict[str, Any]:
     """The summary of a complete run."""
-    path = folder / "summary.json"
-    if not path.is_file():
-        raise CaseError([f"{path}: is missing, the run is not complete"])
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    found = read_summary(folder)
+    numbers = found["duration"], found["time_step"], found["particle_steps_per_second"], found["seconds"]["step"]
+    if not all(isinstance(each, int | float) and each >= 0.0 for each in numbers):
+        raise RecordError([f"{folder / 'summary.json'}: is damaged, a duration or a number of steps is none"])
     return found
 
 

@@ -8,18 +8,18 @@ from collections.abc import Callable, Collection, Mapping
 from contextlib import chdir, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
 
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.casefile.sweep import Action, Method
 from dembound.errors import CaseError, DemboundError
+from dembound.interrupts import Interrupts, Stopped
 from dembound.kinds import loads
 from dembound.motion.trackers import Run
 from dembound.results.folder import Folder
-from dembound.results.interrupts import Stopped
 from dembound.results.reader import replacing
+from dembound.results.summary_file import read_summary
 from dembound.running import Progress, Shared, resume_case, run_case
 from dembound.studies.choices import digest
 from dembound.studies.estimate import estimate_if_asked
@@ -101,7 +101,7 @@ def perform(task: Task) -> Outcome | None:
         numba.set_num_threads(1)
         began, outcome = time.perf_counter(), Outcome(task.name, task.name if task.action == "run" else "")
         try:
-            with chdir(task.current):
+            with chdir(task.current), Interrupts(task.stop):
                 outcome.values, outcome.warnings = _ACTIONS[task.action](task)
         except Stopped:
             return None
@@ -142,7 +142,7 @@ def _run(task: Task) -> tuple[dict[str, float], list[str]]:
     """Run the member, or continue it if it was left unfinished; returns its values and warnings."""
     case, results = _case_of(task), task.folder / MEMBERS
     partial = Folder(results, case.name).partial
-    shared, progress = Shared(task.folder / SETTLED, task.stop), Begun(task.begun)
+    shared, progress = Shared(task.folder / SETTLED), Begun(task.begun)
     folder = None
     if _is_unfinished(case, partial):
         with suppress(CaseError):  # such as a checkpoint with another time step, of another machine
@@ -150,7 +150,7 @@ def _run(task: Task) -> tuple[dict[str, float], list[str]]:
     if folder is None:
         folder = run_case(case, results, progress, shared=shared)
     failed = estimate_if_asked(case, folder)
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary = read_summary(folder)
     return values_of_run(folder, summary), [*summary["warnings"], *([failed] if failed else [])]
 
 
@@ -169,14 +169,8 @@ def _calibrate(task: Task) -> tuple[dict[str, float], list[str]]:
     from dembound.studies.all_sides import calibrate_all
 
     case = as_kind(_case_of(task), DiskCase, "is the case of a bar; β of disks is calibrated")
-    interrupts, begun = Shared(stop=task.stop).interrupts(), Begun(task.begun)
-
-    def after_pass(_: Any) -> None:
-        begun.make()
-        if (number := interrupts.caught) is not None:
-            raise Stopped(number)
-
-    return values_of_calibration(calibrate_all(case, method=task.method, report=after_pass)), []
+    begun = Begun(task.begun)
+    return values_of_calibration(calibrate_all(case, method=task.method, report=lambda _: begun.make())), []
 
 
 def _case_of(task: Task) -> Case:

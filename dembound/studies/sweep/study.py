@@ -15,6 +15,7 @@ from filelock import FileLock, Timeout
 
 from dembound.casefile.sweep import Action, Method
 from dembound.errors import CaseError
+from dembound.interrupts import look
 from dembound.machine import cores_here
 from dembound.studies.sweep.members import Member
 from dembound.studies.sweep.perform import OUTCOMES, Outcome, Task, forget_replaced, outcome_in
@@ -66,7 +67,7 @@ def sweep(members: Sequence[Member], options: Options, folder: Path, report: Rep
 
     The second and later members begin when the first one is stepped, as its code is compiled then. A member whose
     process ends without an outcome is repeated once. After Ctrl-C or SIGTERM all members write a checkpoint;
-    KeyboardInterrupt is raised when they have ended, and a second signal kills them.
+    KeyboardInterrupt is raised when they have ended; a second one kills them.
 
     Raises CaseError for a folder that another sweep uses, or that holds something else.
     """
@@ -127,6 +128,7 @@ class _Work:
         """The outcomes of all missing members by key."""
         try:
             while self._waiting or self._under_way:
+                look()
                 self._submit(workers)
                 self._report(self._standing)
                 done, _ = wait(self._under_way, timeout=LOOK, return_when=FIRST_COMPLETED)
@@ -183,6 +185,7 @@ class _Work:
         """Ask all members to end, and wait for those under way; kill them if another signal arrives."""
         try:
             self._marks.stop.touch()
+            workers.dismiss()
             wait([each for each in self._under_way if not each.cancel()])
         except KeyboardInterrupt:
             workers.kill()

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from dembound.errors import CaseError
-from dembound.results.interrupts import ENDING
+from dembound.interrupts import ENDING, look_at_imports
 from dembound.studies.sweep.perform import ALONE, Outcome, Task, perform
 
 if TYPE_CHECKING:
@@ -48,6 +48,9 @@ class Workers(ABC):
     @abstractmethod
     def submit(self, task: Task) -> Performing:
         """Begin a task."""
+
+    def dismiss(self) -> None:  # noqa: B027  # those of a cluster are not ours
+        """End the workers that have not begun a task."""
 
     @abstractmethod
     def kill(self) -> None:
@@ -104,9 +107,16 @@ class Processes(Workers):
 
     def kill(self) -> None:
         """End all processes at once."""
-        for process in self._all():
-            with suppress(Exception):  # one that has not begun, or that has ended
-                os.kill(process.number.result(timeout=0.0), getattr(signal, "SIGKILL", signal.SIGTERM))
+        for process in multiprocessing.active_children():
+            process.kill()
+
+    def dismiss(self) -> None:
+        """End the processes without a task, and those that still import what they need for it."""
+        begun = [process.number for process, performed in self._working if not performed.done()]
+        working = {number.result() for number in begun if number.done() and number.exception() is None}
+        for process in multiprocessing.active_children():
+            if process.pid not in working:
+                process.kill()
 
     def close(self) -> None:
         """Wait for all processes to end."""
@@ -134,6 +144,7 @@ def _prepare(stop: Path) -> None:
     """Leave signals to the process that has started this one; should that be killed, end as if it had asked to."""
     for number in ENDING:
         signal.signal(number, signal.SIG_IGN)
+    look_at_imports()
     threading.Thread(target=_end_with_parent, args=(stop,), daemon=True).start()
 
 

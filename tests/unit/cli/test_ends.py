@@ -157,3 +157,17 @@ def test_a_changed_rerun_does_not_replace_the_record_it_is_read_from(dembound, w
         assert dembound("rerun", "results/bar", *arguments).code == 0
     assert (tmp_path / "results" / "half" / "run.h5").is_file()
     assert (tmp_path / "other" / "bar" / "run.h5").is_file()
+
+
+def test_a_record_whose_case_is_none_and_a_broken_summary_are_one_line(dembound, written) -> None:
+    dembound("run", written())
+    with open("results/bar/summary.json", "w") as file:
+        file.write("{")
+    answer = dembound("estimate", "results/bar")
+    assert (answer.code, answer.err) == (5, "results/bar/summary.json: is damaged, no JSON\n")
+    with h5py.File("results/bar/run.h5", "a") as file:
+        file.attrs["case"] = "[run\n"
+    answer = dembound("rerun", "results/bar")
+    assert answer.code == 5
+    (line,) = answer.err.splitlines()
+    assert line.startswith("results/bar/run.h5: the case in it is damaged: ")

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from dembound.cli.sweep import _in_words
-from dembound.results.interrupts import Stopped
+from dembound.interrupts import Stopped
 from dembound.studies.sweep import study
 from dembound.studies.sweep.perform import Outcome
 from dembound.studies.sweep.study import Standing

@@ -91,3 +91,15 @@ def test_kernel_forces_are_those_of_single_pairs(count):
     # the same sums in the same order; only hypot and the root of squares differ, and the mean's order
     assert forces == pytest.approx(expected, rel=1e-12, abs=1e-13)
     assert mean == pytest.approx(expected_mean, rel=1e-13)
+
+
+def test_looking_for_requests_to_end_changes_no_bit(monkeypatch) -> None:
+    def relaxed() -> Bed:
+        rng = np.random.default_rng(3)
+        made = Bed(np.array([6.0, 6.0]), 6.0 * rng.random((60, 2)), np.full(60, 0.42), 0)
+        made.relax(1e-6, faint=1e-3)
+        return made
+
+    whole = relaxed()
+    monkeypatch.setattr(module, "AT_ONCE", 3 * 400)  # a few steps at once
+    np.testing.assert_array_equal(relaxed().positions, whole.positions)

@@ -20,9 +20,9 @@ from small_cases import PULLED, small
 
 from dembound.casefile import Case
 from dembound.errors import CaseError, RecordError
+from dembound.interrupts import Stopped
 from dembound.results import recorder
 from dembound.results.folder import LOCK, OWN
-from dembound.results.interrupts import Interrupts, Stopped
 from dembound.results.reader import open_record
 from dembound.running import job, resume_case, run_case
 from dembound.running.recorded import recorded_case
@@ -220,18 +220,6 @@ def test_a_signal_ends_a_run_with_a_checkpoint(case, tmp_path, monkeypatch, numb
     kept = history(tmp_path / "bar.partial" / "run.h5")
     assert 1000 < len(kept) < len(whole)
     assert np.array_equal(history(resume_case(tmp_path / "bar.partial") / "run.h5"), whole)
-
-
-def test_a_second_signal_acts_at_once() -> None:
-    at_first = signal.signal(signal.SIGINT, signal.default_int_handler)  # tests may be run where it is ignored
-    try:
-        with Interrupts() as interrupts:
-            os.kill(os.getpid(), signal.SIGINT)
-            assert interrupts.caught == signal.SIGINT
-            with pytest.raises(KeyboardInterrupt):
-                os.kill(os.getpid(), signal.SIGINT)
-    finally:
-        signal.signal(signal.SIGINT, at_first)
 
 
 def test_what_cannot_be_resumed_is_refused_with_the_reason(case, tmp_path) -> None:

@@ -8,10 +8,9 @@ from filelock import FileLock
 from small_cases import PUSHED, small
 
 from dembound.disks import static
-from dembound.results.interrupts import Stopped
+from dembound.interrupts import Interrupts, Stopped
 from dembound.results.results import Results
 from dembound.running import Shared, run_case
-from dembound.running.shared import StopFile
 
 SETTLED = {
     "load": [{"name": "weight", "acceleration": [0.0, -9.81]}],
@@ -34,17 +33,17 @@ def test_a_stage_is_computed_once_for_all_that_need_it(tmp_path, monkeypatch) ->
 
 
 def test_others_wait_for_a_stage_unless_they_are_to_stop(tmp_path) -> None:
-    shared = Shared(tmp_path / "settled", tmp_path / "stop")
+    shared = Shared(tmp_path / "settled")
     keys = {"packing": {"radius": 0.5}}
     lock = FileLock(shared.stages(keys).with_suffix(".lock"))
     (tmp_path / "settled").mkdir()
     lock.acquire()
     timer = threading.Timer(0.2, (tmp_path / "stop").touch)
     timer.start()
-    with pytest.raises(Stopped), shared.settling(keys, shared.interrupts()):
+    with pytest.raises(Stopped), Interrupts(tmp_path / "stop"), shared.settling(keys):
         pass
     lock.release()
-    with shared.settling(keys, shared.interrupts()):
+    with shared.settling(keys):
         assert shared.stages(keys).parent == tmp_path / "settled"
 
 
@@ -54,13 +53,3 @@ def test_other_keys_have_another_folder(tmp_path) -> None:
     assert shared.stages({"a": 1, "b": 2}) == shared.stages({"b": 2, "a": 1})
     assert shared.stages({}) is None
     assert Shared().stages({"a": 1}) is None
-
-
-def test_a_file_ends_a_run_as_a_signal_does(tmp_path) -> None:
-    stop = StopFile(tmp_path / "stop")
-    with stop:
-        assert stop.caught is None
-        (tmp_path / "stop").touch()
-        assert Stopped(stop.caught).exit_code == 143
-        stop.caught = 2
-        assert Stopped(stop.caught).exit_code == 130

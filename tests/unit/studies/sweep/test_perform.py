@@ -1,13 +1,12 @@
 """A member by itself: its values are those of a run or a calibration alone."""
 
 import json
-import signal
 
 import numba
 import numpy as np
 import pytest
 
-from dembound.results.interrupts import Interrupts
+from dembound.motion import simulation
 from dembound.results.reader import open_record
 from dembound.results.results import Results
 from dembound.running import job, run_case
@@ -151,25 +150,22 @@ def test_damaged_outcomes_are_none(tmp_path, text) -> None:
     assert outcome_in(tmp_path, "k") is None
 
 
-def test_calibrations_stop_after_a_pass(bar, task, tmp_path) -> None:
+def test_calibrations_stop_between_blocks_of_steps(bar, task, tmp_path, monkeypatch) -> None:
     ((member,), _) = members_of(bar(), [{"boundary.right.beta_p": 0.4}], "calibrate", "impedance")
     one = task(member, "calibrate")
-    done = []
+    blocks = []
 
-    class Late(Interrupts):
-        @property
-        def caught(self):
-            done.append(1)
-            return signal.SIGTERM if len(done) > 1 else None
+    class Watched(simulation.Watch):
+        """Asks to stop in the third block."""
 
-        @caught.setter
-        def caught(self, number):
-            pass
+        def observe(self, run, record) -> None:
+            blocks.append(len(record))
+            if len(blocks) == 3:
+                one.stop.touch()
 
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("dembound.running.shared.StopFile", lambda path: Late())
-        assert perform(one) is None
-    assert len(done) == 2
+    monkeypatch.setattr(simulation, "Watch", Watched)
+    assert perform(one) is None
+    assert len(blocks) == 3
     assert outcome_in(tmp_path, member.key) is None
 
 

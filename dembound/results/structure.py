@@ -1,0 +1,198 @@
+"""What a file must be like before anything is read from it as a record: built like one, and of bounded size.
+
+A file may come from anywhere. HDF5 lets it refer to other files, contain itself, or declare petabytes that are nowhere;
+a record does none of this, and has its columns in known shapes.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from dembound.errors import RecordError
+
+if TYPE_CHECKING:
+    import h5py
+
+DEEPEST = 10
+"""Largest number of groups within each other; those of a record are at most five."""
+
+MOST_OBJECTS = 2_000_000
+"""Largest number of groups, datasets and attributes."""
+
+UNWRITTEN = 2**20
+"""Bytes that a dataset may declare beyond those that it has in the file."""
+
+LARGEST_CHUNK = 2**26
+"""Bytes of a chunk, each of which is read as a whole."""
+
+EXPANDED, SMALL = 50, 2**26
+"""All datasets of a file may declare `SMALL` bytes plus so many for each byte of the file, as some are compressed."""
+
+RUN_LINK = re.compile(r"/runs/([0-9a-f]+)")
+"""Path of the links from the choices of a chart to their runs, as versions before this one wrote them."""
+
+NUMBERS, TEXTS = "iufb", "SO"
+"""Kinds of types."""
+
+Shapes = Mapping[str, tuple[int, ...]]
+
+COLUMNS: Mapping[str, Shapes] = {
+    "particles": {"position": (2,), "radius": (), "brick_particle": (), "bonds": (), "column": (), "volume": ()},
+    "continuum": {"position": (2,), "absorbs": (), "cell": (4,), "element": (4,), "surface": (4,), "tie": (2,)},
+    "histories/[^/]+": {"time": (), "displacement": (3,), "velocity": (3,), "stress": ()},
+    "boundaries/[^/]+": {
+        "particle": (),
+        "position": (2,),
+        "diameter": (),
+        "peak_velocity": (3, 2),
+        "time": (),
+        "displacement": (3,),
+        "force": (2,),
+    },
+    "snapshots/[^/]+": {"displacement": (3,), "velocity": (3,), "coordination": (), "unbalanced": (2,), "damage": ()},
+    "cracks": {"time": (), "position": (2,), "particles": (2,), "shear": ()},
+    "laws": {"time": ()},
+    "static(/before)?": {"displacement": (3,)},
+}
+"""Columns of the groups of a run's record, and the shape of a row of each."""
+
+ATTRIBUTES: Mapping[str, tuple[str, tuple[int, ...]]] = {
+    **{name: (TEXTS, ()) for name in ("name", "title", "case", "keys", "kind", "version")},
+    **{name: (NUMBERS, ()) for name in ("time_step", "step_limit", "steps", "regular_steps", "complete")},
+    "size": (NUMBERS, (2,)),
+}
+"""Attributes of a run's record, with their types and shapes."""
+
+
+def require_structure(file: h5py.File, size: int) -> None:
+    """Raise RecordError for a file that is not built like a record; size : of the file, bytes.
+
+    No link of any kind is followed, and nothing is visited twice. Every group, dataset and attribute is opened once, as
+    methods such as ``items`` leave out damaged ones, so this raises what h5py raises for them, too.
+    """
+    import h5py
+
+    seen: set[int] = set()
+    objects, declared = 0, 0
+    is_run = "histories" in file and "runs" not in file
+    for name, item in _items(file, seen):
+        objects += 1 + len(item.attrs)
+        if objects > MOST_OBJECTS:
+            raise _refused(file, "", f"has more than {MOST_OBJECTS:,} groups, datasets and attributes")
+        _require_attributes(file, name, item, size, is_run and name == "")
+        if isinstance(item, h5py.Dataset):
+            declared += _bytes_declared(file, name, item)
+            if declared > SMALL + EXPANDED * size:
+                raise _refused(file, "", f"declares {declared:,} bytes of numbers in {size:,} bytes")
+            if is_run:
+                _require_column(file, name, item)
+
+
+def run_of(group: h5py.Group) -> str:
+    """The digest under which the run of a choice of a chart is recorded; of earlier versions it is in a link."""
+    if "digest" in group.attrs:
+        return str(group.attrs["digest"])
+    link = group.get("run", getlink=True)
+    return str(getattr(link, "path", "")).rsplit("/", 1)[-1]
+
+
+def _items(file: h5py.File, seen: set[int]) -> Iterator[tuple[str, Any]]:
+    """The file itself, and all groups and datasets in it, by their paths."""
+    import h5py
+
+    waiting: list[tuple[str, Any]] = [("", file)]
+    while waiting:
+        name, item = waiting.pop()
+        place = h5py.h5o.get_info(item.id).addr
+        if place in seen:
+            raise _refused(file, name, "is linked to more than once")
+        seen.add(place)
+        if name.count("/") >= DEEPEST:
+            raise _refused(file, f"{name[:60]}…", f"is more than {DEEPEST} groups deep")
+        yield name, item
+        if isinstance(item, h5py.Group):
+            for inner in item:
+                path = f"{name}/{inner}".lstrip("/")
+                if _is_own(file, path, item.get(inner, getlink=True)):
+                    waiting.append((path, item[inner]))
+        elif not isinstance(item, h5py.Dataset):
+            raise _refused(file, name, "is neither a group nor a dataset")
+
+
+def _is_own(file: h5py.File, path: str, link: Any) -> bool:
+    """Whether a link is that of an object to its place; False for one of an earlier chart, which nothing follows."""
+    import h5py
+
+    if type(link) is h5py.HardLink:
+        return True
+    if type(link) is h5py.SoftLink and path.startswith("choices/") and RUN_LINK.fullmatch(str(link.path)):
+        return False
+    raise _refused(file, path, "is a link, of which a record has none")
+
+
+def _require_attributes(file: h5py.File, name: str, item: Any, size: int, is_header: bool) -> None:
+    """Raise RecordError for an attribute of a type that none has, or, in the header of a run, of another type."""
+    for key in item.attrs:
+        found = item.attrs.get_id(key)
+        where = f"{name}, attribute {key}".removeprefix(", ")
+        if found.shape is None or found.dtype.itemsize * math.prod(found.shape) > size:
+            raise _refused(file, where, "has no value")
+        _require_plain(file, where, found.dtype)
+        if is_header and key in ATTRIBUTES:
+            kinds, shape = ATTRIBUTES[key]
+            if found.dtype.kind not in kinds or found.shape != shape:
+                raise _refused(file, where, f"must be {'text' if kinds == TEXTS else _numbers(shape)}")
+        value = item.attrs[key]
+        if isinstance(value, str):
+            value.encode()  # fails for bytes that are no text
+
+
+def _bytes_declared(file: h5py.File, name: str, item: h5py.Dataset) -> int:
+    """Bytes of the values of a dataset; raises RecordError for one that a record cannot have."""
+    from h5py import h5d, h5z
+
+    if item.shape is None:
+        raise _refused(file, name, "has no values")
+    _require_plain(file, name, item.dtype)
+    made = item.id.get_create_plist()
+    if made.get_layout() == h5d.VIRTUAL or made.get_external_count() > 0:
+        raise _refused(file, name, "is in another file, to which no record refers")
+    filters = {made.get_filter(number)[0] for number in range(made.get_nfilters())}
+    if not filters <= {h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32}:
+        raise _refused(file, name, "is compressed in a way that no record is")
+    if item.chunks and item.dtype.itemsize * math.prod(item.chunks) > LARGEST_CHUNK:
+        raise _refused(file, name, f"has chunks of more than {LARGEST_CHUNK:,} bytes")
+    declared, stored = item.dtype.itemsize * math.prod(item.shape), item.id.get_storage_size()
+    if h5z.FILTER_DEFLATE not in filters and declared > stored + UNWRITTEN:
+        raise _refused(file, name, f"declares {declared:,} bytes, and has {stored:,}")
+    return int(declared)
+
+
+def _require_plain(file: h5py.File, where: str, dtype: Any) -> None:
+    """Raise RecordError for a type that is neither that of numbers nor of texts."""
+    import h5py
+
+    if dtype.kind not in NUMBERS + TEXTS or (dtype.kind == "O" and h5py.check_string_dtype(dtype) is None):
+        raise _refused(file, where, "is of a type that no record has, must be numbers or text")
+
+
+def _require_column(file: h5py.File, name: str, item: h5py.Dataset) -> None:
+    """Raise RecordError for a known column of a run that has another shape, or no numbers."""
+    group, _, column = name.rpartition("/")
+    for pattern, shapes in COLUMNS.items():
+        if column in shapes and re.fullmatch(pattern, group):
+            if item.dtype.kind not in NUMBERS or len(item.shape) == 0 or item.shape[1:] != shapes[column]:
+                raise _refused(file, name, f"must have rows of {_numbers(shapes[column])}")
+            return
+
+
+def _numbers(shape: tuple[int, ...]) -> str:
+    """A shape in words."""
+    return f"{' × '.join(map(str, shape))} numbers" if shape else "one number"
+
+
+def _refused(file: h5py.File, where: str, why: str) -> RecordError:
+    return RecordError([f"{file.filename}: is no record of dembound: {f'{where}: ' if where else ''}{why}"])

@@ -1,0 +1,146 @@
+"""Files that are not built like a record are refused by what is wrong with them; nothing that they name is followed."""
+
+import json
+
+import h5py
+import numpy as np
+import pytest
+
+from dembound.errors import CaseError, RecordError
+from dembound.results.reader import open_record, understood
+from dembound.results.structure import run_of
+from dembound.results.summary_file import read_summary
+
+
+@pytest.fixture
+def record(tmp_path):
+    """Writes a small file with some groups, changed by a function; returns its path."""
+
+    def write(change=lambda file: None):
+        path = tmp_path / "run.h5"
+        with h5py.File(path, "w") as file:
+            group = file.create_group("histories/top")
+            group["time"], group["velocity"] = np.arange(4.0), np.zeros((4, 3))
+            file.attrs["name"] = "bar"
+            change(file)
+        return path
+
+    return write
+
+
+def refusal(path) -> str:
+    with pytest.raises(RecordError) as refused, open_record(path):
+        pytest.fail("has been opened")
+    (line,) = str(refused.value).splitlines()
+    return line.removeprefix(f"{path}: is no record of dembound: ")
+
+
+def test_plain_groups_are_opened(record) -> None:
+    with open_record(record()) as file:
+        assert file["histories/top/velocity"].shape == (4, 3)
+
+
+@pytest.mark.parametrize(
+    "link",
+    [
+        h5py.SoftLink("/"),
+        h5py.SoftLink("/nowhere"),
+        h5py.SoftLink("/histories/top/time"),
+        h5py.SoftLink("/runs/12ab"),  # which only choices of charts had
+        h5py.ExternalLink("/etc/passwd", "/"),
+    ],
+)
+def test_links_are_refused(record, link) -> None:
+    path = record(lambda file: file.__setitem__("histories/more", link))
+    assert refusal(path) == "histories/more: is a link, of which a record has none"
+
+
+@pytest.mark.parametrize("target", ["/", "/histories", "/histories/top/time"])
+def test_what_is_in_it_twice_is_refused(record, target) -> None:
+    path = record(lambda file: file["histories/top"].__setitem__("again", file[target]))
+    assert refusal(path).endswith("is linked to more than once")
+
+
+def test_groups_deep_in_each_other_are_refused(record) -> None:
+    def deep(file) -> None:
+        group = file
+        for _ in range(2000):
+            group = group.create_group("g")
+
+    assert refusal(record(deep)).endswith("is more than 10 groups deep")
+
+
+def large(file, **more) -> None:
+    file.create_dataset("a", (2**40,), "f8", **more)
+
+
+def virtual(file) -> None:
+    layout = h5py.VirtualLayout((10,), "f8")
+    layout[:] = h5py.VirtualSource(file.filename, "histories/top/time", (10,))
+    file.create_virtual_dataset("a", layout)
+
+
+def packed(file) -> None:
+    # 300 MB of zeros in some 300 kB
+    file.create_dataset("a", (40, 10**6), "f8", chunks=(1, 10**6), compression="gzip")[:] = 0.0
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (large, "a: declares 8,796,093,022,208 bytes, and has 0"),
+        (lambda file: large(file, chunks=(1000,)), "a: declares 8,796,093,022,208 bytes, and has 0"),
+        (lambda file: large(file, chunks=(2**24,)), "a: has chunks of more than 67,108,864 bytes"),
+        (packed, " bytes of numbers in "),
+        (virtual, "a: is in another file, to which no record refers"),
+        (lambda f: f.create_dataset("a", (9,), "u1", external=[("/etc/passwd", 0, 9)]), "a: is in another file, to"),
+        (lambda f: f.create_dataset("a", data=np.zeros(9), compression="lzf"), "a: is compressed in a way that no"),
+        (lambda f: f.create_dataset("a", data=h5py.Empty("f8")), "a: has no values"),
+        (lambda f: f.create_dataset("a", data=[f.ref], dtype=h5py.ref_dtype), "a: is of a type that no record has"),
+        (lambda f: f.create_dataset("a", (2,), h5py.vlen_dtype(float)), "a: is of a type that no record has"),
+        (lambda f: f.create_dataset("a", data=np.zeros(2, [("x", "f8")])), "a: is of a type that no record has"),
+        (lambda f: f.__setitem__("a", np.dtype("f8")), "a: is neither a group nor a dataset"),
+        (lambda f: f.attrs.__setitem__("name", 3.0), "attribute name: must be text"),
+        (lambda f: f.attrs.__setitem__("size", 3.0), "attribute size: must be 2 numbers"),
+        (lambda f: f.attrs.__setitem__("a", h5py.Empty("f8")), "attribute a: has no value"),
+        (lambda f: f.create_dataset("histories/a/time", data=1.0), "histories/a/time: must have rows of one number"),
+        (lambda f: f.create_dataset("histories/a/velocity", data=np.zeros((3, 4))), "must have rows of 3 numbers"),
+        (lambda f: f.create_dataset("cracks/time", data=["a"]), "cracks/time: must have rows of one number"),
+    ],
+)
+def test_what_no_record_has_is_refused(record, change, why) -> None:
+    assert why in refusal(record(change))
+
+
+def test_the_runs_of_earlier_charts_are_found(record) -> None:
+    def chart(file) -> None:
+        file.create_group("runs/12ab")
+        file.create_group("choices/0")["run"] = h5py.SoftLink("/runs/12ab")
+        file.create_group("choices/1").attrs["digest"] = "12ab"
+
+    with open_record(record(chart)) as file:
+        assert [run_of(group) for group in file["choices"].values()] == ["12ab", "12ab"]
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "3", "null", "[" * 100_000, "\x00", '{"a": ' * 100_000])
+def test_summaries_that_are_none_are_refused(tmp_path, text) -> None:
+    (tmp_path / "summary.json").write_text(text)
+    with pytest.raises(RecordError, match=r"summary\.json: is damaged, "):
+        read_summary(tmp_path)
+
+
+def test_a_missing_entry_of_a_summary_is_named(tmp_path) -> None:
+    with pytest.raises(CaseError, match="is missing, the run is not complete"):
+        read_summary(tmp_path)
+    (tmp_path / "summary.json").write_text(json.dumps({"seconds": {"step": 1.0}, "list": [{"a": 1}]}))
+    found = read_summary(tmp_path)
+    assert found["seconds"]["step"] == 1.0
+    for wanted in (lambda: found["duration"], lambda: found["seconds"]["export"], lambda: found["list"][0]["b"]):
+        with pytest.raises(RecordError, match=r"summary\.json: is damaged, or of another version .* it has no "):
+            wanted()
+
+
+def test_what_foreign_contents_raise_is_one_line(tmp_path) -> None:
+    with pytest.raises(RecordError, match=r"run\.h5: it or its summary") as refused, understood(tmp_path / "run.h5"):
+        raise IndexError("out of\nrange")
+    assert len(str(refused.value).splitlines()) == 1

@@ -1,0 +1,101 @@
+"""Requests to end are noted, and obeyed where it is looked for them; none is lost."""
+
+import os
+import signal
+import threading
+import time
+
+import pytest
+
+from dembound.interrupts import TOGETHER, Interrupts, Stopped, caught, look, put_off
+
+
+@pytest.fixture(autouse=True)
+def _python_handlers():
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # tests may be run where it is ignored
+    yield
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    signal.signal(signal.SIGINT, before)
+
+
+def send(number: int = signal.SIGINT) -> None:
+    os.kill(os.getpid(), number)
+    time.sleep(0.0)  # the handler is called between two instructions
+
+
+def test_nothing_is_raised_before_it_is_looked_for() -> None:
+    def work() -> None:
+        with Interrupts():
+            look()
+            send(signal.SIGTERM)
+            assert caught() == signal.SIGTERM
+            with put_off():
+                look()
+            look()
+            pytest.fail("must not be reached")
+
+    with pytest.raises(Stopped) as stop:
+        work()
+    assert stop.value.exit_code == 143
+    look()
+
+
+def test_a_signal_that_nobody_looks_at_is_raised_at_the_end() -> None:
+    def work(error: Exception | None) -> None:
+        with Interrupts():
+            send()
+            if error is not None:
+                raise error
+
+    with pytest.raises(Stopped):
+        work(None)
+    with pytest.raises(ValueError, match="mine"):
+        work(ValueError("mine"))
+
+
+def test_a_second_signal_acts_at_once_unless_it_is_the_same_request() -> None:
+    done = []
+
+    def work() -> None:
+        with Interrupts():
+            timer = threading.Timer(0.3 * TOGETHER, os.kill, (os.getpid(), signal.SIGINT))
+            timer.start()
+            send()  # returns after TOGETHER, within which the second one comes
+            timer.join()
+            done.append(caught())
+            send()
+            done.append("must not be reached")
+
+    with pytest.raises(KeyboardInterrupt) as stop:
+        work()
+    assert type(stop.value) is KeyboardInterrupt
+    assert done == [signal.SIGINT]
+
+
+def test_requests_to_an_outer_statement_are_seen_within() -> None:
+    def work() -> None:
+        with Interrupts(), Interrupts() as inner:
+            send()
+            assert inner.caught == signal.SIGINT
+            look()
+            pytest.fail("must not be reached")
+
+    with pytest.raises(Stopped):
+        work()
+
+
+def test_a_file_is_a_request_in_its_thread_alone(tmp_path) -> None:
+    seen = []
+
+    def worker() -> None:
+        with Interrupts(tmp_path / "stop"):
+            look()
+            (tmp_path / "stop").touch()
+            seen.append(caught())
+
+    thread = threading.Thread(target=worker)
+    with Interrupts():
+        thread.start()
+        thread.join()
+        look()
+    assert seen == [signal.SIGTERM]
