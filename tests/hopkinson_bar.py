@@ -29,17 +29,20 @@ def signals(
     samples: int = 5000,
     second: float | None = None,
     amplitude: float = 1e-3,
+    specimen: tuple[float, float] = (SPECIMEN_SPEED, SPECIMEN_DENSITY),
 ) -> Signals:
     """Strains at the gauges; the pulse passes the first one at 100 µs. second : distance of a second gauge, m.
+
+    specimen : its wave speed, m/s, and density, kg/m³.
 
     Force waves that leave a bar of impedance Z for one of Z' are 2Z'/(Z + Z') as large, and those that stay
     (Z' − Z)/(Z + Z').
     """
     time = STEP * np.arange(8000)
-    bar, inside = DENSITY * SPEED * AREA, SPECIMEN_DENSITY * SPECIMEN_SPEED * SPECIMEN_AREA
+    bar, inside = DENSITY * SPEED * AREA, specimen[0] * specimen[1] * SPECIMEN_AREA
     into, out = 2.0 * inside / (bar + inside), 2.0 * bar / (bar + inside)
     back = (bar - inside) / (bar + inside)
-    transit, arrives = LENGTH / SPECIMEN_SPEED, 100e-6 + SETUP.incident_gauge / SPEED
+    transit, arrives = LENGTH / specimen[0], 100e-6 + SETUP.incident_gauge / SPEED
 
     def incident(at: np.ndarray) -> np.ndarray:
         """At the front, at times since the pulse has reached it."""

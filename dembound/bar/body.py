@@ -64,6 +64,8 @@ class BarBody(Scene):
     def attributes_of_monitor(self, name: str) -> dict[str, Any]:
         """Of the range of its node: density kg/m³, section m², Young's modulus Pa, wave speed m/s, attenuation 1/m.
 
+        And its strength, Pa, at the slowest and at the fastest strain rate, infinite without one.
+
         At an interface it is the range on the left; with ranges also their name.
         """
         bar, node = self.case.bar, self.monitors[name]
@@ -178,11 +180,12 @@ class BarBody(Scene):
 
 
 def _attributes_of(part: Bar) -> dict[str, Any]:
-    """The material of a uniform bar, SI units."""
+    """The material of a uniform bar, SI units; its strength at the slowest and at the fastest strain rate."""
     return {
         "density": part.density,
         "section": part.area,
         "youngs_modulus": part.modulus,
         "wave_speed": part.speed,
         "attenuation": part.attenuation,
+        "strength": [part.breaking_stretch * part.modulus, part.largest_strength],
     }

@@ -1,9 +1,11 @@
 """Facts about the case of a bar, computed without running it."""
 
+import math
+
 import numpy as np
 
+from dembound.bar.end_echo import ROUNDING, returned_of_waves
 from dembound.bar.lattice import carrying_lattices
-from dembound.bar.layer_echo import most_returned
 from dembound.bar.scene import BarScene
 from dembound.bar.summary import describe_bar, describe_end
 from dembound.boundaries.words import side_in_words
@@ -62,13 +64,23 @@ def bar_facts(scene: BarScene, time_step: float) -> dict[str, str]:
 
 
 def _echo_in_words(scene: BarScene, side: str, time_step: float) -> str:
-    """The most that the layer beyond an end returns of every wave in use; empty without a layer."""
-    layer, waves = scene.layers.get(side), scene.case.wave
-    if layer is None:
-        return ""
-    echoes = {name: most_returned(layer, waves[name].highest_frequency(), time_step) for name in waves_used(scene.case)}
-    known = [f"{echo:.1g} of wave {name}" for name, echo in echoes.items() if np.isfinite(echo)]
-    return f"; returns at most {', '.join(known)}" if known else ""
+    """The most that an absorbing end returns of every wave in use; empty where it is not known."""
+    found = returned_of_waves(scene, side, time_step)
+    most = {name: share for name, share in found.shares.items() if share > 2.0 * ROUNDING}
+    words = []
+    if most:
+        words.append(f"at most {', '.join(f'{_rounded_up(share)} of wave {name}' for name, share in most.items())}")
+        if np.isfinite(found.within):
+            words[0] += f" within {found.within:.2g} s after it"
+    if nothing := [name for name in found.shares if name not in most]:
+        words.append(f"nothing of wave {', '.join(nothing)} but rounding errors")
+    return f"; returns {' and '.join(words)}" if words else ""
+
+
+def _rounded_up(share: float) -> str:
+    """A number above 0 with two digits, not below it."""
+    unit = 10.0 ** (math.floor(math.log10(share)) - 1)
+    return f"{math.ceil(share / unit) * unit:.2g}"
 
 
 def _pressure(pressure: float, peak: float) -> str:

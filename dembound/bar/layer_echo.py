@@ -27,9 +27,6 @@ BETWEEN = 100
 RUNS = 0.01
 """Part of the motion under the force with which a wave at least passes at the layer."""
 
-SHARES = np.geomspace(0.01, 1.0, 7)
-"""Parts of a wave's highest frequency at which it is examined."""
-
 WIDEST = 30
 """Longest bonds, in spacings, for which this is computed; the time grows with the square."""
 
@@ -49,12 +46,6 @@ def returned(layer: EndLayer, frequency: float, time_step: float) -> float:
         return math.nan
     lost = abs(endless[end] / endless[seen])  # by attenuation, on the way to the end, and on the way back
     return float(abs(echo[seen] / endless[seen] - 1.0) / lost**2)
-
-
-def most_returned(layer: EndLayer, highest: float, time_step: float) -> float:
-    """The largest of `returned` at frequencies up to the highest one (Hz) of a wave; nan if there is none."""
-    echoes = [returned(layer, share * highest, time_step) for share in SHARES]
-    return float(np.nanmax([math.nan, *echoes])) if np.isfinite(echoes).any() else math.nan
 
 
 def _response(left: EndLayer, right: EndLayer, angle: float, time_step: float) -> np.ndarray:

@@ -22,8 +22,9 @@ its bonds do to the bar is work of the end.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -79,8 +80,9 @@ class EndLayer:
 
     @property
     def step_limit(self) -> float:
-        """The largest time step (s) at which the proof of its energy holds."""
-        return MOST_DECAY / (float(self.node_rates[-1]) + self.drag_rate)
+        """The largest time step (s) at which the proof of its energy holds; infinite where nothing decays."""
+        largest = float(self.node_rates[-1]) + self.drag_rate
+        return MOST_DECAY / largest if largest > 0.0 else math.inf
 
     @cached_property
     def node_rates(self) -> np.ndarray:
@@ -99,6 +101,11 @@ class EndLayer:
         length = np.arange(1, len(self.inner) + 1)[:, None]
         outer = np.arange(self.count) + length
         return np.where((len(self.inner) <= outer) & (outer < self.count), self.stiffness[:, None], 0.0)
+
+    def endless(self, duration: float) -> EndLayer:
+        """The same with so many nodes, in which nothing decays, that nothing comes back within so many s."""
+        count = 100 + math.ceil(duration * self.speed / self.spacing)
+        return replace(self, layer=Layer(count, power=1.0, reflection=1.0))
 
     @property
     def ground(self) -> np.ndarray:

@@ -38,6 +38,9 @@ LIKELY = (100.0, 10_000.0)
 ALIKE = 1e-3
 """Relative difference of Δx/c up to which it is the same."""
 
+SWINGING = 0.3
+"""Energy of changes within steps over the largest kinetic energy from which a run is warned of; fronts have 0.01."""
+
 LONGEST = 0.25
 """Horizon over EG_f/σ_t² up to which a crack opens at one plane: at 0.2 it takes 1.00 to 1.04 of its fracture energy,
 at 0.4 up to 1.3, at 0.8 up to 1.8 under a pulse of 2.6 strengths."""
@@ -228,7 +231,21 @@ def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path
             *_torn_by_the_load(scene.case, summary),
             *_outside_the_rates(scene.case, summary),
             *_no_tension(scene.case, file),
+            *_swings(scene.case, file),
         ]
+
+
+def _swings(case: BarCase, file: h5py.File) -> Iterator[str]:
+    """Velocities that swing from step to step, as impacts leave them at the limit of the time step, where they grow."""
+    if "energy" not in file or not any(each.interface == "contact" for each in case.bar.range):
+        return
+    kinetic, within = (file[f"energy/{name}"][:] for name in ("kinetic", "stepping"))
+    if len(kinetic) and (share := -float(within.min()) / max(float(kinetic.max()), 1e-300)) > SWINGING:
+        yield (
+            f"run.courant: velocities swing from step to step: their changes within steps have {share:.2g} times the "
+            "largest kinetic energy; at the limit of the time step the swing of each impact stays and adds up; take "
+            "run.courant = 0.95"
+        )
 
 
 def _open_contacts(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -128,7 +129,8 @@ def gauge(
         err.print(f"warning: {warning}")
     for note in gauge.notes:
         out.print(note)
-    out.print(_overview(found, *("results" if given is None else "given" for given in (wave_speed, attenuation))))
+    sources = tuple("results" if given is None else "given" for given in (wave_speed, attenuation))
+    out.print(_overview(found, sources, None if gauge.metadata is None else gauge.metadata.strength))
     if output is not None:
         from dembound.plot.gauge import plot_gauge
         from dembound.plot.style import save
@@ -137,12 +139,16 @@ def gauge(
         out.print(f"wrote {output}")
 
 
-def _overview(found: Findings, speed_from: str, attenuation_from: str) -> Table:
-    """All estimates, one line each; speed_from, attenuation_from : the source if it is not the peaks."""
+def _overview(found: Findings, sources: Sequence[str], known: tuple[float, float] | None) -> Table:
+    """All estimates, one line each; sources : of speed and attenuation if these are not from the peaks.
+
+    known : strength of a bar that was computed, Pa, at the slowest and at the fastest strain rate, printed beside the
+    strengths that are found.
+    """
     overview = compact_table("", "value", "std. error", "from")
-    overview.add_row("wave speed (m/s)", *_fitted(found.speed, "times", speed_from))
+    overview.add_row("wave speed (m/s)", *_fitted(found.speed, "times", sources[0]))
     if found.attenuation is not None:
-        overview.add_row("attenuation α (1/m)", *_fitted(found.attenuation, "heights", attenuation_from))
+        overview.add_row("attenuation α (1/m)", *_fitted(found.attenuation, "heights", sources[1]))
     if (strength := found.strength) is not None:
         source = f"image at {strength.position:g} m"
         error = _error(strength.nominal_error / MPA)
@@ -153,6 +159,9 @@ def _overview(found: Findings, speed_from: str, attenuation_from: str) -> Table:
             overview.add_row("attenuated strength (MPa)", f"{strength.attenuated / MPA:.4g}", error, source)
     if found.pull_back is not None:
         overview.add_row("pull-back strength (MPa)", f"{found.pull_back / MPA:.4g}", "", "free end")
+    if known is not None and (found.strength is not None or found.pull_back is not None):
+        both = " to ".join(f"{value / MPA:.4g}" for value in dict.fromkeys(known))
+        overview.add_row("strength of the bar (MPa)", both if known[0] < float("inf") else "none", "", "case")
     return overview
 
 

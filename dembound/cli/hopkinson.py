@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from dembound.gauge.hopkinson import Specimen
     from dembound.gauge.pulses import Faces
     from dembound.gauge.signal import Reading, Signal
+    from dembound.gauge.slope_error import SlopeError
     from dembound.gauge.treatment import Treatment
 
 BARS, PULSES = "Bars and specimen", "Pulses"
@@ -139,6 +140,7 @@ def hopkinson(
     from dembound.gauge.hopkinson import specimen
     from dembound.gauge.hopkinson_io import combined
     from dembound.gauge.pulses import Setup, Windows, at_faces
+    from dembound.gauge.slope_error import doubts_of_slope, slope_error
 
     if (second_gauge is None) != (second is None and second_column is None):
         raise CaseError(["--second-gauge: needs --second or --second-column, and the other way round"])
@@ -166,7 +168,10 @@ def hopkinson(
     if found.equilibrium is None:
         said = f"the forces on the specimen never agree to {100.0 * equilibrium:g} %"
         err.print(f"warning: {said}: stress over strain is no law of it")
-    out.print(_overview(found, equilibrium))
+    error = slope_error(faces, setup, equilibrium, found)
+    for warning in doubts_of_slope(found, error):
+        err.print(f"warning: {warning}")
+    out.print(_overview(found, equilibrium, error))
     _write(faces, found, output, title, table)
 
 
@@ -213,8 +218,8 @@ def _write(faces: Faces, found: Specimen, picture: Path | None, title: str | Non
         out.print(f"wrote {table}")
 
 
-def _overview(found: Specimen, tolerance: float) -> Table:
-    """Largest values by one, two and three waves, and the time in equilibrium."""
+def _overview(found: Specimen, tolerance: float, error: SlopeError | None) -> Table:
+    """Largest values by one, two and three waves, and the time in equilibrium; error : of the slope."""
     overview = compact_table("", "three waves", "two waves", "one wave")
     largest = [f"{stress.max() / 1e6:.5g}" for stress in (found.stress, found.front, found.back)]
     overview.add_row("largest stress (MPa)", *largest)
@@ -231,6 +236,8 @@ def _overview(found: Specimen, tolerance: float) -> Table:
     rates = [f"{rate[rising].mean():.4g}" for rate in (found.rate, found.one_wave_rate)]
     overview.add_row("until the largest stress there:", "", "", "")
     overview.add_row("mean strain rate (1/s)", rates[0], "", rates[1])
-    if found.slope == found.slope:
-        overview.add_row("stress over strain (GPa)", f"{found.slope / 1e9:.4g}", "", "")
+    if error is not None:
+        overview.add_row("stress over strain (GPa)", f"{found.slope / 1e9:.4g} ± {error.half_width / 1e9:.2g}", "", "")
+        shares = (f"{100.0 * each / found.slope:.2g}" for each in (error.inertia, error.time, error.line, error.noise))
+        overview.add_row("± by inertia, time, line, noise (%)", ", ".join(shares), "", "")
     return overview

@@ -79,7 +79,7 @@ def specimen(faces: Faces, setup: Setup, tolerance: float = EQUILIBRIUM) -> Spec
     first, end = equilibrium or (0, len(rate))
     stress = 0.5 * (front + back)
     largest = first + int(np.argmax(denoised(stress)[first:end]))
-    slope = np.nan if equilibrium is None else _slope(strain[first : largest + 1], stress[first : largest + 1])
+    slope = np.nan if equilibrium is None else slope_of(strain[first : largest + 1], stress[first : largest + 1])
     strains = strain, one_wave_strain
     return Specimen(faces.time, front, back, rate, one_wave_rate, *strains, ratio, equilibrium, largest, slope)
 
@@ -107,8 +107,8 @@ def _longest(there: np.ndarray) -> tuple[int, int] | None:
     return int(starts[longest]), int(ends[longest])
 
 
-def _slope(strain: np.ndarray, stress: np.ndarray) -> float:
-    """Slope of the line through stresses over strains (m,); nan for too few."""
+def slope_of(strain: np.ndarray, stress: np.ndarray) -> float:
+    """Slope of the line through stresses over strains (m,), in the unit of the stresses; nan for too few."""
     if len(strain) < FEWEST or not np.ptp(strain) > 0.0:
         return np.nan
     return float(np.polyfit(strain, stress, 1)[0])

@@ -4,8 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dembound.gauge.estimates import Estimate
-from dembound.gauge.peaks import NOISE_FACTOR, positive_peaks, white_noise, width_of
+from dembound.gauge.estimates import Estimate, tension_peaks
+from dembound.gauge.findings import Findings
+from dembound.gauge.peaks import NOISE_FACTOR, SMALLEST, positive_peaks, white_noise, width_of
 
 LONGEST = 100.0
 """Length of a bar, m, above which millimetres were meant."""
@@ -21,6 +22,9 @@ SHARE_CLIPPED, LEAST_CLIPPED = 0.1, 5
 
 ABRUPT = 8.0
 """Fall beside a crest, in steps of the digitiser, that clips: a crest that bends by itself falls by four."""
+
+OWN = 0.95
+"""Largest height of a wave that comes back, over a plateau before it, that is not cut where that was."""
 
 SCATTER = 10.0
 """Largest difference of two estimates of the wave speed in their standard errors."""
@@ -48,7 +52,7 @@ def implausible_signal(values: np.ndarray, *, may_be_clipped: bool = False) -> I
         yield f"the signal is noise: its largest value is {sizes.max() / noise:.2g} standard deviations, and no wave"
         return
     if (width := width_of(np.abs(values))) < COARSE:
-        yield f"the sampling is too coarse: the largest wave has {width} samples above half its height, needs {COARSE}"
+        yield _too_narrow(values, width)
     for sense, extreme in ((1.0, "largest"), (-1.0, "smallest")):
         if not may_be_clipped and (count := clipped(sense * values)):
             value = sense * float((sense * values).max())
@@ -58,7 +62,53 @@ def implausible_signal(values: np.ndarray, *, may_be_clipped: bool = False) -> I
             )
 
 
+def _too_narrow(values: np.ndarray, width: int) -> str:
+    """Why the largest values (k,), so many samples wide, are no wave: spikes beside one, or nothing wider is there."""
+    from scipy.ndimage import median_filter
+
+    rest = median_filter(values, 2 * COARSE - 1, mode="nearest")  # without all that is less than COARSE samples wide
+    sizes, wave = np.abs(values - np.median(values)), np.abs(rest - np.median(rest))
+    if wave.max() > NOISE_FACTOR * white_noise(values) and width_of(wave) >= COARSE:
+        spikes = np.abs(values - rest) > max(0.5 * float(wave.max()), NOISE_FACTOR * white_noise(values))
+        count = int(np.count_nonzero(np.diff(spikes.astype(int), prepend=0) > 0))
+        return (
+            f"{count} spikes of less than {COARSE} samples stand beside the waves, the largest, "
+            f"{values[int(sizes.argmax())]:.4g}, in sample {int(sizes.argmax()) + 1}: they are no waves, remove them"
+        )
+    return (
+        f"the sampling is too coarse: the largest wave has {width} samples above half its height, needs {COARSE}; "
+        "or it is a spike, and the record has no wave"
+    )
+
+
 def clipped(values: np.ndarray) -> int:
+    """Number of equal samples at the largest value of a signal (k,) whose slope breaks off there; 0 if it does not.
+
+    0, too, if the plateau is the wave's own, as it comes back with the wave, lower.
+    """
+    count = _equal_at_top(values)
+    return 0 if count and _comes_back_flat(values, count) else count
+
+
+def _comes_back_flat(values: np.ndarray, count: int) -> bool:
+    """Whether the largest wave of a signal (k,) behind that with so many equal samples has half as many, too."""
+    top = float(values.max())
+    if abs(-float(values.min()) / top - 1.0) < CLOSE:
+        return False  # both senses are cut where the range ends
+    last = int(np.flatnonzero(values == top)[-1])
+    low = np.flatnonzero(values[last:] < 0.5 * top)
+    if not len(low):
+        return False
+    behind = values[last + int(low[0]) :]
+    peaks = positive_peaks(np.arange(len(behind), dtype=float), behind, 1)
+    if not len(peaks.time) or not SMALLEST < peaks.height[0] / top < OWN:
+        return False
+    place = round(float(peaks.time[0]))
+    around = behind[max(0, place - count) : place + count + 1]
+    return int(np.count_nonzero(around == around.max())) >= count // 2
+
+
+def _equal_at_top(values: np.ndarray) -> int:
     """Number of equal samples at the largest value of a signal (k,) whose slope breaks off there; 0 if it does not."""
     top = float(values.max())
     at = np.flatnonzero(np.diff(np.concatenate([[0], values == top, [0]])))
@@ -71,6 +121,28 @@ def clipped(values: np.ndarray) -> int:
     step = float(np.diff(levels[-50:]).min())
     fall = top - float(values[max(first - count // 2, 0)])
     return count if fall > ABRUPT * step else 0
+
+
+def few_returns(time: np.ndarray, values: np.ndarray, position: float, length: float) -> str:
+    """Why a record shows its pulse as tension less than twice: "it" is the record.
+
+    time, values : (k,) s and any unit; position, length : m.
+    """
+    end, out = float(time[-1]), positive_peaks(time, -values, 1)
+    if not len(out.time):
+        within = -float(values.min()) > float(values.max())
+        return "it ends within the first wave" if within else "no compression comes first, has --scale the wrong sign?"
+    since, way = end - float(out.time[0]), 2.0 * (length - position)
+    first = first_return(time, values, position, length)
+    if first is None or not len(tension_peaks(time, values).time):
+        return (
+            f"it ends {since:.3g} s after the first wave, in which only waves faster than {way / since:.4g} m/s go the "
+            f"{way:.4g} m to the far end and back; or that end is not free"
+        )
+    due = float(out.time[0]) + (way + 2.0 * length) / first.value
+    if due + 0.5 * float(time[1] - time[0]) * width_of(np.abs(values)) > end:
+        return f"it ends at {end:.4g} s, the second return of the pulse is due at {due:.4g} s"
+    return f"the second return of the pulse, due at {due:.4g} s, is below 1 % of the first or within the noise"
 
 
 def unlikely_speed(speed: float) -> Iterator[str]:
@@ -103,7 +175,10 @@ def first_return(time: np.ndarray, values: np.ndarray, position: float, length: 
 def contradicting_speeds(speed: Estimate, first: Estimate | None) -> Iterator[str]:
     """Message if the wave speed from the returns differs from that of the first passages by more than both scatter."""
     if first is None:
-        yield "the first wave is no compression with its reflection behind it: has --scale the wrong sign?"
+        yield (
+            "the first wave is no compression with its reflection behind it: has --scale the wrong sign, or is "
+            "something else in the record, an oscillation that --high-pass or --notch takes out?"
+        )
         return
     off = abs(speed.value / first.value - 1.0)
     allowed = max(SCATTER * np.hypot(np.nan_to_num(speed.error), first.error) / first.value, CLOSE)
@@ -123,9 +198,26 @@ def raised_by_noise(noise: float, crest: float) -> Iterator[str]:
         )
 
 
-def uncertain(speed: Estimate, decay: Estimate | None) -> Iterator[str]:
-    """Messages about estimates with large standard errors."""
+def as_doubtful(found: Findings) -> Iterator[str]:
+    """Message about what rests on an estimated wave speed that is doubtful, or on the same peaks."""
+    strength = found.strength
+    resting = {
+        "the attenuation": found.attenuation is not None and bool(found.attenuation.points),
+        "the nominal strength": strength is not None,
+        "the attenuated strength": strength is not None and strength.attenuated is not None,
+        "the pull-back strength": found.pull_back is not None,
+    }
+    if named := [name for name, rests in resting.items() if rests]:
+        yield f"as doubtful, as from the same peaks or with this speed: {', '.join(named)}"
+
+
+def uncertain_speed(speed: Estimate) -> Iterator[str]:
+    """Message about an estimated wave speed with a large standard error."""
     if speed.points and not speed.error <= UNCERTAIN_SPEED * speed.value and not np.isnan(speed.error):
         yield f"the wave speed is uncertain, its standard error is {100.0 * speed.error / speed.value:.2g} %"
+
+
+def uncertain_decay(decay: Estimate | None) -> Iterator[str]:
+    """Message about an estimated attenuation with a large standard error."""
     if decay is not None and decay.points and decay.error > UNCERTAIN_DECAY * abs(decay.value):
         yield f"the attenuation is uncertain, its standard error is {decay.error:.2g} of {decay.value:.2g} 1/m"

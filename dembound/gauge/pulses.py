@@ -6,7 +6,7 @@ the reflected one begins: a longer pulse needs a second gauge on the incident ba
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -199,14 +199,23 @@ def found_windows(signals: Signals, setup: Setup, given: Windows) -> tuple[Windo
         length = min(length, 2.0 * min(ends) / speed)
     length = min([length, *(window[1] - window[0] for window in given if window is not None)])
     if not (min(starts) >= time[0] and length > 3.0 * (time[1] - time[0])):
-        said = f"the pulses begin at {', '.join(f'{start:.6g}' for start in starts)} s"
-        raise CaseError([f"--incident-window: {said}, the record is from {time[0]:.6g} to {time[-1]:.6g} s"])
+        raise CaseError([f"--incident-window: {_outside(time, starts)}"])
     end = begin + length
     largest = float(np.abs(signals.incident).max())
     if signals.second is None and abs(np.interp(end, time, signals.incident)) > ENDED * largest:
         said = f"the incident pulse has not ended at {end:.6g} s, when its reflection is back or the window ends"
         raise CaseError([f"--second-gauge: is needed, {said}; or give --incident-window"])
     return (begin, end), (starts[1], starts[1] + length), (starts[2], starts[2] + length)
+
+
+def _outside(time: np.ndarray, starts: Sequence[float]) -> str:
+    """That pulses begin before or behind a record, or that nothing of them is left, by the times (3,) s they begin."""
+    whole = f"the record is from {time[0]:.6g} to {time[-1]:.6g} s"
+    names = ("incident", "reflected", "transmitted")
+    late = [f"{name} at {at:.6g} s" for name, at in zip(names, starts, strict=True) if at >= time[-1]]
+    if late:
+        return f"{whole} and ends before pulses begin at their gauges: the {', the '.join(late)}; record longer"
+    return f"the pulses begin at {', '.join(f'{start:.6g}' for start in starts)} s, {whole}: nothing of one is left"
 
 
 def _onset(time: np.ndarray, values: np.ndarray) -> float:

@@ -20,13 +20,15 @@ class BarMetadata:
     """Data of the bar in the record of a run.
 
     speed : of waves, m/s; attenuation : 1/m; ends : types of the loaded end and of the other end; broken : time at
-    which the first bond broke, s, infinite for an unbroken bar.
+    which the first bond broke, s, infinite for an unbroken bar; strength : that of the case at the slowest and at the
+    fastest strain rate, Pa, infinite for an unbreakable bar; None if the record does not have it.
     """
 
     speed: float
     attenuation: float
     ends: tuple[str, str]
     broken: float
+    strength: tuple[float, float] | None = None
 
 
 class GaugeMetadata(NamedTuple):
@@ -87,6 +89,7 @@ def bar_metadata(file: h5py.File) -> BarMetadata | None:
         attenuation=float(file.attrs["attenuation"]),
         ends=(left, right) if loaded_end(file) == "left" else (right, left),
         broken=float(np.min(file["cracks/time"][:], initial=np.inf)),
+        strength=tuple(file.attrs["strength"].tolist()) if "strength" in file.attrs else None,
     )
 
 

@@ -27,10 +27,13 @@ from dembound.gauge.peaks import Peaks, width_of
 from dembound.gauge.plausibility import (
     FAR,
     FEW,
+    as_doubtful,
     contradicting_speeds,
+    few_returns,
     first_return,
     raised_by_noise,
-    uncertain,
+    uncertain_decay,
+    uncertain_speed,
     unlikely_speed,
 )
 from dembound.gauge.uncertainty import with_errors
@@ -114,19 +117,32 @@ def _replicates(gauge: Gauge, noise: Noise, given: Given) -> Iterator[Findings]:
 
 def _doubts(gauge: Gauge, found: Findings) -> Iterator[str]:
     """What is doubtful about estimates from a measured signal; raises CaseError for a speed that cannot be."""
-    if found.speed.points:
-        if problems := list(unlikely_speed(found.speed.value)):
-            raise CaseError(problems)
-        first = first_return(gauge.time, gauge.stress, gauge.position, gauge.length)
-        doubts = list(contradicting_speeds(found.speed, first))
-        if first is not None and doubts and abs(found.speed.value / first.value - 1.0) > FAR:
-            raise CaseError([f"--wave-speed: {doubts[0]}"])
-        yield from doubts
+    about_speed = list(_doubts_of_speed(gauge, found))
+    yield from about_speed
     if (width := width_of(np.abs(gauge.stress))) < FEW:
         yield f"the sampling is coarse: {width} samples above half the height of the largest wave"
-    yield from uncertain(found.speed, found.attenuation)
+    if about_speed:
+        yield from as_doubtful(found)
+    elif doubts := list(uncertain_decay(found.attenuation)):
+        yield from doubts
+        if found.strength is not None and found.strength.attenuated is not None:
+            yield "as doubtful, as by this attenuation: the attenuated strength"
     if found.strength is not None and gauge.noise is not None:
         yield from raised_by_noise(float(gauge.noise.residuals.std()), float(np.abs(gauge.stress).max()))
+
+
+def _doubts_of_speed(gauge: Gauge, found: Findings) -> Iterator[str]:
+    """What is doubtful about an estimated wave speed; raises CaseError for one that cannot be."""
+    if not found.speed.points:
+        return
+    if problems := list(unlikely_speed(found.speed.value)):
+        raise CaseError(problems)
+    first = first_return(gauge.time, gauge.stress, gauge.position, gauge.length)
+    doubts = list(contradicting_speeds(found.speed, first))
+    if first is not None and doubts and abs(found.speed.value / first.value - 1.0) > FAR:
+        raise CaseError([f"--wave-speed: {doubts[0]}"])
+    yield from doubts
+    yield from uncertain_speed(found.speed)
 
 
 def _problems_with_options(
@@ -158,6 +174,10 @@ def _waves(
     decay = None if coefficient is None else Estimate(coefficient)
     if speed is not None and len(peaks.time) < 2:
         return peaks, Estimate(speed), decay
+    if len(peaks.time) < 2 and (count is None or count > 1):
+        why = few_returns(gauge.time, gauge.stress, gauge.position, gauge.length)
+        said = f"needs two tension peaks to be estimated, {len(peaks.time)} found in the record"
+        raise CaseError([f"--wave-speed: {said}: {why}; give it"])
     passing = wave_speed(peaks.time, gauge.length, peaks.height)
     _hold_against_speed(gauge, passing.value, speed)
     found = passing if speed is None else Estimate(speed)

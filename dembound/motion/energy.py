@@ -1,8 +1,10 @@
 """The energy ledger: stored, supplied and dissipated energy of a run.
 
-For central differences the balance is exact if kinetic energy is ½m v⁻·v⁺ (with the velocities half a step before and
-after), strain energy that of the step itself, and the work of every force F the sum of F·(v⁻ + v⁺)/2·Δt. The remaining
-error comes from contacts that open or close within a step, from rotating normals, and from rounding.
+For central differences the balance is exact with ½m v⁻·v⁺ (the velocities half a step before and after), the strain
+energy of the step itself, and for the work of every force F the sum of F·(v⁻ + v⁺)/2·Δt. The first is divided into the
+kinetic energy of the mean velocity, ⅛m (v⁻ + v⁺)², and −⅛m (v⁺ − v⁻)², of second order in the step: it is more than the
+kinetic energy where velocities change their sign within a step, as at impacts. The remaining error comes from contacts
+that open or close within a step, from rotating normals, and from rounding.
 """
 
 from dataclasses import astuple, dataclass, fields
@@ -31,7 +33,8 @@ class Entry:
     kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
     of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
     and driven loads; loads, the part of it that is of the loads; damping, friction, crack, dissipated by them, friction
-    of a bar by impacts of its ranges; law_switch, added by a change of method or law; supplied, the kinetic energy at
+    of a bar by impacts of its ranges; law_switch, added by a change of method or law; stepping, at most 0, what
+    velocities that change within a step add to the balance of what is stored; supplied, the kinetic energy at
     the start plus the largest values so far of outside, at any step, and of load, at any entry; error, stored and
     dissipated energy minus what came in and what the motion at the start had. In J for a bar.
     """
@@ -48,6 +51,7 @@ class Entry:
     friction: float
     crack: float
     law_switch: float
+    stepping: float
     supplied: float
     error: float
 
@@ -100,7 +104,7 @@ class Ledger(Tracker):
         self._time_step = run.time_step
         self._interval, self._last = interval, last
         self._unit, self._weight = run.scene.energy_unit, run.scene.weight
-        self._mass, self._inertia = (run.scene.layout.spread(of) for of in (run.scene.mass, run.scene.inertia))
+        self._inertia = run.scene.mass, run.scene.mass, run.scene.inertia
         self._first = run.system.stored(run.state.u)
         self._came = 0.0  # energy of the motion at the start, which impacts may take part of at once
         self._most = 0.0, 0.0  # supplied by boundaries and loads, largest values so far
@@ -137,10 +141,7 @@ class Ledger(Tracker):
             u = state.u - run.time_step * state.v
             before = state.layout.spread(state.switch_velocity)
             balancing = system.balancing_work(u)
-        before[:2] *= self._mass
-        before[2] *= self._inertia
-        before *= state.v
-        kinetic = 0.5 * float(np.sum(_by_node(before, state)))
+        kinetic, stepping = self._of_motion(before, state)
         contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))
         load = float(np.sum(system.load * (_by_node(u, state) - state.datum))) if system.load.any() else 0.0
         outside, damping, friction, crack, law_switch, turning = (float(work) for work in state.work[1])
@@ -151,17 +152,27 @@ class Ledger(Tracker):
         loads = 0.0
         if run.sides is not None and run.sides.has_loads:
             loads = outside - float(np.sum(sides @ (1.0, -1.0, -1.0))) / self._weight
-        error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - law_switch
+        stored = kinetic + contact + bond + stepping
+        error = stored + damping + friction + crack - load - balance - outside - law_switch
         if not self.entries:
             self._came = error
         error -= self._came
         supplied = self._supplied(max(outside, float(state.supplied[0])), load)
-        stored = kinetic, contact, bond, load, balance, outside, loads
-        energies = *stored, damping, friction, crack, law_switch, supplied, error
+        brought = load, balance, outside, loads
+        energies = kinetic, contact, bond, *brought, damping, friction, crack, law_switch, stepping, supplied, error
         time = (state.step - 1) * run.time_step
         self.entries.append(Entry(time, *(self._weight * energy for energy in energies)))
         self.sides.append(sides)
         self._watch()
+
+    def _of_motion(self, before: np.ndarray, state: State) -> tuple[float, float]:
+        """Σ ⅛m (v⁻ + v⁺)² and −Σ ⅛m (v⁺ − v⁻)²; before : (3, slots) v⁻."""
+        kinetic = stepping = 0.0
+        for inertia, *rows in zip(self._inertia, before, state.v, strict=True):
+            earlier, later = (np.take(row, state.layout.slot) for row in rows)
+            kinetic += 0.125 * float(np.sum(inertia * (earlier + later) ** 2))
+            stepping -= 0.125 * float(np.sum(inertia * (later - earlier) ** 2))
+        return kinetic, stepping
 
     def _supplied(self, outside: float, load: float) -> float:
         """The most energy (J) supplied until an entry, from the largest work outside, and load; 0 if it is rounding."""
@@ -178,8 +189,7 @@ class Ledger(Tracker):
         first, last = self.entries[0], self.entries[-1]
         came, gained = last.supplied, last.error - first.error
         stored = self._weight * sum(self._first)
-        # the kinetic energy ½m v⁻·v⁺ of motion that changes its sign at every step is negative
-        if gained > GAIN * came + ROUNDING * (stored + abs(last.kinetic) + abs(last.outside)):
+        if gained > GAIN * came + ROUNDING * (stored + last.kinetic - last.stepping + abs(last.outside)):
             raise RunError(
                 f"the run has gained {gained:.3g} {self._unit} without input until t = {last.time:g} s, when loads and "
                 f"boundaries had supplied {came:.3g} {self._unit} at most; take a smaller run.safety or run.time_step"
@@ -187,7 +197,7 @@ class Ledger(Tracker):
 
     @property
     def columns(self) -> np.ndarray:
-        """All entries, (k, 13), in the order of `Entry`."""
+        """All entries, (k, 15), in the order of `Entry`."""
         return np.array([astuple(entry) for entry in self.entries]).reshape(-1, len(fields(Entry)))
 
     @property

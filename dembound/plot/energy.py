@@ -24,6 +24,7 @@ COLUMNS = {
     "friction": "taken by friction",
     "crack": "taken by cracks",
     "law_switch": "in: added by a change of law",
+    "stepping": "less, by velocities that change within steps",
 }
 """Columns of the ledger and their names in the legend."""
 
@@ -43,7 +44,7 @@ OF_SIDES: dict[str, tuple[str, dict[str, Any]]] = {
 }
 """Columns of every side, their names in the legend, in which {} is the side, and their lines; a side has one colour."""
 
-HUES = (COLOURS[0], "#67001F", *COLOURS[1:], "#8C510A", "#999999", "#5E3C99")
+HUES = (COLOURS[0], "#67001F", *COLOURS[1:], "#8C510A", "#999999", "#5E3C99", "#003C30")
 """A colour for each column of the ledger, and for each side: four of a body, as many of a continuum, and a column's."""
 
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
@@ -56,8 +57,8 @@ OWN_LOOKS: dict[str, dict[str, Any]] = {
 }
 """Energies of contacts and bonds are often equal, so the one is a thin line above the wide line of the other."""
 
-NEGLIGIBLE = 1e-6
-"""A column that stays below this share of the largest is left out."""
+NEGLIGIBLE, OF_STEPS = 1e-6, 0.02
+"""A column that stays below this share of the largest is left out; `stepping`, small in all waves, below the other."""
 
 BESIDE = {
     "free_field": " of the column",
@@ -68,11 +69,15 @@ BESIDE = {
 
 
 class EnergyLine(NamedTuple):
-    """A line of the picture: its name in the legend, energies (k,) in J or J/m, and how it is drawn."""
+    """A line of the picture: its name in the legend, energies (k,) in J or J/m, how it is drawn, and from which share.
+
+    least : share of the largest of all lines below which it is left out.
+    """
 
     label: str
     values: np.ndarray
     looks: dict[str, Any]
+    least: float = NEGLIGIBLE
 
 
 @styled
@@ -121,7 +126,7 @@ def _of_ledger(columns: dict[str, np.ndarray], bar: bool, divided: bool) -> Iter
     for index, (column, label) in enumerate((BAR_COLUMNS if bar else COLUMNS).items()):
         if column in columns and column != left_out:
             looks = line_style(index) | {"color": HUES[index]} | OWN_LOOKS.get(column, {})
-            yield EnergyLine(label, columns[column], looks)
+            yield EnergyLine(label, columns[column], looks, OF_STEPS if column == "stepping" else NEGLIGIBLE)
 
 
 def _of_sides(sides: dict[str, dict[str, np.ndarray]], bar: bool) -> Iterator[EnergyLine]:
@@ -137,7 +142,7 @@ def _of_sides(sides: dict[str, dict[str, np.ndarray]], bar: bool) -> Iterator[En
 def _not_negligible(lines: list[EnergyLine]) -> list[EnergyLine]:
     """Those of the lines that exceed a small share of the largest."""
     largest = [float(np.abs(line.values).max(initial=0.0)) for line in lines]
-    return [line for line, each in zip(lines, largest, strict=True) if each > NEGLIGIBLE * max(largest)]
+    return [line for line, each in zip(lines, largest, strict=True) if each > line.least * max(largest)]
 
 
 def power_of_unit(largest: float) -> int:

@@ -168,7 +168,7 @@ def _energies(run: ReportedRun) -> Iterator[tuple[str, str]]:
     for column, words in (BAR_COLUMNS if run.is_bar else COLUMNS).items():
         if ledger.get(column, 0.0) != 0.0:
             yield words, _joules(ledger[column], run)
-    left = sum(ledger.get(column, 0.0) for column in ("kinetic", "contact", "bond"))
+    left = sum(ledger.get(column, 0.0) for column in ("kinetic", "contact", "bond", "stepping"))
     if ledger["supplied"] > 0.0:
         yield "left in the body, of all that was supplied", percent(left / ledger["supplied"])
 

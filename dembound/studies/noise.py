@@ -145,7 +145,7 @@ def _of_ledger(ledger: Ledger) -> list[float]:
     """
     first, *others = ledger.entries
     energy = [
-        entry.kinetic + entry.contact + entry.bond - entry.balance - entry.outside - entry.law_switch
+        entry.kinetic + entry.contact + entry.bond + entry.stepping - entry.balance - entry.outside - entry.law_switch
         for entry in others
     ]
     return [1.0 + (each - energy[0]) / first.kinetic for each in energy]

@@ -2,8 +2,9 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
-from gauge_records import DECAY, RECORDS, SPALL, SPEED, exact_nominal
+from gauge_records import DECAY, LENGTH, POSITION, RECORDS, SPALL, SPEED, Record, exact_nominal, hum, noise
 
 from dembound.errors import CaseError
 from dembound.gauge.spalling import evaluate
@@ -49,4 +50,91 @@ def test_a_wrong_place_of_the_gauge_is_seen(tmp_path):
     assert "check --position and --length" in evaluate(replace(gauge, position=0.59)).warnings[0]
     with pytest.raises(CaseError, match="check --position and --length"):
         evaluate(replace(gauge, position=0.4))
-    assert "has --scale the wrong sign?" in evaluate(replace(gauge, stress=-gauge.stress)).warnings[0]
+    assert "has --scale the wrong sign" in evaluate(replace(gauge, stress=-gauge.stress)).warnings[0]
+
+
+@pytest.mark.parametrize("frequency", [200.0, 1200.0, 3500.0])
+@pytest.mark.parametrize("level", [0.02, 0.05])
+def test_an_attenuation_is_never_wrong_without_a_warning(frequency, level, tmp_path):
+    """Oscillations in the band of the pulse, of which peaks are taken for returns: c and α come from the same peaks."""
+    record = Record("oscillation", (hum(level, frequency), noise(0.002)))
+    try:
+        found = evaluate(record.gauge(tmp_path / "weak.txt"), spall=None)
+    except CaseError:
+        return
+    if any("wave" in said for said in found.warnings):
+        assert any("the attenuation" in said for said in found.warnings)
+    else:
+        assert found.speed.value == pytest.approx(SPEED, rel=0.01)
+        assert found.attenuation.value == pytest.approx(DECAY, rel=0.2)
+
+
+def test_what_rests_on_a_doubtful_speed_is_named(tmp_path):
+    gauge = replace(Record("oscillation", (hum(0.05, 1200.0),)).gauge(tmp_path / "weak.txt"), unit="Pa")
+    said = "as doubtful, as from the same peaks or with this speed: "
+    assert evaluate(gauge).warnings[-1] == f"{said}the attenuation"
+    strengths = evaluate(gauge, spall=0.95, pulse_end=4e-4).warnings
+    assert f"{said}the attenuation, the nominal strength, the attenuated strength" in strengths
+    assert not any("doubtful" in each for each in evaluate(gauge, speed=SPEED, coefficient=DECAY).warnings)
+
+
+@pytest.mark.parametrize(
+    ("end", "reason"),
+    [
+        (270e-6, "0 found in the record: it ends within the first wave;"),
+        (
+            400e-6,
+            r"0 found in the record: it ends .* s after the first wave, in which only waves faster than 6\d{3} m/s",
+        ),
+        (
+            1100e-6,
+            r"1 found in the record: it ends at 0.001099 s, the second return of the pulse is due at 0.00128\d s",
+        ),
+    ],
+)
+@pytest.mark.parametrize("level", [0.0, 0.005])
+def test_a_record_that_is_too_short_is_told_so(end, reason, level, tmp_path):
+    """The wave has its crest at the gauge at 279 µs, comes back 285 µs later, and again 723 µs later."""
+    record = Record("short", (noise(level),), sampling={"samples": round(end / 1e-6)})
+    with pytest.raises(CaseError, match=reason):
+        evaluate(record.gauge(tmp_path / "short.txt"))
+
+
+@pytest.mark.parametrize("width", [1, 2, 4])
+def test_spikes_are_no_waves(width, tmp_path):
+    """Beside waves they are told as such; alone they may be waves that are sampled too coarsely."""
+
+    def spikes(time, values):
+        values = values.copy()
+        for place, height in ((700, 3.0), (2500, -2.0)):
+            values[place : place + width] = height
+        return values
+
+    with pytest.raises(CaseError, match="2 spikes of less than 5 samples stand beside the waves, the largest, 3, in s"):
+        Record("spikes", (noise(0.005), spikes)).gauge(tmp_path / "spikes.txt")
+    with pytest.raises(CaseError, match=r"the sampling is too coarse.*or it is a spike, and the record has no wave"):
+        Record("spikes", (lambda time, values: 0.0 * values, spikes)).gauge(tmp_path / "spikes.txt")
+
+
+def flat(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """The same bar under a pulse with a plateau of its own."""
+    passed = np.zeros_like(time)
+    for turn in range(20):
+        for sign, way in ((-1.0, 2 * turn * LENGTH + POSITION), (1.0, 2 * (turn + 1) * LENGTH - POSITION)):
+            since = time - 20e-6 - way / SPEED
+            trapezoid = np.clip(np.minimum(since / 20e-6, (100e-6 - since) / 20e-6), 0.0, 1.0)
+            passed += sign * np.exp(-DECAY * (way - POSITION)) * trapezoid
+    return passed
+
+
+def test_a_plateau_of_the_wave_itself_is_not_clipped(tmp_path):
+    """It comes back, lower; what the amplifier cuts is flat where it is cut alone."""
+    found = evaluate(Record("plateau", (flat,)).gauge(tmp_path / "flat.txt"))
+    assert found.speed.value == pytest.approx(SPEED, rel=0.005)
+    assert found.attenuation.value == pytest.approx(DECAY, rel=0.05)
+    for cut in (0.5, 0.8):
+        with pytest.raises(CaseError, match="the signal is clipped"):
+            Record("cut", (lambda time, values, cut=cut: np.clip(values, -cut, cut),)).gauge(tmp_path / "cut.txt")
+    # a plateau may be cut, too: then compression and tension are equal at once, as nothing that decays is
+    with pytest.raises(CaseError, match="the signal is clipped"):
+        Record("cut", (flat, lambda time, values: np.clip(values, -0.5, 0.5))).gauge(tmp_path / "cut.txt")

@@ -19,9 +19,10 @@ from hopkinson_bar import (
 )
 
 from dembound.errors import CaseError
-from dembound.gauge.hopkinson import specimen
+from dembound.gauge.hopkinson import EQUILIBRIUM, slope_of, specimen
 from dembound.gauge.pulses import Windows, at_faces, found_windows
 from dembound.gauge.separation import Bar, moved
+from dembound.gauge.slope_error import SlopeError, doubts_of_slope, slope_error
 
 
 def found_of(given, setup=SETUP, windows=None):
@@ -70,6 +71,75 @@ def test_noise_of_one_percent_leaves_the_modulus():
     assert found.slope == pytest.approx(SPECIMEN_MODULUS, rel=0.01)
 
 
+SPECIMENS = [(5e9, 1500.0), (12.5e9, 2000.0), (40e9, 2500.0), (80e9, 2700.0)]
+"""Young's modulus (Pa) and density (kg/m³) of specimens from weak plastic to hard rock."""
+
+
+@pytest.mark.parametrize(("modulus", "density"), SPECIMENS)
+def test_the_slope_is_within_its_uncertainty(modulus, density):
+    """In at least 95 of 100 of these tests, and the uncertainty is not many times the errors either.
+
+    Half a sample of time is the largest part of it where there is no noise, and here all times are exact.
+    """
+    inside, widths, errors = [], [], []
+    for seed, rise in enumerate((5e-6, 10e-6, 20e-6, 50e-6, 150e-6)):
+        for noise in (0.0, 0.003, 0.01):
+            given, random = signals(lambda at, rise=rise: ramp(at, rise), specimen=speed_of(modulus, density)), seed
+            noisy = [each + noise * 1e-3 * draw for each, draw in zip(given[1:3], draws(random), strict=True)]
+            given = given._replace(incident=noisy[0], transmitted=noisy[1])
+            faces = at_faces(given, SETUP)
+            found = specimen(faces, SETUP)
+            widths.append(slope_error(faces, SETUP, EQUILIBRIUM, found).half_width)
+            errors.append(abs(found.slope - modulus))
+            inside.append(errors[-1] <= widths[-1])
+    assert sum(inside) >= len(inside) - 1
+    assert np.mean(widths) < 8.0 * np.mean(errors)
+    assert min(widths) < 0.02 * modulus
+
+
+def speed_of(modulus: float, density: float) -> tuple[float, float]:
+    return float(np.sqrt(modulus / density)), density
+
+
+def draws(seed: int) -> np.ndarray:
+    """Noise (2, 8000) of both gauges, of standard deviation 1."""
+    return np.random.default_rng(seed).standard_normal((2, 8000))
+
+
+@pytest.mark.parametrize(("modulus", "density"), SPECIMENS)
+def test_what_inertia_adds_to_a_slope_is_told(modulus, density):
+    """Under a rise of 10 µs, 4 transits of the hardest, 1.7 %, and all of the error; the rest is half a sample."""
+    faces = at_faces(signals(lambda at: ramp(at, 10e-6), specimen=speed_of(modulus, density)), SETUP)
+    found = specimen(faces, SETUP)
+    error = slope_error(faces, SETUP, EQUILIBRIUM, found)
+    assert found.slope - modulus == pytest.approx(error.inertia, rel=0.05, abs=2e-4 * modulus)
+    assert error.noise < 1e-5 * modulus
+
+
+def test_half_a_sample_changes_the_slope_by_its_part():
+    """Both pulses half a sample late: the slope changes by the sum of both parts, each √3 standard errors."""
+    given = signals(specimen=speed_of(40e9, 2500.0))
+    faces = at_faces(given, SETUP)
+    found = specimen(faces, SETUP)
+    there = slice(found.equilibrium[0], found.largest + 1)
+    late = []
+    for name in ("reflected", "transmitted"):
+        values = np.interp(faces.time - 0.5 * STEP, faces.time, getattr(faces, name))
+        moved_late = specimen(faces._replace(**{name: values}), SETUP)
+        late.append(slope_of(moved_late.strain[there], moved_late.stress[there]) - found.slope)
+    error = slope_error(faces, SETUP, EQUILIBRIUM, found)
+    assert np.hypot(*late) / np.sqrt(3.0) == pytest.approx(error.time, rel=0.05)
+
+
+def test_steps_of_the_stress_make_a_slope_uncertain():
+    """Under a rectangle stresses and strains rise in steps, one for each way to and fro."""
+    parts = []
+    for rise in (1e-6, 150e-6):
+        faces = at_faces(signals(lambda at, rise=rise: ramp(at, rise), specimen=speed_of(5e9, 1500.0)), SETUP)
+        parts.append(slope_error(faces, SETUP, 0.2, specimen(faces, SETUP, 0.2)).line)
+    assert parts[0] > 5.0 * parts[1]
+
+
 def test_two_gauges_give_it_for_pulses_that_overlap():
     long = {"pulse": lambda time: ramp(time, 200e-6, 600e-6)}
     with pytest.raises(CaseError, match="--second-gauge: is needed, the incident pulse has not ended"):
@@ -90,8 +160,35 @@ def test_windows_may_be_given_and_move_their_pulse():
     # the pulse is cut anew at its new first sample, where it is 0.1 % of the incident one
     np.testing.assert_allclose(shifted.reflected[5:], faces.reflected[55 : 50 + count], atol=2e-6)
     np.testing.assert_allclose(shifted.incident, faces.incident[:count], atol=1e-9)
-    with pytest.raises(CaseError, match="--incident-window: the pulses begin at"):
+    with pytest.raises(CaseError, match=r"--incident-window: the record is from 0 to .* the reflected at 0.0017 s"):
         at_faces(given, SETUP, Windows(incident=(1.3e-3, 1.5e-3)))
+
+
+@pytest.mark.parametrize(
+    ("end", "late"), [(350e-6, "the reflected at .* s, the transmitted"), (470e-6, "the reflected")]
+)
+def test_a_record_that_is_too_short_is_told_by_the_pulses_that_it_lacks(end, late):
+    """At the gauges the incident pulse begins at 100 µs, the reflected at 500, the transmitted at 460."""
+    given = signals()
+    count = round(end / STEP)
+    short = given._replace(
+        time=given.time[:count], incident=given.incident[:count], transmitted=given.transmitted[:count]
+    )
+    with pytest.raises(CaseError, match=f"ends before pulses begin at their gauges: {late} at .* s; record longer"):
+        at_faces(short, SETUP)
+
+
+def test_a_largest_stress_as_equilibrium_begins_gives_no_slope_and_says_so():
+    faces = at_faces(signals(), SETUP)
+    found = specimen(faces, SETUP)
+    first, _ = found.equilibrium
+    at_once = replace(found, largest=first + 1, slope=np.nan)
+    assert slope_error(faces, SETUP, EQUILIBRIUM, at_once) is None
+    (said,) = doubts_of_slope(at_once, None)
+    assert said.startswith("the specimen has its largest stress 1 samples after equilibrium begins")
+    (wide,) = doubts_of_slope(found, SlopeError(0.0, 0.0, 0.5 * found.slope, 0.0))
+    assert wide.startswith("the slope is uncertain, ±1e+02 %: in equilibrium, until the largest stress, the strain")
+    assert not list(doubts_of_slope(found, slope_error(faces, SETUP, EQUILIBRIUM, found)))
 
 
 def test_dispersion_of_the_bars_is_taken_back():

@@ -5,7 +5,6 @@ All are sums over complex frequencies (window.py) of what loads and waves do at 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
@@ -13,7 +12,6 @@ import numpy as np
 
 from dembound.bar.layers import ENDS, EndLayer
 from dembound.bar.scene import BarScene, build_bar
-from dembound.boundaries.layer import Layer
 from dembound.boundaries.matched_layer import MatchedLayer
 from dembound.boundaries.signals import Signal
 from dembound.casefile.bar import BarCase
@@ -67,13 +65,9 @@ class Motions:
         least = max(4, 2 * self.case.method.horizon_beyond)
         layered = {side: MatchedLayer(type="matched_layer", nodes=least) for side in self.absorbing}
         scene = build_bar(replace(self.case, boundary={**self.case.boundary, **layered}))
-        layers = {side: self._endless(layer) for side, layer in scene.layers.items()}
+        window = self.window.samples * self.window.step
+        layers = {side: layer.endless(window) for side, layer in scene.layers.items()}
         return self._in_nodes(scene, layers, step, [side for side in self.absorbing if self.case.side(side).waves])
-
-    def _endless(self, layer: EndLayer) -> EndLayer:
-        """Nodes in which nothing decays, so many that nothing returns within the window."""
-        count = 100 + math.ceil(self.window.samples * self.window.step * layer.speed / layer.spacing)
-        return replace(layer, layer=Layer(count, power=1.0, reflection=1.0))
 
     def _in_nodes(
         self, scene: BarScene, layers: Mapping[str, EndLayer], step: float, entering: Iterable[str]

@@ -33,7 +33,8 @@ def test_facts_are_those_of_the_bar(spalling) -> None:
     assert facts["stiffness"] == "E = 2.5 GPa, c = 1000 m/s"
     assert facts["strength"] == "8 MPa, critical stretch 0.0032"
     assert facts["attenuation"] == "α = 0.2 1/m"
-    assert (facts["left end"], facts["right end"]) == ("free", "viscous, β_P = 0.9")
+    assert facts["left end"] == "free"
+    assert facts["right end"].startswith("viscous, β_P = 0.9; returns at most ")
     assert facts["load hit"] == "12 MPa times wave hit, on 3 nodes at the left end"
     assert facts["monitor gauge"] == "node 21 at 0.525 m"
 
@@ -46,7 +47,7 @@ def test_numbers_of_an_end_of_another_type_are_told(spalling) -> None:
             return super().describe(edge, medium) | {"depth": 2.5}
 
     case = replace(spalling(), boundary={"right": Layered(type="viscous")})
-    assert bar_facts(build_bar(case), 2.5e-5)["right end"] == "viscous, β_P = 1, depth = 2.5"
+    assert bar_facts(build_bar(case), 2.5e-5)["right end"].split("; ")[0] == "viscous, β_P = 1, depth = 2.5"
 
 
 def test_a_layer_is_told_with_its_length_and_what_it_returns(spalling) -> None:
@@ -56,7 +57,7 @@ def test_a_layer_is_told_with_its_length_and_what_it_returns(spalling) -> None:
     assert layer == "matched_layer, nodes = 80, power = 3.0, reflection = 1e-08, layer_length = 2.0"
     assert echo.startswith("returns at most ")
     assert echo.endswith(" of wave hit")
-    assert 1e-9 < float(echo.split()[3]) < 1e-6
+    assert 1e-9 < float(echo.split()[3]) < 1e-4
 
 
 def test_what_a_bar_lacks_is_not_told(spalling) -> None:

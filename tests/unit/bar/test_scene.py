@@ -60,6 +60,7 @@ def test_a_record_is_told_of_the_bar_and_its_ends(spalling) -> None:
         "youngs_modulus": 2.5e9,
         "wave_speed": 1000.0,
         "attenuation": 0.3,
+        "strength": [8e6, 8e6],
         "loaded": "left",
         "ends": ["free", "viscous"],
     }

@@ -49,6 +49,24 @@ def blow(pressure: float, nodes: int, side: str = "left") -> dict:
     return {"load": [{"name": "blow", "pressure": pressure, "nodes": nodes, "wave": "hit", "side": side}]}
 
 
+@pytest.mark.parametrize(("courant", "swings"), [(1.0, True), (0.95, False)])
+def test_swings_that_impacts_leave_are_warned_of(tmp_path, courant: float, swings: bool) -> None:
+    """Two bars of 50 cells meet and part again and again: at ν = 1 the swing of their half cells adds up."""
+    ranges = [{"name": "a", "length": 0.05, "velocity": 10.0}, {"name": "b", "length": 0.05, "velocity": -10.0}]
+    ranges[1]["interface"] = "contact"
+    bar = {"spacing": 1e-3, "density": 2620.0, "wave_speed": 2740.0, "range": ranges}
+    run = {"duration": 3e-4, "courant": courant}
+    tables = {"bar": bar, "method": {"type": "finite_difference"}, "run": run, "output": {"pictures": False}}
+    case = small(tables)
+    folder = run_case(case, tmp_path)
+    said = [
+        each for each in warnings_after_bar(build_bar(case), _summary(folder), folder / "run.h5") if "swing" in each
+    ]
+    assert len(said) == swings
+    if swings:
+        assert said[0].startswith("run.courant: velocities swing from step to step: their changes within steps have ")
+
+
 SUDDEN = {"wave.hit.rise": 2.5e-5, "wave.hit.fall": 2.5e-4}
 
 

@@ -11,7 +11,8 @@ from dembound.gauge.plausibility import (
     implausible_length,
     implausible_signal,
     raised_by_noise,
-    uncertain,
+    uncertain_decay,
+    uncertain_speed,
     unlikely_speed,
 )
 
@@ -88,8 +89,8 @@ def test_speeds_agree_within_ten_of_their_errors():
 
 def test_large_errors_are_told():
     good, bad = Estimate(1000.0, 9.0, 3), Estimate(1000.0, 11.0, 3)
-    assert not list(uncertain(good, Estimate(0.5, 0.09, 3)))
-    assert len(list(uncertain(bad, Estimate(0.5, 0.11, 3)))) == 2
-    assert not list(uncertain(Estimate(1000.0), Estimate(0.5)))
+    assert not [*uncertain_speed(good), *uncertain_decay(Estimate(0.5, 0.09, 3))]
+    assert len([*uncertain_speed(bad), *uncertain_decay(Estimate(0.5, 0.11, 3))]) == 2
+    assert not [*uncertain_speed(Estimate(1000.0)), *uncertain_decay(Estimate(0.5))]
     assert len(list(raised_by_noise(0.016, 1.0))) == 1
     assert not list(raised_by_noise(0.014, 1.0))

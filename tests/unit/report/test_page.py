@@ -91,7 +91,7 @@ def test_runs_stand_side_by_side(two, pushed_runs):
     share = f"{100.0 * side['absorbed_share']:.3g} %"
     assert right == [["right", "half", "viscous", "β_P = 0.5, β_S = 1", *amounts, share]]
     ledger = summaries[1]["energy"]
-    left = sum(ledger[name] for name in ("kinetic", "contact", "bond")) / ledger["supplied"]
+    left = sum(ledger[name] for name in ("kinetic", "contact", "bond", "stepping")) / ledger["supplied"]
     assert two.row("left in the body, of all that was supplied")[1] == f"{100.0 * left:.3g} %"
 
 

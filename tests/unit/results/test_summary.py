@@ -72,7 +72,7 @@ def test_energies_are_those_of_the_last_entry(bar, tmp_path) -> None:
     found = summary_of(bar(), tmp_path / "run.h5", 60, 6)["energy"]
 
     assert found["time"] == pytest.approx(50 / 60 * 60 * plan(bar()).time_step, rel=1e-12)
-    stored = found["kinetic"] + found["contact"] + found["bond"]
+    stored = found["kinetic"] + found["contact"] + found["bond"] + found["stepping"]
     # 60 steps of sums of 40 particles, each rounded, beside the work of the whole
     assert stored == pytest.approx(found["outside"], abs=60 * 40 * np.finfo(float).eps * abs(found["kinetic"] + 1e4))
     assert found["relative_error"] < 60 * 40 * np.finfo(float).eps

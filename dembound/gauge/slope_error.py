@@ -1,0 +1,133 @@
+"""How well the slope of stress over strain of a specimen is known.
+
+- Inertia. The mean of the forces on both faces is not that in the middle: with the velocity linear along the specimen,
+  its stress differs from the mean over its length by ρL_s² (d²e/dt²)/12 (Gorham 1989), which a fast rise adds to the
+  slope. ρ follows from the impulses themselves, ∫(F_1 − F_2) dt = ρ L_s A_s (v_1 + v_2)/2.
+- Time. Each pulse is known to half a sample either way, evenly: the standard error of the reflected and of the
+  transmitted one against the incident one is that of the slopes with them half a sample earlier and later, over √3.
+- Line. The standard error by the deviations from the line, of which as many count as there are correlation times
+  within it: of the specimen's reverberations, and of a law that bends.
+- Noise. The scatter of slopes from the same pulses with the same noise once more, as drawn some tens of times; as the
+  strain is an integral, noise makes it drift.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from dembound.gauge.estimates import FEWEST
+from dembound.gauge.hopkinson import Specimen, slope_of, specimen
+from dembound.gauge.peaks import white_noise
+from dembound.gauge.pulses import Faces, Setup
+
+SEED, DRAWS = 0, 40
+"""Of the noise: a standard error is known to 11 % from 40 slopes."""
+
+NO_NOISE = 1e-9
+"""Noise over the largest strain below which it is rounding."""
+
+UNKNOWN = 0.2
+"""Uncertainty of a slope over itself from which a warning is due."""
+
+WIDE = 2.0
+"""Standard errors of which 95 % of errors are within."""
+
+
+@dataclass(frozen=True)
+class SlopeError:
+    """What is uncertain about a slope, Pa: what inertia has added, and standard errors of time, of line, of noise."""
+
+    inertia: float
+    time: float
+    line: float
+    noise: float
+
+    @property
+    def half_width(self) -> float:
+        """Largest error, Pa, in 95 of 100 tests."""
+        return abs(self.inertia) + WIDE * math.hypot(self.time, self.line, self.noise)
+
+
+def slope_error(faces: Faces, setup: Setup, tolerance: float, found: Specimen) -> SlopeError | None:
+    """The uncertainty of `found.slope`; None where there is no slope. Other arguments as those of `specimen`."""
+    if found.equilibrium is None or np.isnan(found.slope):
+        return None
+    there = slice(found.equilibrium[0], found.largest + 1)
+    return SlopeError(
+        slope_of(found.strain[there], _inertia(faces, setup, found)[there]),
+        _of_time(faces, setup, tolerance, there),
+        _of_line(found.strain[there], found.stress[there]),
+        _of_noise(faces, setup, tolerance),
+    )
+
+
+def doubts_of_slope(found: Specimen, error: SlopeError | None) -> Iterator[str]:
+    """Why a slope is missing or means little, where the specimen is in equilibrium."""
+    if found.equilibrium is None:
+        return
+    first, last = found.equilibrium[0], found.largest
+    if error is None:
+        yield (
+            f"the specimen has its largest stress {last - first} samples after equilibrium begins, at "
+            f"{1e6 * found.time[last]:.4g} µs: no slope of stress over strain"
+        )
+    elif not error.half_width < UNKNOWN * abs(found.slope):
+        change = 100.0 * float(np.ptp(found.strain[first : last + 1])) / float(np.abs(found.strain).max())
+        yield (
+            f"the slope is uncertain, ±{100.0 * error.half_width / abs(found.slope):.2g} %: in equilibrium, until the "
+            f"largest stress, the strain changes by {change:.2g} % of its largest"
+        )
+
+
+def _inertia(faces: Faces, setup: Setup, found: Specimen) -> np.ndarray:
+    """ρL_s² (d²e/dt²)/12 (n,) Pa, with the density by which the impulses accelerate the specimen."""
+    step = faces.time[1] - faces.time[0]
+    impulse = step * np.cumsum(found.front - found.back)
+    velocity = 0.5 * setup.bar.speed * (faces.incident - faces.reflected + faces.transmitted)
+    loaded = slice(0, found.largest + 1)
+    mass = float(np.sum(impulse[loaded] * velocity[loaded]) / np.sum(velocity[loaded] ** 2))  # ρL_s, kg/m²
+    return mass * setup.specimen_length / 12.0 * np.gradient(found.rate, step)
+
+
+def _of_time(faces: Faces, setup: Setup, tolerance: float, there: slice) -> float:
+    """Standard error of the slope, Pa, by the times of the pulses."""
+    half = 0.5 * (faces.time[1] - faces.time[0])
+    changes = []
+    for name in ("reflected", "transmitted"):
+        slopes = []
+        for shift in (-half, half):
+            values = np.interp(faces.time + shift, faces.time, getattr(faces, name))
+            moved = specimen(faces._replace(**{name: values}), setup, tolerance)
+            slopes.append(slope_of(moved.strain[there], moved.stress[there]))
+        changes.append(0.5 * (slopes[1] - slopes[0]) / math.sqrt(3.0))
+    return math.hypot(*changes)
+
+
+def _of_line(strain: np.ndarray, stress: np.ndarray) -> float:
+    """Standard error of the slope, Pa, by the deviations of stresses from the line over strains (m,)."""
+    from scipy.signal import fftconvolve
+
+    rest = stress - np.polyval(np.polyfit(strain, stress, 1), strain)
+    power = float(np.sum(rest**2))
+    if len(rest) <= FEWEST or not power > 0.0:
+        return 0.0
+    correlation = fftconvolve(rest, rest[::-1])[len(rest) - 1 :] / power
+    first = int(np.argmax(correlation <= 0.0)) or len(rest)
+    count = len(rest) / (1.0 + 2.0 * float(np.sum(correlation[1:first])))
+    return math.sqrt(power / len(rest) / max(count - 2.0, 1.0)) / float(np.std(strain))
+
+
+def _of_noise(faces: Faces, setup: Setup, tolerance: float) -> float:
+    """Standard error of the slope, Pa, by the noise of the signals; 0 without noise."""
+    pulses = {name: getattr(faces, name) for name in ("incident", "reflected", "transmitted")}
+    noise = {name: white_noise(values) for name, values in pulses.items()}
+    if max(noise.values()) < NO_NOISE * float(np.abs(faces.incident).max()):
+        return 0.0
+    random, slopes = np.random.default_rng(SEED), []
+    for _ in range(DRAWS):
+        drawn = {name: pulses[name] + noise[name] * random.standard_normal(len(faces.time)) for name in pulses}
+        slopes.append(specimen(faces._replace(**drawn), setup, tolerance).slope)
+    known = np.array(slopes)[~np.isnan(slopes)]
+    return float(known.std(ddof=1)) if len(known) >= FEWEST else math.inf
