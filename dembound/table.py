@@ -11,6 +11,7 @@ from typing import Annotated, Any, TypeVar, Union, get_args
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator
 
 from dembound.errors import CONTROL, UnusableTypeWarning, visible
+from dembound.meanings import MEANINGS, OF_UNITS
 
 T = TypeVar("T")
 
@@ -82,7 +83,7 @@ def every_key(value: Any) -> Any:
     return [every_key(inner) for inner in value] if isinstance(value, tuple | list) else value
 
 
-def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:
+def quantity(default: Any = ..., *, unit: str, help: str, means: str | None = None, **limits: Any) -> Any:
     """A physical field, with the unit and meaning that docs and error texts print.
 
     Parameters
@@ -90,9 +91,12 @@ def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:
     default : the value when the key is absent; ``...`` makes the key required.
     unit : SI unit, "1" for a pure number.
     help : one sentence with the meaning of the key.
+    means : of a number, its meaning in `MEANINGS`, which has the likely sizes; absent: the only one of its unit.
     limits : pydantic constraints (``gt``, ``ge``, ``lt``, ``le``, ``min_length`` …).
     """
-    return Field(default, description=help, json_schema_extra={"unit": unit}, **limits)
+    assert means is None or means in MEANINGS, means
+    extra = {"unit": unit, "means": means or OF_UNITS.get(unit)}
+    return Field(default, description=help, json_schema_extra=extra, **limits)
 
 
 def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tuple[type[T], ...]:

@@ -20,8 +20,12 @@ from dembound.table import quantity
 class Dashpots(Boundary):
     """A side with dashpots: their two calibration factors, and whether the particles have half their mass."""
 
-    beta_p: float = quantity(1.0, unit="1", help="factor of the P dashpots, along the side's normal", ge=0.0)
-    beta_s: float = quantity(1.0, unit="1", help="factor of the S dashpots, across the side's normal", ge=0.0)
+    beta_p: float = quantity(
+        1.0, unit="1", means="factor of dashpots", help="factor of the P dashpots, along the side's normal", ge=0.0
+    )
+    beta_s: float = quantity(
+        1.0, unit="1", means="factor of dashpots", help="factor of the S dashpots, across the side's normal", ge=0.0
+    )
     half_mass: bool = quantity(False, unit="1", help="whether the side's particles are half cells")
 
     @property

@@ -24,7 +24,9 @@ class Chart(Table):
         {}, unit="1", help="key -> list of values or range; all combinations of the keys' values are choices"
     )
     choice: tuple[ChartChoice, ...] = quantity((), unit="1", help="additional choices, a table each")
-    repeats: int = quantity(3, unit="1", help="timed runs of every choice, after one that compiles", ge=1)
+    repeats: int = quantity(
+        3, unit="1", means="count", help="timed runs of every choice, after one that compiles", ge=1
+    )
     reference: ReferenceName | None = quantity(
         None, unit="1", help="what errors are measured against; absent: the first of these that the case allows"
     )

@@ -19,7 +19,11 @@ class Output(Table):
         0.0, unit="s", help="time between two entries of the energy ledger; 0: a hundred over the run", ge=0.0
     )
     snapshots: int = quantity(
-        1, unit="1", help="number of whole-scene snapshots, evenly spaced, the last at the end; 0: none", ge=0
+        1,
+        unit="1",
+        means="count",
+        help="number of whole-scene snapshots, evenly spaced, the last at the end; 0: none",
+        ge=0,
     )
     stress: bool = quantity(False, unit="1", help="whether snapshots hold the stress of every particle")
     contacts: bool = quantity(False, unit="1", help="whether snapshots hold the forces of every contact and bond")

@@ -19,4 +19,6 @@ class Sweep(Table):
     )
     action: Action = quantity("run", unit="1", help="what is done with every member")
     method: Method = quantity("impedance", unit="1", help="how β is calibrated")
-    processes: int | None = quantity(None, unit="1", help="members at once; absent: as many as there are cores", ge=1)
+    processes: int | None = quantity(
+        None, unit="1", means="count", help="members at once; absent: as many as there are cores", ge=1
+    )

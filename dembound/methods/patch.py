@@ -19,7 +19,7 @@ class Patch(Triggered):
     """
 
     type: Literal["patch"]
-    reach: int = quantity(4, unit="1", help="horizons that a zone extends beyond what made it", ge=1)
+    reach: int = quantity(4, unit="1", means="count", help="horizons that a zone extends beyond what made it", ge=1)
 
     @property
     def name(self) -> str:

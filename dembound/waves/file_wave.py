@@ -28,7 +28,7 @@ class FileWave(Wave):
 
     type: Literal["file"]
     path: str = quantity(..., unit="1", help="text file of two columns, time (s) and velocity (m/s)", min_length=1)
-    scale: NonZero = quantity(1.0, unit="1", help="factor of the file's velocities")
+    scale: NonZero = quantity(1.0, unit="1", means="factor", help="factor of the file's velocities")
 
     # tuples rather than arrays: two equal waves then compare equal
     _times: tuple[float, ...] = PrivateAttr(default=())

@@ -20,7 +20,7 @@ class SineBurst(Shape):
 
     type: Literal["sine_burst"]
     frequency: float = quantity(..., unit="Hz", help="frequency of the sine", gt=0.0)
-    cycles: int = quantity(..., unit="1", help="number of cycles, a whole number", ge=1)
+    cycles: int = quantity(..., unit="1", means="count", help="number of cycles, a whole number", ge=1)
     taper: bool = quantity(True, unit="1", help="whether a Hann window fades the burst in and out")
 
     def _harmonics(self) -> tuple[tuple[int, float], ...]:

@@ -89,7 +89,7 @@ class Wave(Table, ABC):
 class Shape(Wave):
     """A wave given by a formula: `amplitude` times a shape whose argument is the time since `start`."""
 
-    amplitude: NonZero = quantity(..., unit="m/s", help="factor of the shape, of either sign")
+    amplitude: NonZero = quantity(..., unit="m/s", means="velocity", help="factor of the shape, of either sign")
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
         """Particle velocity, m/s, at the times t, s; same shape as t."""
