@@ -49,9 +49,16 @@ def usable(value: T) -> T:
 
     Raises ValueError, with the limits, if not.
     """
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | list):
         for each in value:
             usable(each)
+    elif isinstance(value, Mapping):
+        for name, each in value.items():
+            try:
+                usable(name)
+                usable(each)
+            except ValueError as error:
+                raise ValueError(f"{visible(str(name)[:60])} {error}") from None
     elif isinstance(value, str) and CONTROL.search(value):
         raise ValueError(f'is "{visible(value[:60])}", must be one line without control characters')
     elif isinstance(value, float) and value != 0.0 and not SMALLEST <= abs(value) <= LARGEST:

@@ -9,6 +9,9 @@ ReferenceName = Literal["exact", "extended", "finer", "finest"]
 
 End = Literal["break", "end"]
 
+MOST_REPEATS = 1000
+"""Largest number of timed runs: the fastest of a few is that of many, to some per cent."""
+
 
 class ChartChoice(Table):
     """A named choice: some keys of the case, each with another value."""
@@ -25,7 +28,7 @@ class Chart(Table):
     )
     choice: tuple[ChartChoice, ...] = quantity((), unit="1", help="additional choices, a table each")
     repeats: int = quantity(
-        3, unit="1", means="count", help="timed runs of every choice, after one that compiles", ge=1
+        3, unit="1", means="count", help="timed runs of every choice, after one that compiles", ge=1, le=MOST_REPEATS
     )
     reference: ReferenceName | None = quantity(
         None, unit="1", help="what errors are measured against; absent: the first of these that the case allows"

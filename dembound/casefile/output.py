@@ -2,6 +2,9 @@
 
 from dembound.table import Table, quantity
 
+MOST_SNAPSHOTS = 100_000
+"""Largest number of snapshots: each is a file for ParaView, and folders of more can hardly be opened."""
+
 
 class Output(Table):
     """The data that is written."""
@@ -24,6 +27,7 @@ class Output(Table):
         means="count",
         help="number of whole-scene snapshots, evenly spaced, the last at the end; 0: none",
         ge=0,
+        le=MOST_SNAPSHOTS,
     )
     stress: bool = quantity(False, unit="1", help="whether snapshots hold the stress of every particle")
     contacts: bool = quantity(False, unit="1", help="whether snapshots hold the forces of every contact and bond")

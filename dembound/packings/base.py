@@ -9,16 +9,16 @@ from pydantic import Field, model_validator
 from dembound.errors import CaseError
 from dembound.packings.brick import Brick
 from dembound.packings.dense import Recipe, radius_range
-from dembound.table import Box, Table, quantity
-
-Extent = tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]]
-Count = tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
-
-TYPED = 5e-6
-"""Relative difference allowed between a size and whole bricks: sizes may have six digits, as 5.19615 m for 3√3 m."""
+from dembound.table import LARGEST_WHOLE, Box, Table, quantity
 
 MOST_DISKS = 500_000_000
 """Largest number of disks of a scene: the ends of their contacts, 4.4 each, are numbered with 32 bits."""
+
+Extent = tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]]
+Count = tuple[Annotated[int, Field(ge=1, le=MOST_DISKS)], Annotated[int, Field(ge=1, le=MOST_DISKS)]]
+
+TYPED = 5e-6
+"""Relative difference allowed between a size and whole bricks: sizes may have six digits, as 5.19615 m for 3√3 m."""
 
 MOST_IN_BRICK = 1_000_000
 """Largest number of disks of a random brick, which is packed in hours; scenes are made of many bricks."""
@@ -151,7 +151,7 @@ class DensePacking(Packing):
         unit="1", means="ratio of radii", help="largest over smallest radius", ge=1.0, le=4.0
     )
     brick: Extent = quantity(unit="m", means="length", help="width and height of the periodic brick")
-    seed: int = quantity(0, unit="1", means="count", help="seed of the random start", ge=0)
+    seed: int = quantity(0, unit="1", means="count", help="seed of the random start", ge=0, le=LARGEST_WHOLE)
     confining_stress: float | None = quantity(
         None,
         unit="Pa",

@@ -44,6 +44,9 @@ class FileWave(Wave):
         samples = samples_of(self._text, path)
         self._times = tuple(samples[:, 0].tolist())
         self._velocities = tuple((self.scale * samples[:, 1]).tolist())
+        shortest = float(np.diff(samples[:, 0]).min())
+        self._require_resolved(float(np.abs(samples[:, 0]).max()), shortest, f'path: a time in "{path}"')
+        self._require_resolved(self.start, shortest, "start:")
         return self
 
     def _samples(self) -> tuple[np.ndarray, np.ndarray]:

@@ -2,6 +2,7 @@
 
 from typing import Literal
 
+from dembound.casefile.bar.bar import MOST_CELLS
 from dembound.table import FileName, Table, quantity
 
 
@@ -18,6 +19,11 @@ class BarLoad(Table):
     )
     side: Literal["left", "right"] = quantity("left", unit="1", help="end of the bar it acts on")
     nodes: int = quantity(
-        1, unit="1", means="count", help="number of nodes it is spread over, from the end inwards", ge=1
+        1,
+        unit="1",
+        means="count",
+        help="number of nodes it is spread over, from the end inwards",
+        ge=1,
+        le=MOST_CELLS + 1,
     )
     wave: str = quantity(..., unit="1", help="name of the wave that is the time factor")

@@ -2,6 +2,9 @@
 
 from dembound.table import Table, quantity
 
+MOST_ELEMENTS = 1000
+"""Largest number of elements of a margin or of layers: six that absorb are enough, and 100 beside a load that stays."""
+
 CONTINUUM = ".continuum"
 """Ending of the names of sides of the continuum."""
 
@@ -32,9 +35,15 @@ class OutsideTable(Table):
         means="count",
         help="elements between the particles and those that absorb; absent: by the loads",
         ge=1,
+        le=MOST_ELEMENTS,
     )
     layers: int | None = quantity(
-        None, unit="1", means="count", help="elements that absorb, one behind the other; absent: by the accuracy", ge=2
+        None,
+        unit="1",
+        means="count",
+        help="elements that absorb, one behind the other; absent: by the accuracy",
+        ge=2,
+        le=MOST_ELEMENTS,
     )
     reflection: float | None = quantity(
         None,

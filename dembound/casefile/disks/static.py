@@ -5,6 +5,9 @@ from collections.abc import Mapping
 from dembound.casefile.types import StaticSide
 from dembound.table import Table, quantity
 
+MOST_STEPS = 100_000_000
+"""Largest number of steps of the stage: a hundred disks alone would take minutes for them, and thousands are enough."""
+
 
 class Static(Table):
     """The damped stage before the run, which brings the body to rest under steady loads and a given stress.
@@ -27,7 +30,9 @@ class Static(Table):
         lt=1.0,
     )
     damp: float = quantity(0.7, unit="1", means="share", help="local damping coefficient of the stage", gt=0.0, lt=1.0)
-    max_steps: int = quantity(200_000, unit="1", means="count", help="steps after which the stage has failed", ge=1)
+    max_steps: int = quantity(
+        200_000, unit="1", means="count", help="steps after which the stage has failed", ge=1, le=MOST_STEPS
+    )
     from_: str | None = quantity(
         None,
         unit="1",
