@@ -61,6 +61,8 @@ def usable(value: T) -> T:
                 raise ValueError(f"{visible(str(name)[:60])} {error}") from None
     elif isinstance(value, str) and CONTROL.search(value):
         raise ValueError(f'is "{visible(value[:60])}", must be one line without control characters')
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise ValueError(f"is {value:g}, must be finite")
     elif isinstance(value, float) and value != 0.0 and not SMALLEST <= abs(value) <= LARGEST:
         raise ValueError(f"is {value:g}, must be 0 or of a size between {SMALLEST:g} and {LARGEST:g}")
     elif isinstance(value, int) and abs(value) > LARGEST_WHOLE:
@@ -102,7 +104,7 @@ def quantity(default: Any = ..., *, unit: str, help: str, means: str | None = No
     limits : pydantic constraints (``gt``, ``ge``, ``lt``, ``le``, ``min_length`` …).
     """
     assert means is None or means in MEANINGS, means
-    extra = {"unit": unit, "means": means or OF_UNITS.get(unit)}
+    extra: dict[str, Any] = {"unit": unit, "means": means or OF_UNITS.get(unit)}
     return Field(default, description=help, json_schema_extra=extra, **limits)
 
 

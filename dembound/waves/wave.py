@@ -81,7 +81,7 @@ class Wave(Table, ABC):
         return self.dominant_period()
 
     def _require_resolved(self, latest: float, scale: float, key: str) -> None:
-        """Raise ValueError for a time (s) at which changes on a scale (s) are lost in rounding; key : begins the message."""
+        """Raise ValueError for a time (s) at which rounding loses changes on a scale (s); key : the message's."""
         if latest > LATEST * scale > 0.0:
             most = f"must be at most {LATEST:g} times the {scale:g} s within which the wave varies"
             raise ValueError(f"{key} is {latest:g}, {most}, or rounding changes it")

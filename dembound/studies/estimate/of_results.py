@@ -20,6 +20,7 @@ from dembound.motion.clock import Clock
 from dembound.results.datasets import describe, write
 from dembound.results.estimates import FILE, KEY
 from dembound.results.histories import FREE_FIELD
+from dembound.results.json_files import write_json
 from dembound.results.reader import history_of, open_record, replacing, require_run
 from dembound.running.recorded import recorded_case
 from dembound.studies.estimate.causes import Causes, Recorded
@@ -49,8 +50,7 @@ def estimate_results(folder: Path, budget: float | None = None, second_seed: boo
         found, summary = _estimated(folder, budget, second_seed)
     found = replace(found, cpu_seconds=clock.seconds["estimate"])
     _write(found, folder / FILE)
-    with replacing(folder / "summary.json") as part:
-        part.write_text(json.dumps(summary | {KEY: found.summary()}, indent=2) + "\n", encoding="utf-8")
+    write_json(folder / "summary.json", summary | {KEY: found.summary()})
     return found
 
 

@@ -6,7 +6,7 @@ import sys
 import pytest
 from rich.table import Table
 
-from dembound.cli.console import PlainConsole, escape_unprintable
+from dembound.cli.console import PlainConsole, prepare_streams
 
 
 def printed(content: object) -> str:
@@ -37,7 +37,7 @@ def test_texts_cells_and_titles_appear_as_they_are(text: str, shown: str) -> Non
 def test_what_an_encoding_lacks_is_escaped(monkeypatch) -> None:
     stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
     monkeypatch.setattr(sys, "stdout", stream)
-    escape_unprintable()
+    prepare_streams()
     print("β", file=stream, flush=True)
 
     assert stream.buffer.getvalue() == b"\\u03b2\n"  # type: ignore[attr-defined]
