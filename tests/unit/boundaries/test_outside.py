@@ -64,7 +64,7 @@ def test_it_is_artificial_and_has_no_keys() -> None:
         ),
         (
             "[static]\nstress = [-1e6, -1e6, 0.0]\n",
-            'static.stress: cannot be applied at boundary.left ("outside"), boundary.bottom ("outside"); "viscous" or '
+            'static.stress: cannot be applied at boundary.left ("outside"); "viscous" or '
             '"viscoelastic" sides absorb and take it, or leave it out and let gravity make it (a [[load]] with an '
             "acceleration)",
         ),
