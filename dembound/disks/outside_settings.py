@@ -13,7 +13,6 @@ from dembound.boundaries.sides import SIDES, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.errors import CaseError
 from dembound.holes import Hole
-from dembound.motion.memory import F, must_fit
 from dembound.outside import choice
 from dembound.outside.choice import Signal
 from dembound.outside.layer import Absorption
@@ -30,9 +29,6 @@ Elements twice as wide as high amplify noise in ground 9 times as wide as high, 
 
 MOST_ALONG = 100_000
 """Largest number of elements along a side."""
-
-NODE_BYTES = 9 * F
-"""Least memory of a node: u, its successor and v along x, y and of rotation, see `motion_bytes`."""
 
 ROUNDING = 1e-9
 """Part of an element by which a number of elements may differ from a whole one."""
@@ -150,21 +146,6 @@ def _margin(settings: Settings, box: Box, sides: Sequence[str], inner: float) ->
     return max(min(wanted), 1)
 
 
-def _must_be_few(
-    settings: Settings, width: float, height: float, element: tuple[float, float], sides: Sequence[str]
-) -> None:
-    """Raise CaseError for more elements along a side than anything needs, or for which there is no memory.
-
-    width, height : of the box and the ground above it, m.
-    """
-    along = width / element[0], height / element[1]
-    if (most := max(along)) > MOST_ALONG:
-        raise CaseError([f"outside.element: makes {most:.3g} elements along a side, must make at most {MOST_ALONG:,}"])
-    beyond = [(settings.margin + settings.layers) * sum(normal_axis(side) == axis for side in sides) for axis in (0, 1)]
-    count = (along[0] + beyond[0]) * (along[1] + beyond[1]) - (along[0] * along[1])
-    must_fit(count * settings.order**2 * NODE_BYTES, "outside", f"{count:,.0f} elements")
-
-
 def mesh_of(
     settings: Settings,
     box: Box,
@@ -186,7 +167,9 @@ def mesh_of(
     """
     width, height = box[2] - box[0], box[3] - box[1]
     element = element or settings.sides(width, height)
-    _must_be_few(settings, width, ((surface or box[3]) - box[3]) + height, element, sides)
+    most = max(width / element[0], height / element[1], ((surface or box[3]) - box[3]) / element[1])
+    if most > MOST_ALONG:
+        raise CaseError([f"outside.element: makes {most:.3g} elements along a side, must make at most {MOST_ALONG:,}"])
     beside = {} if tops is None else _rows_to(box, tops, settings._replace(element=element[1]))
     there = [side in sides and not (side == "top" and surface is not None) for side in SIDES]
     return Mesh.around(
