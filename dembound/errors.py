@@ -17,13 +17,26 @@ other exception is a bug and prints a traceback.
 import re
 from collections.abc import Iterable
 
-CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
-"""Characters that no name or title may have: control characters, line separators, and bytes that are not text."""
+_HIDDEN = (
+    r"\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"  # what changes the direction of text
+    r"\u200b\u2060-\u2065\u206a-\u206f\ufeff\ufff9-\ufffb\U000e0000-\U000e007f"  # what cannot be seen
+)
+
+HIDDEN = re.compile(f"[{_HIDDEN}]")
+"""Characters that reorder a text or cannot be seen, so that it looks like another one."""
+
+CONTROL = re.compile(rf"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff{_HIDDEN}]")
+"""Characters that no name or title may have: these, control characters, ends of lines, and bytes that are not text."""
+
+
+def escaped(found: re.Match[str]) -> str:
+    r"""What was found as escapes such as ``\x1b``."""
+    return found[0].encode("unicode_escape").decode()
 
 
 def visible(text: str) -> str:
-    r"""A text in one line, with its control characters as escapes such as ``\x1b``, so that none reaches a terminal."""
-    return CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+    r"""A text in one line, with what `CONTROL` finds as escapes such as ``\x1b``, so that none reaches a terminal."""
+    return CONTROL.sub(escaped, text)
 
 
 class DemboundError(Exception):

@@ -11,6 +11,7 @@ from typing import Annotated, Any, TypeVar, Union, get_args
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator
 
 from dembound.errors import CONTROL, UnusableTypeWarning, visible
+from dembound.meanings import MEANINGS, OF_UNITS
 
 T = TypeVar("T")
 
@@ -48,11 +49,20 @@ def usable(value: T) -> T:
 
     Raises ValueError, with the limits, if not.
     """
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | list):
         for each in value:
             usable(each)
+    elif isinstance(value, Mapping):
+        for name, each in value.items():
+            try:
+                usable(name)
+                usable(each)
+            except ValueError as error:
+                raise ValueError(f"{visible(str(name)[:60])} {error}") from None
     elif isinstance(value, str) and CONTROL.search(value):
         raise ValueError(f'is "{visible(value[:60])}", must be one line without control characters')
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise ValueError(f"is {value:g}, must be finite")
     elif isinstance(value, float) and value != 0.0 and not SMALLEST <= abs(value) <= LARGEST:
         raise ValueError(f"is {value:g}, must be 0 or of a size between {SMALLEST:g} and {LARGEST:g}")
     elif isinstance(value, int) and abs(value) > LARGEST_WHOLE:
@@ -82,7 +92,7 @@ def every_key(value: Any) -> Any:
     return [every_key(inner) for inner in value] if isinstance(value, tuple | list) else value
 
 
-def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:
+def quantity(default: Any = ..., *, unit: str, help: str, means: str | None = None, **limits: Any) -> Any:
     """A physical field, with the unit and meaning that docs and error texts print.
 
     Parameters
@@ -90,9 +100,12 @@ def quantity(default: Any = ..., *, unit: str, help: str, **limits: Any) -> Any:
     default : the value when the key is absent; ``...`` makes the key required.
     unit : SI unit, "1" for a pure number.
     help : one sentence with the meaning of the key.
+    means : of a number, its meaning in `MEANINGS`, which has the likely sizes; absent: the only one of its unit.
     limits : pydantic constraints (``gt``, ``ge``, ``lt``, ``le``, ``min_length`` …).
     """
-    return Field(default, description=help, json_schema_extra={"unit": unit}, **limits)
+    assert means is None or means in MEANINGS, means
+    extra: dict[str, Any] = {"unit": unit, "means": means or OF_UNITS.get(unit)}
+    return Field(default, description=help, json_schema_extra=extra, **limits)
 
 
 def with_registered(group: str, base: type[Any], types: Iterable[type[T]]) -> tuple[type[T], ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,10 +20,13 @@ from dembound.casefile.bar import BarCase
 from dembound.casefile.magnitudes import (
     grip_stress,
     is_quasi_static,
+    large_stress,
+    large_velocity,
     stress_in_words,
     stress_warnings,
     time_warnings,
 )
+from dembound.casefile.unlikely import unlikely_in
 from dembound.results.reader import open_record, snapshots_of
 from dembound.results.warnings import still_moving
 
@@ -31,6 +35,11 @@ if TYPE_CHECKING:
 
 NOTHING = 0.05
 """Share of the strength that the largest tension must reach; oscillations behind a pulse reach some per cent of it."""
+
+FADED = 0.01
+"""Share of a wave that attenuation leaves along the whole bar, below which hardly anything arrives."""
+
+_TOO_LARGE = "solids break or yield at a tenth of 3 %, are the units right?"
 
 LIKELY = (100.0, 10_000.0)
 """Slowest and fastest waves (m/s) of bars of solids; those of soft rubber and of hard ceramics are within it."""
@@ -58,6 +67,8 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
         *_long_bonds_across_cracks(case),
         *stress_beside_strength(case),
         *_unlikely_speeds(case),
+        *_large_strains(case),
+        *_fades(case),
         *_impacts(case, time_step),
         *_monitors_in_gaps(scene),
     ]
@@ -77,7 +88,10 @@ def _monitors_in_gaps(scene: BarScene) -> Iterator[str]:
 
 
 def _unlikely_speeds(case: BarCase) -> Iterator[str]:
-    """Wave speeds of no rock, metal or plastic: density or stiffness is probably in another unit."""
+    """Moduli and densities that are likely, but give waves of no rock, metal or plastic."""
+    given = [case.bar, *case.bar.range]
+    if any(line for table in given for line in unlikely_in("", table, case)):
+        return
     for number, part in enumerate(case.bar.parts, start=1):
         if not LIKELY[0] <= part.speed <= LIKELY[1]:
             place = f"bar.range[{number}]" if case.bar.range else "bar"
@@ -85,6 +99,32 @@ def _unlikely_speeds(case: BarCase) -> Iterator[str]:
                 f"{place}: its wave speed is {part.speed:.4g} m/s, of solids {LIKELY[0]:g} to {LIKELY[1]:,g}; is the "
                 "density in kg/m³ and the stiffness in Pa?"
             )
+
+
+def _large_strains(case: BarCase) -> Iterator[str]:
+    """Waves, impacts, loads and strengths whose strains are far beyond those of solids."""
+    bar = case.bar
+    for side, waves in case.driving.items():
+        place = f"wave.{waves['p']}"
+        yield from large_velocity(place, case.wave[waves["p"]].peak(), bar.end(side).speed, _TOO_LARGE)
+    for given, part in zip(bar.range, bar.parts, strict=False):
+        yield from large_velocity(f"bar.range.{given.name}.velocity", abs(given.velocity), part.speed, _TOO_LARGE)
+    for load in case.load if np.isinf(bar.least_strength) else ():  # others are compared with the strength
+        stress = abs(load.pressure) * case.wave[load.wave].peak()
+        yield from large_stress(f"load.{load.name}", "its pressure", stress, bar.end(load.side).modulus, _TOO_LARGE)
+    for part in bar.parts:
+        if part.strength is not None:
+            yield from large_stress("bar.strength", "it", part.strength, part.modulus, _TOO_LARGE)
+
+
+def _fades(case: BarCase) -> Iterator[str]:
+    """Attenuation that leaves nothing of a wave."""
+    left = math.exp(-sum(part.attenuation * part.length for part in case.bar.parts))
+    if left < FADED:
+        yield (
+            f"bar.attenuation: leaves {100.0 * left:.2g} % of a wave along the bar of {case.bar.length:g} m; is it in "
+            "1/m? 1 dB/m is 0.115 1/m"
+        )
 
 
 def _impacts(case: BarCase, time_step: float) -> Iterator[str]:

@@ -22,11 +22,14 @@ class MatchedLayer(Drivable):
     for_bars: ClassVar[bool] = True
 
     type: Literal["matched_layer"]
-    nodes: int = quantity(40, unit="1", help="number of nodes in the layer", ge=4, le=10_000)
-    power: float = quantity(3.0, unit="1", help="power p of the depth with which waves decay", ge=1.0, le=10.0)
+    nodes: int = quantity(40, unit="1", means="count", help="number of nodes in the layer", ge=4, le=10_000)
+    power: float = quantity(
+        3.0, unit="1", means="setting", help="power p of the depth with which waves decay", ge=1.0, le=10.0
+    )
     reflection: float | None = quantity(
         None,
         unit="1",
+        means="share",
         help="R0, returned by the layer's outer end in theory; absent: by the number of nodes",
         gt=0.0,
         lt=1.0,

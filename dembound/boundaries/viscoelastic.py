@@ -25,17 +25,32 @@ class Springs(Boundary):
 
     beyond_dashpots: ClassVar[str] = "viscoelastic sides without their springs"
 
-    alpha_n: float = quantity(1.0, unit="1", help="factor α_n of the springs along the side's normal", ge=0.0)
-    alpha_s: float = quantity(0.5, unit="1", help="factor α_s of the springs across the side's normal", ge=0.0)
+    alpha_n: float = quantity(
+        1.0, unit="1", means="factor of springs", help="factor α_n of the springs along the side's normal", ge=0.0
+    )
+    alpha_s: float = quantity(
+        0.5, unit="1", means="factor of springs", help="factor α_s of the springs across the side's normal", ge=0.0
+    )
     young_modulus: float | None = quantity(
-        None, unit="Pa", help="E of the springs' G = E/(2(1 + ν)); absent: G = ρc_s² of the dashpots' medium", gt=0.0
+        None,
+        unit="Pa",
+        means="modulus",
+        help="E of the springs' G = E/(2(1 + ν)); absent: G = ρc_s² of the dashpots' medium",
+        gt=0.0,
     )
     poisson_ratio: float | None = quantity(
-        None, unit="1", help="ν of the springs' G; absent: 0 where young_modulus is given", gt=-1.0, le=0.5
+        None,
+        unit="1",
+        means="Poisson's ratio",
+        help="ν of the springs' G; absent: 0 where young_modulus is given",
+        gt=-1.0,
+        le=0.5,
     )
-    distance: float | None = quantity(None, unit="m", help="distance L from the source of the waves", gt=0.0)
+    distance: float | None = quantity(
+        None, unit="m", means="length", help="distance L from the source of the waves", gt=0.0
+    )
     source: tuple[float, float] | None = quantity(
-        None, unit="m", help="where the waves come from; L is each particle's own distance from there"
+        None, unit="m", means="place", help="where the waves come from; L is each particle's own distance from there"
     )
 
     @model_validator(mode="after")

@@ -24,8 +24,12 @@ Given = Annotated[float, Field(ge=0.0)] | Literal["matched"]
 class Dashpots(Boundary):
     """A side with dashpots: their two calibration factors, and whether the particles have half their mass."""
 
-    beta_p: Given = quantity("matched", unit="1", help="factor of the P dashpots, along the side's normal")
-    beta_s: Given = quantity("matched", unit="1", help="factor of the S dashpots, across the side's normal")
+    beta_p: Given = quantity(
+        "matched", unit="1", means="factor of dashpots", help="factor of the P dashpots, along the side's normal"
+    )
+    beta_s: Given = quantity(
+        "matched", unit="1", means="factor of dashpots", help="factor of the S dashpots, across the side's normal"
+    )
     half_mass: bool = quantity(False, unit="1", help="whether the side's particles are half cells")
 
     @property

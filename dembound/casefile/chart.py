@@ -9,6 +9,9 @@ ReferenceName = Literal["exact", "extended", "finer", "finest"]
 
 End = Literal["break", "end"]
 
+MOST_REPEATS = 1000
+"""Largest number of timed runs: the fastest of a few is that of many, to some per cent."""
+
 
 class ChartChoice(Table):
     """A named choice: some keys of the case, each with another value."""
@@ -24,7 +27,9 @@ class Chart(Table):
         {}, unit="1", help="key -> list of values or range; all combinations of the keys' values are choices"
     )
     choice: tuple[ChartChoice, ...] = quantity((), unit="1", help="additional choices, a table each")
-    repeats: int = quantity(3, unit="1", help="timed runs of every choice, after one that compiles", ge=1)
+    repeats: int = quantity(
+        3, unit="1", means="count", help="timed runs of every choice, after one that compiles", ge=1, le=MOST_REPEATS
+    )
     reference: ReferenceName | None = quantity(
         None, unit="1", help="what errors are measured against; absent: the first of these that the case allows"
     )

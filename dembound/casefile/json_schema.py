@@ -136,6 +136,7 @@ def _value(value: Json) -> Json:
         value = {**option, **value}
     if value.get("default", ...) is None:
         del value["default"]
+    value.pop("means", None)
     unit = value.pop("unit", "1")
     if unit != "1" and "description" in value:
         value["description"] += f" ({unit})"

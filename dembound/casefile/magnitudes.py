@@ -35,6 +35,16 @@ Pa for MPa shifts this ratio by 1e6, so that any ratio between 0.01 and 100 leav
 the lower limit a strength is not needed; at the upper limit the stress in rock would be of the order of GPa.
 """
 
+LARGE_STRAIN = 0.03
+"""Strain, velocity over that of waves or stress over stiffness, above which no law of solids is valid.
+
+The error of a linear law is of the order of the strain. Rock and soil break at a tenth of this, so larger ones are
+mostly wrong units.
+"""
+
+SAMPLES_IN_PERIOD = 4.0
+"""Samples of a history in a period of a wave: with fewer, peaks are more than 30 % too low and spectra have aliases."""
+
 SAMPLES = 1001
 """Number of times at which a wave is sampled."""
 
@@ -144,3 +154,33 @@ def stress_warnings(stresses: Mapping[str, tuple[str, float]], strength: float, 
         place, (what, stress) = max(stresses.items(), key=lambda item: item[1][1])
         if stress < WEAK * strength:
             yield f"{place}: {what} is {stress_in_words(stress)}, {100.0 * stress / strength:.2g} % of {against}"
+
+
+def large_velocity(place: str, velocity: float, speed: float, reason: str) -> Iterator[str]:
+    """A particle velocity (m/s) that is a large part of the speed (m/s) of waves; reason : why, and what to do."""
+    if velocity > LARGE_STRAIN * speed:
+        yield (
+            f"{place}: its velocity, {velocity:.3g} m/s, is {100.0 * velocity / speed:.2g} % of that of waves, "
+            f"{speed:.4g} m/s, and so are strains; {reason}"
+        )
+
+
+def large_stress(place: str, what: str, stress: float, modulus: float, reason: str) -> Iterator[str]:
+    """A stress (Pa) that is a large part of the stiffness (Pa); what : the stress in words; reason : as above."""
+    if stress > LARGE_STRAIN * modulus:
+        yield (
+            f"{place}: {what}, {stress_in_words(stress)}, is {100.0 * stress / modulus:.2g} % of the stiffness, "
+            f"{stress_in_words(modulus)}, and so are strains; {reason}"
+        )
+
+
+def sampling_warnings(case: Case) -> Iterator[str]:
+    """An interval of histories in which waves change."""
+    used, interval = waves_used(case), case.output.history_interval
+    scales = {name: wave.time_scale() for name, wave in case.wave.items() if name in used and not wave.stays}
+    if scales and interval * SAMPLES_IN_PERIOD > (shortest := min(scales.values())) > 0.0:
+        name = min(scales, key=lambda each: scales[each])
+        yield (
+            f"output.history_interval: is {interval:g} s, {interval / shortest:.2g} of the period of wave.{name}, "
+            f"{shortest:.3g} s; likely in ms, or write {shortest / 20.0:.2g} or less"
+        )

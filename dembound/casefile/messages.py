@@ -8,6 +8,8 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from dembound.casefile.foreign import own_type, translated
+
 LIMITS = {
     "greater_than": "greater than {gt:g}",
     "greater_than_equal": "at least {ge:g}",
@@ -15,6 +17,9 @@ LIMITS = {
     "less_than_equal": "at most {le:g}",
 }
 """Mistakes of a value that has the right type."""
+
+ALIKE = 0.75
+"""Least similarity of two spellings of one name: a wrong letter in four, or two letters exchanged in five."""
 
 KINDS = {
     *("float_type", "int_type", "bool_type", "string_type", "tuple_type", "literal_error"),
@@ -53,7 +58,7 @@ def _described(
         selector, variants = schema["discriminator"]["propertyName"], schema["discriminator"]["mapping"]
         if details[0]["type"].startswith("union_tag"):
             found = f"is {show(raw[selector])}" if selector in raw else "is missing"
-            yield f"{path}.{selector}: {found}, must be {_one_of(variants)}"
+            yield f"{path}.{selector}: {found}, must be {_one_of(variants)}{_meant(raw.get(selector), variants)}"
             return
         others = {name: shared[place.rsplit("/", 1)[-1]]["properties"] for name, place in variants.items()}
         keys = others.pop(raw[selector])
@@ -122,7 +127,8 @@ def _lines(
         limit = LIMITS[first["type"]].format(**first.get("ctx", {}))
         yield f"{path}.{key}: is {show(raw[key])}, must be {limit}"
     elif first["type"] in LIMITS or first["type"] in KINDS:
-        yield f"{path}.{key}: is {show(raw[key])}, must be {allowed(keys[key])}"
+        meant = _meant(raw[key], keys[key].get("enum", ()))
+        yield f"{path}.{key}: is {show(raw[key])}, must be {allowed(keys[key])}{meant}"
     else:
         yield f"{path}.{key}: is {show(raw[key])}; {first['msg']}"
 
@@ -131,6 +137,14 @@ def _stray(key: str, keys: Collection[str], others: Mapping[str, Collection[str]
     """Message that a table has no such key, with the other types that have it."""
     having = [show(name) for name, known in others.items() if key in known]
     return f"is for {', '.join(having)}; allowed here: {', '.join(keys)}" if having else unknown("key", key, keys)
+
+
+def _meant(value: object, names: Collection[str]) -> str:
+    """The name that a foreign or mistyped one stands for, in brackets after a blank; empty if there is none."""
+    if not isinstance(value, str):
+        return ""
+    own = own_type(value, names)
+    return f' (here "{own}")' if own else did_you_mean(value, [name for name in names if isinstance(name, str)])
 
 
 def _join(path: str, key: str, message: str, keys: Iterable[str]) -> str:
@@ -142,7 +156,9 @@ def _join(path: str, key: str, message: str, keys: Iterable[str]) -> str:
 
 
 def unknown(what: str, name: str, known: Collection[str]) -> str:
-    """Message for an unknown name, with the known names."""
+    """Message for an unknown name: what to write for one of another code, or the known names."""
+    if what in ("key", "table") and (instead := translated(name, known)):
+        return f"unknown {what}; {instead}"
     return f"unknown {what}; allowed: {choices(name, known)}"
 
 
@@ -153,7 +169,7 @@ def choices(name: str, known: Collection[str]) -> str:
 
 def did_you_mean(name: str, known: Collection[str]) -> str:
     """The name most similar to `name`, in brackets after a blank; empty if none is similar."""
-    alike = difflib.get_close_matches(name, known, n=1)
+    alike = difflib.get_close_matches(name, known, n=1, cutoff=ALIKE)
     return f" (did you mean {alike[0]}?)" if alike else ""
 
 

@@ -2,6 +2,9 @@
 
 from dembound.table import Table, quantity
 
+MOST_SNAPSHOTS = 100_000
+"""Largest number of snapshots: each is a file for ParaView, and folders of more can hardly be opened."""
+
 
 class Output(Table):
     """The data that is written."""
@@ -19,7 +22,12 @@ class Output(Table):
         0.0, unit="s", help="time between two entries of the energy ledger; 0: a hundred over the run", ge=0.0
     )
     snapshots: int = quantity(
-        1, unit="1", help="number of whole-scene snapshots, evenly spaced, the last at the end; 0: none", ge=0
+        1,
+        unit="1",
+        means="count",
+        help="number of whole-scene snapshots, evenly spaced, the last at the end; 0: none",
+        ge=0,
+        le=MOST_SNAPSHOTS,
     )
     stress: bool = quantity(False, unit="1", help="whether snapshots hold the stress of every particle")
     contacts: bool = quantity(False, unit="1", help="whether snapshots hold the forces of every contact and bond")

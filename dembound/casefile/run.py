@@ -17,16 +17,25 @@ class Run(Table):
         "auto", unit="s", help='time step; "auto" takes it from the stability limit'
     )
     safety: float = quantity(
-        0.9, unit="1", help="share of the stability limit that an automatic step uses", gt=0.0, le=1.0
+        0.9, unit="1", means="share", help="share of the stability limit that an automatic step uses", gt=0.0, le=1.0
     )
     checkpoint: float = quantity(
-        300.0, unit="s", help="wall time between two checkpoints; 0: none, and the run cannot be resumed", ge=0.0
+        300.0,
+        unit="s",
+        means="wall time",
+        help="wall time between two checkpoints; 0: none, and the run cannot be resumed",
+        ge=0.0,
     )
     until: Literal["duration", "silent"] = quantity(
         "duration", unit="1", help='when it ends; "silent": before its duration if all monitors are silent'
     )
     silent_level: float = quantity(
-        1e-3, unit="1", help="share of its own peak so far below which a monitor's velocity is silent", gt=0.0, lt=1.0
+        1e-3,
+        unit="1",
+        means="share",
+        help="share of its own peak so far below which a monitor's velocity is silent",
+        gt=0.0,
+        lt=1.0,
     )
     silent_for: float | None = quantity(
         None, unit="s", help="time over which all monitors must be silent; absent: see below", gt=0.0

@@ -9,6 +9,9 @@ Action = Literal["run", "calibrate"]
 
 Method = Literal["impedance", "ratio", "homogenised"]
 
+MOST_PROCESSES = 10_000
+"""Largest number of members at once: that of the cores of a large cluster."""
+
 
 class Sweep(Table):
     """The varied keys of a sweep, what is done with every member, and by how many processes."""
@@ -19,4 +22,11 @@ class Sweep(Table):
     )
     action: Action = quantity("run", unit="1", help="what is done with every member")
     method: Method = quantity("impedance", unit="1", help="how β is calibrated")
-    processes: int | None = quantity(None, unit="1", help="members at once; absent: as many as there are cores", ge=1)
+    processes: int | None = quantity(
+        None,
+        unit="1",
+        means="count",
+        help="members at once; absent: as many as there are cores",
+        ge=1,
+        le=MOST_PROCESSES,
+    )

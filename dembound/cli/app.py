@@ -5,10 +5,11 @@ from __future__ import annotations
 import atexit
 import gc
 import logging
+import os
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from dembound.cli.console import err, escape_unprintable, out
+from dembound.cli.console import err, flush, out, prepare_streams
 from dembound.errors import CaseError, DemboundError, UnusableTypeWarning
 from dembound.interrupts import exit_code_of
 from dembound.machine import give_back_at_once
@@ -219,11 +220,15 @@ def main() -> None:
     give_back_at_once()
     gc.set_threshold(COLLECT_EVERY)
     atexit.register(gc.freeze)  # else everything is searched once more at the end
-    escape_unprintable()
+    prepare_streams()
+    os.environ["MPLBACKEND"] = "agg"  # pictures are files; a backend for windows may not even be there
     try:
         with warnings.catch_warnings():
             _show_only_own_warnings()
-            app(prog_name="dembound")  # the name in help and completion, however it was started
+            try:
+                app(prog_name="dembound")  # the name in help and completion, however it was started
+            finally:
+                flush()
     except DemboundError as error:
         source = f"{error.source}: " if error.source else ""
         _print_failure(error, [f"{source}{line}" for line in str(error).splitlines()])
@@ -235,5 +240,6 @@ def main() -> None:
 
 def _print_failure(error: Exception, lines: Sequence[str]) -> None:
     """Print what has failed, and the notes of commands about what can be done."""
-    for line in (*lines, *getattr(error, "__notes__", ())):
-        err.print(line, style="red")
+    with suppress(OSError):  # the exit code remains where nothing can be printed
+        for line in (*lines, *getattr(error, "__notes__", ())):
+            err.print(line, style="red")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from enum import StrEnum
 from pathlib import Path
@@ -133,10 +132,11 @@ def _leave_case(
     from dembound.casefile import to_toml
     from dembound.plot.convergence import plot_convergence
     from dembound.plot.style import save
+    from dembound.results.json_files import write_json
     from dembound.schemas import with_changes
     from dembound.studies.all_sides import changes_of
 
-    (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n")
+    write_json(folder / "summary.json", summary)
     yield folder / "summary.json"
     case = found[0].case
     calibrated = folder / f"{case.name.removesuffix(CALIBRATED)}{CALIBRATED}.toml"

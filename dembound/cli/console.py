@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Column, Table
 from rich.text import Text
 
-from dembound.errors import visible
+from dembound.errors import HIDDEN, escaped, visible
 
 INTERVAL = 10.0
 """Seconds between two lines of progress where there is no terminal."""
@@ -37,8 +37,46 @@ def compact_table(*columns: Column | str, **looks: Any) -> Table:
     return Table(*columns, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False, title_justify="left", **looks)
 
 
-def escape_unprintable() -> None:
-    """Print characters that the terminal's encoding does not have as escapes, too."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
+class _UntilClosed(io.FileIO):
+    """An output that drops all that comes after its reader has ended, as ``head`` does, or after the first error."""
+
+    is_over = False
+
+    def write(self, data: Any) -> int:
+        """The number of bytes written or dropped. Raises OSError, once, for an error other than the reader's end."""
+        if not self.is_over:
+            try:
+                return super().write(data)
+            except BrokenPipeError:
+                self.is_over = True
+            except OSError:
+                self.is_over = True
+                raise
+        return memoryview(data).nbytes
+
+
+class _Readable(io.TextIOWrapper):
+    """An output without characters that hide or reorder text, whoever prints it."""
+
+    def write(self, text: str) -> int:
+        """The number of characters."""
+        return super().write(HIDDEN.sub(escaped, text))
+
+
+def flush() -> None:
+    """Print what is still to be printed; raises OSError where this is not possible."""
+    if sys.stdout is not None:  # as it is where it has been closed
+        sys.stdout.flush()
+
+
+def prepare_streams() -> None:
+    """Print characters that the terminal's encoding does not have as escapes, and go on without a reader."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if not isinstance(stream, io.TextIOWrapper):
+            continue
+        stream.reconfigure(errors="backslashreplace")
+        if type(getattr(stream.buffer, "raw", stream.buffer)) is io.FileIO:  # itself with Python's option -u
+            file = io.BufferedWriter(_UntilClosed(stream.fileno(), "w", closefd=False))
+            in_lines = stream.line_buffering or stream.write_through
+            setattr(sys, name, _Readable(file, stream.encoding, stream.errors, line_buffering=in_lines))

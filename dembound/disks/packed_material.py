@@ -24,6 +24,9 @@ from dembound.packings.brick import Brick
 LARGEST_OVERLAP = 0.1
 """Largest locked-in pressure over the contact modulus: the largest pressure at which bricks are packed."""
 
+NO_STIFFNESS = 1e-9
+"""Stiffness over the largest one below which no wave runs: rounding of the homogenised one leaves some 1e-13."""
+
 AXES = {"x": 0, "y": 1, "rotation": 2}
 
 
@@ -124,17 +127,21 @@ class PackedMaterial:
     def wave_speeds(self, axis: int) -> tuple[float, float]:
         """c_p and c_s (m/s) of plane waves along x (axis 0) or y (1) in the scene, held motions included.
 
-        The roots of the Christoffel equation det(Γ − ρc²) = 0; P is the one that moves mostly along the axis. The
-        wave whose motion is held has speed nan.
+        The roots of the Christoffel equation det(Γ − ρc²) = 0; P is the one that moves mostly along the axis. A wave
+        that does not run has speed nan: its motion is held, or no stiffness resists it.
         """
         pair = [0, 3] if axis == 0 else [1, 2]
         christoffel = self.tensor[np.ix_(pair, pair)] / self.density
-        moves = [axis not in self.held, 1 - axis not in self.held]
-        if not all(moves):
-            return tuple(float(np.sqrt(christoffel[k, k])) if moves[k] else float("nan") for k in range(2))  # type: ignore[return-value]
-        squares, shapes = np.linalg.eigh(christoffel)
-        p = int(np.argmax(np.abs(shapes[0])))
-        return float(np.sqrt(squares[p])), float(np.sqrt(squares[1 - p]))
+        held = np.array([axis in self.held, 1 - axis in self.held])
+        if held.any():
+            squares = np.where(held, np.nan, np.diag(christoffel))
+        else:
+            roots, shapes = np.linalg.eigh(christoffel)
+            p = int(np.argmax(np.abs(shapes[0])))
+            squares = roots[[p, 1 - p]]
+        least = NO_STIFFNESS * np.abs(self.tensor).max() / self.density
+        p_square, s_square = np.where(squares > least, squares, np.nan)  # nan > least is false
+        return float(np.sqrt(p_square)), float(np.sqrt(s_square))
 
 
 def make_packed_material(brick: Brick, material: Material, held: Iterable[str]) -> PackedMaterial:

@@ -12,6 +12,7 @@ from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import with_history
 from dembound.casefile.magnitudes import stress_in_words
 from dembound.casefile.messages import numbered
+from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.continuum_facts import continuum_warnings
 from dembound.disks.load_factor import load_factor_in_words
 from dembound.disks.near_ties import near_tie_warnings
@@ -19,6 +20,7 @@ from dembound.disks.scene import DiskScene
 from dembound.disks.side_warnings import side_warnings
 from dembound.disks.wave_front import slowest_speed
 from dembound.disks.wave_warnings import wave_warnings
+from dembound.meanings import MEANINGS
 from dembound.results.reader import cracks_until, open_record
 from dembound.results.warnings import still_moving
 
@@ -49,6 +51,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
         *wave_warnings(scene, time_step),
         *side_warnings(scene),
         *_speed_of_the_packing(scene),
+        *_unlikely_speed(scene),
         *continuum_warnings(scene, scene.case.run.duration / time_step),
     ]
 
@@ -129,6 +132,16 @@ def _speed_of_the_packing(scene: DiskScene) -> Iterator[str]:
                 f'{"xy"[axis]} run at {own:.4g} m/s in this packing; give match = "assembly"'
             )
             return
+
+
+def _unlikely_speed(scene: DiskScene) -> Iterator[str]:
+    """Moduli and density that are likely, but give waves of no solid."""
+    material = scene.case.material
+    if material.p_wave_speed is not None or any(unlikely_in("", material, scene.case)):
+        return
+    speed = scene.ground.wave_speeds(0)[0]
+    if found := MEANINGS["wave speed"].doubt(speed, "m/s"):  # nan is not
+        yield f"material.emod: makes P waves of a speed that {found}; are emod and pb_emod in Pa, density in kg/m³?"
 
 
 def _axes_in_use(scene: DiskScene) -> list[int]:

@@ -37,7 +37,7 @@ def front_of(ground: PackedMaterial, safety: float) -> Front:
 
 
 def slowest_speed(ground: PackedMaterial) -> float:
-    """Speed (m/s) of the slowest long plane waves along x or y, S waves where they can run; nan if nothing moves."""
+    """Speed (m/s) of the slowest long plane waves that run along x or y; nan if none does."""
     speeds = [speed for axis in (0, 1) for speed in ground.wave_speeds(axis) if np.isfinite(speed)]
     return min(speeds, default=float("nan"))
 

@@ -7,7 +7,14 @@ import numpy as np
 
 from dembound.boundaries import axis_of_motion
 from dembound.casefile.disks.load import Load
-from dembound.casefile.magnitudes import grip_stress, is_quasi_static, stress_in_words, stress_warnings, time_warnings
+from dembound.casefile.magnitudes import (
+    grip_stress,
+    is_quasi_static,
+    large_stress,
+    large_velocity,
+    stress_warnings,
+    time_warnings,
+)
 from dembound.disks.incident_facts import arrival
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.disks.wave_front import slowest_speed
@@ -17,13 +24,11 @@ from dembound.waves.spectrum import HANN_FADE
 FEWEST_PER_WAVELENGTH = 20.0
 """Below this many particles per wavelength the lattice's phase error (qa)²/24 exceeds 0.4 %."""
 
-LARGE_STRAIN = 0.03
-"""Strain of a wave, velocity over that of the wave, or stress over stiffness, above which the elastic law is not valid.
-
-Its error is of the order of the strain. Rock and soil break at a tenth of this, so larger ones are mostly wrong units.
-"""
-
-_TOO_LARGE = "the elastic law is for small ones, are the units right?"
+_TOO_LARGE = {
+    False: "the elastic law is for small ones, are the units right?",
+    True: "rock and soil break at a tenth of 3 %, are the units right?",
+}
+"""By whether the law has a history."""
 
 
 def wave_warnings(scene: DiskScene, time_step: float) -> Iterator[str]:
@@ -172,22 +177,14 @@ def _load_stress(scene: DiskScene, load: Load) -> tuple[str, float]:
 
 
 def _large_strains(scene: DiskScene) -> Iterator[str]:
-    """Waves and loads whose strains are far beyond those that the elastic law is for."""
-    if scene.has_history:
-        return
-    modulus = float(np.diag(scene.ground.material_tensor)[:2].min())
-    stresses = [(f"load.{load.name}", *_load_stress(scene, load)) for load in scene.case.load]
-    slowest = slowest_speed(scene.ground)
+    """Waves, loads and strengths whose strains are far beyond those of solids."""
+    modulus, reason = float(np.diag(scene.ground.material_tensor)[:2].min()), _TOO_LARGE[scene.has_history]
+    slowest, material = slowest_speed(scene.ground), scene.case.material
     for name in sorted(scene.case.entering):
-        peak = scene.case.wave[name].peak()
-        if peak > LARGE_STRAIN * slowest:
-            yield (
-                f"wave.{name}: its velocity, {peak:.3g} m/s, is {100.0 * peak / slowest:.2g} % of that of waves, "
-                f"{slowest:.4g} m/s, and so are strains; {_TOO_LARGE}"
-            )
-    for where, what, stress in stresses:
-        if stress > LARGE_STRAIN * modulus:
-            yield (
-                f"{where}: {what}, {stress_in_words(stress)}, is {100.0 * stress / modulus:.2g} % of the stiffness, "
-                f"{stress_in_words(modulus)}, and so are strains; {_TOO_LARGE}"
-            )
+        yield from large_velocity(f"wave.{name}", scene.case.wave[name].peak(), slowest, reason)
+    compared = scene.has_history and material.pb_ten is not None  # with the strength
+    for load in () if compared else scene.case.load:
+        yield from large_stress(f"load.{load.name}", *_load_stress(scene, load), modulus, reason)
+    for key, strength in (("pb_ten", material.pb_ten), ("pb_coh", material.pb_coh)):
+        if strength is not None:
+            yield from large_stress(f"material.{key}", "the strength", strength, modulus, _TOO_LARGE[True])

@@ -16,9 +16,11 @@ class Ellipse(Hole):
     """A cavern, or a crack where one axis is short."""
 
     type: Literal["ellipse"]
-    centre: tuple[float, float] = quantity(..., unit="m", help="where its centre is")
-    semi_axes: tuple[Length, Length] = quantity(..., unit="m", help="half its length, half its width")
-    angle: float = quantity(0.0, unit="degrees", help="from the x axis to the first semi-axis, counter-clockwise")
+    centre: tuple[float, float] = quantity(..., unit="m", means="place", help="where its centre is")
+    semi_axes: tuple[Length, Length] = quantity(..., unit="m", means="length", help="half its length, half its width")
+    angle: float = quantity(
+        0.0, unit="degrees", means="direction", help="from the x axis to the first semi-axis, counter-clockwise"
+    )
 
     @property
     def _direction(self) -> tuple[float, float]:

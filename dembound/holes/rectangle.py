@@ -14,7 +14,7 @@ class Rectangle(Hole):
     """A drift, a shaft or a trench, upright."""
 
     type: Literal["rectangle"]
-    corners: Box = quantity(..., unit="m", help="two opposite corners, x0, y0, x1, y1")
+    corners: Box = quantity(..., unit="m", means="place", help="two opposite corners, x0, y0, x1, y1")
 
     @field_validator("corners")
     @classmethod

@@ -5,6 +5,7 @@ from typing import Literal
 import numpy as np
 
 from dembound.methods.bonds import Bonds
+from dembound.methods.method import WIDEST
 from dembound.methods.rod import Rod
 from dembound.methods.triggered import Triggered
 from dembound.table import quantity
@@ -19,7 +20,9 @@ class Patch(Triggered):
     """
 
     type: Literal["patch"]
-    reach: int = quantity(4, unit="1", help="horizons that a zone extends beyond what made it", ge=1)
+    reach: int = quantity(
+        4, unit="1", means="count", help="horizons that a zone extends beyond what made it", ge=1, le=WIDEST
+    )
 
     @property
     def name(self) -> str:

@@ -18,7 +18,7 @@ class Peridynamics(Method):
     """
 
     type: Literal["peridynamics"]
-    horizon: int = quantity(..., unit="1", help="horizon m in spacings: δ = mΔx", ge=1, le=WIDEST)
+    horizon: int = quantity(..., unit="1", means="count", help="horizon m in spacings: δ = mΔx", ge=1, le=WIDEST)
     corrected_ends: bool = quantity(False, unit="1", help="whether local springs repair the bar's soft ends")
 
     @property

@@ -7,8 +7,12 @@ from dembound.table import quantity
 class Triggered(Method):
     """Local springs until a stretch reaches `trigger` of the critical one, peridynamics of some kind from then on."""
 
-    horizon: int = quantity(..., unit="1", help="horizon m of the peridynamics, in spacings", ge=1, le=WIDEST)
-    trigger: float = quantity(0.9, unit="1", help="share of the critical stretch that brings it in", gt=0.0, le=1.0)
+    horizon: int = quantity(
+        ..., unit="1", means="count", help="horizon m of the peridynamics, in spacings", ge=1, le=WIDEST
+    )
+    trigger: float = quantity(
+        0.9, unit="1", means="share", help="share of the critical stretch that brings it in", gt=0.0, le=1.0
+    )
 
     @property
     def largest_horizon(self) -> int:

@@ -9,16 +9,16 @@ from pydantic import Field, model_validator
 from dembound.errors import CaseError
 from dembound.packings.brick import Brick
 from dembound.packings.dense import Recipe, radius_range
-from dembound.table import Box, Table, quantity
-
-Extent = tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]]
-Count = tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
-
-TYPED = 5e-6
-"""Relative difference allowed between a size and whole bricks: sizes may have six digits, as 5.19615 m for 3√3 m."""
+from dembound.table import LARGEST_WHOLE, Box, Table, quantity
 
 MOST_DISKS = 500_000_000
 """Largest number of disks of a scene: the ends of their contacts, 4.4 each, are numbered with 32 bits."""
+
+Extent = tuple[Annotated[float, Field(gt=0.0)], Annotated[float, Field(gt=0.0)]]
+Count = tuple[Annotated[int, Field(ge=1, le=MOST_DISKS)], Annotated[int, Field(ge=1, le=MOST_DISKS)]]
+
+TYPED = 5e-6
+"""Relative difference allowed between a size and whole bricks: sizes may have six digits, as 5.19615 m for 3√3 m."""
 
 MOST_IN_BRICK = 1_000_000
 """Largest number of disks of a random brick, which is packed in hours; scenes are made of many bricks."""
@@ -48,12 +48,16 @@ class Packing(Table, ABC):
     regular_sides: ClassVar[tuple[str, ...]] = ()
 
     pattern: str
-    size: Extent | None = quantity(None, unit="m", help="width and height of the scene, whole bricks")
-    bricks: Count | None = quantity(None, unit="1", help="number of bricks along x and y, instead of size")
-    origin: tuple[float, float] = quantity(
-        (0.0, 0.0), unit="m", help="lower left corner of the box of disks in [ground]"
+    size: Extent | None = quantity(None, unit="m", means="length", help="width and height of the scene, whole bricks")
+    bricks: Count | None = quantity(
+        None, unit="1", means="count", help="number of bricks along x and y, instead of size"
     )
-    radius: float = quantity(unit="m", help="disk radius (mean radius of a random packing)", gt=0.0)
+    origin: tuple[float, float] = quantity(
+        (0.0, 0.0), unit="m", means="place", help="lower left corner of the box of disks in [ground]"
+    )
+    radius: float = quantity(
+        unit="m", means="size of a particle", help="disk radius (mean radius of a random packing)", gt=0.0
+    )
 
     @property
     @abstractmethod
@@ -143,13 +147,19 @@ class DensePacking(Packing):
 
     packed_under_stress: ClassVar[bool] = True
 
-    radius_ratio: float = quantity(unit="1", help="largest over smallest radius", ge=1.0, le=4.0)
-    brick: Extent = quantity(unit="m", help="width and height of the periodic brick")
-    seed: int = quantity(0, unit="1", help="seed of the random start", ge=0)
-    confining_stress: float | None = quantity(
-        None, unit="Pa", help="isotropic pressure it is packed under; absent: 0.8 % of the contact modulus", gt=0.0
+    radius_ratio: float = quantity(
+        unit="1", means="ratio of radii", help="largest over smallest radius", ge=1.0, le=4.0
     )
-    bond_gap: float = quantity(0.0, unit="m", help="gaps up to this are contacts too", ge=0.0)
+    brick: Extent = quantity(unit="m", means="length", help="width and height of the periodic brick")
+    seed: int = quantity(0, unit="1", means="count", help="seed of the random start", ge=0, le=LARGEST_WHOLE)
+    confining_stress: float | None = quantity(
+        None,
+        unit="Pa",
+        means="stress",
+        help="isotropic pressure it is packed under; absent: 0.8 % of the contact modulus",
+        gt=0.0,
+    )
+    bond_gap: float = quantity(0.0, unit="m", means="length", help="gaps up to this are contacts too", ge=0.0)
 
     @property
     def brick_size(self) -> tuple[float, float]:

@@ -22,7 +22,10 @@ class EdgedBrick(DensePacking):
 
     pattern: Literal["C"] = "C"
     edge_radius: float = quantity(
-        unit="m", help="radius of the row disks, adjusted so that whole disks fill a brick side", gt=0.0
+        unit="m",
+        means="size of a particle",
+        help="radius of the row disks, adjusted so that whole disks fill a brick side",
+        gt=0.0,
     )
 
     @property

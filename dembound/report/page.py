@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import gzip
+import hashlib
 import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -11,7 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dembound.errors import CaseError, RecordError
+from dembound.errors import CaseError, RecordError, visible
 from dembound.plot.energy import plot_energy
 from dembound.plot.field import evenly_chosen
 from dembound.plot.histories import largest_values, plot_histories
@@ -24,6 +25,8 @@ from dembound.results.reader import replacing, require_folder, understood
 from dembound.version import __version__
 
 if TYPE_CHECKING:
+    from jinja2 import Environment
+    from markupsafe import Markup
     from matplotlib.figure import Figure
 
 MOST_FRAMES = 40
@@ -127,8 +130,12 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        finalize=_shown_text,
     )
+    inline = {name: _source(environment, file) for name, file in (("style", "page.css"), ("script", "page.js"))}
     return environment.get_template("page.html").render(
+        inline=inline,
+        hashes={name: _hash(text) for name, text in inline.items()},
         title=", ".join(run.name for run in runs),
         version=__version__,
         runs=shown,
@@ -137,6 +144,29 @@ def _render(runs: Sequence[ReportedRun], say: Callable[[str], None]) -> str:
         live=_packed(live),
         tables=made,
     )
+
+
+def _source(environment: Environment, name: str) -> Markup:
+    """The text of the style sheet or the script of the template, as browsers read it: with plain ends of lines."""
+    from markupsafe import Markup
+
+    loader = environment.loader
+    assert loader is not None
+    return Markup("\n".join(loader.get_source(environment, name)[0].splitlines()))
+
+
+def _hash(text: str) -> str:
+    """The SHA-256 of an inline style sheet or script in base64, by which the policy of the page allows it alone."""
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+
+
+def _shown_text(value: Any) -> Any:
+    """A value with escapes for characters that would hide or reorder text, also those in the text of a case."""
+    from markupsafe import Markup
+
+    if isinstance(value, Markup) or not isinstance(value, str):
+        return value
+    return "\n".join(visible(line) for line in value.replace("\t", "    ").split("\n"))
 
 
 def _shown(run: ReportedRun, attempt: Callable[[Callable[[], Any]], Any]) -> ShownRun:
@@ -201,5 +231,14 @@ def _tables(runs: Sequence[ReportedRun]) -> dict[str, tables.Table | None]:
 
 def _packed(values: dict[str, Any]) -> str:
     """Plain values as compressed JSON in characters that a page may contain; the same for the same values."""
-    text = json.dumps(values, separators=(",", ":"), allow_nan=False)
+    text = json.dumps(_visible_in(values), separators=(",", ":"), allow_nan=False)
     return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
+
+
+def _visible_in(value: Any) -> Any:
+    """Plain values with all their texts as `visible`."""
+    if isinstance(value, dict):
+        return {visible(name): _visible_in(inner) for name, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_visible_in(inner) for inner in value]
+    return visible(value) if isinstance(value, str) else value

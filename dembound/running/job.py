@@ -1,6 +1,5 @@
 """Runs one case, from its tables or a checkpoint to a folder of results."""
 
-import json
 import logging
 import math
 from collections.abc import Mapping
@@ -19,9 +18,10 @@ from dembound.motion.trackers import Run
 from dembound.results.checkpoint import FILE as CHECKPOINT
 from dembound.results.checkpoint import Checkpoints, facts_of
 from dembound.results.folder import Folder
+from dembound.results.json_files import write_json
 from dembound.results.kept_stages import FOLDER as STAGES
 from dembound.results.kept_stages import KeptStages
-from dembound.results.reader import open_record, replacing, trust, understood
+from dembound.results.reader import open_record, trust, understood
 from dembound.results.recorder import Recorder
 from dembound.results.recording import Histories, Snapshots
 from dembound.results.summary import summarise
@@ -130,8 +130,7 @@ class _Job:
                 del planned  # files and pictures are made from the record alone
                 self._export(partial)
                 summary |= {"wall_time": sum(clock.seconds.values()), "seconds": clock.seconds}
-                with replacing(partial / "summary.json") as part:
-                    part.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+                write_json(partial / "summary.json", summary)
                 self.folder.finish()
         return self.folder.final
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile import Case
+from dembound.casefile.unlikely import unlikely
 from dembound.errors import CaseError, DemboundError
 from dembound.kinds import checked, kind_of
 from dembound.motion.clock import Clock
@@ -93,7 +94,11 @@ def _require_stages(kind: Kind[Any, Any], stepped: Scene) -> None:
 
 def warnings_before(planned: Plan) -> list[str]:
     """Warnings about probable mistakes, known before the run, one line each."""
-    return [*planned.kind.warnings_before(planned.scene, planned.time_step), *_interval_warnings(planned)]
+    return [
+        *unlikely(planned.scene.case),
+        *planned.kind.warnings_before(planned.scene, planned.time_step),
+        *_interval_warnings(planned),
+    ]
 
 
 def _interval_warnings(planned: Plan) -> Iterator[str]:

@@ -14,7 +14,7 @@ class Cosine(Shape):
     """One smooth one-sided pulse: v = M/2 · (1 − cos 2πt/T) for 0 ≤ t ≤ T (Z eq. 12)."""
 
     type: Literal["cosine"]
-    period: float = quantity(..., unit="s", help="length T of the pulse", gt=0.0)
+    period: float = quantity(..., unit="s", means="period", help="length T of the pulse", gt=0.0)
 
     def _velocity_shape(self, since: np.ndarray) -> np.ndarray:
         phase = 2.0 * math.pi * np.clip(since / self.period, 0.0, 1.0)

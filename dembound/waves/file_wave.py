@@ -28,7 +28,7 @@ class FileWave(Wave):
 
     type: Literal["file"]
     path: str = quantity(..., unit="1", help="text file of two columns, time (s) and velocity (m/s)", min_length=1)
-    scale: NonZero = quantity(1.0, unit="1", help="factor of the file's velocities")
+    scale: NonZero = quantity(1.0, unit="1", means="factor", help="factor of the file's velocities")
 
     # tuples rather than arrays: two equal waves then compare equal
     _times: tuple[float, ...] = PrivateAttr(default=())
@@ -44,6 +44,9 @@ class FileWave(Wave):
         samples = samples_of(self._text, path)
         self._times = tuple(samples[:, 0].tolist())
         self._velocities = tuple((self.scale * samples[:, 1]).tolist())
+        shortest = float(np.diff(samples[:, 0]).min())
+        self._require_resolved(float(np.abs(samples[:, 0]).max()), shortest, f'path: a time in "{path}"')
+        self._require_resolved(self.start, shortest, "start:")
         return self
 
     def _samples(self) -> tuple[np.ndarray, np.ndarray]:

@@ -10,6 +10,9 @@ from dembound.table import quantity
 from dembound.waves.spectrum import FADED, HANN_FADE
 from dembound.waves.wave import Shape
 
+MOST_CYCLES = 1_000_000
+"""Largest number of cycles: more is a mistake, and rounding would shift the last ones."""
+
 
 class SineBurst(Shape):
     """v = M w(t) sin 2πft for n cycles, w = ½(1 − cos 2πft/n) when tapered, else 1. No net displacement.
@@ -20,7 +23,7 @@ class SineBurst(Shape):
 
     type: Literal["sine_burst"]
     frequency: float = quantity(..., unit="Hz", help="frequency of the sine", gt=0.0)
-    cycles: int = quantity(..., unit="1", help="number of cycles, a whole number", ge=1)
+    cycles: int = quantity(..., unit="1", means="count", help="number of cycles, a whole number", ge=1, le=MOST_CYCLES)
     taper: bool = quantity(True, unit="1", help="whether a Hann window fades the burst in and out")
 
     def _harmonics(self) -> tuple[tuple[int, float], ...]:

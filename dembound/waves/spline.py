@@ -27,7 +27,7 @@ class CubicSpline(Shape):
     """
 
     type: Literal["cubic_spline"]
-    period: float = quantity(..., unit="s", help="length T of the pulse", gt=0.0)
+    period: float = quantity(..., unit="s", means="period", help="length T of the pulse", gt=0.0)
 
     def _velocity_shape(self, since: np.ndarray) -> np.ndarray:
         tau = np.clip(since / self.period, 0.0, 1.0)

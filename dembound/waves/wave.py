@@ -3,12 +3,15 @@
 import math
 from abc import ABC, abstractmethod
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
-from pydantic import AfterValidator
+from pydantic import AfterValidator, model_validator
 
 from dembound.table import Table, quantity
+
+LATEST = 1e12
+"""Largest time over the scale on which a wave varies: doubles then keep its times to 2e-4 of that scale."""
 
 
 def _not_zero(value: float) -> float:
@@ -77,6 +80,12 @@ class Wave(Table, ABC):
         """Time (s) that characterises how fast the wave varies; by default its period."""
         return self.dominant_period()
 
+    def _require_resolved(self, latest: float, scale: float, key: str) -> None:
+        """Raise ValueError for a time (s) at which rounding loses changes on a scale (s); key : the message's."""
+        if latest > LATEST * scale > 0.0:
+            most = f"must be at most {LATEST:g} times the {scale:g} s within which the wave varies"
+            raise ValueError(f"{key} is {latest:g}, {most}, or rounding changes it")
+
     def moved(self, here: Path, there: Path) -> dict[str, str]:
         """Keys with paths relative to the folder `here`, with the corresponding paths in `there`; by default none."""
         return {}
@@ -89,7 +98,12 @@ class Wave(Table, ABC):
 class Shape(Wave):
     """A wave given by a formula: `amplitude` times a shape whose argument is the time since `start`."""
 
-    amplitude: NonZero = quantity(..., unit="m/s", help="factor of the shape, of either sign")
+    amplitude: NonZero = quantity(..., unit="m/s", means="velocity", help="factor of the shape, of either sign")
+
+    @model_validator(mode="after")
+    def _resolved(self) -> Self:
+        self._require_resolved(self.start, self.time_scale(), "start:")
+        return self
 
     def velocity(self, t: np.ndarray) -> np.ndarray:
         """Particle velocity, m/s, at the times t, s; same shape as t."""

@@ -4,6 +4,7 @@ Cases are made from the JSON schema of all tables, and by changing keys of sound
 for a key of this name, to numbers, texts and lists at the limits of their types, to keys of other names, or to none.
 """
 
+import math
 import tomllib
 import warnings
 from collections.abc import Callable, Mapping
@@ -22,6 +23,7 @@ from dembound.casefile.bar import BarCase
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.json_schema import json_schema
 from dembound.errors import CONTROL, CaseError, DemboundError
+from dembound.motion.proposals import proposals
 from dembound.running import plan, warnings_before
 from dembound.starting import names, starting_point
 
@@ -210,13 +212,113 @@ action = "calibrate"
 packing.seed = "1:3"
 """
 
-SOUND = [tomllib.loads(text) for text in (SMALL, RANDOM, *map(starting_point, names()))]
+SURROUND = """
+[packing]
+pattern = "A"
+size = [12.0, 6.0]
+radius = 0.5
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+s_wave_speed = 500.0
+kratio = 2.0
+damp = 0.0
+[boundary.left]
+type = "outside"
+[boundary.right]
+type = "outside"
+[boundary.bottom]
+type = "outside"
+[outside]
+order = 3
+element = 3.0
+accuracy = 1e-2
+margin = 1
+layers = 2
+reflection = 1e-3
+shift = 0.3
+delay = 0.1
+damping = 0.1
+[incident]
+type = "sv"
+angle = 20.0
+wave = "ramp"
+point = [0.0, 0.0]
+[wave.ramp]
+type = "constant"
+amplitude = 0.1
+rise = 0.05
+start = 0.01
+[[monitor]]
+name = "middle"
+position = [6.5, 3.5]
+[run]
+duration = 0.02
+safety = 0.8
+checkpoint = 10.0
+until = "silent"
+silent_level = 1e-2
+silent_for = 0.005
+[output]
+history_interval = 1e-3
+side_interval = 1e-3
+energy_interval = 1e-3
+snapshots = 2
+[chart]
+repeats = 2
+[[chart.choice]]
+name = "coarse"
+set = { "packing.radius" = 1.0, "outside.element" = 2.0 }
+[sweep]
+processes = 2
+[sweep.vary]
+"material.density" = [2000.0, 3000.0]
+"""
+
+PUSHED_ROW = """
+[packing]
+pattern = "A"
+bricks = [40, 6]
+radius = 0.5
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+contact_share = 1.0
+[motion]
+held = ["y", "rotation"]
+[boundary.left]
+type = "velocity"
+wave_p = "push"
+[boundary.right]
+type = "viscous"
+beta_p = 0.8
+[wave.push]
+type = "ricker"
+amplitude = 0.1
+frequency = 10.0
+start = 0.1
+[[monitor]]
+name = "middle"
+position = [10.0, 5.0]
+[run]
+duration = 0.3
+time_step = 1e-4
+"""
+
+SOUND = [tomllib.loads(text) for text in (SMALL, RANDOM, SURROUND, PUSHED_ROW, *map(starting_point, names()))]
 
 
 def places(table: Any, place: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
     """Paths of all keys and list positions."""
     inner = table.items() if isinstance(table, dict) else enumerate(table) if isinstance(table, list) else ()
     return [path for key, value in inner for path in ((*place, key), *places(value, (*place, key)))]
+
+
+def value_at(table: Any, path: tuple[Any, ...]) -> Any:
+    """The value at a path."""
+    for key in path:
+        table = table[key]
+    return table
 
 
 @st.composite
@@ -267,7 +369,7 @@ def answered(data: Mapping[str, Any], folder: Path) -> bool:
             case = kinds.loads(tomli_w.dumps(data), folder)
             if is_small(case):
                 planned = plan(case)
-                facts = planned.kind.facts(planned.scene, planned.time_step)
+                facts = planned.kind.facts(planned.scene, planned.time_step) | proposals(planned)
                 tables = facts.pop("its tables", "")  # of a smaller box, lines of a case
                 texts = [*warnings_before(planned), *facts.values(), *tables.split("\n")]
                 assert not any(CONTROL.search(text) for text in texts)
@@ -293,6 +395,51 @@ def test_a_changed_case_is_planned_or_answered_in_lines(count: int, sweep, tmp_p
 
     each()
     assert 0.05 * len(planned) < sum(planned) < 0.95 * len(planned)  # else the changes are too large, or none
+
+
+EXTREMES = (
+    *(0, 0.0, -1.0, 5e-324, 1e-300, 1e-30, 1e-12, 1e12, 1e16, 1e30, 1e300, -1e300),
+    *(2**31, 2**63 - 1, 2**63, float("inf"), float("-inf"), float("nan")),
+)
+
+NUMBERED = [
+    (number, path, extreme)
+    for number, case in enumerate(SOUND)
+    for path in places(case)
+    for extreme in EXTREMES
+    if type(value_at(case, path)) in (int, float)
+]
+"""Every number of every sound case, and each of the extremes in its place."""
+
+
+def is_answered_with(number: int, path: tuple[Any, ...], extreme: float, folder: Path) -> bool:
+    """Whether a sound case can be planned with an extreme number at a place."""
+    case = deepcopy(SOUND[number])
+    value_at(case, path[:-1])[path[-1]] = extreme
+    return answered(case, folder)
+
+
+def test_an_extreme_number_anywhere_is_planned_or_answered_in_lines(sweep, tmp_path: Path) -> None:
+    planned = []
+
+    @sweep(100)
+    @given(st.sampled_from(NUMBERED))
+    def each(place: tuple[int, tuple[Any, ...], float]) -> None:
+        number, path, extreme = place
+        planned.append(is_answered_with(number, path, extreme, tmp_path))
+        assert math.isfinite(extreme) or not planned[-1], path  # no key takes what is not finite
+
+    each()
+    assert any(planned)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(len(SOUND)))
+def test_every_extreme_number_anywhere_is_planned_or_answered_in_lines(number: int, tmp_path: Path) -> None:
+    for case, path, extreme in NUMBERED:
+        if case == number:
+            found = is_answered_with(number, path, extreme, tmp_path)
+            assert math.isfinite(extreme) or not found, path
 
 
 @pytest.mark.parametrize("count", [60, pytest.param(1000, marks=pytest.mark.slow)])

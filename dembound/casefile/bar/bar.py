@@ -40,20 +40,34 @@ class Bar(Table):
     is that of them and of their gaps together.
     """
 
-    length: float = quantity(None, unit="m", help="length L of the bar; of one with ranges that of all", gt=0.0)
-    spacing: float = quantity(..., unit="m", help="distance Δx from node to node; a whole number of them is L", gt=0.0)
+    length: float = quantity(
+        None, unit="m", means="length", help="length L of the bar; of one with ranges that of all", gt=0.0
+    )
+    spacing: float = quantity(
+        ..., unit="m", means="length", help="distance Δx from node to node; a whole number of them is L", gt=0.0
+    )
     section: float | None = quantity(None, unit="m²", help="area of the cross-section; 1 m² if not given", gt=0.0)
-    diameter: float | None = quantity(None, unit="m", help="diameter of a round bar", gt=0.0)
+    diameter: float | None = quantity(None, unit="m", means="thickness", help="diameter of a round bar", gt=0.0)
     density: float = quantity(..., unit="kg/m³", help="density ρ", gt=0.0)
-    wave_speed: float | None = quantity(None, unit="m/s", help="speed c of waves along the bar", gt=0.0)
-    youngs_modulus: float | None = quantity(None, unit="Pa", help="Young's modulus E", gt=0.0)
-    strength: float | None = quantity(None, unit="Pa", help="tensile strength σ_t; absent: unbreakable", gt=0.0)
-    critical_stretch: float | None = quantity(None, unit="1", help="stretch s₀ at which a bond breaks", gt=0.0)
+    wave_speed: float | None = quantity(
+        None, unit="m/s", means="wave speed", help="speed c of waves along the bar", gt=0.0
+    )
+    youngs_modulus: float | None = quantity(None, unit="Pa", means="modulus", help="Young's modulus E", gt=0.0)
+    strength: float | None = quantity(
+        None, unit="Pa", means="strength", help="tensile strength σ_t; absent: unbreakable", gt=0.0
+    )
+    critical_stretch: float | None = quantity(
+        None, unit="1", means="strain", help="stretch s₀ at which a bond breaks", gt=0.0
+    )
     fracture_energy: float | None = quantity(
         None, unit="J/m²", help="energy G_f that a crack takes as it opens; absent: bonds break at once", gt=0.0
     )
     strength_per_decade: float | None = quantity(
-        None, unit="Pa", help="rise of the strength for a tenfold strain rate, within strength_rates", gt=0.0
+        None,
+        unit="Pa",
+        means="strength",
+        help="rise of the strength for a tenfold strain rate, within strength_rates",
+        gt=0.0,
     )
     strength_rates: tuple[float, float] | None = quantity(
         None, unit="1/s", help="strain rates between which the strength rises; it is constant below and above"

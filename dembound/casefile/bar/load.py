@@ -2,6 +2,7 @@
 
 from typing import Literal
 
+from dembound.casefile.bar.bar import MOST_CELLS
 from dembound.table import FileName, Table, quantity
 
 
@@ -13,7 +14,16 @@ class BarLoad(Table):
     """
 
     name: FileName = quantity(..., unit="1", help="name of the load in messages and results")
-    pressure: float = quantity(..., unit="Pa", help="pressure on the section; negative values pull")
+    pressure: float = quantity(
+        ..., unit="Pa", means="pressure of a load", help="pressure on the section; negative values pull"
+    )
     side: Literal["left", "right"] = quantity("left", unit="1", help="end of the bar it acts on")
-    nodes: int = quantity(1, unit="1", help="number of nodes it is spread over, from the end inwards", ge=1)
+    nodes: int = quantity(
+        1,
+        unit="1",
+        means="count",
+        help="number of nodes it is spread over, from the end inwards",
+        ge=1,
+        le=MOST_CELLS + 1,
+    )
     wave: str = quantity(..., unit="1", help="name of the wave that is the time factor")

@@ -15,24 +15,28 @@ class BarRange(Table):
     """
 
     name: FileName = quantity(..., unit="1", help="name of the range in messages and results")
-    length: float = quantity(..., unit="m", help="its length", gt=0.0)
-    spacing: float | None = quantity(None, unit="m", help="distance of its nodes; a whole number is its length", gt=0.0)
+    length: float = quantity(..., unit="m", means="length", help="its length", gt=0.0)
+    spacing: float | None = quantity(
+        None, unit="m", means="length", help="distance of its nodes; a whole number is its length", gt=0.0
+    )
     section: float | None = quantity(None, unit="m²", help="area of its cross-section", gt=0.0)
-    diameter: float | None = quantity(None, unit="m", help="diameter of a round range", gt=0.0)
+    diameter: float | None = quantity(None, unit="m", means="thickness", help="diameter of a round range", gt=0.0)
     density: float | None = quantity(None, unit="kg/m³", help="its density ρ", gt=0.0)
-    wave_speed: float | None = quantity(None, unit="m/s", help="its speed c of waves", gt=0.0)
-    youngs_modulus: float | None = quantity(None, unit="Pa", help="its Young's modulus E", gt=0.0)
-    strength: float | None = quantity(None, unit="Pa", help="its tensile strength σ_t", gt=0.0)
-    critical_stretch: float | None = quantity(None, unit="1", help="its stretch s₀ at which a bond breaks", gt=0.0)
+    wave_speed: float | None = quantity(None, unit="m/s", means="wave speed", help="its speed c of waves", gt=0.0)
+    youngs_modulus: float | None = quantity(None, unit="Pa", means="modulus", help="its Young's modulus E", gt=0.0)
+    strength: float | None = quantity(None, unit="Pa", means="strength", help="its tensile strength σ_t", gt=0.0)
+    critical_stretch: float | None = quantity(
+        None, unit="1", means="strain", help="its stretch s₀ at which a bond breaks", gt=0.0
+    )
     fracture_energy: float | None = quantity(None, unit="J/m²", help="energy G_f that a crack in it takes", gt=0.0)
-    strength_per_decade: float | None = quantity(None, unit="Pa", help="as that of the bar", gt=0.0)
+    strength_per_decade: float | None = quantity(None, unit="Pa", means="strength", help="as that of the bar", gt=0.0)
     strength_rates: tuple[float, float] | None = quantity(None, unit="1/s", help="as those of the bar")
     attenuation: float | None = quantity(None, unit="1/m", help="its α, see that of the bar", ge=0.0)
-    velocity: float = quantity(0.0, unit="m/s", help="velocity at the start, positive to the right")
+    velocity: float = quantity(0.0, unit="m/s", means="velocity", help="velocity at the start, positive to the right")
     interface: Literal["bonded", "contact"] = quantity(
         "bonded", unit="1", help="how it meets the range on its left; a contact bears no tension"
     )
-    gap: float = quantity(0.0, unit="m", help="opening of the contact on its left at the start", ge=0.0)
+    gap: float = quantity(0.0, unit="m", means="gap", help="opening of the contact on its left at the start", ge=0.0)
 
     @model_validator(mode="after")
     def _gap_of_contact(self) -> "BarRange":

@@ -9,7 +9,9 @@ from dembound.table import quantity
 class BarRun(Run):
     """The simulated time and the time step of a bar; the step may be given by the Courant number."""
 
-    courant: float | None = quantity(None, unit="1", help="Courant number ν = cΔt/Δx, instead of a time step", gt=0.0)
+    courant: float | None = quantity(
+        None, unit="1", means="Courant number", help="Courant number ν = cΔt/Δx, instead of a time step", gt=0.0
+    )
 
     @model_validator(mode="after")
     def _one_step(self) -> "BarRun":

@@ -10,4 +10,6 @@ class Ground(Table):
     Its free surface is at the top. Without a size the disks fill all of it.
     """
 
-    size: Extent | None = quantity(None, unit="m", help="width and height of the ground; its surface is at this height")
+    size: Extent | None = quantity(
+        None, unit="m", means="length", help="width and height of the ground; its surface is at this height"
+    )

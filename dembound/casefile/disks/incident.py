@@ -16,6 +16,7 @@ class IncidentWave(Table):
     angle: float = quantity(
         ...,
         unit="degrees",
+        means="direction",
         help="from the vertical, of the direction in which it runs; positive to the right",
         gt=-90.0,
         lt=90.0,
@@ -24,5 +25,6 @@ class IncidentWave(Table):
     point: tuple[float, float] | None = quantity(
         None,
         unit="m",
+        means="place",
         help="where it has this velocity; absent: the lower corner of the ground on the side it comes from",
     )

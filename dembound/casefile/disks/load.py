@@ -23,13 +23,16 @@ class Load(Table):
     name: FileName = quantity(..., unit="1", help="name of the load in messages and results")
     force: Vector | None = quantity(None, unit="N/m", help="force per metre of thickness on all its particles together")
     acceleration: Vector | None = quantity(None, unit="m/s²", help="body force per mass of each particle")
-    position: Vector | None = quantity(None, unit="m", help="where; the nearest particle is loaded")
+    position: Vector | None = quantity(None, unit="m", means="place", help="where; the nearest particle is loaded")
     region: Box | None = quantity(
         None,
         unit="m",
+        means="place",
         help="rectangle x0, y0, x1, y1; all particles centred in it are loaded, or the continuum's surface in it",
     )
-    pressure: float | None = quantity(None, unit="Pa", help="pressure on the wall of a hole; negative values pull")
+    pressure: float | None = quantity(
+        None, unit="Pa", means="pressure of a load", help="pressure on the wall of a hole; negative values pull"
+    )
     hole: str | None = quantity(None, unit="1", help="name of the hole on whose wall a pressure acts")
     on: Literal["outline", "bonds"] = quantity(
         "outline", unit="1", help="what a pressure acts on: the hole's true outline, or the bonds that it cuts"

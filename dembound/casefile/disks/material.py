@@ -28,7 +28,9 @@ class Material(Table):
     """
 
     density: float = quantity(..., unit="kg/m³", help="bulk density: mass over scene area", gt=0.0)
-    p_wave_speed: float | None = quantity(None, unit="m/s", help="P-wave speed the moduli are made to give", gt=0.0)
+    p_wave_speed: float | None = quantity(
+        None, unit="m/s", means="wave speed", help="P-wave speed the moduli are made to give", gt=0.0
+    )
     match: Literal["lattice", "assembly"] = quantity(
         "lattice",
         unit="1",
@@ -37,28 +39,47 @@ class Material(Table):
     contact_share: float = quantity(
         0.5,
         unit="1",
+        means="share",
         help="the contacts' share α_c of the stiffness (Z eq. 9); bonds have the rest",
         ge=0.0,
         le=1.0,
     )
     s_wave_speed: float | None = quantity(
-        None, unit="m/s", help="S-wave speed for the boundaries; absent: the packing's own", gt=0.0
+        None, unit="m/s", means="wave speed", help="S-wave speed for the boundaries; absent: the packing's own", gt=0.0
     )
-    emod: float | None = quantity(None, unit="Pa", help="modulus E_c of the contacts", ge=0.0)
-    pb_emod: float | None = quantity(None, unit="Pa", help="modulus Ē_c of the parallel bonds", ge=0.0)
-    kratio: float = quantity(1.0, unit="1", help="normal over shear stiffness of the contacts", gt=0.0)
-    pb_kratio: float = quantity(1.0, unit="1", help="normal over shear stiffness of the bonds", gt=0.0)
-    fric: float = quantity(0.0, unit="1", help="friction coefficient of the contacts", ge=0.0)
-    pb_rmul: float = quantity(1.0, unit="1", help="bond radius over the smaller disk's radius", gt=0.0)
-    damp: float = quantity(0.0, unit="1", help="local damping coefficient; 0 for waves", ge=0.0, lt=1.0)
+    emod: float | None = quantity(None, unit="Pa", means="modulus", help="modulus E_c of the contacts", ge=0.0)
+    pb_emod: float | None = quantity(None, unit="Pa", means="modulus", help="modulus Ē_c of the parallel bonds", ge=0.0)
+    kratio: float = quantity(
+        1.0, unit="1", means="normal over shear stiffness", help="normal over shear stiffness of the contacts", gt=0.0
+    )
+    pb_kratio: float = quantity(
+        1.0, unit="1", means="normal over shear stiffness", help="normal over shear stiffness of the bonds", gt=0.0
+    )
+    fric: float = quantity(
+        0.0, unit="1", means="friction coefficient", help="friction coefficient of the contacts", ge=0.0
+    )
+    pb_rmul: float = quantity(
+        1.0, unit="1", means="bond radius", help="bond radius over the smaller disk's radius", gt=0.0
+    )
+    damp: float = quantity(
+        0.0, unit="1", means="local damping", help="local damping coefficient; 0 for waves", ge=0.0, lt=1.0
+    )
     law: LawName = quantity("elastic", unit="1", help="how contacts and bonds push")
     pb_ten: float | None = quantity(
-        None, unit="Pa", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0
+        None, unit="Pa", means="strength", help="tensile strength of the bonds; absent: unbreakable in tension", gt=0.0
     )
-    pb_coh: float | None = quantity(None, unit="Pa", help="cohesion of the bonds; absent: unbreakable in shear", gt=0.0)
-    pb_fa: float = quantity(0.0, unit="degrees", help="friction angle of the bonds", ge=0.0, lt=90.0)
+    pb_coh: float | None = quantity(
+        None, unit="Pa", means="strength", help="cohesion of the bonds; absent: unbreakable in shear", gt=0.0
+    )
+    pb_fa: float = quantity(
+        0.0, unit="degrees", means="friction angle", help="friction angle of the bonds", ge=0.0, lt=90.0
+    )
     locked_in: float | None = quantity(
-        None, unit="Pa", help="pressure that contacts carry before the static stage; absent: they just touch", gt=0.0
+        None,
+        unit="Pa",
+        means="stress",
+        help="pressure that contacts carry before the static stage; absent: they just touch",
+        gt=0.0,
     )
     geometry: Literal["updated", "reference"] = quantity(
         "updated",

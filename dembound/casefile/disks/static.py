@@ -5,6 +5,9 @@ from collections.abc import Mapping
 from dembound.casefile.types import StaticSide
 from dembound.table import Table, quantity
 
+MOST_STEPS = 100_000_000
+"""Largest number of steps of the stage: a hundred disks alone would take minutes for them, and thousands are enough."""
+
 
 class Static(Table):
     """The damped stage before the run, which brings the body to rest under steady loads and a given stress.
@@ -13,13 +16,23 @@ class Static(Table):
     """
 
     stress: tuple[float, float, float] | None = quantity(
-        None, unit="Pa", help="stress sxx, syy, sxy to reach, tension positive; absent: what the loads make"
+        None,
+        unit="Pa",
+        means="stress to reach",
+        help="stress sxx, syy, sxy to reach, tension positive; absent: what the loads make",
     )
     ratio: float = quantity(
-        1e-5, unit="1", help="mean unbalanced force over mean contact force at which the stage is over", gt=0.0, lt=1.0
+        1e-5,
+        unit="1",
+        means="rest",
+        help="mean unbalanced force over mean contact force at which the stage is over",
+        gt=0.0,
+        lt=1.0,
     )
-    damp: float = quantity(0.7, unit="1", help="local damping coefficient of the stage", gt=0.0, lt=1.0)
-    max_steps: int = quantity(200_000, unit="1", help="steps after which the stage has failed", ge=1)
+    damp: float = quantity(0.7, unit="1", means="share", help="local damping coefficient of the stage", gt=0.0, lt=1.0)
+    max_steps: int = quantity(
+        200_000, unit="1", means="count", help="steps after which the stage has failed", ge=1, le=MOST_STEPS
+    )
     from_: str | None = quantity(
         None,
         unit="1",

@@ -34,15 +34,29 @@ def static_problems(
         if own and "artificial" in own.model_fields_set:
             yield f"static.boundary.{side}.artificial: is of no use in the static stage; give it to boundary.{side}"
     if static.stress is not None:
-        sides = [table for table in boundaries.values() if table]
-        for trait, name in (("is_periodic", "periodic"), ("needs_column", "free-field"), ("is_outside", "outside")):
-            if any(getattr(table, trait) for table in sides):
-                yield f"static.stress: cannot be applied to {name} sides"
+        yield from _stress_beside(boundaries)
         yield from _unreachable_stress(static, static.stress)
     if material and None not in loads:
         yield from _nothing_to_settle(static, loads, material)
     if motion and None not in static.boundary.values():
         yield from _unheld_loads(static, boundaries, loads, motion, has_column=has_column)
+
+
+def _stress_beside(boundaries: Sides) -> Iterator[str]:
+    """Sides to which no stress can be applied, with those to which it can."""
+    sides = [(side, table) for side, table in boundaries.items() if table]
+    beside = [
+        f'boundary.{side} ("{getattr(table, "type", "")}")'
+        for side, table in sides
+        if table.is_periodic or table.needs_column or table.is_outside
+    ]
+    if beside:
+        driven = any(table.waves for _, table in sides)
+        absorbing = f'"viscous" or "viscoelastic"{" (with _input where a wave enters)" if driven else ""}'
+        yield (
+            f"static.stress: cannot be applied at {', '.join(beside)}; {absorbing} sides absorb and take it, or leave "
+            "it out and let gravity make it (a [[load]] with an acceleration)"
+        )
 
 
 def _unreachable_stress(static: Static, stress: tuple[float, float, float]) -> Iterator[str]:

@@ -134,7 +134,7 @@ class Charts {
       this.draw();
     });
     key.setAttribute("aria-pressed", "true");
-    make("span", { class: dashed ? "key dashed" : "key", style: `border-color: ${colour}` }, key);
+    make("span", { class: dashed ? "key dashed" : "key" }, key).style.borderColor = colour;
     key.append(name);
   }
 

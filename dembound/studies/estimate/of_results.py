@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,6 +19,7 @@ from dembound.motion.clock import Clock
 from dembound.results.datasets import describe, write
 from dembound.results.estimates import FILE, KEY
 from dembound.results.histories import FREE_FIELD
+from dembound.results.json_files import write_json
 from dembound.results.reader import history_of, open_record, replacing, require_run
 from dembound.results.summary_file import read_summary
 from dembound.running.recorded import recorded_case
@@ -55,8 +55,7 @@ def estimate_results(
         found, summary = _estimated(folder, budget, second_seed, repeat)
     found = replace(found, cpu_seconds=clock.seconds["estimate"])
     _write(found, folder / FILE)
-    with replacing(folder / "summary.json") as part:
-        part.write_text(json.dumps(summary | {KEY: found.summary()}, indent=2) + "\n", encoding="utf-8")
+    write_json(folder / "summary.json", summary | {KEY: found.summary()})
     return found
 
 

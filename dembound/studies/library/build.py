@@ -1,6 +1,5 @@
 """The runs of a library: one for each input, and one without waves where something else acts."""
 
-import json
 import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
@@ -20,7 +19,7 @@ from dembound.errors import CaseError
 from dembound.kinds import loads, with_changes
 from dembound.motion.kind import Plan
 from dembound.results.folder import Folder
-from dembound.results.reader import replacing
+from dembound.results.json_files import write_json
 from dembound.running import Progress, plan, run_case, warnings_before
 from dembound.version import __version__
 
@@ -115,8 +114,7 @@ def build_library(
             run_case(each, folder, _WithoutWarnings(progress))
     facts: dict[str, Any] = {"version": __version__, "name": case.name, "spacing": spacing, "lead": lead}
     facts |= {"inputs": names, "case": base.text}
-    with replacing(folder / FILE) as part:
-        part.write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
+    write_json(folder / FILE, facts)
     return folder
 
 

@@ -2,6 +2,7 @@
 
 import json
 import logging
+import math
 import threading
 import time
 from collections.abc import Callable, Collection, Mapping
@@ -18,7 +19,7 @@ from dembound.interrupts import Interrupts, Stopped
 from dembound.kinds import loads
 from dembound.motion.trackers import Run
 from dembound.results.folder import Folder
-from dembound.results.reader import replacing
+from dembound.results.json_files import write_json
 from dembound.results.summary_file import read_summary
 from dembound.running import Progress, Shared, resume_case, run_case
 from dembound.studies.choices import digest
@@ -70,8 +71,8 @@ class Outcome:
 
     def write(self, folder: Path, key: str) -> None:
         """Write it into the folder of a sweep, completely or not at all."""
-        with replacing(folder / OUTCOMES / f"{key}.json") as part:
-            part.write_text(json.dumps(asdict(self)) + "\n", encoding="utf-8")
+        finite = {name: value for name, value in self.values.items() if math.isfinite(value)}  # others count as absent
+        write_json(folder / OUTCOMES / f"{key}.json", asdict(self) | {"values": finite})
 
 
 def outcome_in(folder: Path, key: str) -> Outcome | None:

@@ -62,7 +62,12 @@ def test_it_is_artificial_and_has_no_keys() -> None:
             'boundary.right.type: is "free", but [static] and loads on all disks also act on the ground beyond '
             "boundary.bottom, which has no end there",
         ),
-        ("[static]\nstress = [-1e6, -1e6, 0.0]\n", "static.stress: cannot be applied to outside sides"),
+        (
+            "[static]\nstress = [-1e6, -1e6, 0.0]\n",
+            'static.stress: cannot be applied at boundary.left ("outside"); "viscous" or '
+            '"viscoelastic" sides absorb and take it, or leave it out and let gravity make it (a [[load]] with an '
+            "acceleration)",
+        ),
         (
             '[[load]]\nname = "g"\nacceleration = [0.0, -9.81]\n[static.boundary.left]\ntype = "fixed"\n',
             "static.boundary.left: is not allowed, as the ground goes on beyond; its bottom may be held",

@@ -1,12 +1,17 @@
 """What is printed is what is there: no markup, no emoji codes, no commands to the terminal."""
 
 import io
+import os
+import subprocess
 import sys
+from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.table import Table
 
-from dembound.cli.console import PlainConsole, escape_unprintable
+from dembound.cli.console import PlainConsole, prepare_streams
+from dembound.errors import HIDDEN, visible
 
 
 def printed(content: object) -> str:
@@ -37,7 +42,60 @@ def test_texts_cells_and_titles_appear_as_they_are(text: str, shown: str) -> Non
 def test_what_an_encoding_lacks_is_escaped(monkeypatch) -> None:
     stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
     monkeypatch.setattr(sys, "stdout", stream)
-    escape_unprintable()
+    prepare_streams()
     print("β", file=stream, flush=True)
 
     assert stream.buffer.getvalue() == b"\\u03b2\n"  # type: ignore[attr-defined]
+
+
+def ended(code: str, **options: Any) -> subprocess.CompletedProcess[str]:
+    """Run a command line, given by its arguments, in a process of its own."""
+    return subprocess.run(
+        [sys.executable, *options.pop("flags", ()), "-c", code],
+        text=True,
+        check=False,
+        stderr=subprocess.PIPE,
+        **options,
+    )
+
+
+def command(*arguments: str) -> str:
+    return f"import sys; sys.argv = ['dembound', *{list(arguments)!r}]; from dembound.__main__ import main; main()"
+
+
+@pytest.mark.parametrize("flags", [(), ("-u",)])
+@pytest.mark.parametrize("arguments", [("cases",), ("--help",)])
+def test_what_nobody_reads_any_more_is_dropped(flags: tuple[str, ...], arguments: tuple[str, ...]) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = ended(command(*arguments), flags=flags, stdout=writing)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("flags", [(), ("-u",)])
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device")
+def test_a_full_disk_is_one_line(flags: tuple[str, ...]) -> None:
+    with open("/dev/full", "w") as full:
+        done = ended(command("cases"), flags=flags, stdout=full)
+    assert (done.returncode, done.stderr) == (5, "output: No space left on device\n")
+
+
+def test_an_output_that_is_closed_is_none() -> None:
+    shell = ["sh", "-c", 'exec "$0" -c "$1" >&-', sys.executable, command("cases")]
+    done = subprocess.run(shell, text=True, check=False, capture_output=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_text_that_reorders_itself_does_not_reach_the_terminal() -> None:
+    done = ended(command("check", "--no\u202esuch", "x\u2066.toml"), stdout=subprocess.DEVNULL, encoding="utf-8")
+    assert done.returncode == 2
+    assert "\\u202e" in done.stderr
+    assert not HIDDEN.search(done.stderr)
+    assert visible("a\u202eb\u200bc") == "a\\u202eb\\u200bc"
+
+
+def test_pictures_are_drawn_whatever_backend_is_asked_for() -> None:
+    code = command("cases").replace("main()", "\ntry: main()\nexcept SystemExit: pass\nimport dembound.plot.style")
+    done = ended(code, env=os.environ | {"MPLBACKEND": "nosuch"}, stdout=subprocess.DEVNULL)
+    assert (done.returncode, done.stderr) == (0, "")

@@ -5,6 +5,8 @@ import pytest
 
 from dembound.disks.matching import homogenised_beta, reflected
 from dembound.disks.scene import build
+from dembound.disks.wave_front import slowest_speed
+from dembound.running import plan, warnings_before
 
 
 def test_a_lattice_with_its_own_speed_needs_no_factor(bar) -> None:
@@ -30,3 +32,19 @@ def test_a_motion_that_is_held_has_no_factor(bar) -> None:
 def test_reflection_by_the_impedance_relation() -> None:
     # a free end, a matched one, dashpots of three times the impedance
     assert [reflected(beta, 0.8) for beta in (0.0, 0.8, 2.4)] == pytest.approx([1.0, 0.0, -0.5], rel=1e-15)
+
+
+@pytest.mark.parametrize("held", [["y", "rotation"], ["rotation"]])
+def test_a_motion_that_nothing_resists_has_no_factor_and_no_speed(bar, held: list[str]) -> None:
+    """Contacts without bonds and friction have no shear stiffness."""
+    plain = {"density": 2500.0, "p_wave_speed": 1000.0, "contact_share": 1.0}
+    case = bar({"material": plain, "motion.held": held, "boundary.right": {"type": "viscous"}, "monitor": []})
+    planned = plan(case)
+    scene = planned.scene
+
+    # a row of springs, whose long waves have the lattice's speed; one unknown
+    assert scene.ground.wave_speeds(0)[0] == pytest.approx(1000.0, rel=1e-12)
+    assert np.isnan(scene.ground.wave_speeds(0)[1])
+    assert slowest_speed(scene.ground) == pytest.approx(1000.0, rel=1e-12)
+    assert np.isnan(homogenised_beta(scene, "right", "s"))
+    assert not any("nan" in line or "inf" in line for line in warnings_before(planned))

@@ -103,7 +103,7 @@ def test_a_settled_body_has_left_its_forces_behind(bar) -> None:
 
 
 def test_stress_along_a_periodic_axis_is_refused(bar) -> None:
-    with pytest.raises(CaseError, match=r"static\.stress: cannot be applied to periodic sides"):
+    with pytest.raises(CaseError, match=r"static\.stress: cannot be applied at boundary\.left \(\"periodic\"\)"):
         settle(scene(bar, boundary=WRAP, static={"stress": STRESS}, **{"packing.size": [1.0, 1.0]}))
 
 

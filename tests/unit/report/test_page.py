@@ -1,5 +1,7 @@
 """A page holds all that it shows, is complete without scripts, and says what results lack."""
 
+import base64
+import hashlib
 import json
 import re
 import shutil
@@ -10,7 +12,7 @@ import numpy as np
 import pytest
 from pages import Page
 
-from dembound.errors import CaseError, RecordError
+from dembound.errors import HIDDEN, CaseError, RecordError
 from dembound.report import page as page_module
 from dembound.report.page import write_report
 from dembound.results.results import Results
@@ -248,3 +250,28 @@ def test_every_damaged_file_is_one_line(pushed_runs, spalled_results, tmp_path):
     with pytest.raises(CaseError, match="RESULTS: holds runs of bars and of disks"):
         write_report([pushed_runs[0], spalled_results], tmp_path / "page.html")
     assert not (tmp_path / "page.html").exists()
+
+
+def test_the_policy_allows_the_own_script_and_style_alone(two):
+    """By their hashes, for which neither events in attributes nor styles in attributes are allowed."""
+    (policy,) = (each["content"] for each in two.all("meta") if "default-src" in each.get("content", ""))
+    for tag, name in (("script", "script-src"), ("style", "style-src")):
+        (text,) = re.findall(f"<{tag}>(.*?)</{tag}>", two.source, flags=re.DOTALL)
+        digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+        assert f"{name} 'sha256-{digest}'" in policy
+    assert "unsafe" not in policy
+    assert not [key for _, attributes in two.tags for key in attributes if key == "style" or key.startswith("on")]
+    (script,) = re.findall("<script>(.*?)</script>", two.source, flags=re.DOTALL)
+    assert not re.search(r"style:|\.cssText|setAttribute\(.style|innerHTML|\bon[a-z]+\s*=|\beval\b|Function\(", script)
+
+
+def test_text_that_reorders_itself_is_shown_as_escapes(small_run, tmp_path):
+    record = copied(small_run, tmp_path / "hidden")
+    with h5py.File(record, "a") as file:
+        file.attrs["title"] = "harm\u202eless"
+        file.attrs["case"] = f"# one\u2066 line\n{file.attrs['case']}"
+    write_report([record], tmp_path / "page.html")
+    page = Page(tmp_path / "page.html")
+    assert not HIDDEN.search(page.source)
+    assert "harm\\u202eless" in page.source
+    assert "# one\\u2066 line\n" in page.source

@@ -106,7 +106,7 @@ def test_complete_loads_say_what_acts_along_which_axes(
         ),
         (
             ["acceleration = [1.0, 0.0]", 'wave = "top"'],
-            ['load[1, a].wave: "top" is not a wave of this case; defined: tap (did you mean tap?)'],
+            ['load[1, a].wave: "top" is not a wave of this case; defined: tap'],
         ),
     ],
 )

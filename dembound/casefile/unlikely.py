@@ -1,0 +1,143 @@
+"""Warnings about numbers that are probably in another unit, of the wrong sign, or of another quantity.
+
+Every number of a case is compared with the likely sizes of its meaning (`dembound.meanings`), whichever table it is in.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from dembound.casefile.magnitudes import sampling_warnings, waves_used
+from dembound.casefile.messages import places
+from dembound.casefile.model import Case
+from dembound.meanings import GRAVITY, MEANINGS
+from dembound.table import Table
+
+LIGHTEST = 1.6
+"""Least acceleration (m/s²) that is taken for gravity: that of the moon."""
+
+DAMPED = "94 % are left after one wavelength at 0.1, 49 % at 0.3, 0.2 % at 0.7"
+"""Peaks of three cycles at 50 m along a row of disks of 1 m, over those without damping; a cycle is 50 m long."""
+
+GRAVITY_IN = ((1.0, "g"), (9810.0, "mm/s²"), (981.0, "cm/s²"), (0.00981, "km/s²"))
+"""The acceleration of gravity in other units."""
+
+
+def unlikely(case: Case) -> list[str]:
+    """All of them, one line each."""
+    lines = [line for path, table in _all_tables(case) for line in unlikely_in(path, table, case)]
+    return [*lines, *sampling_warnings(case)]
+
+
+def unlikely_in(path: str, table: Table, case: Case) -> Iterator[str]:
+    """Those of one table, without the tables in it; path : its place in the file, or "" for keys alone."""
+    for name in type(table).model_fields:
+        means, unit = meaning_of(table, name)
+        numbers, key = _numbers(getattr(table, name)), ".".join(filter(None, (path, table.key_of(name))))
+        if means is None or not numbers or (means in OF_STRENGTH and _has(case, "strength")):
+            continue
+        doubts = (doubt for value in numbers if (doubt := MEANINGS[means].doubt(value, unit)))
+        if (found := next(doubts, None)) or (found := RULES[means](numbers, table, case) if means in RULES else None):
+            yield f"{key}: {found}"
+
+
+OF_STRENGTH = {"pressure of a load"}
+"""Meanings that are compared with a strength, where there is one."""
+
+
+def meaning_of(table: Table | type[Table], name: str) -> tuple[str | None, str]:
+    """The meaning of a field, None without one, and its unit."""
+    extra = (table if isinstance(table, type) else type(table)).model_fields[name].json_schema_extra
+    known = extra if isinstance(extra, Mapping) else {}
+    means = known.get("means")
+    return (str(means) if means else None), str(known.get("unit", "1"))
+
+
+def _all_tables(case: Case) -> Iterator[tuple[str, Table]]:
+    """All tables of a case, each with its place."""
+    for key, value in case.tables.items():
+        if isinstance(value, tuple):
+            for each in value:
+                yield from _tables_in(f"{key}.{each.name}", each)
+        elif isinstance(value, Mapping):
+            for name, each in value.items():
+                yield from _tables_in(f"{key}.{name}", each)
+        elif isinstance(value, Table):
+            yield from _tables_in(key, value)
+
+
+def _tables_in(path: str, table: Table) -> Iterator[tuple[str, Table]]:
+    """A table and those in it."""
+    yield path, table
+    for name in type(table).model_fields:
+        value, place = getattr(table, name), f"{path}.{table.key_of(name)}"
+        if isinstance(value, tuple) and value and isinstance(value[0], Table):
+            for where, each in zip(places(place, [each.given() for each in value]), value, strict=True):
+                yield from _tables_in(where, each)
+        elif isinstance(value, Mapping):
+            for inner, each in value.items():
+                if isinstance(each, Table):
+                    yield from _tables_in(f"{place}.{inner}", each)
+
+
+def _numbers(value: Any) -> tuple[float, ...]:
+    """The numbers of a value, however deep in lists; none of a text or a truth value."""
+    if isinstance(value, bool):
+        return ()
+    if isinstance(value, int | float):
+        return (float(value),)
+    return tuple(number for each in value for number in _numbers(each)) if isinstance(value, tuple) else ()
+
+
+def _has(case: Case, means: str) -> bool:
+    """Whether a case gives a number of this meaning."""
+    return any(
+        _numbers(getattr(table, name)) and meaning_of(table, name)[0] == means
+        for _, table in _all_tables(case)
+        for name in type(table).model_fields
+    )
+
+
+def _damps_waves(numbers: tuple[float, ...], table: Table, case: Case) -> str | None:
+    """Local damping while waves run."""
+    if numbers[0] == 0.0 or not waves_used(case):
+        return None
+    return (
+        f"is {numbers[0]:g} while waves run: of a burst {DAMPED}; for waves write 0, [static] has a damping of its own"
+    )
+
+
+def _pulls(numbers: tuple[float, ...], table: Table, case: Case) -> str | None:
+    """A given stress that is a tension along x or y."""
+    pulling = [f"{value:g} Pa along {axis}" for axis, value in zip("xy", numbers, strict=False) if value > 0.0]
+    turned = [-value if value > 0.0 else value for value in numbers[:2]]
+    if not pulling:
+        return None
+    return (
+        f"is a tension, {' and '.join(pulling)}; likely compression, which is negative: write "
+        f"[{', '.join(f'{value:.6g}' for value in (*turned, *numbers[2:]))}]"
+    )
+
+
+def _not_downwards(numbers: tuple[float, ...], table: Table, case: Case) -> str | None:
+    """An acceleration of the whole body that stays and is not gravity: upwards, sideways or in another unit."""
+    if getattr(table, "wave", None) is not None or not getattr(table, "is_everywhere", False):
+        return None
+    across, up = numbers
+    if up > 0.0:
+        return f"is {up:g} m/s² upwards; likely gravity: write [{across:g}, {-up:g}]"
+    for size, unit in GRAVITY_IN:
+        if across == 0.0 and math.isclose(-up, size, rel_tol=0.01):
+            return f"is {up:g} m/s²; likely gravity in {unit}: write [0, {-GRAVITY:g}]"
+    if up == 0.0 and math.isclose(abs(across), GRAVITY, rel_tol=0.01):
+        return f"is {across:g} m/s² sideways; likely gravity: write [0, {-GRAVITY:g}]"
+    size = math.hypot(across, up)
+    return f"is {size:g} m/s², less than on the moon; gravity is [0, {-GRAVITY:g}]" if size < LIGHTEST else None
+
+
+RULES: dict[str, Callable[[tuple[float, ...], Table, Case], str | None]] = {
+    "local damping": _damps_waves,
+    "stress to reach": _pulls,
+    "acceleration": _not_downwards,
+}
+"""Meaning -> what is unlikely about numbers beside others of the case, in words, or None."""

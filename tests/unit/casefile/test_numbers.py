@@ -1,0 +1,111 @@
+"""Numbers that nothing can be computed with are one line, before anything is built."""
+
+import math
+
+import pytest
+import tomli_w
+from small_cases import PUSHED, SPALLING, SURROUNDED, Tables, small
+
+from dembound.casefile.disks.outside import MOST_ELEMENTS
+from dembound.errors import CaseError
+from dembound.kinds import loads, with_changes
+from dembound.machine import Memory
+from dembound.motion import memory
+from dembound.running import plan
+from dembound.waves.wave import LATEST
+
+
+def problems(tables: Tables) -> list[str]:
+    try:
+        loads(tomli_w.dumps(tables))
+    except CaseError as error:
+        return error.problems
+    return []
+
+
+@pytest.mark.parametrize(
+    ("tables", "line"),
+    [
+        (
+            SURROUNDED | {"outside": {"layers": 2**31}},
+            f"outside.layers: is 2147483648, must be at most {MOST_ELEMENTS}",
+        ),
+        (
+            SURROUNDED | {"outside": {"margin": 2**31}},
+            f"outside.margin: is 2147483648, must be at most {MOST_ELEMENTS}",
+        ),
+        (PUSHED | {"output": {"snapshots": 2**31}}, "output.snapshots: is 2147483648, must be at most 100000"),
+        (PUSHED | {"sweep": {"processes": 2**31}}, "sweep.processes: is 2147483648, must be "),
+        (
+            SPALLING | {"load": [SPALLING["load"][0] | {"nodes": 2**31}]},
+            "load[1, hit].nodes: is 2147483648, must be at",
+        ),
+    ],
+)
+def test_a_count_beyond_all_need_is_one_line(tables: Tables, line: str) -> None:
+    (found,) = problems(tables)
+    assert found.startswith(line)
+
+
+def test_elements_for_which_there_is_no_memory_are_refused_before_they_are_made(monkeypatch) -> None:
+    monkeypatch.setattr(memory, "memory_here", lambda: Memory(8e9, 8e9))
+    case = small(SURROUNDED | {"outside": {"element": 3.0, "order": 3, "margin": 1000, "layers": 1000}})
+    # (4 + 2·2000)(2 + 2000) elements of nine nodes
+    with pytest.raises(CaseError, match=r"outside: 72 disks and 7.2\de\+07 nodes of the continuum .* of memory"):
+        plan(case)
+
+
+@pytest.mark.parametrize("value", [math.inf, -math.inf, math.nan])
+@pytest.mark.parametrize(
+    ("tables", "place"),
+    [
+        (
+            {"chart": {"choice": [{"name": "c", "set": {"packing.size": [10.0, 0.0]}}]}},
+            "chart.choice[1, c].set: packing.size",
+        ),
+        ({"chart": {"vary": {"run.safety": [0.5, 0.0]}}}, "chart.vary: run.safety"),
+        ({"sweep": {"vary": {"run.safety": [0.5, 0.0]}}}, "sweep.vary: run.safety"),
+    ],
+)
+def test_a_number_that_is_not_finite_is_refused_in_the_values_of_other_keys(tables, place: str, value: float) -> None:
+    text = tomli_w.dumps(PUSHED | tables).replace("0.0,\n]", f"{value},\n]")
+    found = []
+    try:
+        loads(text)
+    except CaseError as error:
+        found = error.problems
+    assert found == [f"{place} is {value:g}, must be finite"]
+
+
+@pytest.mark.parametrize("value", [math.inf, -math.inf, math.nan])
+def test_a_number_that_is_not_finite_is_refused_in_a_changed_key(value: float) -> None:
+    for key in ("run.duration", "packing.radius", "material.density", "wave.push.period", "chart.repeats"):
+        with pytest.raises(CaseError):
+            with_changes(small(PUSHED), {key: value})
+
+
+@pytest.mark.parametrize(("share", "late"), [(0.99, False), (1.01, True)])
+def test_a_wave_that_rounding_would_change_is_refused(share: float, late: bool) -> None:
+    start = share * LATEST * 0.01  # its period
+    changes = PUSHED | {"wave": {"push": PUSHED["wave"]["push"] | {"start": start}, "shake": PUSHED["wave"]["shake"]}}
+    found = problems(changes)
+    assert [line.partition(", must be at most")[0] for line in found] == late * [f"wave.push.start: is {start:g}"]
+
+
+def test_a_record_that_rounding_would_change_is_refused(tmp_path) -> None:
+    path = tmp_path / "late.txt"
+    for first, late in ((1e9, False), (1e12, True)):
+        path.write_text("\n".join(f"{first + 0.25 * k!r} {k % 2}" for k in range(5)))
+        wave = {"type": "file", "path": str(path)}
+        found = problems(PUSHED | {"wave": {"push": wave, "shake": PUSHED["wave"]["shake"]}})
+        assert [line.startswith("wave.push.path: a time in ") for line in found] == late * [True]
+
+
+def test_names_and_titles_do_not_reorder_text() -> None:
+    for hidden in ("\u202e", "\u2066", "\u200f", "\u200b", "\ufeff"):
+        (found,) = problems(PUSHED | {"title": f"a{hidden}b"})
+        assert found.startswith("title: is ")
+        assert hidden not in found
+        (found,) = problems(PUSHED | {"monitor": [{"name": f"a{hidden}b", "position": [1.0, 1.0]}]})
+        assert hidden not in found
+    assert problems(PUSHED | {"title": "Grundgebirge, 岩石, скала, صخر, σ = ρc²"}) == []
