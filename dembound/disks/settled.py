@@ -5,6 +5,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from dembound.disks.block_stress import Uniformity
 from dembound.disks.scene import DiskScene
 from dembound.disks.system import Start
 from dembound.motion.cracks import Cracks
@@ -26,7 +27,8 @@ class Settled:
     ratio : mean unbalanced over mean contact force at the end.
     mean_reaction : N, mean force of supports and tractions on the particles they act on.
     mean_residual : N, mean unbalanced force on all other particles, which F_0 balances too.
-    stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive.
+    stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive, see `block_stress`. uniformity : how
+    far blocks are from a target stress; None without one.
     cracks : the bonds that broke on the way.
     tractions : (3,) Pa, the stress of the tractions at the end; None without a target stress. before : the same before
     an excavation, if there was one, with the numbering of particles before it. column : the same for the free-field
@@ -41,6 +43,7 @@ class Settled:
     stress: np.ndarray
     cracks: Cracks
     tractions: np.ndarray | None = None
+    uniformity: Uniformity | None = None
     before: "Settled | None" = None
     column: "Settled | None" = None
 
@@ -50,6 +53,8 @@ class Settled:
         kept = {name: np.array(getattr(self, name)) for name in NUMBERS}
         kept |= {"displacement": start.displacement, "has_history": np.array(start.has_history)}
         kept["tractions"] = np.zeros(0) if self.tractions is None else self.tractions
+        if self.uniformity is not None:
+            kept |= {f"uniformity/{name}": values for name, values in self.uniformity.memory().items()}
         kept |= {f"cracks/{field.name}": getattr(self.cracks, field.name) for field in fields(Cracks)}
         for part, pairs in start.contacts.items():
             kept |= {f"contacts/{part}/{name}": values for name, values in pairs.memory().items()}
@@ -61,7 +66,7 @@ class Settled:
         contacts = scene.contact_lists() if any(name.startswith("contacts/") for name in memory) else {}
         for part, pairs in contacts.items():
             pairs.recall(within(memory, f"contacts/{part}"))
-        cracks = within(memory, "cracks")
+        cracks, uniformity = within(memory, "cracks"), within(memory, "uniformity")
         return cls(
             start=Start(among(memory["displacement"], scene), contacts, bool(memory["has_history"])),
             steps=int(memory["steps"]),
@@ -71,6 +76,7 @@ class Settled:
             stress=memory["stress"].copy(),
             cracks=Cracks(**{field.name: cracks[field.name] for field in fields(Cracks)}),
             tractions=memory["tractions"].copy() if memory["tractions"].size else None,
+            uniformity=Uniformity.recalled(uniformity) if uniformity else None,
         )
 
 

@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dembound.disks.block_stress import Uniformity, block_stress
+from dembound.disks.loading import Loading
 from dembound.disks.scene import DiskScene, column_alone
 from dembound.disks.settled import Settled, among
 from dembound.disks.stability import step_limit
 from dembound.disks.static_scene import StaticScene
 from dembound.disks.system import DiskSystem, Start
-from dembound.disks.tractions import mean_stress
 from dembound.disks.until_at_rest import UntilAtRest
 from dembound.motion.kind import OnLook
 from dembound.motion.simulation import Simulation
@@ -116,11 +117,13 @@ def _settle(
         datum = start.displacement
     system = DiskSystem(body.scene, step, start, settling=True, load=body.load(datum))
     simulation = Simulation(body.scene, step, system=system, datum=datum, damp=static.damp)
-    rest = UntilAtRest(body, system, stage.on_look, stage.name)
+    loading = Loading(body, system, datum, step)
+    rest = UntilAtRest(body, system, loading, stage.on_look, stage.name)
     simulation.track(rest)
     stage.stages.begin(stage.key, simulation)
     simulation.run(static.max_steps)
     displacement, forces = simulation.state.displacement, rest.forces
+    blocks = block_stress(scene, system, displacement)
     unbalanced = np.hypot(*(forces + body.scene.steady_load)[:2, : scene.disk_count])
     held = body.held
     settled = Settled(
@@ -129,7 +132,8 @@ def _settle(
         ratio=rest.ratio,
         mean_reaction=float(unbalanced[held].mean()) if held.any() else 0.0,
         mean_residual=float(unbalanced[~held].mean()) if not held.all() else 0.0,
-        stress=mean_stress(scene, system.stress(displacement)),
+        stress=blocks.mean(axis=(0, 1)),
+        uniformity=None if static.stress is None else Uniformity.of(scene, blocks, np.array(static.stress)),
         cracks=rest.take_cracks(),
         tractions=body.applied,
     )

@@ -7,10 +7,11 @@ import numpy as np
 
 from dembound.boundaries.support import SupportBuilder, Supports
 from dembound.casefile.disks.static import Static
+from dembound.disks.block_stress import block_stress
 from dembound.disks.contacts import ContactList
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.disks.system import DiskSystem
-from dembound.disks.tractions import Tractions, mean_stress
+from dembound.disks.tractions import Tractions
 from dembound.motion.state import State
 
 
@@ -32,8 +33,8 @@ class StaticScene:
             each.support(builder)
         self.scene = replace(self.scene, supports=builder.table())
         self.held = np.zeros(scene.disk_count, dtype=bool)
-        for edge in scene.edges.values():
-            self.held[edge.nodes] = static.stress is not None
+        if self._tractions is not None:
+            self.held[self._tractions.nodes] = True
         supports: Supports = self.scene.supports
         self.held[_of_disks(supports, scene.disk_count)] = True  # dashpots have no force at rest
         self._floats = len(supports) == 0
@@ -70,12 +71,7 @@ class StaticScene:
         """
         if self._tractions is None or not self._by_tractions_alone:
             return False
-        return self._tractions.correct(mean_stress(self.scene, system.stress(state.displacement)))
-
-    def turn_tractions(self, system: DiskSystem, state: State) -> None:
-        """Rotate the tractions with the sides, and apply corrections."""
-        if self._tractions is not None:
-            system.apply(self.load(state.displacement))
+        return self._tractions.correct(block_stress(self.scene, system, state.displacement).mean(axis=(0, 1)))
 
     def keep_from_turning(self, state: State) -> None:
         """Stop the rigid motion of a body that is not held, as no force would bring it to rest."""
