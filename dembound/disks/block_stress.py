@@ -89,7 +89,7 @@ class Blocks:
         """Which blocks (nx, ny) bool come within the width of the rim of a box left, bottom, right, top, m."""
         low, high = np.array(box[:2]) - RIM * self.diameter, np.array(box[2:]) + RIM * self.diameter
         half = 0.5 * self.size
-        there: np.ndarray = ((self.middles + half > low) & (self.middles - half < high)).all(axis=-1)
+        there: np.ndarray = np.asarray(((self.middles + half > low) & (self.middles - half < high)).all(axis=-1))
         return there
 
 

@@ -19,11 +19,18 @@ from dembound.disks.wave_front import slowest_speed
 from dembound.kernels.contact_measures import slack
 from dembound.motion.state import Arrays, State
 
-RISE = 10
-"""Steps between two increments of loads that are put on slowly."""
+LOOK = 100
+"""Steps between two increments of loads that are put on slowly, and between two evaluations of the force ratio."""
 
-CROSSINGS = 20.0
-"""Time in which all loads are put on, in those in which the slowest waves cross a body along x and then along y."""
+CROSSINGS = 3.0
+"""Time in which all loads are put on, in those in which the slowest waves cross a body along x and then along y.
+
+Slip where all contacts slide alike (square lattice, 96 disks wide, friction 0.3): the stress in blocks of eleven
+diameters differs by 2.2, 0.34, 0.20, 0.19 % for 0, 1, 3 and 8 of them.
+"""
+
+LEAST = 20
+"""Least number of increments in which all loads are put on."""
 
 HALVINGS = 12
 """How often the range is halved in which the elastic path reaches the first limit."""
@@ -44,7 +51,7 @@ class Loading:
         self._body, self._system, self._start = body, system, start
         speed = slowest_speed(body.scene.ground)
         crossing = float(body.scene.size.sum()) / speed if speed > 0.0 else 0.0
-        self._longest = CROSSINGS * crossing / step
+        self._longest = max(LEAST, CROSSINGS * crossing / step / LOOK)
         self._lacking, self._begun, self._steps = np.zeros_like(start), 0, 0
         if system.uses_history:
             self._raise_from(self._out_of_balance(), 1.0, 0)
@@ -112,9 +119,9 @@ class Loading:
         self._raise_from(lacking, 1.0 - share, state.step)
 
     def _raise_from(self, lacking: np.ndarray, share: float, step: int) -> None:
-        """Put on forces (3, n) from a step on, in a share of the longest time."""
+        """Put on forces (3, n) from a step on, in a share of the time for all."""
         self._lacking, self._begun = lacking, step
-        self._steps = RISE * math.ceil(min(share, 1.0) * self._longest / RISE)
+        self._steps = LOOK * math.ceil(min(share, 1.0) * self._longest)
 
     def _out_of_balance(self) -> np.ndarray:
         """Sum (3, n) of all forces at the start, N and N·m."""

@@ -46,10 +46,7 @@ def side_forces(scene: DiskScene) -> dict[str, SideForces]:
     per_stress, as_built = _through(scene, ends)
     per_stress, as_built = per_stress * part[:, None], as_built * part
     sides = {side: ends.side == number for number, side in enumerate(SIDES) if side in scene.edges}
-    return {
-        side: SideForces(ends.node[here], per_stress[:, here], as_built[:, here])
-        for side, here in sides.items()
-    }
+    return {side: SideForces(ends.node[here], per_stress[:, here], as_built[:, here]) for side, here in sides.items()}
 
 
 def packing_pieces(scene: DiskScene, stress: np.ndarray) -> Iterator[Piece]:

@@ -3,16 +3,13 @@
 import numpy as np
 
 from dembound.casefile.disks.static import Static
-from dembound.disks.loading import RISE, Loading
+from dembound.disks.loading import LOOK, Loading
 from dembound.disks.static_scene import StaticScene
 from dembound.disks.system import DiskSystem
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.kind import OnLook, StalledError
 from dembound.motion.state import Arrays, State
 from dembound.motion.trackers import Run, Tracker
-
-LOOK = 100
-"""Steps between two evaluations of the force ratio."""
 
 PATIENCE = 20_000
 """Steps after which a stage has stalled if the force ratio has not decreased by a tenth."""
@@ -55,39 +52,31 @@ class UntilAtRest(Tracker):
         self._look_after(0)
 
     def _look_after(self, step: int) -> None:
-        interval = RISE if self._loading.is_rising(step) else LOOK - step % LOOK
-        self.due = min(step + interval, max(self._body.static.max_steps, step + 1))
+        self.due = min(step + LOOK, max(self._body.static.max_steps, step + 1))
 
     def handle(self, run: Run) -> None:
         """Evaluate the force ratio; raise StalledError if it no longer decreases or the steps exceed the maximum."""
-        state = run.state
+        state, static, loading = run.state, self._body.static, self._loading
         self._body.keep_from_turning(state)
-        if state.step % LOOK == 0 or state.step >= self._body.static.max_steps:
-            self._look(run)
-        if not run.stopped:
-            self._loading.put_on(state)
-            self._look_after(state.step)
-
-    def _look(self, run: Run) -> None:
-        """Evaluate the force ratio, and what follows from it."""
-        state, static = run.state, self._body.static
         self.forces = self._contact_forces(state.displacement)
         self.ratio = self._body.force_ratio(self._system, self.forces, self._contacts)
         if self._on_look is not None:
             self._on_look(state.step, self.ratio)
-        if self._loading.is_rising(state.step):
+        if loading.is_rising(state.step):
             self._begin_anew(state)
         elif self.ratio <= static.ratio:
-            if self._loading.is_the_answer(state) and not self._loading.correct(state):
+            if loading.is_the_answer(state) and not loading.correct(state):
                 run.stopped = True
                 return
             self._begin_anew(state)
         elif self.ratio < 0.9 * self._best:
             self._best, self._best_at = self.ratio, state.step
-        elif state.step - self._best_at >= ELASTIC_PATIENCE and self._loading.give_up_elastic_law(state):
+        elif state.step - self._best_at >= ELASTIC_PATIENCE and loading.give_up_elastic_law(state):
             self._begin_anew(state)
         if state.step - self._best_at >= PATIENCE or state.step >= static.max_steps:
             self._fail(run)
+        loading.put_on(state)
+        self._look_after(state.step)
 
     def _begin_anew(self, state: State) -> None:
         """Forget the progress so far, as the loads or the law have changed."""
