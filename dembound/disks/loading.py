@@ -61,8 +61,8 @@ class Loading:
         return step < self._begun + self._steps
 
     def put_on(self, state: State) -> None:
-        """Put on the loads of the present step, those that rotate with the sides rotated."""
-        load = self._body.load(state.displacement)
+        """Put on the loads of the present step."""
+        load = self._load(state.displacement)
         if self.is_rising(state.step):
             load = load - (1.0 - (state.step - self._begun) / self._steps) * self._lacking
         self._system.apply(load)
@@ -93,11 +93,11 @@ class Loading:
 
     def correct(self, state: State) -> bool:
         """Correct the tractions, see `StaticScene.correct`; returns whether there was anything to correct."""
-        before = self._body.load(state.displacement)
+        before = self._load(state.displacement)
         if not self._body.correct(self._system, state):
             return False
         if self._system.uses_history:
-            change = self._body.load(state.displacement) - before
+            change = self._load(state.displacement) - before
             self._raise_from(change, float(np.abs(change).max() / np.abs(before).max()), state.step)
         return True
 
@@ -129,10 +129,14 @@ class Loading:
         if system.uses_history:
             for pairs in system.contacts.values():
                 pairs.push(start)
-            inner, load = system.last_forces(system.contacts), self._body.load(start)
+            inner, load = system.last_forces(system.contacts), self._load(start)
         else:
             inner, load = system.elastic_forces(start), system.steady
         return load + inner + system.tie_forces(start)
+
+    def _load(self, displacement: np.ndarray) -> np.ndarray:
+        """All loads (3, n) at displacements (3, n); with sides that rotate only under a law whose forces do."""
+        return self._body.load(displacement if self._system.uses_history else np.zeros_like(displacement))
 
     def _share_within(self, rest: np.ndarray) -> float:
         """The largest share of the way (3, n) from the start to rest, up to 1, within the limits of the elastic law.

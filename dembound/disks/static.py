@@ -111,11 +111,13 @@ def _settle(
     assert static is not None
     body = StaticScene(scene, static, tractions)
     step = SAFETY * step_limit(body.scene, damp=static.damp)
-    datum = np.zeros((3, body.scene.count))
+    none = np.zeros((3, body.scene.count))
+    datum = none
     if start is not None:
         start = replace(start, displacement=among(start.displacement, body.scene))
         datum = start.displacement
-    system = DiskSystem(body.scene, step, start, settling=True, load=body.load(datum))
+    load = body.load(datum if start is not None and start.has_history else none)
+    system = DiskSystem(body.scene, step, start, settling=True, load=load)
     simulation = Simulation(body.scene, step, system=system, datum=datum, damp=static.damp)
     loading = Loading(body, system, datum, step)
     rest = UntilAtRest(body, system, loading, stage.on_look, stage.name)

@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 from settling import FIXED, MASS, STANDING, WEIGHT, WRAP, G, scene
 
+from dembound.disks.loading import LOOK
 from dembound.disks.scene import DiskScene, column_alone
 from dembound.disks.stability import choose_step
 from dembound.disks.static import settle
-from dembound.disks.stress import particle_stress
 from dembound.disks.system import DiskSystem
-from dembound.disks.tractions import CLOSE, mean_stress
-from dembound.disks.until_at_rest import LOOK
+from dembound.disks.tractions import CLOSE
 from dembound.errors import CaseError
-from dembound.kernels.contacts import TENSION, UPDATED
+from dembound.kernels.contacts import TENSION
 from dembound.motion.simulation import Simulation
 
 K = 2500.0 * 1000.0**2
@@ -68,19 +67,6 @@ def test_the_stress_asked_for_is_reached(bar, law: str, stress: tuple[float, flo
     np.testing.assert_allclose(settled.stress, stress, rtol=0.0, atol=CLOSE * 2e6)
     # nobody is held: the outer disks carry the tractions
     assert settled.mean_residual < 1e-6 * settled.mean_reaction
-
-
-def test_mean_stress_is_that_of_the_contacts_inside(bar) -> None:
-    nothing = {"stress": [0.0, 0.0, 0.0]}
-    body = scene(bar, static=nothing, **{"packing.size": [8.0, 8.0], "material.law": "linearpbond"})
-    contacts = body.contact_lists()["body"]
-    # one force on the first disk of all pairs along x, another along y
-    pairs = contacts.arrays
-    pairs.force[:2] = np.where(np.abs(pairs.constants[pairs.contact_type, 0]) > 0.0, [[3.0], [4.0]], [[5.0], [6.0]])
-    stress = mean_stress(body, particle_stress(body, pairs, np.zeros((3, 256)), UPDATED))
-
-    # f ⊗ d / D² with d = (D, 0) or (0, D), the shear the mean of both
-    np.testing.assert_allclose(stress, [3.0 / 0.5, 6.0 / 0.5, 0.5 * (4.0 + 5.0) / 0.5], rtol=1e-13)
 
 
 def test_a_settled_body_has_left_its_forces_behind(bar) -> None:

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from dembound.boundaries import OPPOSITE
+from dembound.disks.block_stress import RIM
 from dembound.disks.scene import DiskScene, build
-from dembound.disks.tractions import CLOSE, CORRECTIONS, RIM, Tractions
+from dembound.disks.tractions import CLOSE, CORRECTIONS, Tractions
 
 BODY = {"wave": {}, "monitor": [], "motion.held": [], "boundary": {}}
 FOLLOWING = {"material.law": "linearpbond"}

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from settling import FIXED, MASS, STANDING, WEIGHT, WRAP, G, scene
 
+from dembound.disks.loading import LOOK
 from dembound.disks.static import settle
-from dembound.disks.until_at_rest import LOOK, PATIENCE
+from dembound.disks.until_at_rest import PATIENCE
 from dembound.errors import RunError
 from dembound.motion.kind import StalledError
 
