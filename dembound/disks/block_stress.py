@@ -116,6 +116,7 @@ class Uniformity:
     deviation: float
     place: np.ndarray
     packing: float
+    beyond: float
     near_holes: float
 
     @classmethod
@@ -126,7 +127,8 @@ class Uniformity:
         largest = abs(0.5 * (xx + yy)) + np.hypot(0.5 * (xx - yy), xy)
         scale = 1.0 / largest if largest > 0.0 else 0.0
         off = np.abs(stress - asked).max(axis=-1) * scale
-        own = np.abs(blocks.stress(packing_pieces(scene, asked), scene.positions) - asked).max(axis=-1) * scale
+        packing = blocks.stress(packing_pieces(scene, asked), scene.positions)
+        own, beyond = (np.abs(each - packing).max(axis=-1) * scale for each in (asked, stress))
         near = np.zeros(off.shape, dtype=np.bool_)
         for hole in scene.case.hole:
             if hole.stage == "before" or scene.before is not None:
@@ -138,6 +140,7 @@ class Uniformity:
             deviation=max(0.0, float(away[worst])),
             place=blocks.middles[worst],
             packing=float(own[~near].max(initial=0.0)),
+            beyond=float(beyond[~near].max(initial=0.0)),
             near_holes=float(off[near].max()) if near.any() else float("nan"),
         )
 
@@ -149,5 +152,5 @@ class Uniformity:
     def recalled(cls, memory: Arrays) -> Self:
         """The same from what `memory` has returned."""
         block, place = (memory[name].copy() for name in ("block", "place"))
-        numbers = {name: float(memory[name]) for name in ("deviation", "packing", "near_holes")}
+        numbers = {name: float(memory[name]) for name in ("deviation", "packing", "beyond", "near_holes")}
         return cls(block=block, place=place, **numbers)

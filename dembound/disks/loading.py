@@ -91,16 +91,6 @@ class Loading:
         self._go_on_from(0.0, state)
         return True
 
-    def correct(self, state: State) -> bool:
-        """Correct the tractions, see `StaticScene.correct`; returns whether there was anything to correct."""
-        before = self._load(state.displacement)
-        if not self._body.correct(self._system, state):
-            return False
-        if self._system.uses_history:
-            change = self._load(state.displacement) - before
-            self._raise_from(change, float(np.abs(change).max() / np.abs(before).max()), state.step)
-        return True
-
     def memory(self) -> Arrays:
         """The loads that are put on slowly, and since when."""
         return {"lacking": self._lacking, "rising": np.array([self._begun, self._steps])}

@@ -58,10 +58,10 @@ def _stage(static: Mapping[str, Any]) -> str:
 
 def _even(uniformity: Mapping[str, Any]) -> str:
     """How far blocks are from the stress asked for, in words."""
-    own, near = uniformity["packing"], uniformity["near_holes"]
+    own, beyond, near = (uniformity[key] for key in ("packing", "beyond", "near_holes"))
     return (
         f", to {in_percent(uniformity['deviation'])} in {block_in_words(uniformity)}"
-        f"{f' ({in_percent(own)} is of the packing itself)' if own >= SHOWN else ''}"
+        f"{f', to {in_percent(beyond)} beside what the packing has by itself' if own >= SHOWN else ''}"
         f"{f', {in_percent(near)} beside holes' if near is not None else ''}"
     )
 

@@ -13,7 +13,7 @@ from dembound.motion.state import Arrays, within
 from dembound.table import every_key
 
 NUMBERS = ("steps", "ratio", "mean_reaction", "mean_residual", "stress")
-"""What is kept of a stage apart from its body, tractions and cracks."""
+"""What is kept of a stage apart from its body, cracks and blocks."""
 
 
 @dataclass(frozen=True)
@@ -30,9 +30,8 @@ class Settled:
     stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive, see `block_stress`. uniformity : how
     far blocks are from a target stress; None without one.
     cracks : the bonds that broke on the way.
-    tractions : (3,) Pa, the stress of the tractions at the end; None without a target stress. before : the same before
-    an excavation, if there was one, with the numbering of particles before it. column : the same for the free-field
-    column alone, if there is one.
+    before : the same before an excavation, if there was one, with the numbering of particles before it. column : the
+    same for the free-field column alone, if there is one.
     """
 
     start: Start
@@ -42,7 +41,6 @@ class Settled:
     mean_residual: float
     stress: np.ndarray
     cracks: Cracks
-    tractions: np.ndarray | None = None
     uniformity: Uniformity | None = None
     before: "Settled | None" = None
     column: "Settled | None" = None
@@ -52,7 +50,6 @@ class Settled:
         start = self.start
         kept = {name: np.array(getattr(self, name)) for name in NUMBERS}
         kept |= {"displacement": start.displacement, "has_history": np.array(start.has_history)}
-        kept["tractions"] = np.zeros(0) if self.tractions is None else self.tractions
         if self.uniformity is not None:
             kept |= {f"uniformity/{name}": values for name, values in self.uniformity.memory().items()}
         kept |= {f"cracks/{field.name}": getattr(self.cracks, field.name) for field in fields(Cracks)}
@@ -75,7 +72,6 @@ class Settled:
             mean_residual=float(memory["mean_residual"]),
             stress=memory["stress"].copy(),
             cracks=Cracks(**{field.name: cracks[field.name] for field in fields(Cracks)}),
-            tractions=memory["tractions"].copy() if memory["tractions"].size else None,
             uniformity=Uniformity.recalled(uniformity) if uniformity else None,
         )
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from dembound.boundaries.sides import SIDES, normal_axis
+from dembound.disks.body import DiskBody
 from dembound.disks.constants import brick_constants
 from dembound.disks.contact_forces import Piece
 from dembound.disks.cut_bonds import CutBonds
 from dembound.disks.memory import PIECE
-from dembound.disks.scene import DiskScene
 from dembound.packings.cut import CutContacts, cut_contacts
 
 
@@ -26,8 +26,9 @@ class SideForces:
 
     Attributes
     ----------
-    node : (e,) disks on which the contacts act. per_stress : (3, e, 3) N and N·m, forces along x and y and moment about
-    the disk's centre, per Pa of the elastic stress xx, yy, xy. as_built : (3, e) those of the stress as built.
+    node : (k,) disks on which the contacts act, ascending. per_stress : (3, k, 3) N and N·m, forces along x and y and
+    moment about the disk's centre, per Pa of the elastic stress xx, yy, xy. as_built : (3, k) those of the stress as
+    built.
     """
 
     node: np.ndarray
@@ -35,21 +36,28 @@ class SideForces:
     as_built: np.ndarray
 
     def under(self, stress: np.ndarray) -> np.ndarray:
-        """Forces and moments (3, e) under a stress (3,) Pa, that of the packing as built included."""
+        """Forces and moments (3, k) under a stress (3,) Pa, that of the packing as built included."""
         forces: np.ndarray = self.per_stress @ stress + self.as_built
         return forces
 
 
-def side_forces(scene: DiskScene) -> dict[str, SideForces]:
+def side_forces(scene: DiskBody) -> dict[str, SideForces]:
     """Those of all sides of a body that are not periodic, by side."""
     ends, part = _ends(scene)
     per_stress, as_built = _through(scene, ends)
     per_stress, as_built = per_stress * part[:, None], as_built * part
-    sides = {side: ends.side == number for number, side in enumerate(SIDES) if side in scene.edges}
-    return {side: SideForces(ends.node[here], per_stress[:, here], as_built[:, here]) for side, here in sides.items()}
+    found = {}
+    for number, side in enumerate(SIDES):
+        if side in scene.edges:
+            here = np.flatnonzero(ends.side == number)
+            here = here[np.argsort(ends.node[here], kind="stable")]
+            node, first = np.unique(ends.node[here], return_index=True)
+            sums = np.add.reduceat(np.dstack([per_stress[:, here], as_built[:, here]]), first, axis=1)
+            found[side] = SideForces(node, sums[..., :3], sums[..., 3])
+    return found
 
 
-def packing_pieces(scene: DiskScene, stress: np.ndarray) -> Iterator[Piece]:
+def packing_pieces(scene: DiskBody, stress: np.ndarray) -> Iterator[Piece]:
     """The contacts of a body with the forces that they have in the endless packing under a stress (3,) Pa."""
     brick, body = scene.ground.brick, scene.assembly
     whole = len(brick.pairs)
@@ -67,7 +75,7 @@ def packing_pieces(scene: DiskScene, stress: np.ndarray) -> Iterator[Piece]:
         yield Piece(first, second, every, every, vectors[kind].T, np.full(len(kind), 0.5), force[:, kind])
 
 
-def _through(scene: DiskScene, cut: CutContacts) -> tuple[np.ndarray, np.ndarray]:
+def _through(scene: DiskBody, cut: CutContacts) -> tuple[np.ndarray, np.ndarray]:
     """Forces (3, e, 3) per stress and (3, e) as built, see `SideForces`, of contacts on the disks of one end."""
     ground, brick, locked_in = scene.ground, scene.ground.brick, scene.case.material.locked_in
     bonds = CutBonds.of(ground, cut, scene.assembly.positions)
@@ -92,7 +100,7 @@ def _gradients(tensor: np.ndarray) -> np.ndarray:
     return found
 
 
-def _ends(scene: DiskScene) -> tuple[CutContacts, np.ndarray]:
+def _ends(scene: DiskBody) -> tuple[CutContacts, np.ndarray]:
     """The contacts that end at sides, and which part (e,) of each does.
 
     These are the whole of the contacts that a side cuts, and half of those along a side of half cells, at both disks.
@@ -120,7 +128,7 @@ def _ends(scene: DiskScene) -> tuple[CutContacts, np.ndarray]:
     return CutContacts(**joined), np.repeat([1.0, 0.5], [len(cut.node), 2 * len(kind)])
 
 
-def _side_along(scene: DiskScene, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+def _side_along(scene: DiskBody, first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Number (h,) of the side along which contacts of half cells run, between disks first and second (h,)."""
     side = np.full(len(first), -1)
     way = np.abs(scene.assembly.positions[second] - scene.assembly.positions[first])

@@ -40,7 +40,7 @@ def settle(scene: DiskScene, on_look: OnLook | None = None, stages: Stages | Non
     if scene.before is not None:
         before = _settle_built(scene.before, _Stage("before", "before the excavation the static stage", on_look, kept))
         stage = _Stage("body", "the static stage", on_look, kept)
-        excavated = _settle(scene, lambda: _excavate(scene, before.start), stage, tractions=before.tractions)
+        excavated = _settle(scene, lambda: _excavate(scene, before.start), stage)
         return replace(excavated, before=before)
     return _settle_built(scene, _Stage("body", "the static stage", on_look, kept))
 
@@ -98,18 +98,16 @@ def _beside(scene: DiskScene, column: Start) -> Start:
     return Start(displacement, contacts, column.has_history)
 
 
-def _settle(
-    scene: DiskScene, starting: Callable[[], Start | None], stage: _Stage, tractions: np.ndarray | None = None
-) -> Settled:
+def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stage) -> Settled:
     """One stage to rest, unless it is kept.
 
-    starting : returns its start, None for the scene as built. tractions : (3,) Pa, if they have been corrected.
+    starting : returns its start, None for the scene as built.
     """
     if (kept := stage.stages.finished(stage.key)) is not None:
         return Settled.recalled(scene, kept)
     static, start = scene.case.static, starting()
     assert static is not None
-    body = StaticScene(scene, static, tractions)
+    body = StaticScene(scene, static)
     step = SAFETY * step_limit(body.scene, damp=static.damp)
     none = np.zeros((3, body.scene.count))
     datum = none
@@ -137,7 +135,6 @@ def _settle(
         stress=blocks.mean(axis=(0, 1)),
         uniformity=None if static.stress is None else Uniformity.of(scene, blocks, np.array(static.stress)),
         cracks=rest.take_cracks(),
-        tractions=body.applied,
     )
     stage.stages.finish(stage.key, settled.memory())
     return settled

@@ -67,6 +67,7 @@ def _describe_uniformity(found: Uniformity) -> dict[str, Any]:
         "deviation": found.deviation,
         "place": found.place.tolist(),
         "packing": found.packing,
+        "beyond": found.beyond,
         "near_holes": None if np.isnan(found.near_holes) else found.near_holes,
     }
 

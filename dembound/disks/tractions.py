@@ -2,80 +2,61 @@
 
 import numpy as np
 
+from dembound.boundaries.sides import normal_axis
 from dembound.disks.balance import mean_rotations
-from dembound.disks.block_stress import RIM
 from dembound.disks.constants import limits_of
 from dembound.disks.scene import DiskScene
 from dembound.disks.side_forces import side_forces
 from dembound.kernels.contacts import UPDATED
-
-CLOSE = 5e-3
-"""Error of the mean stress, over its largest component, below which the target is reached."""
-
-CORRECTIONS = 5
-"""Largest number of corrections of the tractions; each reduces the error to a few per cent of it."""
+from dembound.packings.cut import BEYOND
 
 
 class Tractions:
-    """Forces on the sides of a body under a mean stress, corrected until the stress inside has this value.
+    """Forces on the sides of a body under a stress: those of the packing beyond, see `side_forces`.
 
-    They are those of the packing beyond (`side_forces`), under which an elastic body has the target stress everywhere.
-    Where contacts slide or open, or strains are large, the stress inside may differ by some per cent.
+    Under them an elastic body has the stress everywhere.
 
     Parameters
     ----------
     scene : the body.
-    stress : (3,) target xx, yy, xy in Pa, tension positive.
-    applied : (3,) Pa, tractions found before an excavation, which keep their value; None: the target stress.
+    stress : (3,) xx, yy, xy in Pa, tension positive.
 
     Attributes
     ----------
-    applied : (3,) Pa, the stress of the tractions.
-    corrections_left : how often they may still be corrected.
     nodes : (k,) disks on which they act, ascending.
     """
 
-    def __init__(self, scene: DiskScene, stress: tuple[float, float, float], applied: np.ndarray | None = None) -> None:
+    def __init__(self, scene: DiskScene, stress: tuple[float, float, float]) -> None:
         self.scene = scene
-        self.asked = np.array(stress)
-        self.applied = self.asked.copy() if applied is None else applied.copy()
-        self.corrections_left = CORRECTIONS if applied is None and _is_wide(scene) else 0
         self._follow = limits_of(scene.case.material).geometry == UPDATED
-        self._sides = side_forces(scene)
-        self.nodes = np.unique(np.concatenate([each.node for each in self._sides.values()]))
+        self._sides = {side: (each.node, each.under(np.array(stress))) for side, each in side_forces(scene).items()}
+        self.nodes = np.unique(np.concatenate([node for node, _ in self._sides.values()]))
 
     def forces(self, displacement: np.ndarray) -> np.ndarray:
         """Forces and moments (3, n) N and N·m at displacements (3, n).
 
-        With the updated geometry the forces rotate with their side. Small additional forces cancel the torque that
-        results from strained sides.
+        With the updated geometry the forces rotate with their side, and grow with its length. Small additional forces
+        cancel the torque that results from strained sides.
         """
         moved = displacement if self._follow else np.zeros_like(displacement)
         force = np.zeros_like(displacement)
-        rotations = mean_rotations(self.scene, moved)
-        for side, each in self._sides.items():
-            angle = rotations.get(side, 0.0)
-            turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-            pull = each.under(self.applied)
-            for component, values in zip(force, (*(turn @ pull[:2]), pull[2]), strict=True):
-                np.add.at(component, each.node, values)
+        rotations, stretch = mean_rotations(self.scene, moved), self._stretch(moved)
+        for side, (node, pull) in self._sides.items():
+            angle, longer = rotations.get(side, 0.0), stretch[1 - normal_axis(side)]
+            turn = longer * np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+            force[:, node] += np.concatenate([turn @ pull[:2], longer * pull[2:]])
         return _without_torque(force, self.scene.assembly.positions + moved[:2].T, self.nodes)
 
-    def correct(self, stress: np.ndarray) -> bool:
-        """Add the error of the mean stress (3,) Pa inside to the tractions; returns whether there was an error."""
-        lacking = self.asked - stress
-        largest = np.abs(self.asked).max()
-        if self.corrections_left == 0 or largest == 0.0 or np.abs(lacking).max() <= CLOSE * largest:
-            return False
-        self.corrections_left -= 1
-        self.applied += lacking
-        return True
-
-
-def _is_wide(scene: DiskScene) -> bool:
-    """Whether half the width and height of a body are inside the rim; otherwise the mean has too few particles."""
-    width = [scene.assembly.size[axis] for axis, low in enumerate(("left", "bottom")) if low in scene.edges]
-    return all(length >= 4.0 * RIM * scene.ground.brick.mean_diameter for length in width)
+    def _stretch(self, moved: np.ndarray) -> list[float]:
+        """Width and height at displacements (3, n) over those as built, from the distances of opposite sides."""
+        edges, places = self.scene.edges, self.scene.assembly.positions
+        stretch = [1.0, 1.0]
+        for axis, (low, high) in enumerate(BEYOND):
+            if low in edges:
+                apart = places[edges[high].nodes].mean(axis=0) - places[edges[low].nodes].mean(axis=0)
+                more = moved[:2, edges[high].nodes].mean(axis=1) - moved[:2, edges[low].nodes].mean(axis=1)
+                stretch[axis] = float(np.hypot(*(apart + more)) / np.hypot(*apart))
+        return stretch
 
 
 def _without_torque(force: np.ndarray, positions: np.ndarray, loaded: np.ndarray) -> np.ndarray:

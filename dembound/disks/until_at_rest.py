@@ -65,7 +65,7 @@ class UntilAtRest(Tracker):
         if loading.is_rising(state.step):
             self._begin_anew(state)
         elif self.ratio <= static.ratio:
-            if loading.is_the_answer(state) and not loading.correct(state):
+            if loading.is_the_answer(state):
                 run.stopped = True
                 return
             self._begin_anew(state)
@@ -89,19 +89,15 @@ class UntilAtRest(Tracker):
         raise StalledError(message, run, lacking.T, cracks)
 
     def memory(self) -> Arrays:
-        """The next step of evaluation, the force ratio and step of the last progress, the loads and the tractions."""
-        applied = np.zeros(0) if self._body.applied is None else self._body.applied
+        """The next step of evaluation, the force ratio and step of the last progress, and the loads."""
         best = {"best": np.array(self._best), "best_at": np.array(self._best_at)}
-        left = {"tractions": applied, "corrections": np.array(self._body.corrections_left)}
-        return {**super().memory(), **best, **left, **self._loading.memory()}
+        return {**super().memory(), **best, **self._loading.memory()}
 
     def recall(self, memory: Arrays) -> None:
         """Take over what `memory` has returned in another run of the same case."""
         super().recall(memory)
         self._best, self._best_at = float(memory["best"]), int(memory["best_at"])
         self._loading.recall(memory)
-        if memory["tractions"].size:
-            self._body.go_on_with(memory["tractions"], int(memory["corrections"]))
 
     def take_cracks(self) -> Cracks:
         """The bonds that broke since this was last called."""

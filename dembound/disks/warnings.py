@@ -207,15 +207,18 @@ def _uneven(case: DiskCase, static: Mapping[str, Any] | None) -> Iterator[str]:
         x, y = found["place"]
         yield (
             f"static.stress: in {block_in_words(found)} the stress differs by up to {in_percent(found['deviation'])} "
-            f"of the largest principal stress asked for, most at ({x:.4g}, {y:.4g}) m; {_whence(found['packing'])}"
+            f"of the largest principal stress asked for, most at ({x:.4g}, {y:.4g}) m; {_whence(found)}"
         )
 
 
-def _whence(packing: float) -> str:
-    """What makes blocks differ, in words; packing : share that they differ by in the packing without sides and slip."""
-    if packing < SHOWN:
+def _whence(found: Mapping[str, Any]) -> str:
+    """What makes blocks differ, in words."""
+    if found["packing"] < SHOWN:
         return "sides that are held, contacts that slid or opened, or too large a static.ratio"
-    return f"the packing itself, without sides and slip, has {in_percent(packing)}, less in larger blocks"
+    return (
+        f"the endless elastic packing has {in_percent(found['packing'])} by itself, less in larger blocks, from which the "
+        f"body differs by {in_percent(found['beyond'])}"
+    )
 
 
 def _not_elastic(found: Mapping[str, Any] | None) -> Iterator[str]:
