@@ -96,9 +96,15 @@ class Blocks:
 def block_stress(scene: DiskScene, system: DiskSystem, displacement: np.ndarray) -> np.ndarray:
     """Stress (nx, ny, 3) in the blocks of a body at displacements (3, n), see `Blocks.stress`; without its column."""
     part = system.disk_parts[-1]
-    moved = displacement[:2].T if part.geometry == UPDATED else 0.0
     found = pieces(scene.layout, part.pairs, displacement, part.geometry)
-    return Blocks.of(scene).stress(found, scene.positions + moved)
+    return Blocks.of(scene).stress(found, _places(scene, system, displacement))
+
+
+def _places(scene: DiskScene, system: DiskSystem, displacement: np.ndarray) -> np.ndarray:
+    """Places (n, 2) m of the nodes under the law in use."""
+    follows = system.disk_parts[-1].geometry == UPDATED
+    places: np.ndarray = scene.positions + (displacement[:2].T if follows else 0.0)
+    return places
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,14 +126,14 @@ class Uniformity:
     near_holes: float
 
     @classmethod
-    def of(cls, scene: DiskScene, stress: np.ndarray, asked: np.ndarray) -> Uniformity:
-        """Of the stress (nx, ny, 3) Pa in the blocks of a body, where (3,) Pa has been asked for."""
-        blocks = Blocks.of(scene)
+    def of(cls, scene: DiskScene, system: DiskSystem, displacement: np.ndarray, asked: np.ndarray) -> Uniformity:
+        """Of a body at displacements (3, n), where a stress (3,) Pa has been asked for."""
+        blocks, stress = Blocks.of(scene), block_stress(scene, system, displacement)
         xx, yy, xy = asked
         largest = abs(0.5 * (xx + yy)) + np.hypot(0.5 * (xx - yy), xy)
         scale = 1.0 / largest if largest > 0.0 else 0.0
         off = np.abs(stress - asked).max(axis=-1) * scale
-        packing = blocks.stress(packing_pieces(scene, asked), scene.positions)
+        packing = blocks.stress(packing_pieces(scene, asked), _places(scene, system, displacement))
         own, beyond = (np.abs(each - packing).max(axis=-1) * scale for each in (asked, stress))
         near = np.zeros(off.shape, dtype=np.bool_)
         for hole in scene.case.hole:

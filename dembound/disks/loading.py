@@ -54,7 +54,9 @@ class Loading:
         self._longest = max(LEAST, CROSSINGS * crossing / step / LOOK)
         self._lacking, self._begun, self._steps = np.zeros_like(start), 0, 0
         if system.uses_history:
-            self._raise_from(self._out_of_balance(), 1.0, 0)
+            lacking = self._out_of_balance()
+            if body.force_ratio(system, lacking - system.load, system.contacts) > body.static.ratio:
+                self._raise_from(lacking, 1.0, 0)
 
     def is_rising(self, step: int) -> bool:
         """Whether a part of the loads has still to be put on after so many steps."""
@@ -121,7 +123,7 @@ class Loading:
                 pairs.push(start)
             inner, load = system.last_forces(system.contacts), self._load(start)
         else:
-            inner, load = system.elastic_forces(start), system.steady
+            inner, load = system.elastic_forces(start), system.steady if system.steady.size else system.load
         return load + inner + system.tie_forces(start)
 
     def _load(self, displacement: np.ndarray) -> np.ndarray:

@@ -123,7 +123,7 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
     stage.stages.begin(stage.key, simulation)
     simulation.run(static.max_steps)
     displacement, forces = simulation.state.displacement, rest.forces
-    blocks = block_stress(scene, system, displacement)
+    asked = None if static.stress is None else np.array(static.stress)
     unbalanced = np.hypot(*(forces + body.scene.steady_load)[:2, : scene.disk_count])
     held = body.held
     settled = Settled(
@@ -132,8 +132,8 @@ def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stag
         ratio=rest.ratio,
         mean_reaction=float(unbalanced[held].mean()) if held.any() else 0.0,
         mean_residual=float(unbalanced[~held].mean()) if not held.all() else 0.0,
-        stress=blocks.mean(axis=(0, 1)),
-        uniformity=None if static.stress is None else Uniformity.of(scene, blocks, np.array(static.stress)),
+        stress=block_stress(scene, system, displacement).mean(axis=(0, 1)),
+        uniformity=None if asked is None else Uniformity.of(scene, system, displacement, asked),
         cracks=rest.take_cracks(),
     )
     stage.stages.finish(stage.key, settled.memory())

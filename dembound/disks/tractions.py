@@ -35,8 +35,8 @@ class Tractions:
     def forces(self, displacement: np.ndarray) -> np.ndarray:
         """Forces and moments (3, n) N and N·m at displacements (3, n).
 
-        With the updated geometry the forces rotate with their side, and grow with its length. Small additional forces
-        cancel the torque that results from strained sides.
+        With the updated geometry the forces rotate with their side, and grow with its length. Small additional
+        forces cancel what strained sides, or those that a hole reaches, leave of a resultant and a torque.
         """
         moved = displacement if self._follow else np.zeros_like(displacement)
         force = np.zeros_like(displacement)
@@ -45,7 +45,7 @@ class Tractions:
             angle, longer = rotations.get(side, 0.0), stretch[1 - normal_axis(side)]
             turn = longer * np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
             force[:, node] += np.concatenate([turn @ pull[:2], longer * pull[2:]])
-        return _without_torque(force, self.scene.assembly.positions + moved[:2].T, self.nodes)
+        return _balanced(force, self.scene.assembly.positions + moved[:2].T, self.nodes)
 
     def _stretch(self, moved: np.ndarray) -> list[float]:
         """Width and height at displacements (3, n) over those as built, from the distances of opposite sides."""
@@ -59,8 +59,12 @@ class Tractions:
         return stretch
 
 
-def _without_torque(force: np.ndarray, positions: np.ndarray, loaded: np.ndarray) -> np.ndarray:
-    """Forces (3, n) without torque, by small additional forces on the loaded particles (k,); positions (n, 2) m."""
+def _balanced(force: np.ndarray, positions: np.ndarray, loaded: np.ndarray) -> np.ndarray:
+    """Forces (3, n) without resultant and torque, by small additional forces on the loaded particles (k,).
+
+    positions : (n, 2) m.
+    """
+    force[:2, loaded] -= force[:2].sum(axis=1, keepdims=True) / len(loaded)
     arm = positions - positions[loaded].mean(axis=0)
     torque = np.sum(arm[:, 0] * force[1] - arm[:, 1] * force[0]) + np.sum(force[2])
     turn = np.stack([-arm[loaded, 1], arm[loaded, 0]])

@@ -216,8 +216,8 @@ def _whence(found: Mapping[str, Any]) -> str:
     if found["packing"] < SHOWN:
         return "sides that are held, contacts that slid or opened, or too large a static.ratio"
     return (
-        f"the endless elastic packing has {in_percent(found['packing'])} by itself, less in larger blocks, from which the "
-        f"body differs by {in_percent(found['beyond'])}"
+        f"the endless elastic packing has {in_percent(found['packing'])} by itself, less in larger blocks, "
+        f"and the body differs by {in_percent(found['beyond'])} from that packing"
     )
 
 

@@ -9,7 +9,6 @@ from dembound.disks.scene import DiskScene, column_alone
 from dembound.disks.stability import choose_step
 from dembound.disks.static import settle
 from dembound.disks.system import DiskSystem
-from dembound.disks.tractions import CLOSE
 from dembound.errors import CaseError
 from dembound.kernels.contacts import TENSION
 from dembound.motion.simulation import Simulation
@@ -63,8 +62,10 @@ def test_the_stress_asked_for_is_reached(bar, law: str, stress: tuple[float, flo
     static = {"ratio": 1e-8, "stress": stress}
     settled = settle(scene(bar, static=static, **{"packing.size": [8.0, 8.0], "material.law": law}))
 
-    # tractions are corrected until it is there
-    np.testing.assert_allclose(settled.stress, stress, rtol=0.0, atol=CLOSE * 2e6)
+    # 1e-8 of the contact forces, sixteen disks wide; with moved normals a strain of 8e-4 more
+    np.testing.assert_allclose(
+        settled.stress, stress, rtol=0.0, atol=1e-3 * 2e6 if law == "linearpbond" else 1e-6 * 2e6
+    )
     # nobody is held: the outer disks carry the tractions
     assert settled.mean_residual < 1e-6 * settled.mean_reaction
 
@@ -286,15 +287,3 @@ def test_with_an_excavation_the_column_is_that_of_before(bar, law: dict) -> None
     if law:  # the column has lost nothing, the body some
         assert np.array_equal(after["column"].of("first"), before["column"].of("first"))
         assert len(after["body"].live) < len(before["body"].live)
-
-
-def test_where_a_direction_is_held_tractions_are_not_corrected(bar) -> None:
-    asked = [-3e6, -2e6, 0.0]
-    static = {"ratio": 1e-6, "stress": asked}
-    body = scene(bar, static=static, **{"packing.size": [8.0, 8.0], "motion.held": ["y"]})
-    settled = settle(body)
-
-    # what is held bears stress of its own: what lacks inside is no fault of the tractions
-    assert settled.tractions is not None
-    assert settled.tractions.tolist() == asked
-    assert abs(settled.stress[1] - asked[1]) > CLOSE * abs(asked[0])
