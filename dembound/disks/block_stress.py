@@ -14,6 +14,7 @@ from dembound.disks.side_forces import packing_pieces
 from dembound.disks.system import DiskSystem
 from dembound.kernels.contacts import UPDATED
 from dembound.motion.state import Arrays
+from dembound.packings.cut import BEYOND
 
 RIM = 4.0
 """Width, in mean diameters, of the rim along the sides that no block includes; a quarter of narrower bodies."""
@@ -39,14 +40,21 @@ class Blocks:
     diameter: float
 
     @classmethod
-    def of(cls, scene: DiskScene) -> Blocks:
-        """Those of a body."""
+    def of(cls, scene: DiskScene, moved: np.ndarray | None = None) -> Blocks:
+        """Those of a body as built, or of one that moves by (3, n) with its sides."""
         diameter, wide = scene.ground.brick.mean_diameter, scene.assembly.size
         wraps = np.array(scene.case.periodic)
         rim = np.where(wraps, 0.0, np.minimum(RIM * diameter, 0.25 * wide))
         inside = wide - 2.0 * rim
         count = np.maximum(1, np.floor(inside / (BLOCK * diameter) * (1.0 + 1e-9))).astype(np.int64)
-        return cls(scene.assembly.origin + rim, inside / count, count, wraps, diameter)
+        low, high = rim.copy(), wide - rim
+        for axis, sides in enumerate(BEYOND):
+            if moved is not None and sides[0] in scene.edges:
+                shift, further = (float(moved[axis, scene.edges[side].nodes].mean()) for side in sides)
+                low[axis], high[axis] = (
+                    x + shift + x / wide[axis] * (further - shift) for x in (low[axis], high[axis])
+                )
+        return cls(scene.assembly.origin + low, (high - low) / count, count, wraps, diameter)
 
     def stress(self, found: Iterable[Piece], positions: np.ndarray) -> np.ndarray:
         """Mean stress (nx, ny, 3) xx, yy, xy in Pa of each, tension positive; xy is the mean of both shear stresses.
@@ -97,14 +105,9 @@ def block_stress(scene: DiskScene, system: DiskSystem, displacement: np.ndarray)
     """Stress (nx, ny, 3) in the blocks of a body at displacements (3, n), see `Blocks.stress`; without its column."""
     part = system.disk_parts[-1]
     found = pieces(scene.layout, part.pairs, displacement, part.geometry)
-    return Blocks.of(scene).stress(found, _places(scene, system, displacement))
-
-
-def _places(scene: DiskScene, system: DiskSystem, displacement: np.ndarray) -> np.ndarray:
-    """Places (n, 2) m of the nodes under the law in use."""
-    follows = system.disk_parts[-1].geometry == UPDATED
-    places: np.ndarray = scene.positions + (displacement[:2].T if follows else 0.0)
-    return places
+    if part.geometry != UPDATED:
+        return Blocks.of(scene).stress(found, scene.positions)
+    return Blocks.of(scene, displacement).stress(found, scene.positions + displacement[:2].T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +136,7 @@ class Uniformity:
         largest = abs(0.5 * (xx + yy)) + np.hypot(0.5 * (xx - yy), xy)
         scale = 1.0 / largest if largest > 0.0 else 0.0
         off = np.abs(stress - asked).max(axis=-1) * scale
-        packing = blocks.stress(packing_pieces(scene, asked), _places(scene, system, displacement))
+        packing = blocks.stress(packing_pieces(scene, asked), scene.positions)
         own, beyond = (np.abs(each - packing).max(axis=-1) * scale for each in (asked, stress))
         near = np.zeros(off.shape, dtype=np.bool_)
         for hole in scene.case.hole:
