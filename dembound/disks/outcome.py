@@ -4,10 +4,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from dembound.disks.load_factor import load_factor_in_words
+from dembound.disks.packing_errors import in_percent
 from dembound.results.reader import laws_in_words
 
 MANY = 10
 """Bonds broken in a run up to which it is not said to be one draw of many."""
+
+SHOWN = 1e-3
+"""Share of the stress below which what differs in the packing itself is not told."""
 
 
 def disk_outcome(summary: Mapping[str, Any]) -> list[str]:
@@ -51,8 +55,25 @@ def _stage(static: Mapping[str, Any]) -> str:
     reached = ""
     if (asked := static["asked"]) is not None:  # supports may have prevented it
         reached = f" and a stress of {_in_mpa(static['stress'])} where {_in_mpa(asked)} MPa was asked for"
+        reached += _even(static["uniformity"])
     broken = f", breaking {static['cracks']:,} bonds" if static["cracks"] else ""
     return f"{static['steps']:,} steps to a force ratio of {static['ratio']:.1e}{reached}{broken}"
+
+
+def _even(uniformity: Mapping[str, Any]) -> str:
+    """How far blocks are from the stress asked for, in words."""
+    own, beyond, near = (uniformity[key] for key in ("packing", "beyond", "near_holes"))
+    return (
+        f", to {in_percent(uniformity['deviation'])} in {block_in_words(uniformity)}"
+        f"{f', to {in_percent(beyond)} beside what the packing has by itself' if own >= SHOWN else ''}"
+        f"{f', {in_percent(near)} beside holes' if near is not None else ''}"
+    )
+
+
+def block_in_words(uniformity: Mapping[str, Any]) -> str:
+    """The blocks of a summary's `uniformity`."""
+    width, height = uniformity["block"]
+    return f"blocks of {width:.3g} m × {height:.3g} m"
 
 
 def _in_mpa(stress: Sequence[float]) -> str:

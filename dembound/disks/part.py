@@ -38,8 +38,9 @@ class DiskPart(Part):
 
     Attributes
     ----------
-    uses_history : whether the history-dependent law is in use; before, a linear law replaces it. stops_at_breaks :
-    whether the loop returns after a step in which a bond of this part broke.
+    uses_history : whether the history-dependent law is in use; before, a linear law replaces it. watches : whether the
+    loop returns before a contact leaves the linear law. stops_at_breaks : whether it returns after a step in which a
+    bond of this part broke.
     """
 
     def __init__(
@@ -58,6 +59,7 @@ class DiskPart(Part):
         self.nodes, self.layout = nodes, layout
         self.contacts = contacts
         self.uses_history = False
+        self.watches = True
         self.stops_at_breaks = False
         self.rows = rows
         self._fastest, self._way = np.zeros(CHUNKS), np.zeros(2)
@@ -69,9 +71,9 @@ class DiskPart(Part):
         return self.ground.law.name if self.uses_history else self.ground.law.linear
 
     def law(self) -> NamedTuple:
-        """The arrays of the law in use; before a history-dependent one begins, a linear law that checks contacts."""
+        """The arrays of the law in use; before a history-dependent one begins, a linear law that may check contacts."""
         links, contacts = Links(self.rows, self._fastest, self._damped), self.contacts
-        if contacts is None:
+        if contacts is None or not (self.uses_history or self.watches):
             return links
         listed = (contacts.arrays, contacts.limits, contacts.origin, contacts.skin, contacts.cells)
         if not self.uses_history:

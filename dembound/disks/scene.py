@@ -22,6 +22,7 @@ from dembound.disks.memory import SceneSizes, must_fit_here, run_bytes
 from dembound.disks.monitors import monitors_of
 from dembound.disks.outside_mesh import NO_FLOORS, Outline
 from dembound.disks.packed_material import PackedMaterial, make_packed_material, nominal_moduli
+from dembound.disks.side_forces import side_forces
 from dembound.disks.stress import particle_stress
 from dembound.disks.surroundings import Surroundings, surroundings_of
 from dembound.disks.system import DiskSystem
@@ -53,6 +54,15 @@ class DiskScene(DiskBody):
         """Stress (n, 3) xx, yy, xy in Pa at displacements (3, n) under the elastic law, see `particle_stress`."""
         contacts = plain_contacts(self.ground, self.assembly, self.layout.slot)
         return particle_stress(self, contacts, displacement, REFERENCE)
+
+    @property
+    def forces_by_side(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """Those of the target stress of the static stage, if there is one."""
+        static = self.case.static
+        if static is None or static.stress is None:
+            return {}
+        stress = np.array(static.stress)
+        return {side: (each.node, each.under(stress)[:2]) for side, each in side_forces(self).items()}
 
     @property
     def places_in_whole(self) -> np.ndarray:

@@ -5,6 +5,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from dembound.disks.block_stress import Uniformity
 from dembound.disks.scene import DiskScene
 from dembound.disks.system import Start
 from dembound.motion.cracks import Cracks
@@ -12,7 +13,7 @@ from dembound.motion.state import Arrays, within
 from dembound.table import every_key
 
 NUMBERS = ("steps", "ratio", "mean_reaction", "mean_residual", "stress")
-"""What is kept of a stage apart from its body, tractions and cracks."""
+"""What is kept of a stage apart from its body, cracks and blocks."""
 
 
 @dataclass(frozen=True)
@@ -26,11 +27,11 @@ class Settled:
     ratio : mean unbalanced over mean contact force at the end.
     mean_reaction : N, mean force of supports and tractions on the particles they act on.
     mean_residual : N, mean unbalanced force on all other particles, which F_0 balances too.
-    stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive.
+    stress : (3,) mean xx, yy, xy in Pa inside the body's rim, tension positive, see `block_stress`. uniformity : how
+    far blocks are from a target stress; None without one.
     cracks : the bonds that broke on the way.
-    tractions : (3,) Pa, the stress of the tractions at the end; None without a target stress. before : the same before
-    an excavation, if there was one, with the numbering of particles before it. column : the same for the free-field
-    column alone, if there is one.
+    before : the same before an excavation, if there was one, with the numbering of particles before it. column : the
+    same for the free-field column alone, if there is one.
     """
 
     start: Start
@@ -40,7 +41,7 @@ class Settled:
     mean_residual: float
     stress: np.ndarray
     cracks: Cracks
-    tractions: np.ndarray | None = None
+    uniformity: Uniformity | None = None
     before: "Settled | None" = None
     column: "Settled | None" = None
 
@@ -49,7 +50,8 @@ class Settled:
         start = self.start
         kept = {name: np.array(getattr(self, name)) for name in NUMBERS}
         kept |= {"displacement": start.displacement, "has_history": np.array(start.has_history)}
-        kept["tractions"] = np.zeros(0) if self.tractions is None else self.tractions
+        if self.uniformity is not None:
+            kept |= {f"uniformity/{name}": values for name, values in self.uniformity.memory().items()}
         kept |= {f"cracks/{field.name}": getattr(self.cracks, field.name) for field in fields(Cracks)}
         for part, pairs in start.contacts.items():
             kept |= {f"contacts/{part}/{name}": values for name, values in pairs.memory().items()}
@@ -61,7 +63,7 @@ class Settled:
         contacts = scene.contact_lists() if any(name.startswith("contacts/") for name in memory) else {}
         for part, pairs in contacts.items():
             pairs.recall(within(memory, f"contacts/{part}"))
-        cracks = within(memory, "cracks")
+        cracks, uniformity = within(memory, "cracks"), within(memory, "uniformity")
         return cls(
             start=Start(among(memory["displacement"], scene), contacts, bool(memory["has_history"])),
             steps=int(memory["steps"]),
@@ -70,7 +72,7 @@ class Settled:
             mean_residual=float(memory["mean_residual"]),
             stress=memory["stress"].copy(),
             cracks=Cracks(**{field.name: cracks[field.name] for field in fields(Cracks)}),
-            tractions=memory["tractions"].copy() if memory["tractions"].size else None,
+            uniformity=Uniformity.recalled(uniformity) if uniformity else None,
         )
 
 

@@ -11,12 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
+from dembound.disks.block_stress import Uniformity, block_stress
+from dembound.disks.loading import Loading
 from dembound.disks.scene import DiskScene, column_alone
 from dembound.disks.settled import Settled, among
 from dembound.disks.stability import step_limit
 from dembound.disks.static_scene import StaticScene
 from dembound.disks.system import DiskSystem, Start
-from dembound.disks.tractions import mean_stress
 from dembound.disks.until_at_rest import UntilAtRest
 from dembound.motion.kind import OnLook
 from dembound.motion.simulation import Simulation
@@ -41,7 +42,7 @@ def settle(scene: DiskScene, on_look: OnLook | None = None, stages: Stages | Non
     if scene.before is not None:
         before = _settle_built(scene.before, _Stage("before", "before the excavation the static stage", on_look, kept))
         stage = _Stage("body", "the static stage", on_look, kept)
-        excavated = _settle(scene, lambda: _excavate(scene, before.start), stage, tractions=before.tractions)
+        excavated = _settle(scene, lambda: _excavate(scene, before.start), stage)
         return replace(excavated, before=before)
     return _settle_built(scene, _Stage("body", "the static stage", on_look, kept))
 
@@ -99,31 +100,33 @@ def _beside(scene: DiskScene, column: Start) -> Start:
     return Start(displacement, contacts, column.has_history)
 
 
-def _settle(
-    scene: DiskScene, starting: Callable[[], Start | None], stage: _Stage, tractions: np.ndarray | None = None
-) -> Settled:
+def _settle(scene: DiskScene, starting: Callable[[], Start | None], stage: _Stage) -> Settled:
     """One stage to rest, unless it is kept.
 
-    starting : returns its start, None for the scene as built. tractions : (3,) Pa, if they have been corrected.
+    starting : returns its start, None for the scene as built.
     """
     if (kept := stage.stages.finished(stage.key)) is not None:
         with understood(Path(f"{stage.key}.npz")):
             return Settled.recalled(scene, kept)
     static, start = scene.case.static, starting()
     assert static is not None
-    body = StaticScene(scene, static, tractions)
+    body = StaticScene(scene, static)
     step = SAFETY * step_limit(body.scene, damp=static.damp)
-    datum = np.zeros((3, body.scene.count))
+    none = np.zeros((3, body.scene.count))
+    datum = none
     if start is not None:
         start = replace(start, displacement=among(start.displacement, body.scene))
         datum = start.displacement
-    system = DiskSystem(body.scene, step, start, settling=True, load=body.load(datum))
+    load = body.load(datum if start is not None and start.has_history else none)
+    system = DiskSystem(body.scene, step, start, settling=True, load=load)
     simulation = Simulation(body.scene, step, system=system, datum=datum, damp=static.damp)
-    rest = UntilAtRest(body, system, stage.on_look, stage.name)
+    loading = Loading(body, system, datum, step)
+    rest = UntilAtRest(body, system, loading, stage.on_look, stage.name)
     simulation.track(rest)
     stage.stages.begin(stage.key, simulation)
     simulation.run(static.max_steps)
     displacement, forces = simulation.state.displacement, rest.forces
+    asked = None if static.stress is None else np.array(static.stress)
     unbalanced = np.hypot(*(forces + body.scene.steady_load)[:2, : scene.disk_count])
     held = body.held
     settled = Settled(
@@ -132,9 +135,9 @@ def _settle(
         ratio=rest.ratio,
         mean_reaction=float(unbalanced[held].mean()) if held.any() else 0.0,
         mean_residual=float(unbalanced[~held].mean()) if not held.all() else 0.0,
-        stress=mean_stress(scene, system.stress(displacement)),
+        stress=block_stress(scene, system, displacement).mean(axis=(0, 1)),
+        uniformity=None if asked is None else Uniformity.of(scene, system, displacement, asked),
         cracks=rest.take_cracks(),
-        tractions=body.applied,
     )
     stage.stages.finish(stage.key, settled.memory())
     return settled

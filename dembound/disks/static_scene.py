@@ -10,14 +10,14 @@ from dembound.casefile.disks.static import Static
 from dembound.disks.contacts import ContactList
 from dembound.disks.scene import DiskScene, boundary_medium
 from dembound.disks.system import DiskSystem
-from dembound.disks.tractions import Tractions, mean_stress
+from dembound.disks.tractions import Tractions
 from dembound.motion.state import State
 
 
 class StaticScene:
     """A scene under its static supports and tractions."""
 
-    def __init__(self, scene: DiskScene, static: Static, tractions: np.ndarray | None) -> None:
+    def __init__(self, scene: DiskScene, static: Static) -> None:
         case = scene.case
         builder = SupportBuilder(held=scene.ground.held)
         free_field = {side: table for side, table in case.boundary.items() if table.needs_column}
@@ -26,19 +26,17 @@ class StaticScene:
                 edge = scene.edges[side]
                 table.support(edge, boundary_medium(case, scene.ground, edge.axis), case.wave, builder)
         self.static = static
-        self._tractions = None if static.stress is None else Tractions(scene, static.stress, tractions)
+        self._tractions = None if static.stress is None else Tractions(scene, static.stress)
         self.scene = without_own_continua(scene)
         for each in self.scene.continua:
             each.support(builder)
         self.scene = replace(self.scene, supports=builder.table())
         self.held = np.zeros(scene.disk_count, dtype=bool)
-        for edge in scene.edges.values():
-            self.held[edge.nodes] = static.stress is not None
+        if self._tractions is not None:
+            self.held[self._tractions.nodes] = True
         supports: Supports = self.scene.supports
         self.held[_of_disks(supports, scene.disk_count)] = True  # dashpots have no force at rest
         self._floats = len(supports) == 0
-        held = bool((scene.free[:2] == 0.0).any())
-        self._by_tractions_alone = self._floats and not held and not scene.steady_load.any()
         self._moves = np.repeat(scene.free[:2, None] > 0.0, scene.disk_count, axis=1)
         across = (supports.component < 2) & supports.prescribed
         self._moves[supports.component[across], supports.node[across]] = False
@@ -46,36 +44,6 @@ class StaticScene:
     def load(self, displacement: np.ndarray) -> np.ndarray:
         """All steady forces (3, n) N and N·m at displacements (3, n)."""
         return self.scene.steady_load + (0.0 if self._tractions is None else self._tractions.forces(displacement))
-
-    @property
-    def applied(self) -> np.ndarray | None:
-        """The stress (3,) Pa of the tractions, if the stage has a target stress."""
-        return None if self._tractions is None else self._tractions.applied
-
-    @property
-    def corrections_left(self) -> int:
-        """How often the tractions may still be corrected."""
-        return 0 if self._tractions is None else self._tractions.corrections_left
-
-    def go_on_with(self, applied: np.ndarray, corrections_left: int) -> None:
-        """Take tractions (3,) Pa that have been corrected in another run of the same case."""
-        assert self._tractions is not None
-        self._tractions.applied, self._tractions.corrections_left = applied.copy(), corrections_left
-
-    def correct(self, system: DiskSystem, state: State) -> bool:
-        """Correct the tractions of a body at rest by the error of the stress inside; returns whether there was one.
-
-        Nothing is corrected if there are steady loads, whose stress adds to the target stress, or supports, which carry
-        a part of it.
-        """
-        if self._tractions is None or not self._by_tractions_alone:
-            return False
-        return self._tractions.correct(mean_stress(self.scene, system.stress(state.displacement)))
-
-    def turn_tractions(self, system: DiskSystem, state: State) -> None:
-        """Rotate the tractions with the sides, and apply corrections."""
-        if self._tractions is not None:
-            system.apply(self.load(state.displacement))
 
     def keep_from_turning(self, state: State) -> None:
         """Stop the rigid motion of a body that is not held, as no force would bring it to rest."""

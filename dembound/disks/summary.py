@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from dembound.disks.block_stress import Uniformity
 from dembound.disks.load_factor import load_factor_of
 from dembound.disks.near_ties import OPENED
 from dembound.disks.scene import DiskScene, boundary_medium
@@ -40,7 +41,9 @@ def asked_stress(scene: DiskScene) -> list[float] | None:
 def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, Any]:
     """The static stage: steps, force ratio, mean reaction of supports and tractions and mean residual (N), stress (Pa).
 
-    Also the same for the free-field column alone, if there is one, and before an excavation, if there was one.
+    Also whether it ended under the elastic law, how far the stress in blocks is from the one asked for, and the same
+    for the free-field column alone, if there is one, and before an excavation, if there was one. asked : target stress,
+    Pa.
     """
     return {
         "steps": settled.steps,
@@ -49,9 +52,23 @@ def describe_static(settled: Settled, asked: list[float] | None) -> dict[str, An
         "mean_residual": settled.mean_residual,
         "stress": settled.stress.tolist(),
         "asked": asked,
+        "uniformity": None if settled.uniformity is None else _describe_uniformity(settled.uniformity),
+        "elastic": not settled.start.has_history,
         "cracks": len(settled.cracks),
         "column": None if settled.column is None else describe_static(settled.column, None),
         "before": None if settled.before is None else describe_static(settled.before, asked),
+    }
+
+
+def _describe_uniformity(found: Uniformity) -> dict[str, Any]:
+    """How far the stress in blocks is from the one asked for, see `Uniformity`."""
+    return {
+        "block": found.block.tolist(),
+        "deviation": found.deviation,
+        "place": found.place.tolist(),
+        "packing": found.packing,
+        "beyond": found.beyond,
+        "near_holes": None if np.isnan(found.near_holes) else found.near_holes,
     }
 
 

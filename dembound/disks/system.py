@@ -84,6 +84,8 @@ class DiskSystem(System):
             for (name, nodes), rows in zip(scene.parts.items(), scene.rows, strict=True)
         ]  # fmt: skip
         ties = [] if scene.seam is None else [FreeFieldSeam(scene.seam, parts[0])]
+        for part in parts:
+            part.watches = not settling
         self.disk_parts, self._seams = tuple(parts), tuple(ties)
         super().__init__(
             [*parts, *grids(scene, time_step)], [*walls(scene), *ties], scene.steady_load if load is None else load
@@ -125,15 +127,16 @@ class DiskSystem(System):
             steady = self.load
         if steady.any():
             self.steady = steady.copy()
-        if has_history or (scene.has_history and (through or not scene.case.material.elastic_start)):
-            self._switch(state, fresh=not has_history)
+        at_once = through or not (self._settling or scene.case.material.elastic_start)
+        if has_history or (scene.has_history and at_once):
+            self.switch(state, fresh=not has_history)
         else:
             super().begin(state)
 
     def react(self, why: int, steps: int, state: State) -> None:
         """Change the law if contacts are about to leave the elastic range; end the forces on broken-off pieces."""
         if why == LAW_ENDS:
-            self._switch(state)
+            self.switch(state)
         elif self.balance is not None and self.uses_history and why in (BROKE, LIST_ENDS):
             self.balance.end_on_debris(
                 self.disk_parts, state.displacement, state.velocity, self._time_step, self.steady
@@ -288,7 +291,7 @@ class DiskSystem(System):
         """Balance forces (3, n) from now on."""
         self.balance = Balance(self.scene, force, self.load, datum, self._across(self.contacts))
 
-    def _switch(self, state: State, fresh: bool = True) -> None:
+    def switch(self, state: State, fresh: bool = True) -> None:
         """Use the history-dependent law from now on; fresh: without any history yet."""
         before = self._potential(state) if state.laws else None
         if fresh and self._is_updated and turns_freely(self.scene):

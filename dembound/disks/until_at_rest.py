@@ -3,30 +3,32 @@
 import numpy as np
 
 from dembound.casefile.disks.static import Static
+from dembound.disks.loading import LOOK, Loading
 from dembound.disks.static_scene import StaticScene
 from dembound.disks.system import DiskSystem
 from dembound.motion.cracks import Cracks, joined
 from dembound.motion.kind import OnLook, StalledError
-from dembound.motion.state import Arrays
+from dembound.motion.state import Arrays, State
 from dembound.motion.trackers import Run, Tracker
-
-LOOK = 100
-"""Steps between two evaluations of the force ratio."""
 
 PATIENCE = 20_000
 """Steps after which a stage has stalled if the force ratio has not decreased by a tenth."""
+
+ELASTIC_PATIENCE = 5_000
+"""Steps after which a body without such a decrease leaves the elastic law."""
 
 WORST = 3
 """Number of particles in the message about a stalled stage."""
 
 
 class UntilAtRest(Tracker):
-    """Ends a static stage that is at rest or has stalled; until then it rotates the loads with the body.
+    """Ends a static stage that is at rest or has stalled; until then it puts the loads on.
 
     Parameters
     ----------
     body : the scene that settles.
     system : its parts.
+    loading : puts its loads on.
     on_look : gets the steps done and the force ratio from time to time.
     stage : its name in messages.
 
@@ -38,9 +40,12 @@ class UntilAtRest(Tracker):
 
     name = "until at rest"
 
-    def __init__(self, body: StaticScene, system: DiskSystem, on_look: OnLook | None, stage: str) -> None:
+    def __init__(
+        self, body: StaticScene, system: DiskSystem, loading: Loading, on_look: OnLook | None, stage: str
+    ) -> None:
         self.ratio, self.forces = np.inf, np.zeros((3, 0))
-        self._body, self._system, self._on_look, self._stage = body, system, on_look, stage
+        self._body, self._system, self._loading = body, system, loading
+        self._on_look, self._stage = on_look, stage
         self._best, self._best_at = np.inf, 0
         # a law without history has no list of pairs, but their forces are needed too
         self._contacts = system.contacts or body.scene.contact_lists()
@@ -51,38 +56,48 @@ class UntilAtRest(Tracker):
 
     def handle(self, run: Run) -> None:
         """Evaluate the force ratio; raise StalledError if it no longer decreases or the steps exceed the maximum."""
-        body, static, system, state = self._body, self._body.static, self._system, run.state
-        body.keep_from_turning(state)
+        state, static, loading = run.state, self._body.static, self._loading
+        self._body.keep_from_turning(state)
         self.forces = self._contact_forces(state.displacement)
-        self.ratio = body.force_ratio(system, self.forces, self._contacts)
+        self.ratio = self._body.force_ratio(self._system, self.forces, self._contacts)
         if self._on_look is not None:
             self._on_look(state.step, self.ratio)
-        if self.ratio <= static.ratio:
-            if not body.correct(system, state):
+        if loading.is_rising(state.step):
+            self._begin_anew(state)
+        elif self.ratio <= static.ratio:
+            if loading.is_the_answer(state):
                 run.stopped = True
                 return
-            self._best, self._best_at = np.inf, state.step
+            self._begin_anew(state)
         elif self.ratio < 0.9 * self._best:
             self._best, self._best_at = self.ratio, state.step
+        elif state.step - self._best_at >= ELASTIC_PATIENCE and loading.give_up_elastic_law(state):
+            self._begin_anew(state)
         if state.step - self._best_at >= PATIENCE or state.step >= static.max_steps:
-            lacking, cracks = body.unbalanced(system, self.forces), self.take_cracks()
-            message = f"{self._stage} {_where_it_ended(static, run, self.ratio, lacking, cracks)}"
-            raise StalledError(message, run, lacking.T, cracks)
-        body.turn_tractions(system, state)
+            self._fail(run)
+        loading.put_on(state)
         self._look_after(state.step)
 
+    def _begin_anew(self, state: State) -> None:
+        """Forget the progress so far, as the loads or the law have changed."""
+        self._best, self._best_at = np.inf, state.step
+
+    def _fail(self, run: Run) -> None:
+        """Raise StalledError."""
+        lacking, cracks = self._body.unbalanced(self._system, self.forces), self.take_cracks()
+        message = f"{self._stage} {_where_it_ended(self._body.static, run, self.ratio, lacking, cracks)}"
+        raise StalledError(message, run, lacking.T, cracks)
+
     def memory(self) -> Arrays:
-        """The next step of evaluation, the force ratio and step of the last progress, and the tractions."""
-        applied = np.zeros(0) if self._body.applied is None else self._body.applied
+        """The next step of evaluation, the force ratio and step of the last progress, and the loads."""
         best = {"best": np.array(self._best), "best_at": np.array(self._best_at)}
-        return {**super().memory(), **best, "tractions": applied, "corrections": np.array(self._body.corrections_left)}
+        return {**super().memory(), **best, **self._loading.memory()}
 
     def recall(self, memory: Arrays) -> None:
         """Take over what `memory` has returned in another run of the same case."""
         super().recall(memory)
         self._best, self._best_at = float(memory["best"]), int(memory["best_at"])
-        if memory["tractions"].size:
-            self._body.go_on_with(memory["tractions"], int(memory["corrections"]))
+        self._loading.recall(memory)
 
     def take_cracks(self) -> Cracks:
         """The bonds that broke since this was last called."""

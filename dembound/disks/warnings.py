@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from dembound.boundaries import SIDES
+from dembound.casefile.disks import DiskCase
 from dembound.casefile.disks.load import Load
 from dembound.casefile.disks.material import with_history
 from dembound.casefile.magnitudes import stress_in_words
@@ -16,6 +17,8 @@ from dembound.casefile.unlikely import unlikely_in
 from dembound.disks.continuum_facts import continuum_warnings
 from dembound.disks.load_factor import load_factor_in_words
 from dembound.disks.near_ties import near_tie_warnings
+from dembound.disks.outcome import SHOWN, block_in_words
+from dembound.disks.packing_errors import in_percent
 from dembound.disks.scene import DiskScene
 from dembound.disks.side_warnings import side_warnings
 from dembound.disks.wave_front import slowest_speed
@@ -33,6 +36,9 @@ times that (three bricks, radius ratio 1.5).
 
 SPEED_ERROR = 0.1
 """Share by which the P-wave speed of the packing may differ from the given one without a warning."""
+
+UNEVEN = 0.01
+"""Share of the largest principal stress asked for by which a block may differ from it without a warning."""
 
 AT_REST = 1e-14
 """Velocity over that of waves, so strain, below which the motion of a settled body is rounding.
@@ -156,7 +162,35 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
         cracks = cracks_until(file, np.inf)
         at_rest = 0.0 if scene.case.static is None else AT_REST * slowest_speed(scene.ground)
         moving = still_moving(scene, summary["duration"], file, _pieces(scene, cracks["particles"]), at_rest)
-        return [*moving, *_not_elastic(summary.get("load_factor")), *near_tie_warnings(scene, summary, cracks)]
+        factor = _not_elastic(summary.get("load_factor"))
+        return [*_uneven(scene.case, summary["static"]), *moving, *factor, *near_tie_warnings(scene, summary, cracks)]
+
+
+def _uneven(case: DiskCase, static: Mapping[str, Any] | None) -> Iterator[str]:
+    """A stress asked for that blocks differ from; beside holes and under steady loads they should.
+
+    static : of the summary.
+    """
+    stages = [] if static is None else [static, static["before"]]
+    steady = any(load.wave is None for load in case.load)
+    for found in (each["uniformity"] for each in stages if each is not None):
+        if found is None or steady or found["near_holes"] is not None or found["deviation"] <= UNEVEN:
+            continue
+        x, y = found["place"]
+        yield (
+            f"static.stress: in {block_in_words(found)} the stress differs by up to {in_percent(found['deviation'])} "
+            f"of the largest principal stress asked for, most at ({x:.4g}, {y:.4g}) m; {_whence(found)}"
+        )
+
+
+def _whence(found: Mapping[str, Any]) -> str:
+    """What makes blocks differ, in words."""
+    if found["packing"] < SHOWN:
+        return "sides that are held, contacts that slid or opened, or too large a static.ratio"
+    return (
+        f"the endless elastic packing has {in_percent(found['packing'])} by itself, less in larger blocks, "
+        f"and the body differs by {in_percent(found['beyond'])} from that packing"
+    )
 
 
 def _not_elastic(found: Mapping[str, Any] | None) -> Iterator[str]:

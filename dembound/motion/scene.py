@@ -105,6 +105,11 @@ class Scene(ABC):
         """(3, n) forces and moments (N, N·m) of the loads without a wave."""
 
     @property
+    def forces_by_side(self) -> Mapping[str, tuple[np.ndarray, np.ndarray]]:
+        """Nodes (k,) and forces (2, k) N by which each side holds a body at rest, by side; empty where not known."""
+        return {}
+
+    @property
     @abstractmethod
     def threads(self) -> int:
         """Threads its steps use."""

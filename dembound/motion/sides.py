@@ -7,7 +7,7 @@ displacements have the other sign.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -87,7 +87,7 @@ class NodeSides:
         self._origin: tuple[np.ndarray, np.ndarray] | None = None
         for edge in self._sides.values():
             self._members.append(self._mean(edge))
-        self._bearers = _bearers(list(self._sides.values()))
+        self._bearers = _bearers(list(self._sides.values()), whole.forces_by_side)
         batches = list(self._batches())
         self._springs = [batch for batch in batches if batch.kind == kinds.SPRING]
         self._table = self._laid_out(batches)
@@ -257,12 +257,15 @@ def _has_loads(scene: Scene) -> bool:
     return bool(len(scene.supports.drive_row) > of_sides)
 
 
-def _bearers(edges: list[Edge]) -> list[tuple[np.ndarray, np.ndarray]]:
+def _bearers(
+    edges: list[Edge], known: Mapping[str, tuple[np.ndarray, np.ndarray]]
+) -> list[tuple[np.ndarray, np.ndarray]]:
     """Of each side nodes (q,) and the shares (2, q) of the steady forces on them, along x and y, that belong to it.
 
     The force on a node of several sides is the sum of what each side would exert with the mean traction of its other
     nodes, which are on no other side, and of a rest, which belongs to the side along whose normal it is. Under a
-    uniform stress there is no rest.
+    uniform stress there is no rest. known : by side, nodes (k,) and forces (2, k) N on them, in the proportion of which
+    sides share nodes; empty where they are not known.
     """
     node = np.unique(np.concatenate([np.zeros(0, np.int64), *(edge.nodes for edge in edges)]))
     on = np.array([np.isin(node, edge.nodes) for edge in edges]).reshape(len(edges), len(node))
@@ -272,13 +275,26 @@ def _bearers(edges: list[Edge]) -> list[tuple[np.ndarray, np.ndarray]]:
     alone = on & (on.sum(axis=0) == 1)
     traction = alone / np.maximum((alone * diameter).sum(axis=1), np.finfo(float).tiny)[:, None]
     share = np.stack([_of_rest(on, np.array([edge.axis == axis for edge in edges])) for axis in range(2)], axis=1)
-    for sides in np.unique(on[:, on.sum(axis=0) > 1], axis=1).T:
+    if known:
+        share = _in_proportion(share, [known[edge.side] for edge in edges], node)
+    shared = on[:, (on.sum(axis=0) > 1) & (not known)]
+    for sides in np.unique(shared, axis=1).T:
         width = diameter[(on == sides[:, None]).all(axis=0)].sum()
         if alone[sides].any(axis=1).all():
             for axis in range(2):
                 rest = _of_rest(sides[:, None], np.array([edge.axis == axis for edge in edges]))
                 share[:, axis] += width * (sides[:, None] * traction - rest * traction[sides].sum(axis=0))
     return [(node[(of != 0.0).any(axis=0)], of[:, (of != 0.0).any(axis=0)]) for of in share]
+
+
+def _in_proportion(share: np.ndarray, known: list[tuple[np.ndarray, np.ndarray]], node: np.ndarray) -> np.ndarray:
+    """Shares (s, 2, q) of nodes (q,) in proportion to the known forces of sides; as they are where there are none."""
+    forces = np.zeros_like(share)
+    for row, (nodes, force) in zip(forces, known, strict=True):
+        row[:, np.searchsorted(node, nodes)] = force
+    total = forces.sum(axis=0)
+    parts: np.ndarray = np.divide(forces, total, out=share.copy(), where=total != 0.0)
+    return parts
 
 
 def _of_rest(on: np.ndarray, across: np.ndarray) -> np.ndarray:

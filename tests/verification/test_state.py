@@ -148,4 +148,4 @@ def test_a_static_stage_taken_back_settles_to_the_same_bits(name: str, monkeypat
 
     assert whole.steps == again.steps > 480
     assert whole.start.displacement.tobytes() == again.start.displacement.tobytes()
-    assert (whole.ratio, whole.tractions.tobytes()) == (again.ratio, again.tractions.tobytes())
+    assert (whole.ratio, whole.stress.tobytes()) == (again.ratio, again.stress.tobytes())

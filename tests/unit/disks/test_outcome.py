@@ -43,9 +43,13 @@ def test_only_what_applies_is_told() -> None:
     ]
     excavated = {"static": settled | {"cracks": 24, "before": settled | {"cracks": 3}}}  # of which some are dug away
     assert disk_outcome(elastic | quiet | at_rest | excavated)[-1] == "24 bonds broke in all (20 tension, 4 shear)"
-    pressed = {"static": settled | {"asked": [-1e6, -2e6, 0.0], "stress": [-0.5e6, -2e6, 1e-3]}}
-    assert disk_outcome(elastic | pressed) == [
-        f"{stage} and a stress of (-0.5, -2, 0) where (-1, -2, 0) MPa was asked for"
+    even = {"block": [5.0, 6.25], "deviation": 0.0123, "packing": 1e-6, "beyond": 0.0123, "near_holes": None}
+    pressed = settled | {"asked": [-1e6, -2e6, 0.0], "stress": [-0.5e6, -2e6, 1e-3], "uniformity": even}
+    reached = f"{stage} and a stress of (-0.5, -2, 0) where (-1, -2, 0) MPa was asked for, to 1.2 % in blocks of"
+    assert disk_outcome(elastic | {"static": pressed}) == [f"{reached} 5 m × 6.25 m"]
+    uneven = even | {"packing": 0.02, "beyond": 0.004, "near_holes": 0.8}
+    assert disk_outcome(elastic | {"static": pressed | {"uniformity": uneven}}) == [
+        f"{reached} 5 m × 6.25 m, to 0.4 % beside what the packing has by itself, 80 % beside holes"
     ]
     excavated = {"static": settled | {"steps": 900, "before": settled}}
     assert disk_outcome(elastic | excavated) == [

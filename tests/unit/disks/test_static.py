@@ -4,15 +4,13 @@ import numpy as np
 import pytest
 from settling import FIXED, MASS, STANDING, WEIGHT, WRAP, G, scene
 
+from dembound.disks.loading import LOOK
 from dembound.disks.scene import DiskScene, column_alone
 from dembound.disks.stability import choose_step
 from dembound.disks.static import settle
-from dembound.disks.stress import particle_stress
 from dembound.disks.system import DiskSystem
-from dembound.disks.tractions import CLOSE, mean_stress
-from dembound.disks.until_at_rest import LOOK
 from dembound.errors import CaseError
-from dembound.kernels.contacts import TENSION, UPDATED
+from dembound.kernels.contacts import TENSION
 from dembound.motion.simulation import Simulation
 
 K = 2500.0 * 1000.0**2
@@ -64,23 +62,12 @@ def test_the_stress_asked_for_is_reached(bar, law: str, stress: tuple[float, flo
     static = {"ratio": 1e-8, "stress": stress}
     settled = settle(scene(bar, static=static, **{"packing.size": [8.0, 8.0], "material.law": law}))
 
-    # tractions are corrected until it is there
-    np.testing.assert_allclose(settled.stress, stress, rtol=0.0, atol=CLOSE * 2e6)
+    # 1e-8 of the contact forces, sixteen disks wide; with moved normals a strain of 8e-4 more
+    np.testing.assert_allclose(
+        settled.stress, stress, rtol=0.0, atol=1e-3 * 2e6 if law == "linearpbond" else 1e-6 * 2e6
+    )
     # nobody is held: the outer disks carry the tractions
     assert settled.mean_residual < 1e-6 * settled.mean_reaction
-
-
-def test_mean_stress_is_that_of_the_contacts_inside(bar) -> None:
-    nothing = {"stress": [0.0, 0.0, 0.0]}
-    body = scene(bar, static=nothing, **{"packing.size": [8.0, 8.0], "material.law": "linearpbond"})
-    contacts = body.contact_lists()["body"]
-    # one force on the first disk of all pairs along x, another along y
-    pairs = contacts.arrays
-    pairs.force[:2] = np.where(np.abs(pairs.constants[pairs.contact_type, 0]) > 0.0, [[3.0], [4.0]], [[5.0], [6.0]])
-    stress = mean_stress(body, particle_stress(body, pairs, np.zeros((3, 256)), UPDATED))
-
-    # f ⊗ d / D² with d = (D, 0) or (0, D), the shear the mean of both
-    np.testing.assert_allclose(stress, [3.0 / 0.5, 6.0 / 0.5, 0.5 * (4.0 + 5.0) / 0.5], rtol=1e-13)
 
 
 def test_a_settled_body_has_left_its_forces_behind(bar) -> None:
@@ -300,15 +287,3 @@ def test_with_an_excavation_the_column_is_that_of_before(bar, law: dict) -> None
     if law:  # the column has lost nothing, the body some
         assert np.array_equal(after["column"].of("first"), before["column"].of("first"))
         assert len(after["body"].live) < len(before["body"].live)
-
-
-def test_where_a_direction_is_held_tractions_are_not_corrected(bar) -> None:
-    asked = [-3e6, -2e6, 0.0]
-    static = {"ratio": 1e-6, "stress": asked}
-    body = scene(bar, static=static, **{"packing.size": [8.0, 8.0], "motion.held": ["y"]})
-    settled = settle(body)
-
-    # what is held bears stress of its own: what lacks inside is no fault of the tractions
-    assert settled.tractions is not None
-    assert settled.tractions.tolist() == asked
-    assert abs(settled.stress[1] - asked[1]) > CLOSE * abs(asked[0])

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from dembound.disks import contact_forces as module
+from dembound.disks.block_stress import block_stress
 from dembound.disks.contact_arrays import plain_contacts
 from dembound.disks.scene import DiskScene, build
 from dembound.disks.stability import choose_step
 from dembound.disks.static import settle
 from dembound.disks.stress import particle_stress
 from dembound.disks.system import DiskSystem
-from dembound.disks.tractions import mean_stress
 from dembound.kernels.contacts import REFERENCE, UPDATED
 from dembound.motion.simulation import Simulation
 
@@ -55,9 +55,6 @@ def test_half_cells_answer_as_whole_ones_do(bar) -> None:
     kept = (x < 3.5) & (y < 3.5)  # right and top are whole cells with one contact less
     # rounding as above
     np.testing.assert_allclose(stress[kept, :2], np.tile([K * xx, K * yy], (kept.sum(), 1)), atol=1e-14 * K * abs(yy))
-    # a scene this small is averaged whole, disks of one size by what they have of their cells
-    mean = mean_stress(scene, np.repeat(scene.cell_fraction[:, None], 3, axis=1))
-    np.testing.assert_allclose(mean, (scene.cell_fraction**2).sum() / scene.cell_fraction.sum(), rtol=1e-12)
 
 
 @pytest.mark.parametrize("piece", [100, module.PIECE])
@@ -98,34 +95,10 @@ def test_a_run_after_a_static_stage_begins_with_its_stress(bar, law: str) -> Non
     step, start = choose_step(scene)[0], settled.start
     system = DiskSystem(scene, step, start)
     simulation = Simulation(scene, step, system=system, datum=start.displacement)
-    stress = system.stress(simulation.state.displacement)
+    stress = block_stress(scene, system, simulation.state.displacement)
 
-    inner = ((scene.assembly.positions > 2.0) & (scene.assembly.positions < 4.0)).all(axis=1)
     # summation in another order
-    np.testing.assert_allclose(stress[inner].mean(axis=0), settled.stress, rtol=0.0, atol=1e-12 * 2e6)
-
-
-def test_the_mean_is_that_over_the_area_of_the_particles_inside(bar) -> None:
-    scene = build(bar({**BODY, "packing": {**RANDOM, "size": [10.0, 5.0]}}))
-    stress = np.random.default_rng(5).normal(size=(scene.count, 3))
-
-    # four mean diameters from the sides
-    rim = 4.0 * scene.ground.brick.mean_diameter
-    inner = ((scene.assembly.positions > rim) & (scene.assembly.positions < [10.0 - rim, 5.0 - rim])).all(axis=1)
-    area = scene.assembly.radii[inner, None] ** 2
-    assert np.count_nonzero(inner) > 10
-    np.testing.assert_allclose(mean_stress(scene, stress), (area * stress[inner]).sum(axis=0) / area.sum(), rtol=1e-12)
-
-
-def test_a_hole_that_takes_no_disk_away_leaves_the_mean_as_it_is(bar) -> None:
-    packing = {**RANDOM, "size": [8.0, 8.0], "brick": [4.0, 4.0]}
-    gap = {"name": "gap", "type": "circle", "centre": [4.0, 4.0], "radius": 0.01}
-    whole, with_gap = (build(bar({**BODY, "packing": packing, **hole})) for hole in ({}, {"hole": [gap]}))
-    assert with_gap.count == whole.count
-    stress = np.random.default_rng(5).normal(size=(whole.count, 3))
-
-    # the disks that stand within the rim have 0.2 % more than its area, which is no stress
-    np.testing.assert_allclose(mean_stress(with_gap, stress), mean_stress(whole, stress), rtol=1e-12)
+    np.testing.assert_allclose(stress.mean(axis=(0, 1)), settled.stress, rtol=0.0, atol=1e-12 * 2e6)
 
 
 def test_to_look_changes_nothing(bar) -> None:

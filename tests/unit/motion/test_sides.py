@@ -14,9 +14,9 @@ def edge(side: str, nodes: list[int], diameters: list[float]) -> Edge:
     return Edge(side, np.array(nodes), np.zeros((len(nodes), 2)), np.array(diameters), sum(diameters))
 
 
-def borne(edges: list[Edge], force: np.ndarray) -> np.ndarray:
+def borne(edges: list[Edge], force: np.ndarray, known: dict | None = None) -> np.ndarray:
     """Forces (s, 2) of every side, of forces (2, n) on nodes."""
-    return np.array([(share * force[:, node]).sum(axis=1) for node, share in _bearers(edges)])
+    return np.array([(share * force[:, node]).sum(axis=1) for node, share in _bearers(edges, known or {})])
 
 
 LEFT, BOTTOM = edge("left", [0, 1, 2], [1.0, 2.0, 3.0]), edge("bottom", [2, 3, 4], [3.0, 1.0, 1.0])
@@ -34,6 +34,19 @@ def test_the_rest_at_a_corner_is_of_the_side_along_whose_normal_it_is() -> None:
     force = np.zeros((2, 5))
     force[:, 2] = [10.0, 20.0]
     np.testing.assert_allclose(borne([LEFT, BOTTOM], force), [[10.0, 0.0], [0.0, 20.0]], rtol=0.0, atol=1e-14)
+
+
+def test_known_forces_of_sides_are_taken_apart_as_they_were_put_together() -> None:
+    known = {
+        "left": (np.array([0, 2]), np.array([[1.0, 4.0], [0.0, -2.0]])),
+        "bottom": (np.array([2, 4]), np.array([[6.0, 0.0], [2.0, 7.0]])),
+    }
+    force = np.zeros((2, 5))
+    for nodes, each in known.values():
+        force[:, nodes] += each
+    force[:, 3] = [0.5, 0.25]  # of a node of one side alone
+    # where two forces cancel, here along y, what there is belongs to the side along whose normal it is
+    np.testing.assert_allclose(borne([LEFT, BOTTOM], force, known), [[5.0, 0.0], [6.5, 7.25]], rtol=1e-14)
 
 
 def test_two_opposite_sides_with_the_same_nodes_share_equally() -> None:

@@ -1,0 +1,57 @@
+"""Forces on sides: a body cut out of a packing under stress is at rest under them, whatever its pattern and sides."""
+
+import numpy as np
+import pytest
+
+from dembound.disks.scene import build
+from dembound.disks.side_forces import side_forces
+
+BODY = {"boundary": {}, "wave": {}, "monitor": [], "motion.held": []}
+RANDOM = {"pattern": "B", "size": [8.0, 4.0], "radius": 0.25, "radius_ratio": 1.5, "brick": [4.0, 4.0]}
+HALF = {"boundary": {side: {"type": "viscous", "half_mass": True} for side in ("bottom", "right")}}
+PATTERNS = {
+    "A": {"packing.size": [6.0, 4.0]},
+    "half cells": {"packing.size": [6.0, 4.0], **HALF},
+    "B": {"packing": RANDOM},
+    "C": {"packing": RANDOM | {"pattern": "C", "edge_radius": 0.25}},
+    "held rotation": {"packing": RANDOM, "motion.held": ["rotation"]},
+}
+STRESSES = [(-3e6, 0.0, 0.0), (0.0, 2e6, 0.0), (0.0, 0.0, 1e6)]
+
+
+@pytest.mark.parametrize("stress", STRESSES)
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_an_elastic_body_rests_where_its_packing_does(bar, pattern: str, stress: tuple) -> None:
+    """All displacements are those of the endless packing: a mean gradient and the corrector of each disk."""
+    scene = build(bar({**BODY, **PATTERNS[pattern], "material.fric": 0.5}))
+    continuum = scene.ground.continuum
+    asked = np.array([stress[0], stress[1], stress[2], stress[2]])
+    gradient = np.linalg.lstsq(continuum.tensor, asked, rcond=1e-9)[0]
+    u = np.einsum("cng,g->cn", continuum.corrector, gradient)[:, scene.assembly.brick_particle]
+    x, y = scene.positions.T
+    xx, yy, xy, yx = gradient
+    u[:2] += np.stack([xx * x + xy * y, yx * x + yy * y])
+    force = scene.system(1e-5).elastic_forces(u)
+    for each in side_forces(scene).values():
+        force[:, each.node] += each.under(np.array(stress))
+    held = list(scene.ground.held)
+    force[held] = 0.0
+    # the solve for correctors, of some hundred unknowns, and k·u of displacements of strain × 8 m
+    assert np.abs(force).max() < 1e-9 * 3e6
+
+
+def test_a_locked_in_stress_is_a_part_of_the_one_given(bar) -> None:
+    """Under the stress as built the forces are those that contacts have without any displacement."""
+    law = {"material.law": "linearpbond", "material.locked_in": 3e6, "material.fric": 0.5, "static": {}}
+    scene = build(bar({**BODY, "packing": RANDOM, **law}))
+    contacts = scene.contact_lists()["body"]
+    contacts.push(np.zeros((3, scene.count)))
+    force = np.zeros((3, scene.count))
+    contacts.add_forces(force)
+    brick = scene.ground.brick
+    as_built = brick.stress * 3e6 / -(0.5 * brick.stress[:2].sum())
+    assert np.abs(force).max() > 1e5
+    for each in side_forces(scene).values():
+        force[:, each.node] += each.under(as_built)
+    # the brick is at rest to its own ratio
+    assert np.abs(force[:2]).max() < 20.0 * max(brick.residual_ratio, 1e-12) * 3e6
