@@ -78,8 +78,8 @@ def _edit(page: "_Page", place: Place, present: Any, wanted: Any) -> None:
 
 def _edit_list(page: "_Page", place: Place, present: Sequence[Any], wanted: Sequence[Any]) -> None:
     """The same for a list of tables: those of the same names are compared with each other."""
-    names = [[each.get("name", repr(each)) for each in tables] for tables in (present, wanted)]
-    steps = SequenceMatcher(None, *map(_hashable, names), autojunk=False).get_opcodes()
+    old, new = ([repr(each.get("name", each)) for each in tables] for tables in (present, wanted))
+    steps = SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
     for _, begin, end, first, last in reversed(steps):  # from the last, as numbers of earlier ones remain
         shared = min(end - begin, last - first)
         for index in reversed(range(begin + shared, end)):
@@ -88,10 +88,6 @@ def _edit_list(page: "_Page", place: Place, present: Sequence[Any], wanted: Sequ
             page.insert(place, begin + index - first, wanted[index])
         for index in range(shared):
             _edit(page, (*place, begin + index), present[begin + index], wanted[first + index])
-
-
-def _hashable(names: Sequence[Any]) -> list[str]:
-    return [repr(name) for name in names]
 
 
 def _are_tables(value: Any) -> bool:
