@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import numpy as np
-
 from dembound.errors import CaseError, RecordError
 from dembound.plot.energy import plot_energy
 from dembound.plot.field import evenly_chosen
