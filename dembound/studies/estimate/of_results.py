@@ -20,6 +20,7 @@ from dembound.motion.clock import Clock
 from dembound.results.datasets import describe, write
 from dembound.results.estimates import FILE, KEY
 from dembound.results.histories import FREE_FIELD
+from dembound.results.named import Named
 from dembound.results.reader import history_of, open_record, replacing, require_run
 from dembound.running.recorded import recorded_case
 from dembound.studies.estimate.causes import Causes, Recorded
@@ -72,7 +73,7 @@ def _estimated(folder: Path, budget: float | None, second_seed: bool) -> tuple[E
         from dembound.studies.estimate.packing import cause_of_packing
 
         causes += cause_of_packing(case, recorded, work)
-    found = Estimate(recorded, causes + Causes([], broken, list(_law(case, summary))))
+    found = Estimate(Named(recorded, "monitor"), causes + Causes([], broken, list(_law(case, summary))))
     return replace(found, causes=found.causes + Causes([], list(_at_rest(found)))), summary
 
 
