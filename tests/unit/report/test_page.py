@@ -254,7 +254,7 @@ def test_every_damaged_file_is_one_line(pushed_runs, spalled_results, tmp_path):
 
 def test_a_page_opens_with_the_wave_in_view_and_has_all_monitors(many_monitors, tmp_path):
     write_report([many_monitors], tmp_path / "page.html")
-    live = Page(tmp_path / "page.html").live
+    live = Page(tmp_path / "page.html").live()
     frames = live["frames-0"]
     with h5py.File(many_monitors) as file:
         motion = [np.square(group["velocity"][:, :2]).sum() for group in file["snapshots"].values()]
