@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         CaseError,
         DemboundError,
         Estimate,
+        NameMissingError,
         PackingError,
         Progress,
         RecordError,
@@ -40,6 +41,7 @@ __all__ = [
     "CaseError",
     "DemboundError",
     "Estimate",
+    "NameMissingError",
     "PackingError",
     "Progress",
     "RecordError",
@@ -55,6 +57,11 @@ __all__ = [
     "resume",
     "run",
 ]
+
+
+def __dir__() -> list[str]:
+    """The names of `api` and the version, also before `api` is imported."""
+    return sorted([*__all__, "__version__"])
 
 
 def __getattr__(name: str) -> Any:

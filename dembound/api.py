@@ -14,7 +14,7 @@ from dembound import kinds
 from dembound.casefile import Case
 from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
-from dembound.errors import CaseError, DemboundError, PackingError, RecordError, RunError
+from dembound.errors import CaseError, DemboundError, NameMissingError, PackingError, RecordError, RunError
 from dembound.results.results import Arrays, Results
 from dembound.running import Progress, resume_case, run_case
 from dembound.running.recorded import recorded_case
@@ -30,6 +30,7 @@ __all__ = [
     "CaseError",
     "DemboundError",
     "Estimate",
+    "NameMissingError",
     "PackingError",
     "Progress",
     "RecordError",

@@ -60,6 +60,12 @@ class CaseError(DemboundError):
         super().__init__("\n".join(self.problems))
 
 
+class NameMissingError(CaseError, KeyError):
+    """A name that results do not have; the message has those they have. Also a KeyError, as of any mapping."""
+
+    __str__ = Exception.__str__  # without the quotes of a KeyError
+
+
 class RecordError(CaseError):
     """A record of results that cannot be read, is damaged, or lacks what every record has."""
 

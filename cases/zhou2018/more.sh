@@ -6,13 +6,15 @@
 set -euo pipefail
 cases=$(cd "$(dirname "$0")" && pwd)
 results=${1:-results/zhou2018}
+mkdir -p "$results"
 
 result() { # FOLDER: the calibrated factor it holds
     python3 -c "import json, sys; print(json.load(open(sys.argv[1]))['result'])" "$results/$1/summary.json"
 }
 calibrate_and_run() { # CASE SIDE p|s: calibrate with few runs or none, then run calibrated
     for method in homogenised impedance; do
-        dembound calibrate "$cases/$1.toml" --boundary "$2" --wave "$3" --method $method --output "$results"
+        dembound calibrate "$cases/$1.toml" --boundary "$2" --wave "$3" --method $method --output "$results" \
+            --calibrated "$results/$1_calibrated_$method.toml"
     done
     dembound run "$cases/$1.toml" --name "$1_calibrated" --output "$results" --set output.snapshots=1 \
         --set "boundary.$2.beta_$3=$(result "$1_calibration_$2_$3_impedance")"
@@ -35,4 +37,5 @@ for beta in 0 1e4; do
 done
 
 echo "== The whole bar instead of a strip"
-dembound calibrate "$cases/long_bar_b.toml" --boundary right --full --name whole --output "$results"
+dembound calibrate "$cases/long_bar_b.toml" --boundary right --full --name whole --output "$results" \
+    --calibrated "$results/whole.toml"

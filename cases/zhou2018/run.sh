@@ -23,7 +23,8 @@ dembound plot "$results"/long_bar_{a,b,b_lambda2,c} --boundary right --output "$
 
 echo "== Figure 6: ratio iteration on pattern B from 0.5 and 2.0"
 for start in 0.5 2.0; do
-    dembound calibrate "$b" --boundary right --method ratio --start $start --name from_$start --output "$results"
+    dembound calibrate "$b" --boundary right --method ratio --start $start --name from_$start --output "$results" \
+        --calibrated "$results/from_$start.toml"
 done
 dembound plot "$results"/from_{0.5,2.0}_calibration_right_p_ratio --output "$figures/fig06_iteration.png"
 
@@ -49,9 +50,10 @@ echo "== Figure 13: ratio iteration from 1.0 on all patterns, and the two quicke
 records=()
 for case in "$a" "$b" "$b2" "$c"; do
     name=$(basename "$case" .toml)
-    dembound calibrate "$case" --boundary right --method ratio --start 1.0 --output "$results"
-    dembound calibrate "$case" --boundary right --method impedance --output "$results"
-    dembound calibrate "$case" --boundary right --method homogenised --output "$results"
+    for method in "ratio --start 1.0" impedance homogenised; do
+        dembound calibrate "$case" --boundary right --method $method --output "$results" \
+            --calibrated "$results/${name}_calibrated_${method%% *}.toml"
+    done
     records+=("$results/${name}_calibration_right_p_ratio")
 done
 dembound plot "${records[@]}" --output "$figures/fig13_patterns.png"

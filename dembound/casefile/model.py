@@ -12,12 +12,13 @@ from dembound.casefile.chart import Chart
 from dembound.casefile.output import Output
 from dembound.casefile.run import Run
 from dembound.casefile.sweep import Sweep
+from dembound.casefile.words import in_lines
 from dembound.errors import CaseError
 from dembound.table import as_toml, every_key
 from dembound.waves import Wave
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Case:
     """All tables of one case. Cases made by `schemas.load` and `schemas.loads` are checked.
 
@@ -56,6 +57,9 @@ class Case:
             text = tomli_w.dumps({name: table for name, table in given.items() if table not in (None, "", {}, [])})
             object.__setattr__(self, "text", text)
             object.__setattr__(self, "checked", None)
+
+    def __repr__(self) -> str:
+        return "\n".join(in_lines(self))
 
     @property
     def tables(self) -> dict[str, Any]:

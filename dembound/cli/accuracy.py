@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from decimal import Decimal
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -53,6 +54,12 @@ def bound_of(error: str | None, keep: Sequence[str] | None) -> float | None:
     if not 0.0 < bound < 1.0:
         raise CaseError([f"--error: is {error}, must be above 0 and below 1, such as 1% or 0.01"])
     return bound
+
+
+def name_within(name: str, bound: float) -> str:
+    """The name of the results of a case that is run within an error bound: ``bar_1pct``, ``bar_0_3pct``."""
+    percent = f"{Decimal(f'{100.0 * bound:.6g}'):f}"
+    return f"{name}_{percent.replace('.', '_')}pct"
 
 
 def chosen(case: Case, bound: float, keep: Sequence[str] | None, changes: Sequence[str] | None) -> Case:

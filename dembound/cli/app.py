@@ -144,7 +144,7 @@ def changed(case: Case, changes: list[str] | None, name: str | None) -> Case:
     from dembound.schemas import with_changes
 
     if changes:
-        case = with_changes(case, dict(_setting(text) for text in changes))
+        case = with_changes(case, settings_of(changes))
     if name is None:
         return case
     from dembound.results.folder import problem_of
@@ -161,6 +161,11 @@ def load_disks(path: Path, changes: list[str] | None, name: str | None = None) -
 
     case = load_case(path, changes, name)
     return as_kind(case, DiskCase, "is the case of a bar, this command is for disks", str(path))
+
+
+def settings_of(changes: Sequence[str] | None) -> dict[str, Any]:
+    """Keys and values of the options ``--set``."""
+    return dict(_setting(text) for text in changes or ())
 
 
 def _setting(text: str) -> tuple[str, Any]:

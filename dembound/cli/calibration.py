@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,11 +11,23 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.table import Table
 
-from dembound.cli.app import Name, Output, Settings, Side, Threads, app, load_disks, prepare_computing
+from dembound.cli.app import (
+    Name,
+    Output,
+    Settings,
+    Side,
+    Threads,
+    app,
+    load_disks,
+    prepare_computing,
+    settings_of,
+    writable,
+)
 from dembound.cli.console import out
 from dembound.errors import CaseError
 
 if TYPE_CHECKING:
+    from dembound.casefile.disks import DiskCase
     from dembound.studies.calibration import Calibration
 
 CALIBRATED = "_calibrated"
@@ -62,26 +75,41 @@ def calibrate_sides(
     tolerance: Annotated[float, typer.Option(help="Largest |M_out/M_in − 1| to accept.", min=1e-9)] = 1e-3,
     full: Annotated[bool, typer.Option("--full", help="Use the whole scene instead of a short strip.")] = False,
     output: Output = Path("results"),
+    calibrated: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Calibrated case to write; by default NAME_calibrated.toml beside the case.",
+            callback=writable,
+        ),
+    ] = None,
     changes: Settings = None,
     name: Name = None,
     threads: Threads = None,
 ) -> None:
     """Find the β with which viscous sides absorb, or transmit, a plane wave completely.
 
-    Prints β and M_out/M_in of every pass; writes the calibrated case, the passes in HDF5 and a picture of them.
+    Prints β and M_out/M_in of every pass; writes the passes in HDF5, a picture of them, and the case with β in place.
+
+    All other lines of the case remain. A calibrated case that differs in more than the β found is not replaced.
     """
-    from dembound.studies.all_sides import calibrate_all
+    from dembound.casefile.edit import edited
+    from dembound.studies.all_sides import calibrate_all, changes_of
     from dembound.studies.calibration import calibrate
 
     _one_or_all(boundary, every, wave)
     prepare_computing(threads)
     loaded = load_disks(case, changes, name)
     options: dict[str, Any] = {"method": method.value, "start": start, "tolerance": tolerance, "full": full}
-    folder = output / f"{loaded.name.removesuffix(CALIBRATED)}_calibration"
+    plain = loaded.name.removesuffix(CALIBRATED)
+    folder = output / f"{plain}_calibration"
+    target = calibrated or case.with_name(f"{plain}{CALIBRATED}.toml")
+    text = _text_for(target, case, loaded, changes)
+    _require_no_other(target, text, _factors(loaded, boundary, wave))
     if boundary is None:
         found = calibrate_all(loaded, report=_print_pass_of_side, **options)
         _print_table(found)
-        written = _leave_all(found, folder)
+        _leave_all(found, folder)
     else:
         one = calibrate(
             loaded,
@@ -91,9 +119,52 @@ def calibrate_sides(
             **options,
         )
         _print_result(one)
-        written = _leave(one, folder.with_name(f"{folder.name}_{one.side}_{one.motion}_{one.method}"))
-    for path in written:
-        out.print(f"wrote {path}")
+        found = [one]
+        _leave(one, folder.with_name(f"{folder.name}_{one.side}_{one.motion}_{one.method}"))
+    target.write_bytes(edited(text, changes_of(found)).encode())
+    out.print(f"wrote {target}")
+
+
+def _text_for(target: Path, path: Path, case: DiskCase, changes: list[str] | None) -> str:
+    """The text of a case file with the changes of ``--set``, for a file in the folder of another one.
+
+    case : that of the file, changed.
+    """
+    from dembound.casefile import to_toml
+    from dembound.casefile.edit import edited
+
+    text = edited(path.read_bytes().decode("utf-8-sig"), settings_of(changes))
+    return to_toml(replace(case, text=text), target.parent)
+
+
+def _factors(case: DiskCase, boundary: Side | None, wave: WaveType | None) -> list[str]:
+    """The keys of the factors that are calibrated."""
+    from dembound.studies.all_sides import factors_of
+    from dembound.studies.calibration import default_motion
+
+    if boundary is None:
+        return [f"boundary.{side}.beta_{motion}" for side, motion in factors_of(case)]
+    return [f"boundary.{boundary.value}.beta_{wave.value if wave else default_motion(case, boundary.value)}"]
+
+
+def _require_no_other(target: Path, text: str, factors: Sequence[str]) -> None:
+    """Raise CaseError if there is a file that is not this text with other values of the factors."""
+    from dembound.casefile.edit import edited
+
+    if not target.exists():
+        return
+    same = dict.fromkeys(factors, 1.0)
+    try:
+        replaced = edited(target.read_bytes().decode("utf-8-sig"), same) == edited(text, same)
+    except (CaseError, UnicodeDecodeError):
+        replaced = False
+    if not replaced:
+        raise CaseError(
+            [
+                f"{target}: exists already and differs from the case by more than {', '.join(factors)}; calibrate that "
+                "file to change these in it, or give another --calibrated FILE or --name"
+            ]
+        )
 
 
 def _one_or_all(boundary: Side | None, every: bool, wave: WaveType | None) -> None:
@@ -105,48 +176,41 @@ def _one_or_all(boundary: Side | None, every: bool, wave: WaveType | None) -> No
         raise CaseError([f"{option}: is for one side, not allowed together with --all" for option in both])
 
 
-def _leave(found: Calibration, folder: Path) -> Iterator[Path]:
-    """Write the results of a calibration, yielding each file."""
+def _leave(found: Calibration, folder: Path) -> None:
+    """Write the results of a calibration, printing each file."""
     folder.mkdir(parents=True, exist_ok=True)
     found.write(folder / "calibration.h5")
-    yield folder / "calibration.h5"
-    yield from _leave_case([found], found.summary(), folder, [folder / "calibration.h5"])
+    out.print(f"wrote {folder / 'calibration.h5'}")
+    _leave_summary([found], found.summary(), folder, [folder / "calibration.h5"])
 
 
-def _leave_all(found: Sequence[Calibration], folder: Path) -> Iterator[Path]:
-    """Write the results of all calibrations of a case, the passes of each in its own folder; yields each file."""
+def _leave_all(found: Sequence[Calibration], folder: Path) -> None:
+    """Write the results of all calibrations of a case, the passes of each in its own folder; prints each file."""
     from dembound.studies.all_sides import summary_of
 
     records = [folder / f"{each.side}_{each.motion}" / "calibration.h5" for each in found]
     for each, record in zip(found, records, strict=True):
         record.parent.mkdir(parents=True, exist_ok=True)
         each.write(record)
-        yield record
-    yield from _leave_case(found, summary_of(found), folder, records)
+        out.print(f"wrote {record}")
+    _leave_summary(found, summary_of(found), folder, records)
 
 
-def _leave_case(
+def _leave_summary(
     found: Sequence[Calibration], summary: Mapping[str, Any], folder: Path, records: Sequence[Path]
-) -> Iterator[Path]:
-    """Write the summary, the calibrated case and a picture of the passes; records : one of each."""
-    from dembound.casefile import to_toml
+) -> None:
+    """Write the summary and a picture of the passes; records : one of each."""
     from dembound.plot.convergence import plot_convergence
     from dembound.plot.style import save
     from dembound.results.json_files import write_json
-    from dembound.schemas import with_changes
-    from dembound.studies.all_sides import changes_of
 
     write_json(folder / "summary.json", summary)
-    yield folder / "summary.json"
-    case = found[0].case
-    calibrated = folder / f"{case.name.removesuffix(CALIBRATED)}{CALIBRATED}.toml"
-    calibrated.write_text(to_toml(with_changes(case, changes_of(found)), folder), encoding="utf-8")
-    yield calibrated
+    out.print(f"wrote {folder / 'summary.json'}")
     picture = folder / "convergence.png"
     picture.unlink(missing_ok=True)  # one of an earlier calibration with another method
     if found[0].beta:
         save(plot_convergence(records), picture)
-        yield picture
+        out.print(f"wrote {picture}")
 
 
 def _print_pass(found: Calibration, of: str = "") -> None:
@@ -171,21 +235,15 @@ def _print_table(found: Sequence[Calibration]) -> None:
     for (key, result), each in zip(changes_of(found).items(), found, strict=True):
         before = each.case.boundary[each.side].factors[each.motion]
         ratio = f"{each.ratio[-1]:.6f}" if each.ratio else "–"
-        table.add_row(
-            key,
-            each.kind,
-            f"{result:.6f}",
-            before if before == "matched" else f"{before:g}",
-            ratio,
-            str(len(each.beta)),
-        )
+        given = before if before == "matched" else f"{before:g}"
+        table.add_row(key, each.kind, f"{result:g}", given, ratio, str(len(each.beta)))
     out.print(table)
 
 
 def _print_result(found: Calibration) -> None:
     from dembound.boundaries.words import FACTORS
 
-    out.print(f"{found.case.name}, {found.side} ({found.kind}): {FACTORS[found.factor]} = {found.result:.6f}")
+    out.print(f"{found.case.name}, {found.side} ({found.kind}): {FACTORS[found.factor]} = {found.result:g}")
     if found.method == "homogenised":
         out.print("from the brick's homogenised wave speed and the side's ΣD/H; no wave was run")
         return

@@ -69,7 +69,7 @@ def movie(
     monitor: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="NAME", help="Show this monitor's history below. May be repeated; by default the first four."
+            metavar="NAME", help="Show this monitor's history below. May be repeated; by default those of all."
         ),
     ] = None,
     histories: Annotated[bool, typer.Option(help="Show histories below the scene.")] = True,

@@ -11,7 +11,7 @@ from dembound import shipped
 from dembound.cli.app import app, writable
 from dembound.cli.console import out
 from dembound.errors import CaseError
-from dembound.starting import DEFAULT, names, starting_point, titles
+from dembound.starting import DEFAULT, ENDING, names, starting_point, titles
 
 SCHEMA_FILE = "dembound.schema.json"
 """File name of the schema that is written next to new cases."""
@@ -22,10 +22,18 @@ app.add_typer(cases, name="cases", rich_help_panel="Cases")
 
 @app.command("new", rich_help_panel="Cases")
 def new(
-    path: Annotated[Path, typer.Argument(metavar="FILE", help="File to write.")] = Path("case.toml"),
+    path: Annotated[
+        Path, typer.Argument(metavar="FILE", help="File to write; .toml is added to a name without ending.")
+    ] = Path("case.toml"),
     start: Annotated[
-        str, typer.Option("--from", metavar="NAME", help="Starting point.", autocompletion=lambda: names())
-    ] = DEFAULT,
+        str | None,
+        typer.Option(
+            "--from",
+            metavar="NAME",
+            help=f"Starting point; by default the one of the file's name, or else {DEFAULT}.",
+            autocompletion=lambda: names(),
+        ),
+    ] = None,
     listed: Annotated[bool, typer.Option("--list", help="List the starting points and stop.")] = False,
     schema: Annotated[bool, typer.Option(help=f"Write {SCHEMA_FILE} next to it, for editors.")] = True,
 ) -> None:
@@ -33,14 +41,37 @@ def new(
     if listed:
         _print_titles(titles())
         return
-    text = starting_point(start)
+    path = _case_file(path)
+    start = start or (path.stem if path.stem in names() else DEFAULT)
+    text = _starting_point(start)
     if path.exists():
         raise CaseError([f"{path}: exists already, give another name"])
     if schema:
         _write_schema_beside(path)
         text = f"#:schema ./{SCHEMA_FILE}\n{text}"
     path.write_text(text, encoding="utf-8")
-    out.print(f"wrote {path}; try: dembound check {path}")
+    out.print(f"wrote {path} from the starting point {start}; try: dembound check {path}")
+
+
+def _case_file(path: Path) -> Path:
+    """The file of a new case, with its ending; raises CaseError for a folder and another ending."""
+    if path.is_dir():
+        raise CaseError([f"FILE: is the folder {path}, must be a file in it, such as {path / 'case.toml'}"])
+    if path.suffix == "":
+        return path.with_name(f"{path.name}{ENDING}")
+    if path.suffix != ENDING:
+        raise CaseError([f"FILE: is {path}, must end in {ENDING}, such as {path.with_suffix(ENDING)}"])
+    return path
+
+
+def _starting_point(name: str) -> str:
+    """The text of a starting point; the error for the name of a case says how it is copied."""
+    try:
+        return starting_point(name)
+    except CaseError as error:
+        if name in shipped.names() or name in shipped.groups():
+            error.add_note(f"{name} is one of `dembound cases`; to copy it: dembound cases copy {name}")
+        raise
 
 
 def _write_schema_beside(path: Path) -> None:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,7 +14,7 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from dembound.plot.style import COLOURS, REFERENCE, new_figure, styled
-from dembound.results.reader import open_record
+from dembound.results.reader import open_record, text_of
 from dembound.results.structure import run_of
 
 LEVELS = (1.0, 0.1)
@@ -105,9 +106,10 @@ def plot_chart(path: Path, title: str | None = None) -> Figure:
     """
     with open_record(path) as file:
         dots = [_read(number, file["choices"][name], file) for number, name in enumerate(file["choices"], start=1)]
-        reference, own = str(file["reference"].attrs["sentence"]), {k + 1 for k in file["reference"].attrs["choices"]}
-        quantity, title = str(file.attrs["quantity"]), title or str(file.attrs["title"] or file.attrs["name"])
-        sentence, threads = str(file.attrs["sentence"]), _threads(file)
+        reference = text_of(file["reference"].attrs["sentence"])
+        own = {k + 1 for k in file["reference"].attrs["choices"]}
+        quantity, title = text_of(file.attrs["quantity"]), title or text_of(file.attrs["title"] or file.attrs["name"])
+        sentence, threads = text_of(file.attrs["sentence"]), _threads(file)
     figure = new_figure(12.0, 6.4)
     panel, side = figure.subplots(1, 2, width_ratios=(1.45, 1.0))
     good = [dot for dot in dots if not dot.failure and dot.number not in own]
@@ -119,7 +121,8 @@ def plot_chart(path: Path, title: str | None = None) -> Figure:
     panel.set_xlabel(f"CPU time of stepping (s), {threads} thread{'s' if threads > 1 else ''}")
     panel.set_ylabel(f"RMS error of the {quantity}, worst monitor (%)")
     panel.set_title(_wrapped(f"errors are those against {reference}; {monitors}", 88), loc="left", fontsize=8.5)
-    panel.legend(loc="best", fontsize=8.5)
+    if any(dot.on_front for dot in dots):
+        panel.legend(loc="best", fontsize=8.5)
     _list(side, dots, own)
     figure.suptitle(f"{title}\n{_wrapped(sentence, 150)}", fontsize=10, parse_math=False)
     figure.draw_without_rendering()
@@ -129,14 +132,14 @@ def plot_chart(path: Path, title: str | None = None) -> Figure:
 
 def _read(number, group, file) -> Dot:  # type: ignore[no-untyped-def]
     """A choice of an open record."""
-    failure = str(group.attrs["failure"])
+    failure = text_of(group.attrs["failure"])
     if failure:
-        return Dot(number, str(group.attrs["name"]), False, failure, np.nan, np.zeros(0), "")
+        return Dot(number, text_of(group.attrs["name"]), False, failure, np.nan, np.zeros(0), "")
     monitor = f"{group['monitor'].asstr()[0]} ({group['component'].asstr()[0]})"
     on_front, error = bool(group.attrs["on_front"]), 100.0 * float(group["rms"][0])
-    found, apart = str(group.attrs["found"]), float(np.max(group["apart"]))
+    found, apart = text_of(group.attrs["found"]), float(np.max(group["apart"]))
     cpu = file["runs"][run_of(group)]["cpu"][:]
-    return Dot(number, str(group.attrs["name"]), on_front, "", error, cpu, monitor, found, apart)
+    return Dot(number, text_of(group.attrs["name"]), on_front, "", error, cpu, monitor, found, apart)
 
 
 def _threads(file) -> int:  # type: ignore[no-untyped-def]
@@ -153,7 +156,9 @@ def _draw(panel: Axes, dots: Sequence[Dot]) -> None:
         size, marker = (7.0, "o") if dot.on_front else (5.0, "o" if dot.error > LEAST else "v")
         panel.plot(dot.cost, dot.shown, marker, color=colour, markersize=size, zorder=3, gid=dot.name)
     line = sorted((dot for dot in dots if dot.on_front), key=lambda dot: dot.shown)
-    panel.plot([d.cost for d in line], [d.shown for d in line], color=COLOURS[1], linewidth=1.6, label="Pareto front")
+    if line:
+        looks: dict[str, Any] = {"color": COLOURS[1], "linewidth": 1.6, "marker": "o", "markersize": 7.0}
+        panel.plot([dot.cost for dot in line], [dot.shown for dot in line], label="Pareto front", **looks)
     _widen(panel, dots)
     low, high = panel.get_ylim()
     for level in LEVELS:

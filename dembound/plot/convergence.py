@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from dembound.errors import CaseError
 from dembound.plot.style import REFERENCE, new_figure, open_point_style, outside_legend, styled
-from dembound.results.reader import open_record, record_names
+from dembound.results.reader import open_record, record_names, text_of
 
 
 @dataclass(frozen=True)
@@ -62,10 +62,10 @@ def read_passes(path: Path) -> Passes:
     Raises CaseError when the file cannot be read.
     """
     with open_record(path) as file:
-        asked = file.attrs
+        asked = {name: text_of(file.attrs[name]) for name in ("boundary", "kind", "wave", "method")}
         return Passes(
             beta=file["beta"][:],
             outgoing=file["outgoing"][:],
-            incident=float(asked["incident"]),
-            asked=f"{asked['boundary']} {asked['kind']} {str(asked['wave']).upper()}, {asked['method']}",
+            incident=float(file.attrs["incident"]),
+            asked=f"{asked['boundary']} {asked['kind']} {asked['wave'].upper()}, {asked['method']}",
         )

@@ -1,5 +1,6 @@
 """Draws many disks, as disks if they are large enough to be visible, else as an image of their mean."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import EllipseCollection
 
+from dembound.holes import Hole
 from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP
 
 # Disks narrower than this cannot be distinguished from the gaps, and a picture of many of them has megabytes.
@@ -75,6 +77,7 @@ def draw_field(
     values: np.ndarray,
     limits: tuple[float, float],
     scale: float,
+    holes: Sequence[Hole] = (),
 ) -> ScalarMappable:
     """Fill the axes with a window of a field; returns the object for the colour bar.
 
@@ -90,6 +93,8 @@ def draw_field(
         the ends of the colour scale, see `colours_within`.
     scale
         pixels per metre. Disks below `SMALLEST_PIXELS` are replaced by the mean of the field on a grid.
+    holes
+        up to whose outlines the cells of this grid are filled.
     """
     axes.set(aspect="equal", xlim=window.extent[:2], ylim=window.extent[2:], facecolor=EMPTY)
     axes.grid(False)
@@ -100,7 +105,25 @@ def draw_field(
     if diameter * scale >= SMALLEST_PIXELS:
         return draw_disks(axes, positions, radii, array=values, linewidths=0.0, **colours)
     means = mean_on_grid(positions, values, window, max(1.0 / scale, CELL_DIAMETERS * diameter))
+    _fill_beside(means, window, holes)
     return axes.imshow(means, origin="lower", extent=window.extent, interpolation="nearest", **colours)
+
+
+def _fill_beside(means: np.ndarray, window: Window, holes: Sequence[Hole]) -> None:
+    """Fill empty cells of an image (rows, columns) of a window beside holes with the mean of the cells around them."""
+    cell = window.size / means.shape[::-1]
+    rows, columns = np.nonzero(np.isnan(means))
+    if not holes or len(rows) == 0:
+        return
+    middle = window.corner + (np.stack([columns, rows], axis=1) + 0.5) * cell
+    low, high = (np.array([hole.box[at : at + 2] for hole in holes])[:, None] for at in (0, 2))
+    beside = ((middle > low - cell) & (middle < high + cell)).all(axis=2).any(axis=0)
+    padded = np.pad(means, 1, constant_values=np.nan)
+    around = np.array([padded[rows + i, columns + j] for i in range(3) for j in range(3)])
+    known = ~np.isnan(around)
+    filled = beside & known.any(axis=0)
+    total = np.where(known, around, 0.0).sum(axis=0)
+    means[rows[filled], columns[filled]] = total[filled] / known.sum(axis=0)[filled]
 
 
 def colours_within(limits: tuple[float, float]) -> dict[str, Any]:

@@ -9,8 +9,10 @@ import h5py
 import numpy as np
 
 from dembound.errors import CaseError
+from dembound.holes import Hole
 from dembound.plot.continuum import GROUP, Continuum, is_scattered, read_continuum
 from dembound.plot.disks import Window
+from dembound.plot.outlines import read_holes
 from dembound.results.histories import FREE_FIELD, UNITS
 from dembound.results.reader import (
     COMPONENTS,
@@ -44,7 +46,8 @@ class Disks:
 
     positions (n, 2) and radii (n,) in m; monitors: name -> place (2,) m; twins (k, 2) m, the places of theirs in the
     free-field column; case: its name; laws as text, empty if there was only one law; column, how many disks belong to
-    the free-field column, which come first; continuum, the one round them, None for none.
+    the free-field column, which come first; continuum, the one round them, None for none; holes of the case, without
+    those that still have their disks.
     """
 
     positions: np.ndarray
@@ -55,6 +58,7 @@ class Disks:
     laws: str
     column: int = 0
     continuum: Continuum | None = None
+    holes: tuple[Hole, ...] = ()
 
     @cached_property
     def own_window(self) -> Window:
@@ -126,8 +130,9 @@ def read_disks(file: h5py.File) -> Disks:
         for name, place in places.items()  # without a column they are where their monitors are
         if name.endswith(FREE_FIELD) and not np.array_equal(place, places[name.removesuffix(FREE_FIELD)])
     ]
+    positions = file["particles/position"][:]
     return Disks(
-        positions=file["particles/position"][:],
+        positions=positions,
         radii=file["particles/radius"][:],
         monitors={name: place for name, place in places.items() if not name.endswith(FREE_FIELD)},
         twins=np.array(twins).reshape(-1, 2),
@@ -135,6 +140,7 @@ def read_disks(file: h5py.File) -> Disks:
         laws=laws_in_words(laws) if len(laws) > 1 else "",
         column=int(file.attrs.get("column", 0)),
         continuum=read_continuum(file),
+        holes=tuple(hole for hole in read_holes(file) if not hole.contains(positions).any()),
     )
 
 

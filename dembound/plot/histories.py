@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from dembound.errors import CaseError
 from dembound.plot.bands import draw_band
-from dembound.plot.style import line_style, measured_once, new_figure, outside_legend, styled, time_unit
+from dembound.plot.style import line_style, measured_once, new_figure, outside_legend, stacked_height, styled, time_unit
 from dembound.results.estimates import read_bands
 from dembound.results.histories import FREE_FIELD, SCALES, UNITS, History, Quantity, read_histories
 from dembound.results.reader import COMPONENTS, record_names
@@ -68,7 +68,7 @@ def plot_histories(
     drawn = [{name: run[name] for name in (*shown, *map(twin_of, shown)) if name in run} for run in histories]
     columns = shown_columns(drawn, component)
     unit = time_unit(max(history.time.max(initial=0.0) for run in drawn for history in run.values()))
-    height = 1.6 + len(shown) * np.clip(9.0 / len(shown), 0.6, 1.6)
+    height = stacked_height(len(shown))
     figure = new_figure(9.0 if len(columns) == 1 else 12.0, height)
     panels = figure.subplots(len(shown), len(columns), sharex=True, sharey=True, squeeze=False)
     bands = [read_bands(path, quantity) for path in runs]

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from dembound.plot.histories import chosen_monitors, direction, largest_values, monitor_title
-from dembound.plot.style import Powers, line_style, measured_once, new_figure, outside_legend, styled
+from dembound.plot.style import Powers, line_style, measured_once, new_figure, outside_legend, stacked_height, styled
 from dembound.results.histories import History, read_histories
 from dembound.results.reader import COMPONENTS, record_names
 from dembound.waves.spectrum import FADED, amplitude_spectrum
@@ -38,7 +38,7 @@ def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = Non
     shown = chosen_monitors(runs, histories, None)
     drawn = [{name: run[name] for name in shown if name in run} for run in histories]
     column = int(np.argmax(largest_values(drawn))) if component is None else COMPONENTS.index(component)
-    height = 1.6 + len(shown) * np.clip(9.0 / len(shown), 0.6, 1.6)
+    height = stacked_height(len(shown))
     figure = new_figure(9.0, height)
     panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)
     spectra = []

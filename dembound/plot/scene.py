@@ -8,13 +8,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, NullLocator
 
 from dembound.plot.continuum import draw_continuum
 from dembound.plot.disks import Window, draw_field
 from dembound.plot.field import Disks, Field, FieldName, read_disks, read_field
-from dembound.plot.style import Powers, measured_once, new_figure, outside_legend, styled
+from dembound.plot.outlines import draw_outlines
+from dembound.plot.style import FEWEST_NUMBERS, Powers, measured_once, new_figure, outside_legend, styled
 from dembound.results.reader import open_record
 
 LONG = 6.0
@@ -34,6 +36,12 @@ MOST_STRIPS = 8
 
 STRIP_GAP = 0.12
 """Inches between two strips."""
+
+SHORTEST = {"x": 0.8, "y": 0.4}
+"""Inches of a panel that has numbers along x or y: three of them, one beside or above the other."""
+
+TICK_APART, SMALL = 0.6, 7
+"""Inches between the numbers of a panel as far as it is long enough for three; their size in points if it is not."""
 
 CRACKS = {"bond broken in tension": ("o", 14.0, "black"), "bond broken in shear": ("X", 26.0, "#C000C0")}
 """Names of the two kinds of cracks in the legend; shape, size in points² and colour of their marks."""
@@ -175,7 +183,9 @@ def draw_panel(
 ) -> ScalarMappable:
     """A window of the scene at one of its times, at `scale` pixels per metre; counted : cracks are, in their labels."""
     positions = disks.positions if shown.moved is None else disks.positions + shown.moved[index]
-    colours = draw_field(panel, window, positions, disks.radii, shown.values[index], shown.limits, scale)
+    colours = draw_field(panel, window, positions, disks.radii, shown.values[index], shown.limits, scale, disks.holes)
+    covered = isinstance(colours, AxesImage) and shown.moved is None  # cells of the image reach into holes
+    draw_outlines(panel, disks.holes, disks.own_window, 2.0 * float(disks.radii.mean()), filled=covered)
     if disks.continuum is not None:
         beyond = None if shown.beyond is None else shown.beyond[index]
         continuum = disks.continuum.moved(None if shown.moved_beyond is None else shown.moved_beyond[index])
@@ -184,11 +194,14 @@ def draw_panel(
         panel.axvline(disks.seam, color="black", linewidth=1.0, label="between the free-field column and the body")
     _mark_cracks(panel, shown, index, counted)
     for name, axis, pixels in zip("xy", (panel.xaxis, panel.yaxis), scale * window.size, strict=True):
-        if pixels > 45:
+        inches = pixels / panel.figure.dpi
+        if inches > SHORTEST[name]:
+            most = int(np.clip(inches / TICK_APART, FEWEST_NUMBERS, 9))
             axis.set_label_text(f"{name} (m)")
-            axis.set_major_locator(MaxNLocator(nbins=int(np.clip(pixels / 90, 1, 9)), steps=[1, 2, 5, 10]))
+            axis.set_major_locator(MaxNLocator(nbins=most, steps=[1, 2, 5, 10], min_n_ticks=FEWEST_NUMBERS))
+            axis.set_tick_params(labelsize=SMALL if inches < FEWEST_NUMBERS * TICK_APART else "medium")
         else:
-            axis.set_major_locator(NullLocator())  # two labels would collide
+            axis.set_major_locator(NullLocator())  # three numbers would collide
     return colours
 
 

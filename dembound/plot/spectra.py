@@ -128,7 +128,7 @@ def plot_transfer(
     return _figure(
         runs, quantity, shown, component, curve, f"Transfer functions of the {quantity} to the monitors",
         "frequency (Hz)",
-        lambda column: f"amplitude over that of {below}, {quantity}{_along(quantity, column)}",
+        lambda column: f"amplitude over that of {below}, {quantity}{_along(quantity, column)} (–)",
     )  # fmt: skip
 
 

@@ -10,9 +10,13 @@ from matplotlib import style
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection, PathCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.font_manager import get_font_names
-from matplotlib.ticker import ScalarFormatter
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.path import Path as Path2D
+from matplotlib.ticker import AutoLocator, LogLocator, ScalarFormatter
 
 from dembound.interrupts import look
 from dembound.results.reader import replacing
@@ -37,6 +41,15 @@ DOTS_PER_INCH = 150
 
 COMPRESSION = 2
 """Level of compression of pictures: half the time of the usual one, and a fifth more bytes."""
+
+FEWEST_NUMBERS = 3
+"""Of an axis: with fewer neither its scale nor its zero can be read."""
+
+NUMBERED = ((1.0,), (1.0, 2.0, 5.0), (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0))
+"""Multiples of powers of ten that a logarithmic axis has as numbers: the first that are enough."""
+
+THINNEST = 1.5
+"""Points: a band that is nowhere wider is hidden by the line within it."""
 
 RAISED = str.maketrans("0123456789−-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻")
 """Characters of exponents."""
@@ -127,8 +140,29 @@ class Powers(ScalarFormatter):
 
 
 def decade(value: float, _: object = None) -> str:
-    """A power of ten as the number of a logarithmic axis, such as 10⁻³, for `matplotlib.ticker.FuncFormatter`."""
-    return "10" + str(round(np.log10(value))).translate(RAISED)
+    """A number of a logarithmic axis, such as 10⁻³ or 5×10⁻³, for `matplotlib.ticker.FuncFormatter`."""
+    power = int(np.floor(np.log10(value) + 1e-9))
+    times = value / 10.0**power
+    return f"{f'{times:.3g}×' if abs(times - 1.0) > 1e-6 else ''}10{str(power).translate(RAISED)}"
+
+
+def stacked_height(count: int) -> float:
+    """Height (inches) of a figure of so many panels below each other, each with room for three numbers."""
+    return 1.6 + count * float(np.clip(9.0 / count, 0.9, 1.6))
+
+
+def number_axes(figure: Figure) -> None:
+    """Give all axes with matplotlib's own ticks at least `FEWEST_NUMBERS`, as far as they have numbers."""
+    for axis in (axis for panel in figure.axes for axis in (panel.xaxis, panel.yaxis)):
+        locator = axis.get_major_locator()
+        if isinstance(locator, AutoLocator):
+            locator.set_params(min_n_ticks=FEWEST_NUMBERS)
+        elif isinstance(locator, LogLocator):
+            low, high = sorted(axis.get_view_interval())
+            for subs in NUMBERED:
+                if np.count_nonzero((axis.get_majorticklocs() >= low) & (axis.get_majorticklocs() <= high)) >= 3:
+                    break
+                axis.set_major_locator(LogLocator(subs=subs, numticks=12))
 
 
 def line_style(index: int) -> dict[str, str]:
@@ -150,12 +184,14 @@ def open_point_style(index: int) -> dict[str, Any]:
 def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None:
     """Put one legend of all labels in the panels, each once, below everything else.
 
-    It has as many columns as the figure is wide enough for, at most `columns`.
+    It has as many columns as the figure is wide enough for, at most `columns`. What cannot be seen has no entry: lines
+    outside the axes, and bands that are thinner than a line.
     """
     handles: dict[str, Artist] = {}
     for panel in panels:
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
-            handles.setdefault(label, handle)
+            if label not in handles and is_seen(handle, panel):
+                handles[label] = handle
     if not handles:
         return
     for count in range(columns, 0, -1):
@@ -163,6 +199,48 @@ def outside_legend(figure: Figure, panels: Iterable[Axes], columns: int) -> None
         if count == 1 or legend.get_window_extent().width <= figure.bbox.width:
             return
         legend.remove()
+
+
+def is_seen(artist: Any, panel: Axes) -> bool:
+    """Whether any of an artist is within the axes, and not thinner than a line; one without data is a key alone."""
+    if isinstance(artist, tuple):  # bars, and points with the ranges of their errors
+        return any(is_seen(part, panel) for part in np.ravel(np.array(artist, dtype=object)) if part is not None)
+    if not artist.get_visible():
+        return False
+    panel.get_xlim(), panel.get_ylim()  # found only when they are asked for
+    if isinstance(artist, PathCollection):
+        return _holds_any(panel, artist.get_offset_transform().transform(np.ma.getdata(artist.get_offsets())))
+    if isinstance(artist, Line2D) and artist.get_marker() not in (None, "", "None", " "):
+        return _holds_any(panel, artist.get_transform().transform(artist.get_xydata()))
+    if isinstance(artist, Line2D | Patch):
+        return _meets(artist.get_transform().transform_path(artist.get_path()), panel)
+    if isinstance(artist, PolyCollection | LineCollection):
+        paths = [artist.get_transform().transform_path(path) for path in artist.get_paths()]
+        seen = [path for path in paths if _meets(path, panel)]
+        least = THINNEST * panel.figure.dpi / 72.0
+        return any(isinstance(artist, LineCollection) or _thickness(path) > least for path in seen)
+    return True
+
+
+def _holds_any(panel: Axes, places: np.ndarray) -> bool:
+    """Whether any of places (k, 2) on the page, in pixels, is within the axes."""
+    box = panel.bbox.padded(1.0)
+    return len(places) == 0 or bool(((places >= box.min) & (places <= box.max)).all(axis=1).any())
+
+
+def _meets(path: Path2D, panel: Axes) -> bool:
+    """Whether a path on the page, in pixels, meets the axes."""
+    cleaned = path.cleaned(remove_nans=True)
+    return len(np.asarray(path.vertices)) == 0 or bool(cleaned.intersects_bbox(panel.bbox.padded(1.0), filled=False))
+
+
+def _thickness(path: Path2D) -> float:
+    """The largest extent upwards of an area at any of the x of its corners, pixels."""
+    corners = np.asarray(path.vertices)
+    x, y = corners[np.isfinite(corners).all(axis=1)].T
+    order = np.argsort(x, kind="stable")
+    begins = np.flatnonzero(np.diff(x[order], prepend=-np.inf) > 1e-6)
+    return float((np.maximum.reduceat(y[order], begins) - np.minimum.reduceat(y[order], begins)).max())
 
 
 def save(figure: Figure, path: Path, title: str | None = None) -> None:
@@ -177,7 +255,8 @@ def save(figure: Figure, path: Path, title: str | None = None) -> None:
 
 
 def lay_out(figure: Figure) -> None:
-    """Find the places of all panels and keep them, also if the panels change later."""
+    """Find the places of all panels and keep them, also if the panels change later; axes have enough numbers."""
+    number_axes(figure)
     if figure.axes and (layout := figure.get_layout_engine()) is not None:
         layout.execute(figure)
         figure.set_layout_engine("none")

@@ -16,6 +16,7 @@ import numpy as np
 from dembound.errors import CaseError, DemboundError
 from dembound.kinds import kind_of_record
 from dembound.motion.moving_picture import MovingPicture
+from dembound.plot.style import SIGNED_MAP, UNSIGNED_MAP
 from dembound.plot.time_line import TimeLine
 from dembound.results.histories import monitor_names
 from dembound.results.reader import replacing, require_folder
@@ -23,11 +24,17 @@ from dembound.results.reader import replacing, require_folder
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-MOST_MONITORS = 4
-"""Below a scene, if none are asked for by name."""
-
 PALETTE_FRAMES = 6
 """Frames from which the colours of a GIF are taken, which all of its frames share."""
+
+SHADES = 96
+"""Colours of the palette that are those of a scene's colour map: neighbours differ by less than can be seen."""
+
+ROUNDING = 2
+"""By which red, green and blue of a colour of the map may differ from those drawn, of 255."""
+
+RARE = 0.3
+"""Power of the number of pixels with which a colour counts for the palette: waves are small, and most is white."""
 
 WHITE = 245
 """From this value of red, green and blue a colour of the palette is white: it is the mean of nearly white ones."""
@@ -91,7 +98,7 @@ def movie_of(
     exaggerate
         how many times their displacement nodes are moved; 0 shows them where they began.
     monitors
-        whose histories are below; by default the first four, none where this is empty or the run has none.
+        whose histories are below; by default all, none where this is empty or the run has none.
     every
         how many snapshots one frame stands for; the last one is always shown.
     pixels
@@ -110,7 +117,7 @@ def movie_of(
 def _below(record: Path, width: float, monitors: Sequence[str] | None) -> TimeLine | None:
     """The histories below the scene."""
     if monitors is None:
-        monitors = monitor_names(record)[:MOST_MONITORS]
+        monitors = monitor_names(record)
     return TimeLine(record, width, monitors) if monitors else None
 
 
@@ -168,11 +175,27 @@ def _picture(pixels: np.ndarray) -> Image:
 def _common_colours(movie: Movie) -> Image:
     """A picture whose palette has the colours of some frames of a movie."""
     some = np.unique(np.linspace(0, len(movie) - 1, PALETTE_FRAMES).astype(int))
-    colours = _picture(np.vstack([movie.frame(int(number)) for number in some])).quantize(256)
-    palette = np.array(colours.getpalette()).reshape(-1, 3)
+    pixels = np.concatenate([movie.frame(int(number)).reshape(-1, 3) for number in some])
+    found, counts = np.unique(pixels, axis=0, return_counts=True)
+    shades = _shades(found)
+    weighed = np.repeat(found, np.ceil(counts**RARE).astype(int), axis=0)
+    colours = _picture(weighed[None]).quantize(256 - len(shades), kmeans=1)
+    palette = np.concatenate([shades, np.array(colours.getpalette()).reshape(-1, 3)])[:256]
     palette[palette.min(axis=1) >= WHITE] = 255
     colours.putpalette(palette.ravel().tolist())
     return colours
+
+
+def _shades(found: np.ndarray) -> np.ndarray:
+    """Evenly chosen colours (k, 3) of the colour map of a picture, whose colours (m, 3) are given; none without one."""
+    from matplotlib import colormaps
+
+    for name in (SIGNED_MAP, UNSIGNED_MAP):
+        shades = colormaps[name](np.linspace(0.0, 1.0, SHADES), bytes=True)[:, :3].astype(int)
+        away = np.array([np.abs(found.astype(int) - shade).max(axis=1).min() for shade in shades])
+        if np.mean(away <= ROUNDING) > 0.5:
+            return shades
+    return np.zeros((0, 3), dtype=int)
 
 
 def _reduced(frame: np.ndarray, colours: Image) -> Image:

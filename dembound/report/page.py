@@ -12,6 +12,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from dembound.errors import CaseError, RecordError, visible
 from dembound.plot.energy import plot_energy
 from dembound.plot.field import evenly_chosen
@@ -21,7 +23,7 @@ from dembound.report import tables
 from dembound.report.pictures import Picture, picture_of, uri_of
 from dembound.report.runs import ReportedRun, read_runs
 from dembound.results.histories import read_histories
-from dembound.results.reader import replacing, require_folder, understood
+from dembound.results.reader import reading, replacing, require_folder, snapshots_of, understood
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -53,12 +55,16 @@ TABLES = (
 
 @dataclass(frozen=True)
 class Frames:
-    """A scene at several times: URIs of its pictures, what each shows in words, and their size in pixels."""
+    """A scene at several times: URIs of its pictures, what each shows in words, and their size in pixels.
+
+    first : the number of the one that is shown first, in which most is in motion.
+    """
 
     uris: list[str]
     captions: list[str]
     width: int
     height: int
+    first: int
 
 
 @dataclass(frozen=True)
@@ -187,7 +193,15 @@ def _frames(run: ReportedRun) -> Frames | None:
     pixels = round(FRAME_DOTS * moving.width)
     chosen = evenly_chosen(len(moving.times), MOST_FRAMES)
     uris = [uri_of(moving.frame(index, pixels), lossless=False) for index in chosen]
-    return Frames(uris, [*map(moving.caption, chosen)], pixels, round(FRAME_DOTS * moving.height))
+    first = int(np.argmax(_motion(run.record, chosen)))
+    return Frames(uris, [*map(moving.caption, chosen)], pixels, round(FRAME_DOTS * moving.height), first)
+
+
+def _motion(record: Path, chosen: Sequence[int]) -> list[float]:
+    """Sum of v² (m²/s²) of the disks or nodes at some snapshots of a run."""
+    with reading(record) as file:
+        groups = snapshots_of(file)
+        return [float(np.square(groups[index]["velocity"][:, :2]).sum()) for index in chosen]
 
 
 def _charts(runs: Sequence[ReportedRun], attempt: Callable[[Callable[[], Any]], Any]) -> Iterator[Picture]:

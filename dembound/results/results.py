@@ -7,6 +7,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from dembound.results.named import Named, missing
 from dembound.results.reader import (
     datasets_in,
     energy_of,
@@ -35,9 +36,8 @@ class Arrays(Mapping[str, np.ndarray]):
         self.attributes: dict[str, Any] = {name: _plain(value) for name, value in attributes.items()}
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """The array of a name, in SI units; raises KeyError with the existing names."""
-        if name not in self._names:
-            raise KeyError(f"{self._group} has no {name}; it has {', '.join(self._names) or 'nothing'}")
+        """The array of a name, in SI units; raises NameMissingError, a KeyError, with the existing names."""
+        self._require(name)
         with reading(self._record) as file:
             return file[self._group][name][:]
 
@@ -50,10 +50,18 @@ class Arrays(Mapping[str, np.ndarray]):
     def __repr__(self) -> str:
         return f"<{self._group}: {', '.join(self._names)}>"
 
-    def unit(self, name: str) -> str:
-        """The unit of an array."""
+    def units(self, name: str) -> tuple[str, ...]:
+        """The units of the columns of an array, one each, as of x, y and rotation; errors as of the array."""
+        self._require(name)
         with reading(self._record) as file:
-            return text_of(file[self._group][name].attrs.get("unit", ""))
+            dataset = file[self._group][name]
+            parts = tuple(text_of(dataset.attrs.get("unit", "")).split(", "))
+            return parts * (dataset.shape[1] if dataset.ndim > 1 else 1) if len(parts) == 1 else parts
+
+    def _require(self, name: str) -> None:
+        """Raise NameMissingError if there is no such array."""
+        if name not in self._names:
+            raise missing("array", name, self._names, f"{self._record}, {self._group}")
 
 
 class Results:
@@ -84,8 +92,8 @@ class Results:
         with open_record(self._record) as file:
             self.attributes: dict[str, Any] = {name: _plain(value) for name, value in file.attrs.items()}
             self.particles = self._array(file, "particles")
-            self.histories = self._arrays(file, "histories")
-            self.boundaries = self._arrays(file, "boundaries")
+            self.histories = self._arrays(file, "histories", "monitor")
+            self.boundaries = self._arrays(file, "boundaries", "side")
             self.snapshots = [Arrays(self._record, group.name, group) for group in snapshots_of(file)]
             self.cracks = self._array(file, "cracks")
             self.laws: list[tuple[str, float]] = laws_of(file)
@@ -115,6 +123,16 @@ class Results:
             return energy_of(file)
 
     @property
+    def energy_units(self) -> dict[str, str]:
+        """The unit of each column of `energy`; errors as of that."""
+        with open_record(self._record) as file:
+            columns = file.get("energy", {})
+            return {
+                name: text_of(columns[name].attrs.get("unit", "")) if name in columns else "1"
+                for name in energy_of(file)
+            }
+
+    @property
     def side_energies(self) -> dict[str, dict[str, np.ndarray]]:
         """Of every side ``came_in``, ``absorbed`` and ``stored``, (k,) at the times of the energy ledger."""
         with open_record(self._record) as file:
@@ -124,9 +142,10 @@ class Results:
         """A group of the record, without arrays if it does not have it, as one of exact histories."""
         return Arrays(self._record, f"/{name}", file.get(name))
 
-    def _arrays(self, file: h5py.File, name: str) -> dict[str, Arrays]:
+    def _arrays(self, file: h5py.File, name: str, what: str) -> Named[Arrays]:
         """The groups within a group of the record."""
-        return {key: Arrays(self._record, group.name, group) for key, group in file.get(name, {}).items()}
+        found = {key: Arrays(self._record, group.name, group) for key, group in file.get(name, {}).items()}
+        return Named(found, what, str(self._record))
 
 
 def _plain(value: Any) -> Any:

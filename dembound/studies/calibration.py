@@ -9,6 +9,7 @@ reflection returns to the side before the peak has left it. Each pass ends at th
 under one wave: no loads, no static stage, the elastic law.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -38,6 +39,12 @@ LARGEST_RATIO = 1.99
 """Largest M_out/M_in used: dispersion may raise the ratio above 2, for which the relation has no solution."""
 
 
+HOMOGENISED_DIGITS = 5
+"""Of β from the brick alone, which agrees with plane waves within 0.01 %."""
+
+MOST_DIGITS = 6
+"""Of β from passes; the peaks they compare have rounding errors beyond."""
+
 PAST = 0.99
 """Largest velocity of the side at the end of a pass over its peak; AFTER its peak a cosine is at 0.905."""
 
@@ -52,7 +59,7 @@ class Calibration:
     kind : "absorbing" or "input".
     incident : M_in, m/s.
     beta, outgoing : per pass, the factor tried and the M_out (m/s) it gave.
-    result : the calibrated factor.
+    result : the calibrated factor, to the digits that are known, see `known`.
     shortened : how the scene calibrated on differs from the case's, one sentence each.
     particles, steps : size of the scene calibrated on, and steps of all passes.
     """
@@ -145,13 +152,13 @@ def calibrate(
         raise CaseError([f"--tolerance: is {tolerance:g}, must be above 0"])
     plain, left_out = linear_medium(case)
     table = _dashpots(plain, side)
-    motion = motion or _default_motion(case, side)
+    motion = motion or default_motion(case, side)
     _must_move(case, side, motion)
     pulse = calibration_pulse(case, side, motion)
     kind: Literal["absorbing", "input"] = "input" if table.waves else "absorbing"
     if method == "homogenised":
         scene = build(case)
-        beta = homogenised_beta(scene, side, motion)
+        beta = float(f"{homogenised_beta(scene, side, motion):.{HOMOGENISED_DIGITS}g}")
         return Calibration(case, side, motion, method, kind, pulse.peak(), [], result=beta, particles=scene.count)
     strip, shortened = full_scene(plain, side, motion, pulse) if full else short_strip(plain, side, motion, pulse)
     scene = build(strip)
@@ -179,13 +186,23 @@ def calibrate(
         if report is not None:
             report(found)
         if abs(found.ratio[-1] - 1.0) < tolerance and not (foretold and len(found.beta) == 1):
-            found.result = beta
+            found.result = known(beta, found.ratio[-1])
             return found
         beta = _next_beta(found)
     raise RunError(
         f"calibration of {side} did not converge in {MOST_PASSES} passes: M_out/M_in = {found.ratio[-1]:.5f} "
         f"at {found.factor} = {found.beta[-1]:.5f}"
     )
+
+
+def known(beta: float, ratio: float) -> float:
+    """β to the decimal of the change that another pass of the impedance relation would make, 6 digits at most.
+
+    beta, ratio : of the last pass, the factor and the M_out/M_in it gave.
+    """
+    change = beta * abs(ratio / (2.0 - ratio) - 1.0)
+    largest = MOST_DIGITS - 1 - math.floor(math.log10(beta))
+    return round(beta, largest if change == 0.0 else min(largest, -math.floor(math.log10(change))))
 
 
 def _next_beta(found: Calibration) -> float:
@@ -232,7 +249,7 @@ def _dashpots(case: DiskCase, side: str) -> Boundary:
     return table
 
 
-def _default_motion(case: DiskCase, side: str) -> Motion:
+def default_motion(case: DiskCase, side: str) -> Motion:
     """S where the normal motion is held, or if only S waves run between this side and the opposite one."""
     driven = {motion for end in (side, OPPOSITE[side]) for motion in case.side(end).waves}
     held = "xy"[normal_axis(side)] in case.motion.held

@@ -1,6 +1,9 @@
 """dembound from Python: the same cases, checks and results as from files."""
 
 import re
+import subprocess
+import sys
+import tomllib
 import warnings
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +14,7 @@ import pytest
 import tomli_w
 
 import dembound
-from dembound import api
+from dembound import api, shipped
 from dembound.casefile.output import Output
 from dembound.results.reader import text_of
 from dembound.waves import Cosine
@@ -97,7 +100,7 @@ def test_results_are_those_of_the_record(results) -> None:
     with h5py.File(results.folder / "run.h5") as file:
         for name in ("time", "velocity", "displacement"):
             assert np.array_equal(results.histories["middle"][name], file["histories/middle"][name][:])
-        assert results.histories["middle"].unit("time") == text_of(file["histories/middle/time"].attrs["unit"]) == "s"
+        assert results.histories["middle"].units("time") == (text_of(file["histories/middle/time"].attrs["unit"]),)
         assert results.histories["middle"].attributes["wanted"] == [2.6, 0.3]
         assert [shot.attributes["time"] for shot in results.snapshots] == [
             group.attrs["time"] for group in file["snapshots"].values()
@@ -115,7 +118,7 @@ def test_results_are_those_of_the_record(results) -> None:
     assert len(results.cracks["time"]) == 0
     assert results.laws == [("elastic", 0.0)]
     assert dembound.loads(results.case) == dembound.case(**TABLES)
-    with pytest.raises(KeyError, match="has no stress; it has displacement, time, velocity"):
+    with pytest.raises(KeyError, match='array: is "stress", must be one of displacement'):
         results.histories["middle"]["stress"]
 
 
@@ -187,3 +190,55 @@ def test_what_there_is_not_is_no_attribute() -> None:
         _ = dembound.runs
     assert dembound.__all__ == api.__all__
     assert all(callable(getattr(dembound, name)) for name in dembound.__all__)
+
+
+def test_the_package_lists_what_it_has() -> None:
+    program = "import sys, dembound; print(dir(dembound), 'numba' in sys.modules)"
+    told = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
+    assert told == f"{sorted([*dembound.__all__, '__version__'])} False\n"
+    assert all(hasattr(dembound, name) for name in dir(dembound))
+
+
+def test_each_column_of_each_array_has_its_unit(results) -> None:
+    groups = [*results.histories.values(), *results.boundaries.values(), *results.snapshots]
+    for arrays in (*groups, results.particles, results.cracks):
+        for name in arrays:
+            columns = arrays[name].shape[1] if arrays[name].ndim > 1 else 1
+            assert len(arrays.units(name)) == columns, name
+            assert all(arrays.units(name))
+    assert results.histories["middle"].units("velocity") == ("m/s", "m/s", "rad/s")
+    assert results.particles.units("position") == ("m", "m")
+    assert results.energy_units.keys() == results.energy.keys()
+    assert results.energy_units["time"] == "s"
+    assert results.energy_units["kinetic"] == "J/m"
+    assert results.energy_units["relative_error"] == "1"
+
+
+def test_names_that_results_do_not_have_are_answered_with_those_they_have(results) -> None:
+    for ask, said in (
+        (lambda: results.histories["midle"], 'monitor: is "midle", must be one of middle (did you mean middle?)'),
+        (lambda: results.boundaries["up"], 'side: is "up", must be one of bottom, left, right, top'),
+        (
+            lambda: results.histories["middle"]["velocty"],
+            'array: is "velocty", must be one of displacement, time, velocity (did you mean velocity?)',
+        ),
+        (lambda: results.particles.units("no"), 'array: is "no", must be one of '),
+    ):
+        with pytest.raises(dembound.NameMissingError) as caught:
+            ask()
+        assert str(caught.value).startswith(said)
+        assert isinstance(caught.value, KeyError)
+    assert results.histories.get("midle") is None
+    assert "midle" not in results.histories
+    assert "no" not in results.particles
+
+
+@pytest.mark.parametrize("name", shipped.names())
+def test_a_case_is_shown_in_ten_lines(name) -> None:
+    case = dembound.load(shipped.folder() / f"{name}.toml")
+    lines = repr(case).splitlines()
+    assert len(lines) <= 10
+    assert max(map(len, lines)) <= 100
+    assert lines[0].startswith(f"{type(case).__name__} {case.name}: {case.title}"[:99])
+    for table in tomllib.loads(case.text):
+        assert table == "title" or re.search(rf"\b{table}\b", repr(case))

@@ -167,6 +167,40 @@ def test_starting_points_are_listed_and_written_by_name(dembound, tmp_path) -> N
     assert refused.err.startswith('--from: is "rock", must be one of long_bar, ')
 
 
+def test_a_new_case_is_of_the_kind_that_its_name_says(dembound, tmp_path) -> None:
+    assert (
+        dembound("new", "tunnel").out.splitlines()[-1].startswith("wrote tunnel.toml from the starting point tunnel;")
+    )
+    assert dembound("new", "rock_bar.toml").code == 0
+    assert dembound("new", "mine", "--from", "lamb").code == 0
+    assert dembound("new", "excavation", "--from", "lamb").code == 0
+    assert dembound("new", "other").code == 0
+    for file, start in {
+        "tunnel": "tunnel",
+        "rock_bar": "rock_bar",
+        "mine": "lamb",
+        "excavation": "lamb",
+        "other": starting.DEFAULT,
+    }.items():
+        assert load(tmp_path / f"{file}.toml").title == starting.titles()[start]
+    assert dembound("new", "tunnel") == (2, "", "tunnel.toml: exists already, give another name\n")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["case.txt"], "FILE: is case.txt, must end in .toml, such as case.toml"),
+        (["."], "FILE: is the folder ., must be a file in it, such as case.toml"),
+        (["--from", "quickstart"], "quickstart is one of `dembound cases`; to copy it: dembound cases copy quickstart"),
+    ],
+)
+def test_other_targets_of_new_are_answered(dembound, tmp_path, words, said) -> None:
+    answer = dembound("new", *words)
+    assert answer.code == 2
+    assert answer.err.splitlines()[-1] == said
+    assert files(tmp_path) == set()
+
+
 def test_editors_find_the_schema_beside_a_new_case(dembound, tmp_path) -> None:
     (tmp_path / "mine").mkdir()
     dembound("new", "mine/first.toml")
@@ -449,20 +483,84 @@ def test_more_threads_than_cores_are_refused(dembound, written) -> None:
     assert answer.err.startswith("--threads: ")
 
 
-def test_a_calibration_leaves_the_calibrated_case_its_passes_and_a_picture(dembound, written, tmp_path) -> None:
-    path = written(changes={"wave.pulse.period": 0.05, "boundary.right.beta_p": 0.5})
-    answer = dembound("calibrate", path, "--boundary", "right")
+COMMENTED = """\
+#:schema ./dembound.schema.json
+# A short bar.
+
+[packing]                 # equal disks
+pattern = "A"
+size = [20.0, 1.0]
+radius = 0.5
+
+[material]
+density = 2500.0
+p_wave_speed = 1000.0
+
+[motion]
+held = ["y"]
+
+[boundary.left]
+type = "viscous_input"
+wave_p = "pulse"
+
+[boundary.right]          # absorbs
+type = "viscous"
+beta_p = 0.5              # to be calibrated
+
+[wave.pulse]
+type = "cosine"
+amplitude = 1.0           # m/s
+period = 0.05
+
+[run]
+duration = 0.1
+"""
+
+
+def test_a_calibration_writes_the_case_with_its_factor_beside_it(dembound, tmp_path) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "bar.toml").write_text(COMMENTED)
+    answer = dembound("calibrate", "mine/bar.toml", "--boundary", "right")
 
     assert answer.code == 0
-    (calibrated,) = (tmp_path / "results").rglob("bar_calibrated.toml")
-    folder = calibrated.parent
-    assert {"bar_calibrated.toml", "calibration.h5", "convergence.png"} <= files(folder)
-    with h5py.File(folder / "calibration.h5") as file:
-        assert load(calibrated).boundary["right"].beta_p == file.attrs["result"]
+    folder = "results/bar_calibration_right_p_impedance"
+    left = {f"{folder}/{name}" for name in ("calibration.h5", "convergence.png", "summary.json")}
+    assert files(tmp_path) == {*left, "mine/bar.toml", "mine/bar_calibrated.toml"}
+    with h5py.File(tmp_path / folder / "calibration.h5") as file:
+        beta = float(file.attrs["result"])
+    text = (tmp_path / "mine" / "bar_calibrated.toml").read_text()
+    assert text == COMMENTED.replace("beta_p = 0.5 ", f"beta_p = {beta} ")
+    assert len(str(beta)) <= 7
+    assert f"β_P = {beta:g}\n" in answer.out
     passes = [line for line in answer.out.splitlines() if line.startswith("pass ")]
     assert passes[0].startswith("pass  1: β_P = 0.500000, M_out = ")
     assert len(passes) == 2
-    assert dembound("check", calibrated).code == 0
+    assert dembound("check", "mine/bar_calibrated.toml").code == 0
+
+    # the next side in the case that was left; then all sides at once, of the same case
+    assert dembound("calibrate", "mine/bar_calibrated.toml", "-b", "left", "--method", "homogenised").code == 0
+    both = (tmp_path / "mine" / "bar_calibrated.toml").read_text()
+    assert both == text.replace('wave_p = "pulse"\n', 'wave_p = "pulse"\nbeta_p = 1.0\n', 1)
+    assert dembound("calibrate", "mine/bar.toml", "--all", "--method", "homogenised").code == 0
+    assert (tmp_path / "mine" / "bar_calibrated.toml").read_text() == both.replace(f"beta_p = {beta} ", "beta_p = 1.0 ")
+    assert (tmp_path / "mine" / "bar.toml").read_text() == COMMENTED
+
+
+def test_a_calibration_replaces_no_other_case(dembound, tmp_path) -> None:
+    (tmp_path / "bar.toml").write_text(COMMENTED)
+    options = ("bar.toml", "-b", "right", "--method", "homogenised")
+    for other in (COMMENTED.replace("0.1\n", "0.2\n"), COMMENTED.replace("# equal", "# my"), "no TOML = ="):
+        (tmp_path / "bar_calibrated.toml").write_text(other)
+        answer = dembound("calibrate", *options)
+        assert answer.code == 2
+        assert "bar_calibrated.toml: exists already and differs from the case by more than boundary." in answer.err
+        assert (tmp_path / "bar_calibrated.toml").read_text() == other
+        assert files(tmp_path) == {"bar.toml", "bar_calibrated.toml"}  # before anything is computed
+    assert dembound("calibrate", *options, "--calibrated", "new.toml", "--set", "run.duration=0.3").code == 0
+    changed = COMMENTED.replace("beta_p = 0.5 ", "beta_p = 1.0 ").replace("duration = 0.1", "duration = 0.3")
+    assert (tmp_path / "new.toml").read_text() == changed
+    assert dembound("calibrate", *options, "--name", "other").code == 0
+    assert (tmp_path / "other_calibrated.toml").is_file()
 
 
 def test_a_homogenised_calibration_has_no_passes_to_show(dembound, written, tmp_path) -> None:
@@ -480,14 +578,9 @@ def test_all_sides_are_calibrated_at_once_and_leave_one_case(dembound, written, 
     assert answer.code == 0
     folder = tmp_path / "results" / "bar_calibration"
     records = {"left_p/calibration.h5", "right_p/calibration.h5"}
-    assert files(tmp_path / "results" / "bar_calibration") == {
-        *records,
-        "bar_calibrated.toml",
-        "summary.json",
-        "convergence.png",
-    }
+    assert files(folder) == {*records, "summary.json", "convergence.png"}
     found = json.loads((folder / "summary.json").read_text())["result"]
-    sides = load(folder / "bar_calibrated.toml").boundary
+    sides = load(tmp_path / "bar_calibrated.toml").boundary
     assert found == {f"boundary.{side}.beta_p": sides[side].beta_p for side in ("left", "right")}
     rows = [line for line in answer.out.splitlines() if line.startswith("│ boundary.")]
     assert [row.split()[1] for row in rows] == list(found)
@@ -495,12 +588,10 @@ def test_all_sides_are_calibrated_at_once_and_leave_one_case(dembound, written, 
     assert dembound("plot", folder / "left_p", folder / "right_p").code == 0
 
     # once more, from what it left: the names stay as they are
-    again = dembound("calibrate", folder / "bar_calibrated.toml", "--all", "--method", "homogenised")
+    again = dembound("calibrate", "bar_calibrated.toml", "--all", "--method", "homogenised")
     assert again.code == 0
-    assert files(tmp_path / "results" / "bar_calibration") == {*records, "bar_calibrated.toml", "summary.json"}
-    one = dembound("calibrate", folder / "bar_calibrated.toml", "-b", "left", "--method", "homogenised")
-    assert one.code == 0
-    assert (tmp_path / "results" / "bar_calibration_left_p_homogenised" / "bar_calibrated.toml").is_file()
+    assert files(folder) == {*records, "summary.json"}
+    assert {path.name for path in tmp_path.glob("*.toml")} == {"bar.toml", "bar_calibrated.toml"}
 
 
 def test_one_side_or_all_of_them_are_calibrated(dembound, written, tmp_path) -> None:
@@ -702,14 +793,6 @@ def test_bricks_are_kept_where_the_command_says_until_they_are_cleared(
     assert dembound("cache").out == f"{tmp_path / 'bricks'}\n"
     assert "deleted 1 brick" in dembound("cache", "--clear").out
     assert not list((tmp_path / "bricks").iterdir())
-
-
-def test_running_a_case_keeps_what_its_calibration_left(dembound, written, tmp_path) -> None:
-    path = written(changes={"wave.pulse.period": 0.05})
-    dembound("calibrate", path, "--boundary", "right")
-    dembound("run", path)
-
-    assert list((tmp_path / "results").rglob("bar_calibrated.toml"))
 
 
 def test_nothing_is_deleted_that_no_run_has_written(dembound, written, tmp_path) -> None:

@@ -10,7 +10,7 @@ from dembound.casefile.model import Case
 from dembound.methods import Method
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class BarCase(Case):
     """A case of a bar.
 

@@ -20,7 +20,7 @@ from dembound.holes.floor import Floor
 from dembound.packings import Packing
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class DiskCase(Case):
     """A case of bonded disks.
 

@@ -66,16 +66,18 @@ function showFrames(figure, frames) {
     play.setAttribute("aria-label", play.title);
   }
   slider.addEventListener("input", () => show(Number(slider.value)));
-  show(Math.floor(frames.uris.length / 2));
+  show(frames.first);
 }
 
-/** Round numbers between two ends, about so many. */
+/** Round numbers between two ends, about so many, but at least three. */
 function ticks(low, high, count) {
   const raw = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((each) => each * power).find((each) => each >= raw) ?? 10 * power;
-  const first = Math.ceil(low / step - 1e-9), last = Math.floor(high / step + 1e-9);
-  return Array.from({ length: Math.max(0, last - first + 1) }, (_, index) => (first + index) * step);
+  const steps = [0.1, 0.2, 0.5, 1, 2, 5, 10].map((each) => each * power);
+  const first = (step) => Math.ceil(low / step - 1e-9), last = (step) => Math.floor(high / step + 1e-9);
+  const enough = steps.filter((step) => last(step) - first(step) >= 2);
+  const step = enough.find((each) => each >= raw) ?? enough.at(-1) ?? steps[0];
+  return Array.from({ length: Math.max(0, last(step) - first(step) + 1) }, (_, index) => (first(step) + index) * step);
 }
 
 /** A number as text, in the digits that tell it from one that is a step away. */

@@ -11,7 +11,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.motion.kind import Finding
 from dembound.results.committed import changed_file
-from dembound.results.reader import open_record
+from dembound.results.reader import open_record, text_of
 from dembound.studies.chart.measure import Gauge, Gauges, Outcome
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class Record:
             found = Outcome(**{name: _plain(group.attrs[name]) for name in NUMBERS})
             found.gauges = _read_gauges(group["gauges"])
             found.findings = {
-                name: Finding(float(value[()]), str(value.attrs["unit"]))
+                name: Finding(float(value[()]), text_of(value.attrs["unit"]))
                 for name, value in _scalars(group["findings"]).items()
             }
             found.cpu, found.wall = group["cpu"][:].tolist(), group["wall"][:].tolist()

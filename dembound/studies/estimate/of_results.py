@@ -20,6 +20,7 @@ from dembound.results.datasets import describe, write
 from dembound.results.estimates import FILE, KEY
 from dembound.results.histories import FREE_FIELD
 from dembound.results.json_files import write_json
+from dembound.results.named import Named
 from dembound.results.reader import history_of, open_record, replacing, require_run
 from dembound.results.summary_file import read_summary
 from dembound.running.recorded import recorded_case
@@ -75,7 +76,7 @@ def _estimated(folder: Path, budget: float | None, second_seed: bool, repeat: bo
     again = repeated(case, record, cracked) if repeat else None
     said = Causes([], [], one_draw) if again is None else Causes([], [], again.lines(), again.cost)
     causes = Causes([], [lack]) if lack else _causes(case, recorded, cracked.first, summary, work, budget, second_seed)
-    return Estimate(recorded, causes + said, repeat=again), summary
+    return Estimate(Named(recorded, "monitor"), causes + said, repeat=again), summary
 
 
 def _causes(

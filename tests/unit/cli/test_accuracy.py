@@ -5,7 +5,7 @@ import json
 import pytest
 from unit.studies.accuracy.test_choice import BAR, small
 
-from dembound.cli.accuracy import bound_of
+from dembound.cli.accuracy import bound_of, name_within
 from dembound.errors import CaseError
 
 
@@ -28,6 +28,17 @@ def test_other_bounds_are_one_line(text) -> None:
         bound_of(text, None)
 
 
+@pytest.mark.parametrize(
+    ("error", "name"),
+    [
+        *(("1%", "bar_1pct"), ("0.01", "bar_1pct"), ("0.3%", "bar_0_3pct"), ("0.003", "bar_0_3pct")),
+        *(("12.5 %", "bar_12_5pct"), ("1e-6", "bar_0_0001pct"), ("10%", "bar_10pct")),
+    ],
+)
+def test_results_within_a_bound_have_a_name_of_their_own(error, name) -> None:
+    assert name_within("bar", bound_of(error, None)) == name
+
+
 def test_keep_without_error_is_refused(dembound, case) -> None:
     answer = dembound("check", case, "--keep", "packing")
     assert (answer.code, answer.err) == (2, "--keep: needs --error, without which nothing is changed\n")
@@ -36,9 +47,10 @@ def test_keep_without_error_is_refused(dembound, case) -> None:
 def test_a_run_has_the_chosen_case_and_its_estimate(dembound, case, tmp_path) -> None:
     answer = dembound("run", case, "--error", "5%", "--keep", "packing", "--set", "output.pictures=false")
     assert answer.code == 0
-    assert "bar: boundary.right" in answer.out
+    assert "bar_5pct: boundary.right" in answer.out
     assert "half_mass = true" in answer.out
-    summary = json.loads((tmp_path / "results/bar/summary.json").read_text())
+    assert [path.name for path in (tmp_path / "results").iterdir()] == ["bar_5pct"]  # beside a run of the case itself
+    summary = json.loads((tmp_path / "results/bar_5pct/summary.json").read_text())
     found = [each["velocity"]["total"] for each in summary["error_estimate"]["monitors"].values()]
     assert 0.0 < max(found) < 0.05
 

@@ -6,6 +6,7 @@ import pytest
 
 from dembound.errors import CaseError
 from dembound.plot.convergence import plot_convergence
+from dembound.results.datasets import describe
 
 BETA = [0.5, 0.618, 0.7]
 OUTGOING = [0.618, 0.567, 0.536]
@@ -13,7 +14,8 @@ OUTGOING = [0.618, 0.567, 0.536]
 
 def calibration(path, name, beta, outgoing):
     with h5py.File(path, "w") as file:
-        file.attrs.update(
+        describe(
+            file,
             {
                 "name": name,
                 "boundary": "right",
@@ -21,7 +23,7 @@ def calibration(path, name, beta, outgoing):
                 "kind": "absorbing",
                 "method": "ratio",
                 "incident": 0.5,
-            }
+            },
         )
         file["beta"], file["outgoing"] = np.array(beta), np.array(outgoing)
         file["ratio"] = np.array(outgoing) / 0.5

@@ -60,7 +60,7 @@ def test_transfer_functions_are_ratios_to_a_monitor_or_a_twin(known_run):
     (panel,) = plot_transfer([known_run], component="y").axes  # to the twin, as it has one
     values = lines_of(panel)["back"].get_ydata()
     np.testing.assert_allclose(values[~np.isnan(values)], 2.0, rtol=1e-6)
-    assert panel.figure.get_supylabel() == "amplitude over that of their free-field twins, velocity along y"
+    assert panel.figure.get_supylabel() == "amplitude over that of their free-field twins, velocity along y (–)"
 
 
 def test_response_spectra_are_those_of_accelerations(known_run):

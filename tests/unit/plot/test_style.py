@@ -1,6 +1,7 @@
 """Figures are saved whole, alike, and in one style."""
 
 import matplotlib
+import numpy as np
 import pytest
 from matplotlib import image
 
@@ -127,3 +128,21 @@ def test_a_common_power_of_ten_stands_at_the_end_of_an_axis(largest, power):
     figure.draw_without_rendering()
     assert panel.yaxis.get_offset_text().get_text() == power
     assert max(float(label.get_text().replace("−", "-")) for label in panel.get_yticklabels()) < 10.0
+
+
+def test_legends_have_what_is_seen_alone():
+    figure = new_figure(4.0, 3.0)
+    panel = figure.subplots()
+    x = np.linspace(0.0, 1.0, 50)
+    panel.plot(x, x, label="line")
+    panel.plot(x + 5.0, x, label="line beyond the axes")
+    panel.fill_between(x, x - 1e-4, x + 1e-4, label="band within the line")
+    panel.fill_between(x, x - 0.1, x + 0.1, label="band")
+    panel.scatter([0.5], [0.5], label="point")
+    panel.scatter([9.0], [0.5], label="point beyond")
+    panel.axhline(0.5, label="level")
+    panel.axhline(7.0, label="level beyond")
+    panel.plot([], [], label="key")
+    panel.set(xlim=(0.0, 1.0), ylim=(-0.2, 1.2))
+    outside_legend(figure, [panel], 3)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["line", "band", "point", "level", "key"]

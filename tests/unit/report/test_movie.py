@@ -6,12 +6,15 @@ import subprocess
 import h5py
 import numpy as np
 import pytest
+from matplotlib import colormaps
 from PIL import Image
+from readable import problems_of
 
 from dembound.errors import CaseError, DemboundError
 from dembound.plot.boundary import plot_boundary
 from dembound.plot.energy import plot_energy
 from dembound.plot.side import plot_side
+from dembound.plot.style import SIGNED_MAP
 from dembound.report import movie as movie_module
 from dembound.report.movie import movie_of, write_movie
 
@@ -102,9 +105,32 @@ def test_histories_are_below_and_the_line_moves(pushed_runs, spalled_results):
         movie_of(pushed_runs[0], monitors=["nobody"])
 
 
-def test_only_some_monitors_are_shown_by_default(pushed_runs, monkeypatch):
-    monkeypatch.setattr(movie_module, "MOST_MONITORS", 1)
-    assert len(movie_of(pushed_runs[0]).below.figure.axes) == 1
+def test_all_of_many_monitors_are_shown_with_three_numbers_each(many_monitors):
+    figure = movie_of(many_monitors).below.figure
+    assert [panel.get_title("left").split(" at ")[0] for panel in figure.axes] == [f"M{n}" for n in range(9)]
+    assert problems_of(figure) == []
+
+
+def test_a_gif_has_the_shades_of_the_colour_map(monkeypatch):
+    """A wave in a mostly white picture, beside a bar of all its colours: no two levels of 20 look the same."""
+    shades = colormaps[SIGNED_MAP](np.linspace(0.0, 1.0, 256), bytes=True)[:, :3]
+    frame = np.full((600, 400, 3), 255, np.uint8)
+    frame[:256, 350:370] = shades[:, None]
+    frame[300:500, :256] = shades[64:192].repeat(2, axis=0)[None]
+    frame[520:560, ::7] = np.random.default_rng(4).integers(0, 255, (40, 58, 1))
+
+    class One:
+        def __len__(self):
+            return 1
+
+        def frame(self, number):
+            return frame
+
+    made = np.asarray(movie_module._reduced(frame, movie_module._common_colours(One())).convert("RGB")).astype(int)
+    errors = np.abs(made - frame)[:500].max(axis=2)
+    # 96 shades are 2.7 of 255 steps of the map apart, of which one changes a colour by up to 6: half of 16, rounded
+    assert errors.max() <= 9
+    assert len(np.unique(made[:256, 360], axis=0)) >= 96
 
 
 def test_what_cannot_be_shown_is_said(blind_run, pushed_runs, tmp_path):

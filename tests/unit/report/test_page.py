@@ -5,7 +5,9 @@ import hashlib
 import json
 import re
 import shutil
+import subprocess
 from itertools import pairwise
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -275,3 +277,32 @@ def test_text_that_reorders_itself_is_shown_as_escapes(small_run, tmp_path):
     assert not HIDDEN.search(page.source)
     assert "harm\\u202eless" in page.source
     assert "# one\\u2066 line\n" in page.source
+
+
+def test_a_page_opens_with_the_wave_in_view_and_has_all_monitors(many_monitors, tmp_path):
+    write_report([many_monitors], tmp_path / "page.html")
+    live = Page(tmp_path / "page.html").live()
+    frames = live["frames-0"]
+    with h5py.File(many_monitors) as file:
+        motion = [np.square(group["velocity"][:, :2]).sum() for group in file["snapshots"].values()]
+    assert frames["first"] == np.argmax(motion)
+    assert motion[frames["first"]] > 50.0 * motion[len(motion) // 2]  # when the wave has gone
+    assert len(live["chart-0"]["panels"]) == 9
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="scripts are run by node")
+def test_charts_have_three_numbers_at_any_size():
+    """Of any range, in panels as low as those of many monitors, for which two numbers are asked."""
+    script = (Path(page_module.__file__).parent / "template" / "page.js").read_text(encoding="utf-8")
+    begin = script.index("function ticks(")
+    function = script[begin : script.index("\n}\n", begin) + 3]
+    rng = np.random.default_rng(5)
+    low = rng.choice([-1.0, 0.0, 1.0, 1e3], 2000) * rng.uniform(0.0, 1.0, 2000)
+    ends = [[float(a), float(a + b)] for a, b in zip(low, 10.0 ** rng.uniform(-6.0, 4.0, 2000), strict=True)]
+    asked = f"{function}console.log(JSON.stringify({json.dumps(ends)}.map((e) => ticks(e[0], e[1], 2.25))))"
+    told = subprocess.run(["node", "-e", asked], capture_output=True, text=True, check=True).stdout
+    for (first, last), numbers in zip(ends, json.loads(told), strict=True):
+        slack = 1e-6 * (last - first)
+        assert 3 <= len(numbers) <= 8
+        assert first - slack <= numbers[0]
+        assert numbers[-1] <= last + slack

@@ -163,7 +163,7 @@ def test_contacts_are_kept_if_the_case_asks_for_them(tmp_path, bar, simulation) 
     arrays = Results(tmp_path / "asked.h5").snapshots[0]
     assert set(arrays) == {"displacement", "velocity", *(f"contacts/{name}" for name in expected)}
     np.testing.assert_array_equal(arrays["contacts/vector"], expected["vector"][0])
-    assert arrays.unit("contacts/vector") == "m"
+    assert arrays.units("contacts/vector") == ("m", "m")
 
 
 def test_disks_of_a_column_are_marked(tmp_path, bar) -> None:

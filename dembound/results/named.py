@@ -1,0 +1,29 @@
+"""Mappings by the names of what results have, which answer other names with those there are."""
+
+from collections.abc import Collection, Mapping
+from typing import TypeVar
+
+from dembound.casefile.messages import choices, show
+from dembound.errors import NameMissingError
+
+T = TypeVar("T")
+
+
+class Named(dict[str, T]):
+    """Values by the names of monitors or sides; another name raises NameMissingError, with those there are.
+
+    what : they are names of; where : the file they are in.
+    """
+
+    def __init__(self, values: Mapping[str, T], what: str, where: str = "") -> None:
+        super().__init__(values)
+        self._what, self._where = what, where
+
+    def __missing__(self, name: str) -> T:
+        raise missing(self._what, name, self, self._where)
+
+
+def missing(what: str, name: str, known: Collection[str], where: str = "") -> NameMissingError:
+    """The error for a name that is not among those known."""
+    there = f"must be one of {choices(str(name), list(known))}" if known else "there are none"
+    return NameMissingError([f"{what}: is {show(name)}, {there}"], where)

@@ -1,0 +1,296 @@
+"""Texts of cases with keys changed: they parse to the tables wanted, and all other lines stand byte for byte."""
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from copy import deepcopy
+from typing import Any
+
+import pytest
+import tomli_w
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dembound import shipped, starting
+from dembound.casefile.edit import edited, rewritten
+from dembound.casefile.statements import Place, lines_of, statements_of
+from dembound.errors import CaseError
+
+TEXTS = {name: (shipped.folder() / f"{name}.toml").read_text(encoding="utf-8") for name in shipped.names()} | {
+    f"new {name}": starting.starting_point(name) for name in starting.names()
+}
+
+ODD = """\
+#:schema ./dembound.schema.json
+title = "odd"   # shown above pictures
+
+# The ground.
+[ground]   # all of it
+size = [ 300.0,   # along x
+         300.0 ]  # along y
+  [boundary.left]
+  type = "free"
+  # reflects
+
+  [boundary.right]
+  type = "viscous"   # absorbs
+  beta_p = 0.71_38
+
+# Gauges.
+[[monitor]]
+name = "a"
+position = [1.0, 2.0]
+
+# The second.
+[[monitor]]
+position = [3.0, 4.0]
+name = "b"
+
+# Others.
+[outside]
+cfl.of.layers = 0.5
+note = '''
+[no.header] # no comment
+'''
+load = [
+    {name = "x", force = [1.0, 0.0]},  # pushed
+    {name = "y"},                      # not
+]
+"""
+
+
+def leaves(data: Any, place: Place = ()) -> Iterator[tuple[Place, Any]]:
+    """All values that are no table and no list of tables, with their places."""
+    if isinstance(data, Mapping):
+        for key, inner in data.items():
+            yield from leaves(inner, (*place, key))
+    elif isinstance(data, list) and data and all(isinstance(each, Mapping) for each in data):
+        for index, inner in enumerate(data):
+            yield from leaves(inner, (*place, index))
+    else:
+        yield place, data
+
+
+def other(value: Any) -> Any:
+    """Another value of the same kind."""
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, str):
+        return value + '"x'
+    return [*value, 1.5] if isinstance(value, list) else -value - 1
+
+
+def put(data: Any, place: Place, value: Any) -> None:
+    for key in place[:-1]:
+        data = data[key]
+    data[place[-1]] = value
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_changed_value_changes_its_own_lines_alone(name: str) -> None:
+    text = TEXTS[name]
+    found = list(leaves(tomllib.loads(text)))
+    for place, value in found[:: max(1, len(found) // 5)]:
+        wanted = tomllib.loads(text)
+        put(wanted, place, other(value))
+        new = rewritten(text, wanted)
+        assert tomllib.loads(new) == wanted
+        lines = lines_of(text)
+        (held,) = [
+            each for each in statements_of(lines) if each.kind == "key" and each.place == place[: len(each.place)]
+        ]
+        assert new.startswith("".join(lines[: held.begin]))
+        assert new.endswith("".join(lines[held.end :]))
+        assert new != text
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_added_and_removed_keys_leave_all_other_lines(name: str) -> None:
+    text = TEXTS[name]
+    lines = text.split("\n")
+    added = edited(text, {"output.added": 1.5, "new_table.key": [1, 2], "boundary.top.added": True})
+    data = tomllib.loads(text)
+    for place, value in {
+        ("output", "added"): 1.5,
+        ("new_table", "key"): [1, 2],
+        ("boundary", "top", "added"): True,
+    }.items():
+        table = data
+        for key in place[:-1]:
+            table = table.setdefault(key, {})
+        table[place[-1]] = value
+    assert tomllib.loads(added) == data
+    rest = iter(added.split("\n"))
+    assert all(line in rest for line in lines)  # in their order
+    assert edited(added, {"output.added": None}).count("\n") == added.count("\n") - 1
+
+
+def test_a_line_in_an_odd_layout() -> None:
+    """Every form of a key, changed by its dotted name: the text as someone would write it by hand."""
+    changes = {
+        "title": "even",
+        "ground.size": [300.0, 200.0],
+        "boundary.right.beta_p": 0.7,
+        "boundary.right.beta_s": 0.9,
+        "boundary.left": None,
+        "boundary.top": {"type": "free"},
+        "monitor.b.position": [3.5, 4.0],
+        "monitor.1": None,
+        "outside.cfl.of.layers": 0.4,
+        "outside.cfl.of.rest": 1,
+        "outside.load.y.force": [0.0, 1.0],
+        "run": {"duration": 2.0, "until": {"silent": True}},
+    }
+    assert (
+        edited(ODD, changes)
+        == """\
+#:schema ./dembound.schema.json
+title = "even"   # shown above pictures
+
+# The ground.
+[ground]   # all of it
+size = [ 300.0,   # along x
+         200.0 ]  # along y
+  # reflects
+
+  [boundary.right]
+  type = "viscous"   # absorbs
+  beta_p = 0.7
+  beta_s = 0.9
+
+[boundary.top]
+type = "free"
+
+# Gauges.
+
+# The second.
+[[monitor]]
+position = [3.5, 4.0]
+name = "b"
+
+# Others.
+[outside]
+cfl.of.layers = 0.4
+cfl.of.rest = 1
+note = '''
+[no.header] # no comment
+'''
+load = [
+    {name = "x", force = [1.0, 0.0]},  # pushed
+    {name = "y", force = [0.0, 1.0]},                      # not
+]
+
+[run]
+duration = 2.0
+
+[run.until]
+silent = true
+"""
+    )
+
+
+def test_line_ends_and_a_missing_last_one_remain() -> None:
+    assert edited("[a]\r\nx = 1 # c\r\n", {"a.y": 2, "a.x": 3}) == "[a]\r\nx = 3 # c\r\ny = 2\r\n"
+    assert edited("a = 1", {"a": 2}) == "a = 2"
+    assert edited("a = 1", {"b": 2}) == "a = 1\nb = 2\n"
+    assert edited("# top\n[t]\n", {"a": 1}) == "# top\na = 1\n\n[t]\n"
+    assert edited("", {"a.b": {}}) == "[a.b]\n"
+
+
+def test_nothing_changed_is_the_same_text() -> None:
+    assert edited(ODD, {"boundary.right.beta_p": 0.7138, "run": None, "monitor.a.name": "a"}) == ODD
+
+
+def test_keys_that_lead_nowhere_are_refused() -> None:
+    with pytest.raises(CaseError, match=r"monitor\.c\.position: unknown monitor"):
+        edited(ODD, {"monitor.c.position": [0.0, 0.0]})
+
+
+KEYS = st.sampled_from(["a", "b", "name", "size", "c d", "é.x"])
+PLAIN = st.one_of(
+    st.booleans(),
+    st.integers(-5, 5),
+    st.floats(allow_nan=False, allow_infinity=False),
+    st.text(st.characters(exclude_categories=["Cs"]), max_size=5),
+    st.lists(st.integers(0, 3), max_size=3),
+)
+TABLES = st.recursive(
+    st.dictionaries(KEYS, PLAIN, max_size=3),
+    lambda inner: st.dictionaries(KEYS, st.one_of(PLAIN, inner, st.lists(inner, max_size=3)), max_size=4),
+    max_leaves=12,
+)
+
+
+def quoted(key: str) -> str:
+    return key if key.isascii() and key.isalnum() else f'"{key}"'
+
+
+def inline(value: Any) -> str:
+    """A value on one line."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{quoted(key)} = {inline(inner)}" for key, inner in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(inline, value)) + "]"
+    return tomli_w.dumps({"x": value}).removeprefix("x = ").rstrip("\n")
+
+
+def layout(data: Mapping[str, Any], draw: Any, place: tuple[str, ...] = ()) -> list[str]:
+    """Lines of a table in any of the forms that TOML has, with comments and blank lines."""
+    lines, sections = [], []
+    for key, value in data.items():
+        name = ".".join(map(quoted, (*place, key)))
+        many = isinstance(value, list) and value and all(isinstance(each, dict) for each in value)
+        form = draw(st.sampled_from(["inline", "dotted", "section", "lines"]))
+        if form == "section" and isinstance(value, dict):
+            sections += ["", f"# about {name}", f"[{name}]  # here", *layout(value, draw, (*place, key))]
+        elif form == "section" and many:
+            for each in value:
+                sections += [f"[[{name}]]", *layout(each, draw, (*place, key)), "", "# next"]
+        elif form == "dotted" and isinstance(value, dict) and value:
+            lines += [f"  {quoted(key)} . {quoted(inner)} = {inline(each)} # dot" for inner, each in value.items()]
+        elif form == "lines" and isinstance(value, list):
+            lines += [f"{quoted(key)} = [ # open", *(f"  {inline(each)}, # one" for each in value), "]"]
+        else:
+            lines += [f"{quoted(key)}={inline(value)}", *draw(st.sampled_from([[], [""], ["# below"]]))]
+    return [*lines, *sections]
+
+
+@given(st.data())
+@settings(deadline=None, max_examples=200, derandomize=True)
+def test_any_layout_is_edited_to_any_other_tables(data: st.DataObject) -> None:
+    before = data.draw(TABLES)
+    wanted = deepcopy(before) if data.draw(st.booleans()) else data.draw(TABLES)
+    for place, value in list(leaves(before))[: data.draw(st.integers(0, 3))]:
+        if wanted == before or data.draw(st.booleans()):
+            try:
+                put(wanted, place, other(value))
+            except (KeyError, TypeError, IndexError):
+                continue  # which the other tables do not have
+    text = "\n".join(["# top", *layout(before, data.draw)]) + data.draw(st.sampled_from(["", "\n"]))
+    assert tomllib.loads(text) == before
+
+    new = rewritten(text, wanted)
+
+    assert repr_of(tomllib.loads(new)) == repr_of(wanted)
+    kept = [line for each in untouched(text, before, wanted) for line in each]
+    rest = iter(new.split("\n"))
+    assert all(line in rest for line in kept)
+
+
+def repr_of(value: Any) -> Any:
+    """Tables as sorted texts, which differ for 1, 1.0 and true."""
+    if isinstance(value, Mapping):
+        return {key: repr_of(inner) for key, inner in value.items()}
+    return [repr_of(each) for each in value] if isinstance(value, list) else repr(value)
+
+
+def untouched(text: str, before: Any, wanted: Any) -> Iterator[list[str]]:
+    """The lines of the keys outside lists of tables that have the value wanted."""
+    lines = lines_of(text)
+    for each in statements_of(lines):
+        if each.kind == "header" or any(isinstance(key, int) for key in each.place):
+            continue
+        old, new = before, wanted
+        for key in each.place:
+            old, new = old[key], new.get(key) if isinstance(new, Mapping) else None
+        if repr_of(old) == repr_of(new):
+            yield [line.rstrip("\n") for line in lines[each.begin : each.end]]

@@ -1,0 +1,98 @@
+"""Outlines of holes are lines within a tenth of a disk of those of the case, in scenes, movies and boxes."""
+
+import h5py
+import numpy as np
+import pytest
+from matplotlib.collections import EllipseCollection
+from matplotlib.patches import PathPatch
+from small_cases import SURROUNDED, small
+
+from dembound.disks.kind import Disks
+from dembound.motion.simulation import Simulation
+from dembound.plot import style
+from dembound.plot.moving_scene import MovingScene
+from dembound.plot.outlines import ABOVE_FIELD, ABOVE_FILLING, read_holes
+from dembound.plot.scene import plot_scene
+from dembound.results.recorder import Recorder
+
+RADIUS = 0.5
+
+HOLES = {
+    "horseshoe": {
+        "type": "polygon",
+        "points": [[8.0, 4.0], [15.0, 4.0], [15.0, 7.0], [13.5, 9.3], [11.5, 10.0], [9.5, 9.3], [8.0, 7.0]],
+    },
+    "oval": {"type": "ellipse", "centre": [12.0, 8.0], "semi_axes": [6.0, 2.5], "angle": 25.0},
+    "circle": {"type": "circle", "centre": [12.0, 8.0], "radius": 3.7},
+    "drift": {"type": "rectangle", "corners": [8.2, 5.1, 14.9, 9.9]},
+    "canyon": {"type": "polygon", "points": [[6.0, 19.0], [10.0, 9.0], [14.0, 9.0], [18.0, 19.0]]},
+    "floor": {"type": "polygon", "points": [[12.0, 10.0], [30.0, 10.0], [30.0, 19.0], [9.0, 19.0]]},
+}
+
+ALONE = {"boundary": {side: {"type": "viscous"} for side in ("left", "right", "bottom")}}
+
+
+@pytest.fixture(params=[(name, box) for name in HOLES for box in (True, False)], ids=lambda p: f"{p[0]}-{p[1]}")
+def hollow_run(request, tmp_path):
+    """The record of 24 × 16 disks with a hole, in a continuum or alone, with random motion in its two snapshots."""
+    name, in_a_box = request.param
+    size = {"pattern": "A", "size": [24.0, 16.0], "radius": RADIUS}
+    changes = {"packing": size, "hole": [{"name": name, **HOLES[name]}], **({} if in_a_box else ALONE)}
+    if name == "floor" and not in_a_box:
+        changes["boundary"] = ALONE["boundary"] | {"right": {"type": "free"}}
+    scene = Disks().build(small(SURROUNDED, "hollow", changes))
+    simulation, rng = Simulation(scene, 1e-4), np.random.default_rng(3)
+    with Recorder(tmp_path / "run.h5", simulation, 2e-4) as recorder:
+        for step in (50, 100):
+            simulation.state.step = step
+            simulation.state.velocity = rng.normal(size=(3, scene.count)) * scene.moves
+            recorder.snapshot()
+    return tmp_path / "run.h5"
+
+
+def away(points, line):
+    """Largest distance (m) of points from a line of many short pieces."""
+    begin, piece = line[:-1], np.diff(line, axis=0)
+    part = ((points[:, None] - begin) * piece).sum(axis=2) / np.maximum((piece**2).sum(axis=1), 1e-30)
+    nearest = begin + np.clip(part, 0.0, 1.0)[..., None] * piece
+    return np.hypot(*np.moveaxis(points[:, None] - nearest, 2, 0)).min(axis=1).max()
+
+
+@pytest.mark.parametrize("dots", [150, 12])
+def test_outlines_are_those_of_the_case(hollow_run, dots, monkeypatch):
+    monkeypatch.setattr(style, "DOTS_PER_INCH", dots)
+    with h5py.File(hollow_run) as file:
+        (hole,) = read_holes(file)
+        positions = file["particles/position"][:]
+    low, high = positions.min(axis=0) - RADIUS, positions.max(axis=0) + RADIUS
+    true = hole.outline.at(np.linspace(0.0, hole.outline.period, 3001))
+    inside = true[((true > low + 1e-6) & (true < high - 1e-6)).all(axis=1)]
+    moving = MovingScene(hollow_run)
+    moving.frame(0, 8 * dots)
+    for panel in (plot_scene(hollow_run).axes[0], moving.figure.axes[0]):
+        patches = [each for each in panel.patches if isinstance(each, PathPatch)]
+        lines = [each.get_path().vertices for each in patches if each.get_zorder() == ABOVE_FILLING]
+        filled = [each for each in patches if each.get_zorder() == ABOVE_FIELD]
+        assert lines
+        for line in lines:
+            assert away(line, true) < 1e-2 * RADIUS  # half a step of the true one, which cuts corners
+            middle = 0.5 * (line[1:] + line[:-1])
+            assert away(middle, true) < 0.1 * 2.0 * RADIUS
+        found = [np.min([away(point[None], line) for line in lines]) for point in inside[::25]]
+        assert max(found) < 0.1 * 2.0 * RADIUS
+        # what is drawn as an image of means is cut off at the outline, disks are whole
+        assert bool(filled) is not any(isinstance(each, EllipseCollection) for each in panel.collections)
+        assert len(positions) < 24 * 16
+
+
+def test_a_hole_that_still_has_its_disks_is_not_drawn(small_run, tmp_path):
+    path = tmp_path / "run.h5"
+    path.write_bytes(small_run.read_bytes())
+    hole = '[[hole]]\nname = "later"\ntype = "circle"\nstage = "after"\ncentre = [5.0, 1.2]\nradius = 0.6\n'
+    with h5py.File(path, "r+") as file:
+        file.attrs["case"] = hole
+    assert not [each for each in plot_scene(path).axes[0].patches if isinstance(each, PathPatch)]
+    for text in ("no TOML = =", '[[hole]]\ntype = "of another package"\n'):
+        with h5py.File(path, "r+") as file:
+            file.attrs["case"] = text
+            assert read_holes(file) == ()
