@@ -23,7 +23,7 @@ from dembound.casefile.magnitudes import (
     time_warnings,
 )
 from dembound.results.reader import open_record, snapshots_of
-from dembound.results.warnings import still_moving
+from dembound.results.warnings import energy_warnings, still_moving
 
 if TYPE_CHECKING:
     import h5py
@@ -217,6 +217,7 @@ def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path
             *_torn_by_the_load(scene.case, summary),
             *_outside_the_rates(scene.case, summary),
             *_no_tension(scene.case, file),
+            *energy_warnings(scene, summary["energy"]),
         ]
 
 

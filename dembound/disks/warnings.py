@@ -20,7 +20,7 @@ from dembound.disks.scene import DiskScene
 from dembound.disks.wave_front import slowest_speed
 from dembound.disks.wave_warnings import wave_warnings
 from dembound.results.reader import cracks_until, open_record
-from dembound.results.warnings import still_moving
+from dembound.results.warnings import energy_warnings, still_moving
 
 REFLECTED = 0.02
 """Share of a wave that a side with default factors may reflect without a warning.
@@ -184,7 +184,12 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
         cracks = cracks_until(file, np.inf)
         at_rest = 0.0 if scene.case.static is None else AT_REST * slowest_speed(scene.ground)
         moving = still_moving(scene, summary["duration"], file, _pieces(scene, cracks["particles"]), at_rest)
-        return [*moving, *_not_elastic(summary.get("load_factor")), *near_tie_warnings(scene, summary, cracks)]
+        return [
+            *moving,
+            *_not_elastic(summary.get("load_factor")),
+            *near_tie_warnings(scene, summary, cracks),
+            *energy_warnings(scene, summary["energy"]),
+        ]
 
 
 def _not_elastic(found: Mapping[str, Any] | None) -> Iterator[str]:

@@ -1,8 +1,9 @@
 """The energy ledger: stored, supplied and dissipated energy of a run.
 
 For central differences the balance is exact if kinetic energy is ½m v⁻·v⁺ (with the velocities half a step before and
-after), strain energy that of the step itself, and the work of every force F the sum of F·(v⁻ + v⁺)/2·Δt. The remaining
-error comes from contacts that open or close within a step, from rotating normals, and from rounding.
+after), strain energy that of the step itself, and the work of every force F the sum of F·(v⁻ + v⁺)/2·Δt. What contacts
+take or give as they open or close within a step is a column of its own. The remaining error comes from rotating normals
+and from rounding.
 """
 
 from dataclasses import astuple, dataclass, fields
@@ -15,7 +16,7 @@ from dembound.motion.state import Arrays, State
 from dembound.motion.trackers import NEVER, Run, Tracker
 
 GAIN = 0.5
-"""Energy error over supplied energy at which a run stops; contacts that open and close cause less than 0.01."""
+"""Energy gained over supplied energy at which a run stops."""
 
 ROUNDING = 1e-9
 """Energies below this share of the largest count as zero: rounding errors of sums over contacts are smaller."""
@@ -31,9 +32,11 @@ class Entry:
     kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
     of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
     and driven loads; loads, the part of it that is of the loads; damping, friction, crack, dissipated by them, friction
-    of a bar by impacts of its ranges; law_switch, added by a change of method or law; supplied, the kinetic energy at
-    the start plus the largest values so far of outside, at any step, and of load, at any entry; error, stored and
-    dissipated energy minus what came in and what the motion at the start had. In J for a bar.
+    of a bar by impacts of its ranges; closing, taken by contacts that open and close within a step, less what sliding
+    contacts and breaking bonds add whose force changes its sign in one (see kernels.contacts.push); law_switch, added
+    by a change of method or law; supplied, the kinetic energy at the start plus the largest values so far of outside,
+    at any step, and of load, at any entry; error, stored and dissipated energy minus what came in and what the motion
+    at the start had. In J for a bar.
     """
 
     time: float
@@ -47,6 +50,7 @@ class Entry:
     damping: float
     friction: float
     crack: float
+    closing: float
     law_switch: float
     supplied: float
     error: float
@@ -143,7 +147,7 @@ class Ledger(Tracker):
         kinetic = 0.5 * float(np.sum(_by_node(before, state)))
         contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))
         load = float(np.sum(system.load * (_by_node(u, state) - state.datum))) if system.load.any() else 0.0
-        outside, damping, friction, crack, law_switch, turning = (float(work) for work in state.work[1])
+        outside, damping, friction, crack, law_switch, turning, closing = (float(work) for work in state.work[1])
         shift = system.spring_shift(u)
         outside += system.counted_outside(u) + shift
         balance = turning + balancing - shift
@@ -151,13 +155,14 @@ class Ledger(Tracker):
         loads = 0.0
         if run.sides is not None and run.sides.has_loads:
             loads = outside - float(np.sum(sides @ (1.0, -1.0, -1.0))) / self._weight
-        error = kinetic + contact + bond + damping + friction + crack - load - balance - outside - law_switch
+        taken = damping, friction, crack, closing
+        error = kinetic + contact + bond + sum(taken) - load - balance - outside - law_switch
         if not self.entries:
             self._came = error
         error -= self._came
         supplied = self._supplied(max(outside, float(state.supplied[0])), load)
         stored = kinetic, contact, bond, load, balance, outside, loads
-        energies = *stored, damping, friction, crack, law_switch, supplied, error
+        energies = *stored, *taken, law_switch, supplied, error
         time = (state.step - 1) * run.time_step
         self.entries.append(Entry(time, *(self._weight * energy for energy in energies)))
         self.sides.append(sides)
@@ -176,7 +181,7 @@ class Ledger(Tracker):
     def _watch(self) -> None:
         """Raise RunError if the run has gained energy that was not supplied, as with a step too large for its law."""
         first, last = self.entries[0], self.entries[-1]
-        came, gained = last.supplied, last.error - first.error
+        came, gained = last.supplied, (last.error - last.closing) - (first.error - first.closing)
         stored = self._weight * sum(self._first)
         # the kinetic energy ½m v⁻·v⁺ of motion that changes its sign at every step is negative
         if gained > GAIN * came + ROUNDING * (stored + abs(last.kinetic) + abs(last.outside)):
@@ -187,7 +192,7 @@ class Ledger(Tracker):
 
     @property
     def columns(self) -> np.ndarray:
-        """All entries, (k, 13), in the order of `Entry`."""
+        """All entries, (k, 15), in the order of `Entry`."""
         return np.array([astuple(entry) for entry in self.entries]).reshape(-1, len(fields(Entry)))
 
     @property

@@ -12,12 +12,15 @@ from dembound.disks.warnings import warnings_after_disks
 
 TIME = np.linspace(0.0, 1.0, 1001)
 
+KEPT = {"supplied": 1.0, "closing": 0.0, "relative_error": 0.0}
+"""The energy ledger of a run in which nothing is missing."""
+
 
 @pytest.fixture
 def moved(small_run, tmp_path):
     """What is warned of where the monitors of a case have moved at some velocities."""
 
-    def find(case, broken=(), component: int = 0, **velocities: np.ndarray) -> list[str]:
+    def find(case, broken=(), component: int = 0, energy: dict | None = None, **velocities: np.ndarray) -> list[str]:
         path = Path(shutil.copy(small_run, tmp_path / "run.h5"))
         with h5py.File(path, "r+") as file:
             del file["histories"], file["cracks"]
@@ -28,7 +31,7 @@ def moved(small_run, tmp_path):
                 three = np.zeros((len(velocity), 3))
                 three[:, component] = velocity
                 file[f"histories/{name.replace('__', '.')}/velocity"] = three
-        return warnings_after_disks(build(case), {"duration": 1.0}, path)
+        return warnings_after_disks(build(case), {"duration": 1.0, "energy": energy or KEPT}, path)
 
     return find
 
