@@ -128,3 +128,31 @@ def test_monitors_in_a_continuum_come_to_rest(bar, moved) -> None:
 def test_one_monitor_or_none(bar, moved) -> None:
     assert moved(bar({"monitor": []})) == []
     assert moved(bar(), middle=np.zeros(1001)) == []
+
+
+@pytest.mark.parametrize(
+    ("energy", "said"),
+    [
+        ({"closing": 0.0099, "relative_error": 0.0099}, []),
+        (
+            {"closing": 0.12},
+            [
+                "run.safety: contacts that open and close within a step have taken 12 % of the energy put in; "
+                "shorter steps change it less"
+            ],
+        ),
+        (
+            {"closing": -0.02, "supplied": 0.5},
+            [
+                "run.safety: contacts that open and close within a step have added 4 % of the energy put in; "
+                "shorter steps change it less"
+            ],
+        ),
+        (
+            {"relative_error": 0.03},
+            ["energy.error: 3 % of the energy put in is unaccounted for; take shorter steps"],
+        ),
+    ],
+)
+def test_energy_that_steps_take_or_that_is_missing_is_warned_of(bar, moved, energy: dict, said: list[str]) -> None:
+    assert moved(two(bar), energy=KEPT | energy, near=PULSE, far=0.5 * PULSE) == said
