@@ -25,10 +25,10 @@ def motion(steps: int, size: float = 0.3) -> list[tuple[np.ndarray, np.ndarray]]
 
 
 def pushed(pairs: Contacts, limits: Limits, u: np.ndarray, v: np.ndarray, number: int = 0) -> np.ndarray:
-    """One push by the kernel; what friction and cracks took."""
-    lost = np.full((CHUNKS, 2), np.nan)
+    """One push by the kernel; what friction, cracks and opening and closing took."""
+    lost = np.full((CHUNKS, 4), np.nan)
     push(u, v, STEP, number, pairs, limits, lost, 0)
-    return lost.sum(axis=0)
+    return lost.sum(axis=0)[:3]
 
 
 def two(x: float = 0.0, y: float = 0.0, turn: float = 0.0) -> np.ndarray:

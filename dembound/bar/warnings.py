@@ -28,7 +28,7 @@ from dembound.casefile.magnitudes import (
 )
 from dembound.casefile.unlikely import unlikely_in
 from dembound.results.reader import open_record, snapshots_of
-from dembound.results.warnings import still_moving
+from dembound.results.warnings import energy_warnings, still_moving
 
 if TYPE_CHECKING:
     import h5py
@@ -272,6 +272,7 @@ def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path
             *_outside_the_rates(scene.case, summary),
             *_no_tension(scene.case, file),
             *_swings(scene.case, file),
+            *energy_warnings(scene, summary["energy"]),
         ]
 
 

@@ -32,6 +32,7 @@ class History(NamedTuple):
     state: np.ndarray
     shear: np.ndarray
     slip: np.ndarray
+    closed: np.ndarray
     cracked: np.ndarray
     place: np.ndarray | None = None
 
@@ -86,6 +87,7 @@ def in_places(pairs: Pairs, history: History, slot: np.ndarray, constants: np.nd
         state=placed(history.state[order], NONE),
         shear=placed(history.shear[order]),
         slip=placed(history.slip[order]),
+        closed=placed(history.closed[order]),
         cracked=placed(history.cracked[order], -1),
         place=np.zeros((count, 2)) if history.place is None else placed(history.place[order]),
         force=np.zeros((4, count)),
@@ -121,6 +123,7 @@ def plain_contacts(ground: PackedMaterial, assembly: Assembly, slot: np.ndarray)
         state=np.full(len(first), bonded, dtype=np.uint8),
         shear=nothing,
         slip=nothing,
+        closed=np.zeros(0, dtype=np.uint8),
         cracked=np.zeros(0, dtype=np.int64),
         place=np.zeros((0, 2)),
         force=np.zeros((4, 0)),

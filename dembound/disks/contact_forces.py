@@ -103,7 +103,7 @@ def _acting_ones(piece: Piece) -> tuple[np.ndarray, ...]:
 
 def _cut(contacts: Contacts, piece: slice) -> Contacts:
     """Some of the pairs, without the rows of contact ends."""
-    names = ("first", "second", "contact_type", "state", "shear", "slip", "cracked", "place")
+    names = ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "place")
     columns = {name: getattr(contacts, name)[piece] for name in names}
     return contacts._replace(**columns, force=contacts.force[:, piece])
 
@@ -114,8 +114,9 @@ def _pushed(contacts: Contacts, u: np.ndarray, *, slid: bool) -> Contacts:
     copies = contacts._replace(
         shear=np.zeros(count),
         slip=contacts.slip.copy() if slid else np.zeros(count),
+        closed=np.zeros(count, dtype=np.uint8),
         cracked=np.full(count, -1),
         force=np.empty((4, count)),
     )
-    push(u, u, 0.0, 0, copies, UNYIELDING, np.empty((CHUNKS, 2)), 0)  # zero step: at rest
+    push(u, u, 0.0, 0, copies, UNYIELDING, np.empty((CHUNKS, 4)), 0)  # zero step: at rest
     return copies

@@ -28,7 +28,10 @@ SKIN = 0.05
 The list is renewed once a particle has moved by half of it.
 """
 
-_KEPT = ("first", "second", "contact_type", "state", "shear", "slip", "cracked")
+_HISTORY = ("state", "shear", "slip", "closed", "cracked")
+"""The arrays of the pairs that are their history, in the order of `History`."""
+
+_KEPT = ("first", "second", "contact_type", *_HISTORY)
 """The arrays of the pairs, beside their forces, that memory() returns."""
 
 
@@ -83,9 +86,9 @@ class ContactList(PairList):
         images = self.images(first, second, self.bonds[assembly.contact_type, :2])
         pairs = Pairs(first, second, images, assembly.contact_type)
         bonded = np.full(len(first), INTACT if ground.moduli.pb_emod > 0.0 else NONE, dtype=np.uint8)
-        zero = np.zeros(len(first))
+        zero, none = np.zeros(len(first)), np.zeros(len(first), dtype=np.uint8)
         self._constants = self.bonds
-        self._list(pairs, History(bonded, zero, zero, np.full(len(first), -1)))
+        self._list(pairs, History(bonded, zero, zero, none, np.full(len(first), -1)))
         widest = np.maximum(ground.moduli.pb_rmul, 1.0) * assembly.radii
         self.arms = np.zeros(self.layout.count)
         self.arms[self._slot] = widest + 0.5 * max(float(ground.brick.gaps.max(initial=0.0)), 0.0)
@@ -98,7 +101,7 @@ class ContactList(PairList):
             first, second = self.pairs
             pairs = Pairs(first, second, self.image, self.of("contact_type"))
             self._plan = PairPlan.of(first, second, pairs.contact_type, len(self.bonds), *plan)
-            self._list(pairs, History(*(self.of(name) for name in ("state", "shear", "slip", "cracked"))))
+            self._list(pairs, History(*(self.of(name) for name in _HISTORY)))
 
     def start_from_displacements(self, displacement: np.ndarray) -> None:
         """Set the pairs to the state of the elastic law at displacements (3, n), without any slip or with that kept."""
@@ -118,7 +121,7 @@ class ContactList(PairList):
         limits = elastic if reference else self.limits
         u = self.spread(displacement)
         still = np.zeros_like(u)
-        if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 2)), 0) > 0:
+        if kernel.push(u, still, 0.0, 0, self.arrays, limits, np.empty((CHUNKS, 4)), 0) > 0:
             kernel.note_places(u, 0, self.arrays)
 
     def add_forces(self, total: np.ndarray) -> None:
@@ -159,6 +162,7 @@ class ContactList(PairList):
             np.concatenate([self.of("state")[kept], np.full(len(met.first), NONE, dtype=np.uint8)]),
             np.concatenate([self.of("shear")[kept], np.zeros(len(met.first))]),
             np.concatenate([self.of("slip")[kept], np.zeros(len(met.first))]),
+            np.concatenate([self.of("closed")[kept], np.zeros(len(met.first), dtype=np.uint8)]),
             np.concatenate([self.of("cracked")[kept], np.full(len(met.first), -1)]),
         )
         self._list(pairs, history)
@@ -266,6 +270,6 @@ class ContactList(PairList):
         begin, node = self.nodes.start, self.layout.node
         first, second = (node[memory[name]] - begin for name in ("first", "second"))
         pairs = Pairs(first, second, memory["image"], memory["contact_type"])
-        self._list(pairs, History(*(memory[name] for name in ("state", "shear", "slip", "cracked"))))
+        self._list(pairs, History(*(memory[name] for name in _HISTORY)))
         self.arrays.force[:, self.live] = memory["force"].T
         self._cracks = [Cracks(*(memory[f"crack_{field.name}"] for field in fields(Cracks)))]

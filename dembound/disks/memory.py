@@ -179,23 +179,23 @@ def building_bytes(z: SceneSizes) -> float:
 def pairs_bytes(z: SceneSizes) -> float:
     """Of the list of pairs with a history.
 
-    In q places 37 bytes of numbers, types and states, and forces (4, q); by pair its place, image and two ends (18 p);
+    In q places 38 bytes of numbers, types and states, and forces (4, q); by pair its place, image and two ends (18 p);
     by slot the ends, arms and origin (28 s); cells (8 n); in rows also where disks stand (24 n).
     """
     pairs, places = _pairs(z)
     rows = 24 * z.disks if z.in_rows else 0.0
-    return (37 + 32) * places + 18 * pairs + 28 * z.slots + 8 * z.disks + rows
+    return (38 + 32) * places + 18 * pairs + 28 * z.slots + 8 * z.disks + rows
 
 
 def listing_bytes(z: SceneSizes) -> float:
-    """As pairs are listed anew: the old list without forces (55 p), the new one with the arrays it is sorted by.
+    """As pairs are listed anew: the old list without forces (56 p), the new one with the arrays it is sorted by.
 
-    These are the pairs and their history (51 p), sorted (24 p) with places and owners (24 p), the order of the ends
-    with work space (24 p), and the new arrays (37 q).
+    These are the pairs and their history (52 p), sorted (24 p) with places and owners (24 p), the order of the ends
+    with work space (24 p), and the new arrays (38 q).
     """
     pairs, places = _pairs(z)
     rows = 24 * z.disks if z.in_rows else 0.0
-    return (55 + 51 + 24 + 24 + 24) * pairs + 37 * places + 28 * z.slots + 8 * z.disks + rows
+    return (56 + 52 + 24 + 24 + 24) * pairs + 38 * places + 28 * z.slots + 8 * z.disks + rows
 
 
 def export_bytes(case: DiskCase, z: SceneSizes) -> float:
@@ -220,9 +220,10 @@ def stress_bytes(z: SceneSizes) -> float:
 def checkpoint_bytes(z: SceneSizes, *, history: bool) -> float:
     """Of a checkpoint: displacements and velocities of disks and nodes (48 n), columns of pairs with their forces.
 
-    The columns are numbers, types, images and states (12 p), shear, slip and step (24 p), and forces (32 p).
+    The columns are numbers, types, images, states and whether they closed (13 p), shear, slip and step (24 p), and
+    forces (32 p).
     """
-    return 48 * (z.disks + z.moving - z.slots) + (68 * _pairs(z)[0] if history else 0.0)
+    return 48 * (z.disks + z.moving - z.slots) + (69 * _pairs(z)[0] if history else 0.0)
 
 
 def _run_bytes(case: DiskCase, whole: SceneSizes, z: SceneSizes) -> float:

@@ -63,7 +63,7 @@ class DiskPart(Part):
         self.stops_at_breaks = False
         self.rows = rows
         self._fastest, self._way = np.zeros(CHUNKS), np.zeros(2)
-        self._damped, self._lost, self._also_lost = np.zeros((3, CHUNKS, 2))
+        self._damped, (self._lost, self._also_lost) = np.zeros((CHUNKS, 2)), np.zeros((2, CHUNKS, 4))
 
     @property
     def law_name(self) -> str:  # type: ignore[override]  # an attribute of other parts

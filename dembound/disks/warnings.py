@@ -25,7 +25,7 @@ from dembound.disks.wave_front import slowest_speed
 from dembound.disks.wave_warnings import wave_warnings
 from dembound.meanings import MEANINGS
 from dembound.results.reader import cracks_until, open_record
-from dembound.results.warnings import still_moving
+from dembound.results.warnings import energy_warnings, still_moving
 
 LARGEST_PULL = 3.5
 """Largest tensile stress of a bond over the mean one, where contacts under a locked-in stress relax.
@@ -162,8 +162,13 @@ def warnings_after_disks(scene: DiskScene, summary: Mapping[str, Any], record: P
         cracks = cracks_until(file, np.inf)
         at_rest = 0.0 if scene.case.static is None else AT_REST * slowest_speed(scene.ground)
         moving = still_moving(scene, summary["duration"], file, _pieces(scene, cracks["particles"]), at_rest)
-        factor = _not_elastic(summary.get("load_factor"))
-        return [*_uneven(scene.case, summary["static"]), *moving, *factor, *near_tie_warnings(scene, summary, cracks)]
+        return [
+            *_uneven(scene.case, summary["static"]),
+            *moving,
+            *_not_elastic(summary.get("load_factor")),
+            *near_tie_warnings(scene, summary, cracks),
+            *energy_warnings(scene, summary["energy"]),
+        ]
 
 
 def _uneven(case: DiskCase, static: Mapping[str, Any] | None) -> Iterator[str]:

@@ -32,15 +32,23 @@ def check(bonded, u, u_next, v):
 
 
 @njit(**FAST)
+def note_lost(lost, work):
+    """Add to work (2, 7) the energy that pairs have taken up to the whole step, lost (chunks, 4), see contacts.push."""
+    work[0, 2] += column_sum(lost, 0)
+    work[0, 3] += column_sum(lost, 1)
+    work[0, 6] += column_sum(lost, 2)
+    work[1, 2] = work[0, 2]
+    work[1, 3] = work[0, 3]
+    work[1, 6] = work[0, 6]
+
+
+@njit(**FAST)
 def push(bonded, u, u_next, v, number, step, work):
     """Compute the forces of all pairs; returns the number of bonds that broke, if the loop is to stop at breaks."""
-    lost = bonded.lost
-    breaks = push_pairs(u, v, step, number, bonded.contacts, bonded.limits, lost, 0)
+    breaks = push_pairs(u, v, step, number, bonded.contacts, bonded.limits, bonded.lost, 0)
     if breaks > 0:
         note_places(u, number, bonded.contacts)
-    for way in range(2):
-        work[0, 2 + way] += column_sum(lost, way)
-        work[1, 2 + way] = work[0, 2 + way]
+    note_lost(bonded.lost, work)
     return breaks if bonded.stops else 0
 
 

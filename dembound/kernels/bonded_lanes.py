@@ -9,7 +9,7 @@ from numba import njit, prange
 
 from dembound.kernels import bonded as law
 from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
+from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
 from dembound.kernels.contacts import ends_force, note_places
 from dembound.kernels.contacts import push as push_others
 from dembound.kernels.lane_step import INLINED, first_at, go_on, kick, larger, local_damping, next_place, place_of
@@ -152,9 +152,8 @@ def push(lanes, u, u_next, v, number, step, work):
     breaks += push_others(u, v, step, number, bonded.contacts, bonded.limits, lanes.also_lost, others)
     if breaks > 0:
         note_places(u, number, bonded.contacts)
-    for way in range(2):
-        work[0, 2 + way] += column_sum(bonded.lost, way) + column_sum(lanes.also_lost, way)
-        work[1, 2 + way] = work[0, 2 + way]
+    law.note_lost(bonded.lost, work)
+    law.note_lost(lanes.also_lost, work)
     return breaks if bonded.stops else 0
 
 

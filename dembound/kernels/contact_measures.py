@@ -21,7 +21,7 @@ def slack(u, contacts, limits, keeps_slip):
     motion, it has turned by TURN. Stretch, shear and R̄ times the relative rotation change by no more than the relative
     motion of the surfaces, which gives a lower bound for each condition. keeps_slip : contacts have slid earlier.
     """
-    _, first, second, contact_type, constants, state, _, slip, _, _, _, _, _ = contacts
+    _, first, second, contact_type, constants, state, _, slip, _, _, _, _, _, _ = contacts
     friction, tension, cohesion, tan_fa, geometry = limits
     b = first.size
     least = np.empty(CHUNKS)
@@ -64,7 +64,7 @@ def strain_energy(u, contacts, geometry):
 
     With the geometry REFERENCE shear and slip are not read.
     """
-    _, first, second, contact_type, constants, state, all_shear, slip, _, _, _, _, _ = contacts
+    _, first, second, contact_type, constants, state, all_shear, slip, _, _, _, _, _, _ = contacts
     b = first.size
     stored = np.empty((CHUNKS, 2))
     for chunk in prange(CHUNKS):

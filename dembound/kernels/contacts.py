@@ -17,8 +17,8 @@ import numpy as np
 from numba import njit, prange
 
 from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
-from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain
+from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
+from dembound.kernels.pair_strain import pair, reference_strain, slide, updated_strain, updated_stretch
 
 NONE, INTACT, TENSION, SHEAR = 0, 1, 2, 3
 """States of a pair: without bond, bonded, bond broken in tension, bond broken in shear."""
@@ -56,14 +56,26 @@ def _bond_state(Fn, Fs, M, per_area, per_section, limits):
     return after
 
 
+@njit(**FAST, inline="always")
+def closing_work(stiffness, before, now, had_closed, push):
+    """Energy (J) that the normal force of a contact takes in a step in excess of what is stored; negative if it gives.
+
+    stiffness : k_n, N/m; before, now : overlap (m) before and after the step, negative for a gap; had_closed : whether
+    the force of the step before was a first push (`CLOSING`); push : the force now, N. Forces at whole steps do the
+    work ½(N⁻ + N)(now − before), while ½k_n·now² − ½k_n·before² is stored, of overlaps alone. They differ where a
+    contact opens or closes, by ½k_n·|before·now|, and before and after a first push.
+    """
+    closed, closes = max(before, 0.0), max(now, 0.0)
+    was = (CLOSING if had_closed else 1.0) * stiffness * closed
+    return 0.5 * ((was + push) * (now - before) - stiffness * (closes - closed) * (closes + closed))
+
+
 @njit(**FAST, forceinline=True)  # by LLVM: numba's own inlining would drop writes to arrays that nothing reads
-def push_pair(c, u, v, step, number, contacts, limits):
-    """Force of pair c, see `push`; returns the energy (J) taken by friction and by cracks, and 1 if its bond broke."""
-    _, first, second, contact_type, constants, state, all_shear, all_slip, cracked, _, force, _, _ = contacts
+def push_pair(c, u, v, step, number, contacts, limits, lost):
+    """Force of pair c, see `push`; returns the energy (J) taken by friction, and enters the rest in lost (4,)."""
+    _, first, second, contact_type, constants, state, all_shear, all_slip, closed, cracked, _, force, _, _ = contacts
     geometry = limits.geometry
     rubbed = 0.0
-    broken = 0.0
-    breaks = 0
     i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)
     intact = state[c] == INTACT
     keeps_geometry = geometry == REFERENCE or (geometry == BONDED and intact)
@@ -82,8 +94,12 @@ def push_pair(c, u, v, step, number, contacts, limits):
     opening = nx * (v[U(0), j] - v[U(0), i]) + ny * (v[U(1), j] - v[U(1), i])
     if geometry != REFERENCE or constants[k, U(3)] < constants[k, U(2)]:
         N = max(N, 0.0)
-        if overlap + step * opening <= 0.0:  # it was open one step earlier
+        overlapped = overlap + step * opening  # one step earlier
+        if overlapped <= 0.0:
             N *= CLOSING
+        if closed[c] != 0 or (overlapped <= 0.0) != (overlap <= 0.0):
+            lost[2] += closing_work(constants[k, U(5)], overlapped, overlap, closed[c] != 0, N)
+            closed[c] = overlapped <= 0.0 < overlap
         most = limits.friction * N
         if abs(S) > most:
             before = constants[k, U(6)] * (was - all_slip[c])
@@ -91,6 +107,9 @@ def push_pair(c, u, v, step, number, contacts, limits):
             slip = shear - (S / constants[k, U(6)])
             rubbed = 0.5 * (before + S) * (slip - all_slip[c])
             all_slip[c] = slip
+            if rubbed < 0.0:  # the force has changed its sign within the step
+                lost[2] += rubbed
+                rubbed = 0.0
     pull = -N
     moment = 0.0
     if intact:
@@ -106,14 +125,19 @@ def push_pair(c, u, v, step, number, contacts, limits):
         else:
             cracked[c] = number
             all_shear[c] = shear
-            breaks = 1
             turning = v[U(2), j] - v[U(2), i]
             broken = 0.5 * (Fn * (stretch - step * opening) + Fs * was + M * (turn - step * turning))
+            if geometry == BONDED:  # the contact changes to the updated geometry
+                _, _, _, longer = updated_stretch(k, dx, dy, constants)
+                later = max(overlap + stretch - longer, 0.0)
+                broken += 0.5 * constants[k, U(5)] * (max(overlap, 0.0) ** 2 - later**2)
+            lost[1 if broken > 0.0 else 2] += broken
+            lost[3] += 1.0
     force[U(0), c] = pull * nx - S * ny
     force[U(1), c] = pull * ny + S * nx
     force[U(2), c] = arm_i * S + moment
     force[U(3), c] = arm_j * S - moment
-    return rubbed, broken, breaks
+    return rubbed
 
 
 @apart
@@ -121,22 +145,20 @@ def push_pair(c, u, v, step, number, contacts, limits):
 def push(u, v, step, number, contacts, limits, lost, begin):
     """Fill contacts.force for displacements u (3, n) reached with velocities v (3, n) after a step (s).
 
-    Contacts and bonds at their limits slide and break; number is that of the step. lost (chunks, 2) receives the energy
-    taken by friction and by cracks in this step, J. begin : the first pair. Returns the number of bonds that broke.
+    Contacts and bonds at their limits slide and break; number is that of the step. lost (chunks, 4) receives the energy
+    (J) taken in this step by friction, by cracks and by contacts that open and close, and the number of bonds that
+    broke. Friction and cracks take none in pairs whose force changes its sign in the step: the energy that they then
+    add counts, negative, with opening and closing. begin : the first pair. Returns the number of bonds that broke.
     """
     b = contacts.first.size - begin
-    breaks = 0
     for chunk in prange(CHUNKS):
         rubbed = 0.0
-        broken = 0.0
+        own = lost[chunk]
+        own[:] = 0.0
         for p in range(begin + chunk * b // CHUNKS, begin + (chunk + 1) * b // CHUNKS):
-            by_friction, by_crack, broke = push_pair(U(p), u, v, step, number, contacts, limits)
-            rubbed += by_friction
-            broken += by_crack
-            breaks += broke
-        lost[chunk, 0] = rubbed
-        lost[chunk, 1] = broken
-    return breaks
+            rubbed += push_pair(U(p), u, v, step, number, contacts, limits, own)
+        own[0] = rubbed
+    return int(column_sum(lost, 3))
 
 
 @apart
@@ -184,7 +206,7 @@ def start_from_displacements(u, contacts, keeps_slip=False):
 
     keeps_slip : contacts that are closed at the start keep theirs.
     """
-    _, first, second, contact_type, constants, _, shear, slip, _, _, _, _, _ = contacts
+    _, first, second, contact_type, constants, _, shear, slip, _, _, _, _, _, _ = contacts
     for p in prange(first.size):
         c = U(p)
         i, j, k, dx, dy = pair(c, u, first, second, contact_type, constants)

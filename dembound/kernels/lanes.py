@@ -82,6 +82,11 @@ def where_equal(array: np.ndarray, i: int, value: int) -> np.ndarray:
     return array[int(i) : int(i) + LANES] == value
 
 
+def note_bits(array: np.ndarray, i: int, chosen: np.ndarray) -> None:
+    """Write eight bytes to a contiguous array (n,) from index i on, 1 where chosen, else 0."""
+    array[int(i) : int(i) + LANES] = chosen
+
+
 def choose(chosen: np.ndarray, values: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Values where chosen, else the others."""
     return np.where(chosen, values, others)
@@ -249,6 +254,12 @@ def _where_equal(builder: Any, first: Any, i: Any, value: Any) -> Any:
     one = builder.insert_element(ir.Constant(kind, ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
     everywhere = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
     return builder.icmp_unsigned("==", values, builder.shuffle_vector(one, ir.Constant(kind, ir.Undefined), everywhere))
+
+
+@_compiled(note_bits, types.void, _bytes, types.uint64, mask)
+def _note_bits(builder: Any, first: Any, i: Any, chosen: Any) -> None:
+    kind = ir.VectorType(ir.IntType(8), LANES)
+    builder.store(builder.zext(chosen, kind), builder.bitcast(builder.gep(first, [i]), kind.as_pointer()), align=1)
 
 
 @_compiled(choose, lanes, mask, lanes, lanes)

@@ -49,7 +49,7 @@ def check(law, u, u_next, v):
 def push(law, u, u_next, v, number, step, work):
     """Compute the forces of displacements u in step `number` of length `step` (s).
 
-    Forces that `move` needs are stored in the law's own arrays or in u_next. work : (2, 6), see tables.Log. Returns, as
+    Forces that `move` needs are stored in the law's own arrays or in u_next. work : (2, 7), see tables.Log. Returns, as
     a number, whether bonds broke at which the loop is to stop.
     """
 

@@ -15,7 +15,7 @@ def least_factors(u, rest, contacts, slopes, allowed, least, where):
     limits of each type of contact, allowed (p, m) their d, infinite for none. u, rest : (3, slots) displacements.
     least (chunks,) receives the factor, infinite for none, and where (chunks, 2) the pair and its limit.
     """
-    _, first, second, contact_type, constants, _, _, _, _, _, _, _, _ = contacts
+    _, first, second, contact_type, constants, _, _, _, _, _, _, _, _, _ = contacts
     b = first.size
     limits = allowed.shape[1]
     for chunk in prange(CHUNKS):

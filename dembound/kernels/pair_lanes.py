@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit, prange
 
 from dembound.kernels.apart import apart
-from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U
+from dembound.kernels.common import CHUNKS, FAST, PARALLEL, U, column_sum
 from dembound.kernels.contacts import BONDED, CLOSING, INTACT, REFERENCE, UPDATED, push_pair
 from dembound.kernels.lane_step import INLINED, larger, next_place, place_of
 from dembound.kernels.lanes import (
@@ -17,9 +17,9 @@ from dembound.kernels.lanes import (
     bits,
     byte_of,
     choose,
-    lane,
     load,
     magnitude,
+    note_bits,
     root,
     splat,
     store,
@@ -32,14 +32,12 @@ _INTACT = np.uint8(INTACT)
 
 
 @njit(**INLINED)
-def _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result):
+def _push_one_by_one(block, exists, u, v, step, number, contacts, limits, lost):
     """The pairs of a block in turn."""
     for k in range(LANES):
         if exists & np.uint8(1 << k):
-            rubbed, broken, broke = push_pair(U(LANES) * block + U(k), u, v, step, number, contacts, limits)
-            result[0] += rubbed
-            result[1] += broken
-            result[2] += broke
+            c = U(LANES) * block + U(k)
+            lost[0] += push_pair(c, u, v, step, number, contacts, limits, lost)
 
 
 @njit(**INLINED)
@@ -57,27 +55,51 @@ def _slide(normal, arms, i, j, v):
 
 
 @njit(**INLINED)
-def _contact(k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, friction):
-    """Normal and shear force of contacts, their slip, the energy (J) that friction takes, and whether any slides."""
+def _contact(
+    k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, friction, taken
+):
+    """Normal and shear force of contacts, whose slip and whether they have closed are stored; see `_act`."""
     overlap = (k[q, U(3)] - k[q, U(2)]) - stretch
     slip = load(contacts.slip, c)
     N = k[q, U(5)] * overlap
     S = k[q, U(6)] * (shear - slip)
-    rubbed = splat(0.0)
-    slides = False
     if gives_way:
+        overlapped = overlap + step * opening
+        was_open = at_most(overlapped, 0.0)
         N = larger(N, 0.0)
-        N = choose(at_most(overlap + step * opening, 0.0), CLOSING * N, N)
+        N = choose(was_open, CLOSING * N, N)
+        had_closed = where_equal(contacts.closed, c, np.uint8(1))
+        closed, was, now = byte_of(had_closed), byte_of(was_open), byte_of(at_most(overlap, 0.0))
+        passes = np.uint8((was ^ now | closed) & exists)
+        if passes != 0:
+            passed = _closing_work(k[q, U(5)], overlapped, overlap, had_closed, N)
+            _add(taken, LANES, choose(bits(passes), passed, 0.0))
+            note_bits(contacts.closed, c, bits(np.uint8(was & ~now & exists)))
         most = friction * N
         stays = at_most(magnitude(S), most)
-        slides = (byte_of(stays) & exists) != exists
-        if slides:
+        if (byte_of(stays) & exists) != exists:
             before = k[q, U(6)] * (shear - step * _slide(normal, arms, i, j, v) - slip)
             S = choose(stays, S, with_sign(most, S))
             slid = choose(stays, slip, shear - S * (1.0 / k[q, U(6)]))
             rubbed = choose(bits(exists), 0.5 * (before + S) * (slid - slip), 0.0)
-            slip = slid
-    return N, S, slip, rubbed, slides
+            store(contacts.slip, c, slid)
+            _add(taken, 0, larger(rubbed, 0.0))
+            _add(taken, LANES, choose(at_most(rubbed, 0.0), rubbed, 0.0))
+    return N, S
+
+
+@njit(**INLINED)
+def _add(sums, first, values):
+    """Add eight numbers to those in an array (n,) from index `first` on."""
+    store(sums, U(first), load(sums, U(first)) + values)
+
+
+@njit(**INLINED)
+def _closing_work(stiffness, before, now, had_closed, push):
+    """Energy (J) that contacts take as they open and close, see contacts.closing_work."""
+    closed, closes = larger(before, 0.0), larger(now, 0.0)
+    was = choose(had_closed, CLOSING * stiffness, stiffness) * closed
+    return 0.5 * ((was + push) * (now - before) - stiffness * ((closes - closed) * (closes + closed)))
 
 
 @njit(**INLINED)
@@ -109,43 +131,40 @@ def _store_forces(force, c, exists, fx, fy, on_i, on_j):
 @njit(**INLINED)
 def _act(
     c, q, i, j, block, exists, normal, arms, strain, opening, gives_way, follows,
-    u, v, step, number, pairs, contacts, limits, result,
+    u, v, step, number, pairs, contacts, limits, taken, lost,
 ):  # fmt: skip
     """Forces of the eight pairs of a block from their strain: stretch, shear and bending angle.
 
     normal, arms : directions and lever arms, numbers or lanes; opening : speed at which the disks part, where a contact
-    gives way; follows : whether the geometry follows the motion. Returns the energy (J) that friction took; result (3,)
-    is advanced where pairs are computed in turn.
+    gives way; follows : whether the geometry follows the motion. taken (16,) is advanced by the energies (J) that
+    friction, and contacts that open and close, take in the eight pairs; where these are computed in turn lost (4,).
     """
     k = pairs.constants
     nothing = splat(0.0)
     (nx, ny), (arm_i, arm_j), (stretch, shear, bent) = normal, arms, strain
     whole = where_equal(contacts.state, c, _INTACT)
     intact = byte_of(whole) & exists
-    pull, side, moment, rubbed, slip, slides = nothing, nothing, nothing, nothing, nothing, False
-    if k[q, U(5)] > 0.0 or k[q, U(6)] > 0.0:
-        N, side, slip, rubbed, slides = _contact(
-            k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts, limits.friction
-        )
-        pull = -1.0 * N
+    pull, side, moment = nothing, nothing, nothing
     if intact != 0:
-        stretched, sheared, moment, breaks = _bond(k, q, stretch, shear, bent, whole, limits)
+        pull, side, moment, breaks = _bond(k, q, stretch, shear, bent, whole, limits)
         if (breaks & intact) != 0:
-            _push_one_by_one(block, exists, u, v, step, number, contacts, limits, result)
-            return nothing
-        pull += stretched
-        side += sheared
+            _push_one_by_one(block, exists, u, v, step, number, contacts, limits, lost)
+            return
+    if k[q, U(5)] > 0.0 or k[q, U(6)] > 0.0:
+        N, S = _contact(
+            k, q, c, i, j, normal, arms, stretch, shear, opening, v, step, gives_way, exists, contacts,
+            limits.friction, taken,
+        )  # fmt: skip
+        pull -= N
+        side += S
     if follows:
         store(contacts.shear, c, shear)
-    if slides:
-        store(contacts.slip, c, slip)
     fx, fy = nx * pull - ny * side, ny * pull + nx * side
     _store_forces(contacts.force, c, exists, fx, fy, arm_i * side + moment, arm_j * side - moment)
-    return rubbed
 
 
 @njit(**FAST)
-def _push_reference(pairs, q, block, exists, i, u, v, step, number, contacts, limits, result):
+def _push_reference(pairs, q, block, exists, i, u, v, step, number, contacts, limits, taken, lost):
     """Forces of the pairs of a block of row q in the geometry of the start; their first disks are from slot i on."""
     c, j = U(LANES) * block, i + U(pairs.step[q, U(1)])
     k = pairs.constants
@@ -161,14 +180,14 @@ def _push_reference(pairs, q, block, exists, i, u, v, step, number, contacts, li
     if gives_way:
         dvx, dvy = _apart(v, i, j)
         opening = nx * dvx + ny * dvy
-    return _act(
+    _act(
         c, q, i, j, block, exists, (nx, ny), (arm_i, arm_j), strain, opening, gives_way, False,
-        u, v, step, number, pairs, contacts, limits, result,
+        u, v, step, number, pairs, contacts, limits, taken, lost,
     )  # fmt: skip
 
 
 @njit(**FAST)
-def _push_updated(pairs, q, block, exists, i, u, v, step, number, contacts, limits, result):
+def _push_updated(pairs, q, block, exists, i, u, v, step, number, contacts, limits, taken, lost):
     """The same where normals and arms follow the motion, see pair_strain.updated_strain."""
     c, j = U(LANES) * block, i + U(pairs.step[q, U(1)])
     k = pairs.constants
@@ -184,19 +203,18 @@ def _push_updated(pairs, q, block, exists, i, u, v, step, number, contacts, limi
     arm_j = distance - arm_i
     shear = load(contacts.shear, c) + step * _slide((nx, ny), (arm_i, arm_j), i, j, v)
     strain = stretch, shear, load(u[2], j) - load(u[2], i)
-    return _act(
+    _act(
         c, q, i, j, block, exists, (nx, ny), (arm_i, arm_j), strain, nx * dvx + ny * dvy, True, True,
-        u, v, step, number, pairs, contacts, limits, result,
+        u, v, step, number, pairs, contacts, limits, taken, lost,
     )  # fmt: skip
 
 
 @njit(**FAST)
-def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, result):
-    """The pairs in blocks first to last − 1; result (3,): energy taken by friction and by cracks, bonds that broke."""
-    result[:] = 0.0
+def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, taken, lost):
+    """The pairs in blocks first to last − 1; lost (4,) as of contacts.push, taken (16,) zeros."""
+    lost[:] = 0.0
     if first == last:
         return
-    rubbed = splat(0.0)
     group, column, q = place_of(pairs, first)
     for block in range(first, last):
         if block > first:
@@ -207,13 +225,14 @@ def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, resul
             i = U(LANES * disks)
             intact = byte_of(where_equal(contacts.state, U(LANES) * here, _INTACT)) & exists
             if limits.geometry == UPDATED or (limits.geometry == BONDED and intact == 0):
-                rubbed += _push_updated(pairs, row, here, exists, i, u, v, step, number, contacts, limits, result)
+                _push_updated(pairs, row, here, exists, i, u, v, step, number, contacts, limits, taken, lost)
             elif limits.geometry == BONDED and intact != exists:
-                _push_one_by_one(here, exists, u, v, step, number, contacts, limits, result)
+                _push_one_by_one(here, exists, u, v, step, number, contacts, limits, lost)
             else:
-                rubbed += _push_reference(pairs, row, here, exists, i, u, v, step, number, contacts, limits, result)
+                _push_reference(pairs, row, here, exists, i, u, v, step, number, contacts, limits, taken, lost)
     for k in range(LANES):
-        result[0] += lane(rubbed, U(k))
+        lost[0] += taken[k]
+        lost[2] += taken[LANES + k]
 
 
 @apart
@@ -221,14 +240,8 @@ def _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, resul
 def push_rows(u, v, step, number, pairs, contacts, limits, lost):
     """Forces of the pairs in rows, see contacts.push."""
     n = pairs.exists.size
-    result = np.zeros((CHUNKS, 3))
+    taken = np.zeros((CHUNKS, 2 * LANES))
     for chunk in prange(CHUNKS):
-        _push_blocks(
-            pairs, chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS, u, v, step, number, contacts, limits, result[chunk]
-        )
-        lost[chunk, 0] = result[chunk, 0]
-        lost[chunk, 1] = result[chunk, 1]
-    breaks = 0
-    for chunk in range(CHUNKS):
-        breaks += int(result[chunk, 2])
-    return breaks
+        first, last = chunk * n // CHUNKS, (chunk + 1) * n // CHUNKS
+        _push_blocks(pairs, first, last, u, v, step, number, contacts, limits, taken[chunk], lost[chunk])
+    return int(column_sum(lost, 3))

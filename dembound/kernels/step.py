@@ -73,7 +73,7 @@ def clear(values):
 
 @njit(**FAST)
 def note_damping(damped, work):
-    """Add to work (2, 6) the energy that local damping took from unsupported particles, damped (chunks, 2) J."""
+    """Add to work (2, 7) the energy that local damping took from unsupported particles, damped (chunks, 2) J."""
     work[1, 1] += column_sum(damped, 1)
     work[0, 1] += column_sum(damped, 0)
 
@@ -96,7 +96,7 @@ def move_supported(step, u, v, u_next, across, followed, supports, body, work, m
 
     For the supported nodes it contains their contact forces and steady loads before the call. across (k, 3) are the
     forces through seams, whose work counts as that of the outside; followed (k, 3) half the velocity of the nodes'
-    twins before the step and receives the mean of that before and after it. work (2, 6) is advanced; moved (3, 3, k)
+    twins before the step and receives the mean of that before and after it. work (2, 7) is advanced; moved (3, 3, k)
     receives the velocities before and after the step, and the forces from outside.
     """
     nodes, inertia, keep, mobility, stiffness, prescribed, drives, twin, follow = supports

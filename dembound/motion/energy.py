@@ -3,8 +3,8 @@
 For central differences the balance is exact with ½m v⁻·v⁺ (the velocities half a step before and after), the strain
 energy of the step itself, and for the work of every force F the sum of F·(v⁻ + v⁺)/2·Δt. The first is divided into the
 kinetic energy of the mean velocity, ⅛m (v⁻ + v⁺)², and −⅛m (v⁺ − v⁻)², of second order in the step: it is more than the
-kinetic energy where velocities change their sign within a step, as at impacts. The remaining error comes from contacts
-that open or close within a step, from rotating normals, and from rounding.
+kinetic energy where velocities change their sign within a step, as at impacts. What contacts take or give as they open
+or close within a step is a column of its own. The remaining error comes from rotating normals and from rounding.
 """
 
 from dataclasses import astuple, dataclass, fields
@@ -17,7 +17,7 @@ from dembound.motion.state import Arrays, State
 from dembound.motion.trackers import NEVER, Run, Tracker
 
 GAIN = 0.5
-"""Energy error over supplied energy at which a run stops; contacts that open and close cause less than 0.01."""
+"""Energy gained over supplied energy at which a run stops."""
 
 ROUNDING = 1e-9
 """Energies below this share of the largest count as zero: rounding errors of sums over contacts are smaller."""
@@ -33,10 +33,12 @@ class Entry:
     kinetic; contact and bond, stored since the start (of a bar: in local springs and in peridynamic bonds); load, work
     of steady loads; balance, work of the forces that balance the stress of a settled body; outside, work of boundaries
     and driven loads; loads, the part of it that is of the loads; damping, friction, crack, dissipated by them, friction
-    of a bar by impacts of its ranges; law_switch, added by a change of method or law; stepping, at most 0, what
-    velocities that change within a step add to the balance of what is stored; supplied, the kinetic energy at
-    the start plus the largest values so far of outside, at any step, and of load, at any entry; error, stored and
-    dissipated energy minus what came in and what the motion at the start had. In J for a bar.
+    of a bar by impacts of its ranges; closing, taken by contacts that open and close within a step, less what sliding
+    contacts and breaking bonds add whose force changes its sign in one (see kernels.contacts.push); law_switch, added
+    by a change of method or law; stepping, at most 0, what velocities that change within a step add to the balance of
+    what is stored; supplied, the kinetic energy at the start plus the largest values so far of outside, at any step,
+    and of load, at any entry; error, stored and dissipated energy minus what came in and what the motion at the start
+    had. In J for a bar.
     """
 
     time: float
@@ -50,6 +52,7 @@ class Entry:
     damping: float
     friction: float
     crack: float
+    closing: float
     law_switch: float
     stepping: float
     supplied: float
@@ -144,7 +147,7 @@ class Ledger(Tracker):
         kinetic, stepping = self._of_motion(before, state)
         contact, bond = (now - first for now, first in zip(system.stored(u), self._first, strict=True))
         load = float(np.sum(system.load * (_by_node(u, state) - state.datum))) if system.load.any() else 0.0
-        outside, damping, friction, crack, law_switch, turning = (float(work) for work in state.work[1])
+        outside, damping, friction, crack, law_switch, turning, closing = (float(work) for work in state.work[1])
         shift = system.spring_shift(u)
         outside += system.counted_outside(u) + shift
         balance = turning + balancing - shift
@@ -152,14 +155,14 @@ class Ledger(Tracker):
         loads = 0.0
         if run.sides is not None and run.sides.has_loads:
             loads = outside - float(np.sum(sides @ (1.0, -1.0, -1.0))) / self._weight
-        stored = kinetic + contact + bond + stepping
-        error = stored + damping + friction + crack - load - balance - outside - law_switch
+        taken = damping, friction, crack, closing
+        error = kinetic + contact + bond + stepping + sum(taken) - load - balance - outside - law_switch
         if not self.entries:
             self._came = error
         error -= self._came
         supplied = self._supplied(max(outside, float(state.supplied[0])), load)
-        brought = load, balance, outside, loads
-        energies = kinetic, contact, bond, *brought, damping, friction, crack, law_switch, stepping, supplied, error
+        stored = kinetic, contact, bond, load, balance, outside, loads
+        energies = *stored, *taken, law_switch, stepping, supplied, error
         time = (state.step - 1) * run.time_step
         self.entries.append(Entry(time, *(self._weight * energy for energy in energies)))
         self.sides.append(sides)
@@ -187,7 +190,7 @@ class Ledger(Tracker):
     def _watch(self) -> None:
         """Raise RunError if the run has gained energy that was not supplied, as with a step too large for its law."""
         first, last = self.entries[0], self.entries[-1]
-        came, gained = last.supplied, last.error - first.error
+        came, gained = last.supplied, (last.error - last.closing) - (first.error - first.closing)
         stored = self._weight * sum(self._first)
         if gained > GAIN * came + ROUNDING * (stored + last.kinetic - last.stepping + abs(last.outside)):
             raise RunError(

@@ -11,7 +11,7 @@ from dembound.motion.layout import Layout
 Arrays = Mapping[str, np.ndarray]
 """Arrays by name."""
 
-WORK = ("outside", "damping", "friction", "crack", "law_switch", "turning")
+WORK = ("outside", "damping", "friction", "crack", "law_switch", "turning", "closing")
 """Names of the columns of the work, see kernels.tables.Log."""
 
 
@@ -36,7 +36,7 @@ class State:
     datum : (3, n) displacement at the start.
     peaks : (q, 3, 2) smallest and largest velocity so far of the nodes of all edges, one edge after the other.
     top : (slots,) m/s, largest speed so far; (0,) unless the case asks for it.
-    work : (2, 6) J, in the columns `WORK`; supplied : (1,) J, the largest work of supports so far; see
+    work : (2, 7) J, in the columns `WORK`; supplied : (1,) J, the largest work of supports so far; see
         kernels.tables.Log.
     side_work : (2, s, 2) J that came in through every side and that its dashpots absorbed; see kernels.tables.Sides.
     step : steps done.

@@ -23,6 +23,7 @@ COLUMNS = {
     "damping": "taken by damping and layers that absorb",
     "friction": "taken by friction",
     "crack": "taken by cracks",
+    "closing": "taken by contacts that open and close",
     "law_switch": "in: added by a change of law",
     "stepping": "less, by velocities that change within steps",
 }
@@ -44,7 +45,7 @@ OF_SIDES: dict[str, tuple[str, dict[str, Any]]] = {
 }
 """Columns of every side, their names in the legend, in which {} is the side, and their lines; a side has one colour."""
 
-HUES = (COLOURS[0], "#67001F", *COLOURS[1:], "#8C510A", "#999999", "#5E3C99", "#003C30")
+HUES = (COLOURS[0], "#67001F", *COLOURS[1:], "#8C510A", "#999999", "#5E3C99", "#808000", "#003C30")
 """A colour for each column of the ledger, and for each side: four of a body, as many of a continuum, and a column's."""
 
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +27,9 @@ LATELY, NOW = 0.1, 0.05
 
 The first is at least half a period, as the velocity hardly changes near its crest.
 """
+
+UNEXPLAINED = 0.01
+"""Share of the energy put in that may be taken by the length of the step, or be unaccounted for, without a warning."""
 
 QUIET = 0.01
 """Share of the largest peak of all monitors; a monitor with a smaller peak has not been reached by the motion."""
@@ -63,6 +67,23 @@ def still_moving(
             f"{duration:.3g} s, and still changes ({len(moving)} of {len(histories)} monitors); the motion "
             "is not over, take a longer run.duration"
         )
+
+
+def energy_warnings(scene: Scene, energy: Mapping[str, float]) -> Iterator[str]:
+    """Warnings about energy that the length of the step has taken or added, and that is unaccounted for.
+
+    energy : the entry of the summary.
+    """
+    supplied, closing = energy["supplied"], energy["closing"]
+    if abs(closing) > UNEXPLAINED * supplied:
+        key = "safety" if scene.case.run.time_step == "auto" else "time_step"
+        yield (
+            f"run.{key}: contacts that open and close within a step have {'taken' if closing > 0.0 else 'added'} "
+            f"{100.0 * abs(closing) / supplied if supplied > 0.0 else math.inf:.2g} % of the energy put in; "
+            "shorter steps change it less"
+        )
+    if (error := energy["relative_error"]) > UNEXPLAINED:
+        yield f"energy.error: {100.0 * error:.2g} % of the energy put in is unaccounted for; take shorter steps"
 
 
 def never_silent(scene: Scene, ended: object, file: h5py.File) -> Iterator[str]:

@@ -58,8 +58,9 @@ class Contacts(NamedTuple):
 
     first, second, contact_type : (b,) uint32 particles, and the row of the pair in constants (p, 12).
     state : (b,) uint8, see kernels/contacts.py; shear, slip : (b,) m, the tangential displacement since the start, not
-    kept up to date for pairs in the geometry of the start, and the part of it that slid; cracked : (b,) int64, step in
-    which the bond broke, else −1; place : (b, 2) m, mean displacement of the two disks in that step; force : (4, b).
+    kept up to date for pairs in the geometry of the start, and the part of it that slid; closed : (b,) uint8, 1 if the
+    contact has closed in the last step; cracked : (b,) int64, step in which the bond broke, else −1; place : (b, 2) m,
+    mean displacement of the two disks in that step; force : (4, b).
     start, end : rows of contact ends, one per particle, those before number `begin` empty, end (e,) uint32 = 2·contact
     + (0 first, 1 second).
     """
@@ -73,6 +74,7 @@ class Contacts(NamedTuple):
     state: np.ndarray
     shear: np.ndarray
     slip: np.ndarray
+    closed: np.ndarray
     cracked: np.ndarray
     place: np.ndarray
     force: np.ndarray

@@ -41,8 +41,8 @@ class Bonded(NamedTuple):
 
     limits : friction and strengths; origin : (2, n) displacements at which all pairs with gaps up to skin (m) were
     listed; cells : of the particles then; stops : return after a step in which a bond broke; way : (2,) m, distance
-    particles have moved since this was checked, and the distance they may move; fastest (chunks,), damped, lost
-    (chunks, 2) : work space.
+    particles have moved since this was checked, and the distance they may move; fastest (chunks,), damped (chunks, 2),
+    lost (chunks, 4) : work space.
     """
 
     contacts: Contacts
@@ -62,7 +62,7 @@ class LaneBonded(NamedTuple):
 
     bonded : the law, for all pairs; rows : the disks, whose contacts are not used; pairs : the rows of pairs. stray :
     (k,) ascending slots of disks with ends of other pairs; stray_start (k + 1,), stray_end (e,) those ends, as in
-    Contacts. extra : (3, slots), also_lost (chunks, 2) : work space.
+    Contacts. extra : (3, slots), also_lost (chunks, 4) : work space.
     """
 
     bonded: Bonded

@@ -77,9 +77,10 @@ class Log(NamedTuple):
     probes : (p,) particles; record : (steps, p, 6) their displacement and velocity at the start of each step, the
     velocity as the mean of its two half-step values, and of a bar (steps, p, 7), stress last, Pa. tracked : (q,)
     particles; peaks : (q, 3, 2) smallest and largest velocity so far. top_speed : (n,) largest speed so far, m/s, or
-    (0,) if not asked for. work : (2, 6) J done on the body by supports, taken by damping, friction and cracks, added by
-    a change of method, done by the change of follower forces as they rotate, column by column; row 0 up to the half
-    step reached, row 1 up to the last whole step. supplied : (1,) J, the largest work of supports so far, at any step.
+    (0,) if not asked for. work : (2, 7) J done on the body by supports, taken by damping, friction and cracks, added by
+    a change of method, done by the change of follower forces as they rotate, taken by contacts that open and close,
+    column by column; row 0 up to the half step reached, row 1 up to the last whole step. supplied : (1,) J, the largest
+    work of supports so far, at any step.
     sides : what is recorded of the sides.
     """
 

@@ -34,6 +34,7 @@ def summary_of(*spalls: dict, duration: float = 1.0) -> dict:
         "breaks_at_ends": {},
         "open_contacts": [],
         "crack_strain_rates": None,
+        "energy": {"supplied": 1.0, "closing": 0.0, "relative_error": 0.0},
     }
 
 

@@ -344,6 +344,7 @@ def test_what_is_left_of_a_body_remembers_all_it_went_through(scene, sides: str)
     old, random = contacts.arrays, np.random.default_rng(2)
     old.shear[:], old.slip[:] = random.uniform(-1e-3, 1e-3, (2, len(old.shear)))
     old.state[random.random(len(old.state)) < 0.2] = SHEAR
+    old.closed[:] = random.random(len(old.closed)) < 0.2
     old.cracked[3] = 7
     tunnel = {"name": "tunnel", "type": "circle", "centre": [4.0, 2.0], "radius": 1.0}
     hollow = scene(sides, hole=[tunnel])
@@ -356,7 +357,7 @@ def test_what_is_left_of_a_body_remembers_all_it_went_through(scene, sides: str)
     assert 0 < np.count_nonzero(among) < len(among)
     for before, after in ((old.first[among], kept[new.first]), (old.second[among], kept[new.second])):
         assert np.array_equal(before, after)
-    for name in ("state", "shear", "slip", "cracked"):
+    for name in ("state", "shear", "slip", "closed", "cracked"):
         assert np.array_equal(getattr(old, name)[among], getattr(new, name))
     assert np.array_equal(left.origin, moved[:2, kept])
     # the same pairs, so the same forces, across periodic sides as well

@@ -64,7 +64,10 @@ def test_pairs_are_the_sum_of_their_arrays(bar, monkeypatch, in_rows) -> None:
     monkeypatch.setattr(layout, "LEAST_FILL", 0.3 if in_rows else 9.0)
     scene = build(bar({**FREE, "packing": {**RANDOM, "bricks": [40, 10]}, "material.law": "linearpbond"}))
     (pairs,) = scene.contact_lists().values()
-    kept, stored = pairs.arrays, ("first", "second", "contact_type", "state", "shear", "slip", "cracked", "force")
+    kept, stored = (
+        pairs.arrays,
+        ("first", "second", "contact_type", "state", "shear", "slip", "closed", "cracked", "force"),
+    )
     arrays = [getattr(kept, name) for name in stored] + [kept.start, kept.end, pairs.live, pairs.image]
     arrays += [pairs.arms, pairs.origin, pairs.cells.member]
     if in_rows:

@@ -69,7 +69,7 @@ def advance(
     nobody, nothing = np.zeros(0, dtype=np.int64), np.zeros((0, 3))
     drive = np.zeros((steps, 0, 3))
     supports = Supports(nobody, *[nothing] * 5, drive=drive, twin=nobody, follow=nothing)
-    log = Log(nobody, np.empty((steps, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 6)), np.zeros(1))
+    log = Log(nobody, np.empty((steps, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 7)), np.zeros(1))
     done, why = loop.advance(u, np.zeros_like(u), v, 0, (part.law(),), (), None, arrays, supports, log)
     part.react(int(why), int(done), State(body.layout, u, v, np.zeros_like(u), np.zeros((0, 3, 2)), np.zeros(0)))
     return int(done), int(why)

@@ -19,7 +19,7 @@ class Stepped:
 
     inertia (3, n) mass, mass, moment of inertia; load (3, n) or (3, 0); of k supported nodes damping, stiffness,
     prescribed (k, 3) and push (steps, k, 3), the drive, which prescribed components take as their velocity.
-    work (2, 6) is that of tables.Log, as far as the step knows it: by supports and by damping.
+    work (2, 7) is that of tables.Log, as far as the step knows it: by supports and by damping.
     """
 
     inertia: np.ndarray
@@ -32,7 +32,7 @@ class Stepped:
     step: float
     free: np.ndarray = field(default_factory=lambda: np.ones(3))
     damp: float = 0.0
-    work: np.ndarray = field(default_factory=lambda: np.zeros((2, 6)))
+    work: np.ndarray = field(default_factory=lambda: np.zeros((2, 7)))
 
     @property
     def count(self) -> int:
@@ -102,7 +102,7 @@ class Stepped:
         )
         everyone = np.arange(self.count)
         record, peaks = np.empty((len(self.push), self.count, 6)), np.zeros((self.count, 3, 2))
-        top_speed, work = np.zeros(self.count), np.zeros((2, 6))
+        top_speed, work = np.zeros(self.count), np.zeros((2, 7))
         return body, supports, tables.Log(everyone, record, everyone, peaks, top_speed, work, np.zeros(1))
 
 
@@ -137,11 +137,11 @@ def stepped() -> Callable[..., Stepped]:
 
 @dataclass
 class PlainPairs:
-    """Pairs with a history, one at a time; `lost` is what friction and cracks took so far."""
+    """Pairs with a history, one at a time; `lost` is what friction, cracks, and opening and closing took so far."""
 
     arrays: tables.Contacts
     limits: tables.Limits
-    lost: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    lost: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
     def push(self, u: np.ndarray, v: np.ndarray, step: float, number: int) -> np.ndarray:
         """Forces and moments (3, n) of all pairs, whose memories go on; arrays.force gets each pair's own."""
@@ -178,14 +178,22 @@ class PlainPairs:
         before, p.shear[c] = shear - step * slide, shear
         push, rub = k_n * (touch - rest - stretch), k_s * (shear - p.slip[c])
         if limits.geometry != REFERENCE or touch < rest:
+            overlap, overlapped = push / k_n, push / k_n + step * opening
             push = max(push, 0.0)
-            if touch - rest - stretch + step * opening <= 0.0:
+            # the push one step earlier, by work and by what it had stored
+            pushed = k_n * max(overlapped, 0.0)
+            stored = 0.5 * (push**2 - pushed**2) / k_n
+            pushed *= CLOSING if p.closed[c] else 1.0
+            if overlapped <= 0.0:
                 push *= CLOSING
+            p.closed[c] = overlapped <= 0.0 < overlap
+            self.lost[2] += 0.5 * (pushed + push) * (overlap - overlapped) - stored
             if abs(rub) > limits.friction * push:
                 rub_before, slip_before = k_s * (before - p.slip[c]), p.slip[c]
                 rub = np.sign(rub) * limits.friction * push
                 p.slip[c] = shear - rub / k_s
-                self.lost[0] += 0.5 * (rub_before + rub) * (p.slip[c] - slip_before)
+                rubbed = 0.5 * (rub_before + rub) * (p.slip[c] - slip_before)
+                self.lost[0 if rubbed > 0.0 else 2] += rubbed
         force, moment = -push * n + rub * t, 0.0
         side = rub
         if p.state[c] == INTACT:
@@ -196,8 +204,13 @@ class PlainPairs:
                 p.state[c] = TENSION if tension >= limits.tension else SHEAR
                 p.cracked[c] = number
                 # ½ k s⁻ s: what forces at whole steps have stored by the step at which they are gone
-                self.lost[1] += 0.5 * b_n * stretch * (stretch - step * opening)
-                self.lost[1] += 0.5 * b_s * shear * before + 0.5 * b_m * turn * (turn - step * turning)
+                broken = 0.5 * b_n * stretch * (stretch - step * opening)
+                broken += 0.5 * b_s * shear * before + 0.5 * b_m * turn * (turn - step * turning)
+                if limits.geometry == BONDED:  # from here on the contact has its true length
+                    longer = np.hypot(*(p.constants[p.contact_type[c], :2] + (u_j - u_i)[:2])) - rest
+                    overlaps = [max(touch - rest - each, 0.0) for each in (stretch, longer)]
+                    broken += 0.5 * k_n * (overlaps[0] ** 2 - overlaps[1] ** 2)
+                self.lost[1 if broken > 0.0 else 2] += broken
             else:
                 force = force + b_n * stretch * n + b_s * shear * t
                 side, moment = side + b_s * shear, b_m * turn
@@ -226,6 +239,7 @@ def contacts_of(count: int, vectors: np.ndarray, **columns: np.ndarray) -> table
         columns["state"].astype(np.uint8),
         np.zeros(b),
         np.zeros(b),
+        np.zeros(b, np.uint8),
         np.full(b, -1),
         np.full((b, 2), np.nan),
         np.zeros((4, b)),

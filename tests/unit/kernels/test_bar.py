@@ -125,7 +125,7 @@ class Run:
         self.drag = 2.0 * a / STEP * MASS
         bonds.rod = Rod(tuple(replace(part, drag_rate=2.0 * a / STEP) for part in bonds.rod.ranges))
         self.arrays = bonds.arrays(outside.nodes, STEP)
-        self.work, self.top_speed = np.zeros((2, 6)), np.zeros(COUNT)
+        self.work, self.top_speed = np.zeros((2, 7)), np.zeros(COUNT)
         self.record = np.zeros((STEPS, COUNT, 7))
 
     def advance(self, steps: int = STEPS, number: int = 0) -> tuple[int, int]:

@@ -164,7 +164,7 @@ def test_a_contact_that_closes_rubs_with_what_it_pushes_with(one_pair, geometry:
 def test_a_push_returns_how_many_bonds_it_breaks(random_pairs, geometry: int) -> None:
     pairs, limits = random_pairs(PARTICLES, PAIRS), WEAK._replace(geometry=geometry)
     breaks = [
-        push(u, v, STEP, number, pairs, limits, np.empty((CHUNKS, 2)), 0) for number, (u, v) in enumerate(motion(20))
+        push(u, v, STEP, number, pairs, limits, np.empty((CHUNKS, 4)), 0) for number, (u, v) in enumerate(motion(20))
     ]
 
     assert breaks == [np.count_nonzero(pairs.cracked == number) for number in range(20)]

@@ -133,7 +133,7 @@ class Following:
         )
         body = tables.Body(np.zeros(7), np.zeros(7), np.ones(3), np.zeros((3, 0)), self.damp, STEP)
         log = tables.Log(
-            nobody, np.zeros((1, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 6)), np.zeros(1)
+            nobody, np.zeros((1, 0, 6)), nobody, np.zeros((0, 3, 2)), np.zeros(0), np.zeros((2, 7)), np.zeros(1)
         )
         return supports, body, log
 

@@ -12,12 +12,15 @@ from dembound.disks.warnings import warnings_after_disks
 
 TIME = np.linspace(0.0, 1.0, 1001)
 
+KEPT = {"supplied": 1.0, "closing": 0.0, "relative_error": 0.0}
+"""The energy ledger of a run in which nothing is missing."""
+
 
 @pytest.fixture
 def moved(small_run, tmp_path):
     """What is warned of where the monitors of a case have moved at some velocities."""
 
-    def find(case, broken=(), component: int = 0, **velocities: np.ndarray) -> list[str]:
+    def find(case, broken=(), component: int = 0, energy: dict | None = None, **velocities: np.ndarray) -> list[str]:
         path = Path(shutil.copy(small_run, tmp_path / "run.h5"))
         with h5py.File(path, "r+") as file:
             del file["histories"], file["cracks"]
@@ -28,7 +31,7 @@ def moved(small_run, tmp_path):
                 three = np.zeros((len(velocity), 3))
                 three[:, component] = velocity
                 file[f"histories/{name.replace('__', '.')}/velocity"] = three
-        return warnings_after_disks(build(case), {"duration": 1.0}, path)
+        return warnings_after_disks(build(case), {"duration": 1.0, "energy": energy or KEPT}, path)
 
     return find
 
@@ -125,3 +128,31 @@ def test_monitors_in_a_continuum_come_to_rest(bar, moved) -> None:
 def test_one_monitor_or_none(bar, moved) -> None:
     assert moved(bar({"monitor": []})) == []
     assert moved(bar(), middle=np.zeros(1001)) == []
+
+
+@pytest.mark.parametrize(
+    ("energy", "said"),
+    [
+        ({"closing": 0.0099, "relative_error": 0.0099}, []),
+        (
+            {"closing": 0.12},
+            [
+                "run.safety: contacts that open and close within a step have taken 12 % of the energy put in; "
+                "shorter steps change it less"
+            ],
+        ),
+        (
+            {"closing": -0.02, "supplied": 0.5},
+            [
+                "run.safety: contacts that open and close within a step have added 4 % of the energy put in; "
+                "shorter steps change it less"
+            ],
+        ),
+        (
+            {"relative_error": 0.03},
+            ["energy.error: 3 % of the energy put in is unaccounted for; take shorter steps"],
+        ),
+    ],
+)
+def test_energy_that_steps_take_or_that_is_missing_is_warned_of(bar, moved, energy: dict, said: list[str]) -> None:
+    assert moved(two(bar), energy=KEPT | energy, near=PULSE, far=0.5 * PULSE) == said
