@@ -76,6 +76,8 @@ class Checkpoint:
 
 def _require_small(content: bytes) -> None:
     """Raise ValueError for an archive that is compressed, as none is, or whose arrays declare more than is in it."""
+    if content[:2] != b"PK":
+        raise ValueError("no archive")
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         for each in archive.infolist():
             if each.compress_type != zipfile.ZIP_STORED:

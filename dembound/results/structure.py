@@ -75,10 +75,9 @@ def require_structure(file: h5py.File, size: int) -> None:
     """
     import h5py
 
-    seen: set[int] = set()
     objects, declared = 0, 0
     is_run = "histories" in file and "runs" not in file
-    for name, item in _items(file, seen):
+    for name, item in _items(file):
         objects += 1 + len(item.attrs)
         if objects > MOST_OBJECTS:
             raise _refused(file, "", f"has more than {MOST_OBJECTS:,} groups, datasets and attributes")
@@ -99,10 +98,11 @@ def run_of(group: h5py.Group) -> str:
     return str(getattr(link, "path", "")).rsplit("/", 1)[-1]
 
 
-def _items(file: h5py.File, seen: set[int]) -> Iterator[tuple[str, Any]]:
+def _items(file: h5py.File) -> Iterator[tuple[str, Any]]:
     """The file itself, and all groups and datasets in it, by their paths."""
     import h5py
 
+    seen: set[int] = set()
     waiting: list[tuple[str, Any]] = [("", file)]
     while waiting:
         name, item = waiting.pop()
@@ -114,39 +114,39 @@ def _items(file: h5py.File, seen: set[int]) -> Iterator[tuple[str, Any]]:
             raise _refused(file, f"{name[:60]}…", f"is more than {DEEPEST} groups deep")
         yield name, item
         if isinstance(item, h5py.Group):
+            links = item.id.links
             for inner in item:
-                path = f"{name}/{inner}".lstrip("/")
-                if _is_own(file, path, item.get(inner, getlink=True)):
+                path = f"{name}/{inner}" if name else inner
+                is_hard = links.get_info(inner.encode("utf-8", "surrogateescape")).type == h5py.h5l.TYPE_HARD
+                if is_hard or not _is_of_chart(file, path, item.get(inner, getlink=True)):
                     waiting.append((path, item[inner]))
         elif not isinstance(item, h5py.Dataset):
             raise _refused(file, name, "is neither a group nor a dataset")
 
 
-def _is_own(file: h5py.File, path: str, link: Any) -> bool:
-    """Whether a link is that of an object to its place; False for one of an earlier chart, which nothing follows."""
+def _is_of_chart(file: h5py.File, path: str, link: Any) -> bool:
+    """Whether a link is one from a choice of an earlier chart to its run; raises RecordError for any other."""
     import h5py
 
-    if type(link) is h5py.HardLink:
-        return True
     if type(link) is h5py.SoftLink and path.startswith("choices/") and RUN_LINK.fullmatch(str(link.path)):
-        return False
+        return True
     raise _refused(file, path, "is a link, of which a record has none")
 
 
 def _require_attributes(file: h5py.File, name: str, item: Any, size: int, is_header: bool) -> None:
     """Raise RecordError for an attribute of a type that none has, or, in the header of a run, of another type."""
-    for key in item.attrs:
-        found = item.attrs.get_id(key)
-        where = f"{name}, attribute {key}".removeprefix(", ")
-        if found.shape is None or found.dtype.itemsize * math.prod(found.shape) > size:
+    attributes = item.attrs
+    for key in attributes:
+        found = attributes.get_id(key)
+        where, dtype, shape = f"{name}, attribute {key}".removeprefix(", "), found.dtype, found.shape
+        if shape is None or dtype.itemsize * math.prod(shape) > size:
             raise _refused(file, where, "has no value")
-        _require_plain(file, where, found.dtype)
+        _require_plain(file, where, dtype)
         if is_header and key in ATTRIBUTES:
-            kinds, shape = ATTRIBUTES[key]
-            if found.dtype.kind not in kinds or found.shape != shape:
-                raise _refused(file, where, f"must be {'text' if kinds == TEXTS else _numbers(shape)}")
-        value = item.attrs[key]
-        if isinstance(value, str):
+            kinds, wanted = ATTRIBUTES[key]
+            if dtype.kind not in kinds or shape != wanted:
+                raise _refused(file, where, f"must be {'text' if kinds == TEXTS else _numbers(wanted)}")
+        if dtype.kind == "O" and isinstance(value := attributes[key], str):
             value.encode()  # fails for bytes that are no text
 
 
@@ -156,16 +156,17 @@ def _bytes_declared(file: h5py.File, name: str, item: h5py.Dataset) -> int:
 
     if item.shape is None:
         raise _refused(file, name, "has no values")
-    _require_plain(file, name, item.dtype)
+    dtype = item.dtype
+    _require_plain(file, name, dtype)
     made = item.id.get_create_plist()
     if made.get_layout() == h5d.VIRTUAL or made.get_external_count() > 0:
         raise _refused(file, name, "is in another file, to which no record refers")
     filters = {made.get_filter(number)[0] for number in range(made.get_nfilters())}
     if not filters <= {h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32}:
         raise _refused(file, name, "is compressed in a way that no record is")
-    if item.chunks and item.dtype.itemsize * math.prod(item.chunks) > LARGEST_CHUNK:
+    if made.get_layout() == h5d.CHUNKED and dtype.itemsize * math.prod(made.get_chunk()) > LARGEST_CHUNK:
         raise _refused(file, name, f"has chunks of more than {LARGEST_CHUNK:,} bytes")
-    declared, stored = item.dtype.itemsize * math.prod(item.shape), item.id.get_storage_size()
+    declared, stored = dtype.itemsize * math.prod(item.shape), item.id.get_storage_size()
     if h5z.FILTER_DEFLATE not in filters and declared > stored + UNWRITTEN:
         raise _refused(file, name, f"declares {declared:,} bytes, and has {stored:,}")
     return int(declared)

@@ -11,7 +11,7 @@ import numpy as np
 from dembound.errors import CaseError
 from dembound.motion.kind import Finding
 from dembound.results.committed import changed_file
-from dembound.results.reader import open_record, text_of
+from dembound.results.reader import open_record, text_of, understood
 from dembound.studies.chart.measure import Gauge, Gauges, Outcome
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class Record:
 
     def add(self, key: str, outcome: Outcome) -> None:
         """Write the results of a case; costs come later, one by one."""
-        with changed_file(self.path) as file:
+        with understood(self.path), changed_file(self.path) as file:
             group = file.require_group("runs").create_group(key)
             group.attrs.update({name: getattr(outcome, name) for name in NUMBERS})
             write_gauges(group.create_group("gauges"), outcome.gauges)
@@ -67,7 +67,7 @@ class Record:
 
     def add_cost(self, key: str, cpu: float, wall: float) -> None:
         """Append the costs (s) of another run of a case."""
-        with changed_file(self.path) as file:
+        with understood(self.path), changed_file(self.path) as file:
             for name, value in (("cpu", cpu), ("wall", wall)):
                 dataset = file[f"runs/{key}/{name}"]
                 dataset.resize(len(dataset) + 1, axis=0)

@@ -31,7 +31,7 @@ def moved(small_run, tmp_path):
                 three = np.zeros((len(velocity), 3))
                 three[:, component] = velocity
                 file[f"histories/{name.replace('__', '.')}/velocity"] = three
-        return warnings_after_disks(build(case), {"duration": 1.0, "energy": energy or KEPT}, path)
+        return warnings_after_disks(build(case), {"duration": 1.0, "energy": energy or KEPT, "static": None}, path)
 
     return find
 
