@@ -13,9 +13,11 @@ import math
 
 import numpy as np
 
+from dembound.disks.scene import DiskScene
 from dembound.disks.static_scene import StaticScene
 from dembound.disks.system import DiskSystem
 from dembound.disks.wave_front import slowest_speed
+from dembound.errors import CaseError
 from dembound.kernels.contact_measures import slack
 from dembound.motion.state import Arrays, State
 
@@ -49,9 +51,7 @@ class Loading:
 
     def __init__(self, body: StaticScene, system: DiskSystem, start: np.ndarray, step: float) -> None:
         self._body, self._system, self._start = body, system, start
-        speed = slowest_speed(body.scene.ground)
-        crossing = float(body.scene.size.sum()) / speed if speed > 0.0 else 0.0
-        self._longest = max(LEAST, CROSSINGS * crossing / step / LOOK)
+        self._longest = max(LEAST, CROSSINGS * _crossing(body.scene) / step / LOOK)
         self._lacking, self._begun, self._steps = np.zeros_like(start), 0, 0
         if system.uses_history:
             lacking = self._out_of_balance()
@@ -151,3 +151,12 @@ class Loading:
             if slack(pairs.spread(displacement), pairs.arrays, pairs.limits, False) < 0.0:
                 return False
         return True
+
+
+def _crossing(scene: DiskScene) -> float:
+    """Time (s) in which the slowest waves cross a body along x and then along y; 0 if there are none."""
+    try:
+        speed = slowest_speed(scene.ground)
+    except CaseError:  # disks that only touch, without friction, have no stiffness against some motion
+        return 0.0
+    return float(scene.size.sum()) / speed if speed > 0.0 else 0.0
