@@ -1,4 +1,4 @@
-"""The energy ledger closes: exactly under the elastic law, nearly where contacts open, slide and break.
+"""The energy ledger closes under the elastic law, and where contacts open, slide and break.
 
 A pulse enters a block of random disks through a viscous side, is reflected by free ones and leaves through another.
 """
