@@ -1,4 +1,4 @@
-"""The energy ledger closes: exactly under the elastic law, nearly where contacts open, slide and break.
+"""The energy ledger closes under the elastic law, and where contacts open, slide and break.
 
 A pulse enters a block of random disks through a viscous side, is reflected by free ones and leaves through another.
 """
@@ -72,15 +72,16 @@ def test_books_of_settled_ground_begin_where_it_rests(lab):
     assert error(ledger) < 400 * np.finfo(float).eps
 
 
-def test_opening_contacts_leave_a_trace(lab):
-    """A contact that opens or closes within a step misjudges its work by at most ½k(Δu_n)² once.
+def test_books_of_contacts_that_open_close(lab):
+    """What opening and closing take is counted, so that with normals that do not turn hardly anything is left.
 
-    With strains v/c per step and disk that is (cΔt/D · v/c)²: some 1e-7 of the energy of the disks concerned, each
-    time. Contacts that nothing presses together open and close at most every other step, 200 times.
+    Uncounted, each would misjudge the work by ½k(Δu_n)², with strains v/c per step and disk some 1e-7 of the energy of
+    the disks concerned, up to 200 times.
     """
     ledger = ledger_of(lab, {"law": "linearpbond", "fric": 0.5, "geometry": "reference"})
     assert ledger.entries[-1].friction > 0.0
-    assert error(ledger) < 200 * 2e-7
+    assert ledger.entries[-1].closing != 0.0
+    assert error(ledger) < 1e-4 * 200 * 1e-7
 
 
 def test_breaking_bonds_leave_more(lab):

@@ -244,14 +244,14 @@ def test_books_close_while_bonds_break(layout, outside: Outside, a: float) -> No
     before = energy(run.bonds, u[0], u[0] - STEP * run.v[0], run.v[0])
     run.advance()
     gained = energy(run.bonds, run.u[0], run.u[0] - STEP * run.v[0], run.v[0]) - before
-    outside_work, damping, friction, crack, law_switch, turning = run.work[0]
+    outside_work, damping, friction, crack, law_switch, turning, closing = run.work[0]
 
     broken = np.concatenate([run.bonds.spring_broken, run.bonds.bond_broken.ravel()])
     assert len(np.unique(broken)) > 5
     assert crack != 0.0
     assert (damping > 0.0) == (a > 0.0)
     assert (outside_work != 0.0) == (outside is not NOTHING)
-    assert friction == law_switch == turning == 0.0
+    assert friction == law_switch == turning == closing == 0.0
     # sums of a few hundred terms a step, all together less than the work done either way
     scale = before + np.abs(run.work[0]).sum()
     assert gained == pytest.approx(outside_work - damping - crack, abs=STEPS * COUNT * EPS * scale)
