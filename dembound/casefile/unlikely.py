@@ -131,8 +131,8 @@ def _not_downwards(numbers: tuple[float, ...], table: Table, case: Case) -> str 
             return f"is {up:g} m/s²; likely gravity in {unit}: write [0, {-GRAVITY:g}]"
     if up == 0.0 and math.isclose(abs(across), GRAVITY, rel_tol=0.01):
         return f"is {across:g} m/s² sideways; likely gravity: write [0, {-GRAVITY:g}]"
-    size = math.hypot(across, up)
-    return f"is {size:g} m/s², less than on the moon; gravity is [0, {-GRAVITY:g}]" if size < LIGHTEST else None
+    light = across == 0.0 and -up < LIGHTEST  # sideways it may stand for an earthquake
+    return f"is {-up:g} m/s², less than on the moon; gravity is [0, {-GRAVITY:g}]" if light else None
 
 
 RULES: dict[str, Callable[[tuple[float, ...], Table, Case], str | None]] = {

@@ -108,7 +108,7 @@ def plot_energy(run: Path) -> Figure:
     for line in lines:
         upper.plot(time, line.values / 10.0**power, label=line.label, gid=line.label, **line.looks)
     lower.plot(time, columns["relative_error"], color=REFERENCE, gid="error of the balance")
-    lower.yaxis.set_major_locator(MaxNLocator(nbins=3))
+    lower.yaxis.set_major_locator(MaxNLocator(nbins=3, min_n_ticks=3))
     lower.yaxis.set_major_formatter(StrMethodFormatter("{x:.3g}"))  # each with its own power, none next to the title
     joule = f"{PREFIXES[power]}J"
     upper.set_ylabel(f"energy ({joule})" if bar else f"energy per metre of thickness ({joule}/m)")

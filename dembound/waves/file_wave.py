@@ -17,6 +17,9 @@ NO_COLUMNS = "is not two columns of numbers, separated by blanks or semicolons, 
 MOST_SAMPLES = 2**20
 """Largest number of even samples of a spectrum; a file with very uneven times would have any number of them."""
 
+JUMP = 4.0
+"""Two samples that are so many neighbouring numbers apart, or fewer, are a jump, which rounding may move."""
+
 
 class FileWave(Wave):
     """Velocities from a file, joined by straight lines and zero outside.
@@ -44,7 +47,7 @@ class FileWave(Wave):
         samples = samples_of(self._text, path)
         self._times = tuple(samples[:, 0].tolist())
         self._velocities = tuple((self.scale * samples[:, 1]).tolist())
-        shortest = float(np.diff(samples[:, 0]).min())
+        shortest = _shortest(samples[:, 0])
         self._require_resolved(float(np.abs(samples[:, 0]).max()), shortest, f'path: a time in "{path}"')
         self._require_resolved(self.start, shortest, "start:")
         return self
@@ -209,3 +212,10 @@ def _problem(samples: np.ndarray, quantity: str) -> str:
     if not samples[:, 1].any():
         return "contains only zeros"
     return ""
+
+
+def _shortest(times: np.ndarray) -> float:
+    """The shortest time (s) between two samples that is no jump, as between two neighbouring numbers."""
+    steps = np.diff(times)
+    resolved = steps[steps > JUMP * np.spacing(np.abs(times[1:]))]
+    return float(resolved.min() if resolved.size > 0 else steps.min())

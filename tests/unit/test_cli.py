@@ -330,7 +330,7 @@ def test_a_mistake_in_the_last_case_keeps_the_first_from_running(dembound, writt
 
 
 def test_what_was_probably_not_meant_is_warned_of(dembound, written, tmp_path) -> None:
-    weight = {"load": [{"name": "weight", "acceleration": [9.81, 0.0]}]}
+    weight = {"load": [{"name": "weight", "acceleration": [5.0, 0.0]}]}
     answer = dembound("run", written(changes=weight))
 
     assert answer.code == 0

@@ -226,7 +226,7 @@ def fields() -> list[tuple[type[Table], str]]:
     while waiting:
         waiting += (found := waiting.pop()).__subclasses__()
         tables.add(found)
-    own = [table for table in tables if table.__module__.startswith("dembound.")]
+    own = [each for each in tables if each.__module__.startswith("dembound.") and not each.__name__.startswith("_")]
     return [(table, name) for table in sorted(own, key=str) for name in table.model_fields]
 
 

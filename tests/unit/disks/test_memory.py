@@ -132,8 +132,8 @@ def test_an_automatic_size_is_that_of_a_medium_of_the_nominal_speed(bar) -> None
 
 def test_a_continuum_too_large_is_refused_before_it_is_built(bar, monkeypatch) -> None:
     monkeypatch.setattr(memory, "memory_here", lambda: Memory(8e9, 6e9))
-    with pytest.raises(CaseError, match=r"^outside: 800 disks and 4.48e\+11 nodes of the continuum beyond them need "):
-        build(bar(OUTSIDE | {"outside": {"element": 1e-3, "margin": 100000}}))
+    with pytest.raises(CaseError, match=r"^outside: 800 disks and 2.69e\+09 nodes of the continuum beyond them need "):
+        build(bar(OUTSIDE | {"outside": {"element": 1e-3, "margin": 1000, "layers": 1000}}))
 
 
 def test_both_scenes_of_an_excavation_count(bar) -> None:
