@@ -29,10 +29,10 @@ def record(felt, tmp_path):
     time, stress = felt()
     path = tmp_path / "run.h5"
     with h5py.File(path, "w") as file:
-        file.attrs.update({"name": "bar", "size": [0.99], "density": 2620.0, "loaded": "left"})
+        file.attrs.update({"name": "bar", "size": [0.99, 0.0], "density": 2620.0, "loaded": "left"})
         for name, place in (("near", 0.6), ("far", 0.9), ("end", 0.99)):
             group = file.create_group(f"histories/{name}")
-            group.attrs["position"] = [place]
+            group.attrs["position"] = [place, 0.0]
             group["time"] = time
             group["velocity"] = np.resize(VELOCITY, len(time))[:, None] * [1.0, 2.0, 3.0]
             if name != "end":
@@ -128,7 +128,7 @@ def test_monitors_at_the_ends_are_no_gauges(record):
     with h5py.File(record, "r+") as file:
         for name, place in (("start", 0.0), ("tip", 0.99 * (1.0 - 1e-15))):
             file.copy("histories/far", f"histories/{name}")
-            file[f"histories/{name}"].attrs["position"] = [place]
+            file[f"histories/{name}"].attrs["position"] = [place, 0.0]
         del file["histories/far"]
     assert read_gauge(record).position == 0.6
     with h5py.File(record, "r+") as file:
@@ -196,8 +196,8 @@ def test_an_end_that_is_held_is_not_free(record):
 def test_places_and_velocities_count_from_the_loaded_end(record, felt):
     with h5py.File(record, "r+") as file:
         file.attrs["loaded"] = "right"
-        file["histories/start"] = file["histories/end"]  # another name of the same
-        file["histories/start"].attrs["position"] = [0.0]
+        file.copy("histories/end", "histories/start")
+        file["histories/start"].attrs["position"] = [0.0, 0.0]
     near, far = (read_gauge(record, name) for name in ("near", "far"))
     np.testing.assert_array_equal(near.stress, 1e6 * felt()[1])
     assert (near.position, far.position) == (0.99 - 0.6, 0.99 - 0.9)

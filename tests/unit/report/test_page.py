@@ -83,7 +83,7 @@ def joules(energy, unit="J/m"):
 
 
 def test_runs_stand_side_by_side(two, pushed_runs):
-    assert two.row("boundary.right.beta_p") == ["1", "0.5"]
+    assert two.row("boundary.right.beta_p") == ["matched", "0.5"]
     summaries = [Results(record.parent).summary for record in pushed_runs]
     assert two.row("duration") == [f"{each['steps']:,} steps of {each['time_step']:.5g} s" for each in summaries]
     assert two.row("supplied in all") == [joules(each["energy"]["supplied"]) for each in summaries]
@@ -229,6 +229,18 @@ def test_an_error_estimate_is_shown_if_there_is_one(two, pushed_runs, tmp_path):
 def test_a_foreign_summary_is_one_line_and_writes_nothing(pushed_runs, tmp_path, text):
     record = copied(pushed_runs[0], tmp_path / "foreign")
     (record.parent / "summary.json").write_text(text)
+    with pytest.raises(RecordError) as raised:
+        write_report([record], tmp_path / "page.html")
+    (line,) = str(raised.value).splitlines()
+    assert line.startswith(f"{record.parent / 'summary.json'}: is damaged")
+    assert not (tmp_path / "page.html").exists()
+
+
+@pytest.mark.parametrize("changes", [{"energy": 3}, {"sides": []}, {"sides": {"right": "text"}}, {"seconds": None}])
+def test_entries_of_another_kind_are_one_line_and_nothing_is_written(pushed_runs, tmp_path, changes):
+    record = copied(pushed_runs[0], tmp_path / "foreign")
+    summary = record.parent / "summary.json"
+    summary.write_text(json.dumps(json.loads(summary.read_text()) | changes))
     with pytest.raises(RecordError) as raised:
         write_report([record], tmp_path / "page.html")
     (line,) = str(raised.value).splitlines()

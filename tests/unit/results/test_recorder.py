@@ -253,7 +253,7 @@ def test_every_dataset_has_its_unit(tmp_path, simulation) -> None:
     with h5py.File(tmp_path / "run.h5") as file:
         file.visititems(note)
     assert units.pop("laws/name") == ""  # text has none
-    assert len(units) == 5 + 2 * 3 + 4 * 4 + 2 + 14 + 4 + 1
+    assert len(units) == 5 + 2 * 3 + 4 * 4 + 2 + len(fields(Entry)) + 4 + 1
     assert all(units.values())
     assert units["histories/front/time"] == units["energy/time"] == units["laws/time"] == "s"
     assert units["energy/kinetic"] == "J/m"

@@ -10,6 +10,7 @@ import pytest
 
 from dembound.errors import CaseError, RunError
 from dembound.motion.kind import Finding
+from dembound.results.structure import run_of
 from dembound.running import Progress
 from dembound.studies.chart import reference, study
 from dembound.studies.chart.errors import Reference, Wanted
@@ -328,7 +329,8 @@ def test_the_record_and_the_table_have_all(charted, spalling, tmp_path) -> None:
     assert set(COLUMNS) < set(rows[0])
     with h5py.File(path) as file:
         assert [group.attrs["name"] for group in file["choices"].values()] == [row["choice"] for row in rows]
-        gauge, motion = file["choices/0000/run/gauges/gauge"], found.lines[0].outcome.gauges["gauge"]
+        run = file["runs"][run_of(file["choices/0000"])]
+        gauge, motion = run["gauges/gauge"], found.lines[0].outcome.gauges["gauge"]
         np.testing.assert_array_equal(gauge["velocity"][:], motion.velocity)
         assert file["reference"].attrs["spall place"] == pytest.approx(1.0 - 0.2 / 3.0)
         assert file.attrs["sentence"] == found.sentence
