@@ -9,8 +9,12 @@ import pytest
 from dembound.disks.static import settle
 from dembound.motion.simulation import Simulation
 
-SPEED = 25.0
-"""m/s with which the corner is torn off: faster than all that the stress can throw."""
+SPEED = 100.0
+"""m/s with which the corner is torn off, so that nothing which the stress throws after it can reach it.
+
+A disk beside the gap keeps its force, of some σD, until its last bond has broken. Over a way of D that gives it
+√(2σ/ρ), 57 m/s at 4 MPa; 47 m/s were seen.
+"""
 
 LEG = 200
 """Steps, 0.03 s, in which the corner comes off, and again as many for which it flies."""
@@ -20,7 +24,7 @@ LEG = 200
 class Torn:
     """A body of which a corner was torn off, and what was so after each of two legs.
 
-    momenta : (3, 2) N·s, at the start too. balancing, steady : (2, 3, n) N and N·m on each disk.
+    momenta : (3, 2, n) N·s of each disk, at the start too. balancing, steady : (2, 3, n) N and N·m on each disk.
     """
 
     simulation: Simulation
@@ -41,11 +45,11 @@ def torn(lab):
         simulation = lab.settled(scene, settle(scene).start)
         corner = np.hypot(*(scene.positions - [10.0, 10.0]).T) < 1.5
         simulation.state.v[:2, simulation.state.layout.slot[corner]] = SPEED / np.sqrt(2.0)
-        momenta, balancing, steady = [scene.mass @ simulation.state.velocity[:2].T], [], []
+        momenta, balancing, steady = [scene.mass * simulation.state.velocity[:2]], [], []
         for _ in range(2):
             simulation.advance(LEG)
             assert simulation.system.balance is not None
-            momenta.append(scene.mass @ simulation.state.velocity[:2].T)
+            momenta.append(scene.mass * simulation.state.velocity[:2])
             balancing.append(simulation.system.balance.force.copy())
             steady.append(np.array(simulation.system.steady))
         return Torn(simulation, corner, np.array(momenta), np.array(balancing), np.array(steady))
@@ -61,9 +65,13 @@ def test_a_corner_torn_off_gains_no_speed(lab, torn, stress, geometry):
     assert not body.balancing[:, :, body.corner].any()
     # nothing but what touches it pushes it from here on
     assert not body.steady[:, :, body.corner].any()
-    # a surface that is let go of its stress moves at σ/ρc, and a free end doubles that
-    let_go = 2.0 * abs(stress) / (lab.density * lab.speed)
-    assert np.hypot(*body.simulation.state.velocity[:2, body.corner]).max() < SPEED + let_go
+    start, off, flown = body.momenta[..., body.corner]
+    # a body has stored σ²/(C11 + C12) per area, less than σ²/ρc², in contacts and bonds; a corner at most twice that,
+    # as all of those to the rest count. All of it as motion is 2σ/ρc, in the root of the mean of squares
+    mass = body.simulation.scene.mass[body.corner]
+    assert np.sum((off - start) ** 2 / mass) < np.sum(mass) * (2.0 * stress / (lab.density * lab.speed)) ** 2
+    # then it touches nothing, and its disks only each other: 200 steps of rounding of forces on disks
+    assert np.abs((flown - off).sum(axis=1)).max() < 200 * 1e-15 * np.abs(start).sum()
     # on the rest the forces act on
     assert body.balancing[-1][:, ~body.corner].any()
 
@@ -72,5 +80,5 @@ def test_the_rest_is_not_pushed_away(torn):
     """Known failure: if nothing made up for the forces that end, a net force of 6.2 MN would stay, 25 m/s²."""
     body = torn(-4e6, "updated")
     # what remains is that torn sides turn against each other: by 1e-3, some 120 forces of σD = 2 MN, 0.24 MN
-    net = np.abs(np.diff(body.momenta, axis=0)).max(axis=1) / (LEG * body.simulation.time_step)
+    net = np.abs(np.diff(body.momenta.sum(axis=2), axis=0)).max(axis=1) / (LEG * body.simulation.time_step)
     assert np.all(net < 1e-3 * 120 * 2.0e6)
