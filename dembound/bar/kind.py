@@ -17,7 +17,8 @@ from dembound.bar.sources import sources_of_bar
 from dembound.bar.stability import choose_step
 from dembound.bar.storage import storage_of
 from dembound.bar.summary import part_of, spalls_of, summarise_bar
-from dembound.bar.warnings import bar_warnings, warnings_after_bar
+from dembound.bar.warnings import bar_warnings
+from dembound.bar.warnings_after import warnings_after_bar
 from dembound.bar.wave_front import front_of_bar
 from dembound.casefile.bar import SCHEMA, BarCase
 from dembound.motion.kind import Beginning, Finding, Kind, OnLook

@@ -10,7 +10,7 @@ import pytest
 from small_cases import SPALLING, small
 
 from dembound.bar.scene import build_bar
-from dembound.bar.warnings import warnings_after_bar
+from dembound.bar.warnings_after import warnings_after_bar
 from dembound.running import resume_case, run_case
 
 

@@ -1,0 +1,131 @@
+"""Warnings about what a run of a bar has shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from dembound.bar.banded import ROUNDING
+from dembound.bar.scene import BarScene
+from dembound.bar.warnings import ends_too_soon, stress_beside_strength
+from dembound.boundaries import normal_axis
+from dembound.casefile.bar import BarCase
+from dembound.casefile.magnitudes import stress_in_words
+from dembound.results.reader import open_record, snapshots_of
+from dembound.results.warnings import energy_warnings, still_moving
+
+if TYPE_CHECKING:
+    import h5py
+
+NOTHING = 0.05
+"""Share of the strength that the largest tension must reach; oscillations behind a pulse reach some per cent of it."""
+
+SWINGING = 0.3
+"""Energy of changes within steps over the largest kinetic energy from which a run is warned of; fronts have 0.01."""
+
+
+def warnings_after_bar(scene: BarScene, summary: Mapping[str, Any], record: Path) -> list[str]:
+    """Warnings from the summary and record of a run of a bar, one line each."""
+    broken = [*summary["spalls"], *summary["breaks_at_ends"].values()]
+    cuts = np.array([place["end"] for place in broken]).reshape(-1, 2).mean(axis=1)
+    pieces = np.searchsorted(np.sort(cuts), scene.positions[:, 0])
+    with open_record(record) as file:
+        return [
+            *still_moving(scene, summary["duration"], file, pieces),
+            *_open_contacts(scene.case, summary),
+            *_torn_by_the_load(scene.case, summary),
+            *_outside_the_rates(scene.case, summary),
+            *_no_tension(scene.case, file),
+            *_swings(scene.case, file),
+            *energy_warnings(scene, summary["energy"]),
+        ]
+
+
+def _swings(case: BarCase, file: h5py.File) -> Iterator[str]:
+    """Velocities that swing from step to step, as impacts leave them at the limit of the time step, where they grow."""
+    if "energy" not in file or not any(each.interface == "contact" for each in case.bar.range):
+        return
+    kinetic, within = (file[f"energy/{name}"][:] for name in ("kinetic", "stepping"))
+    if len(kinetic) and (share := -float(within.min()) / max(float(kinetic.max()), 1e-300)) > SWINGING:
+        yield (
+            f"run.courant: velocities swing from step to step: their changes within steps have {share:.2g} times the "
+            "largest kinetic energy; at the limit of the time step the swing of each impact stays and adds up; take "
+            "run.courant = 0.95"
+        )
+
+
+def _open_contacts(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:
+    """Contacts between ranges that have never been closed, so that nothing has passed them."""
+    for number, (left, right) in enumerate(zip(case.bar.range[:-1], case.bar.range[1:], strict=True), start=2):
+        if right.name in summary["open_contacts"]:
+            gap = f", {right.gap:g} m wide at the start," if right.gap > 0.0 else ""
+            yield (
+                f"bar.range[{number}, {right.name}]: its contact with {left.name}{gap} has never closed until the end "
+                f"of the run at {summary['duration']:.4g} s, so nothing has passed it"
+            )
+
+
+def _outside_the_rates(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:
+    """Cracks at strain rates for which no strength is given."""
+    laws = [part.strength_rates for part in case.bar.parts if part.strength_rates is not None]
+    found = summary["crack_strain_rates"]
+    if not laws or found is None:
+        return
+    given = min(slowest for slowest, _ in laws), max(fastest for _, fastest in laws)
+    beyond = [
+        f"{found[key]:.3g} 1/s, {words} {limit:g}"
+        for key, words, limit in (("slowest", "below", given[0]), ("fastest", "above", given[1]))
+        if (found[key] < limit) == (key == "slowest") and found[key] != limit
+    ]
+    if beyond:
+        yield f"bar.strength_rates: cracks had strain rates of {' and '.join(beyond)}; the strength is constant there"
+
+
+def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str]:
+    """A first spall at a load or a wave that enters, before a reflected wave can have returned there."""
+    if not summary["spalls"]:
+        return
+    first, bar = summary["spalls"][0], case.bar
+    for key, what, side, wave, cure in _pushing(case):
+        end = bar.end(side)
+        near = case.method.largest_horizon * end.length / end.cells * (1.0 + ROUNDING)
+        distance = first["start"][0] if side == "left" else bar.length - first["start"][1]
+        if distance <= near and first["time"] < case.wave[wave].start + 2.0 * end.length / end.speed:
+            yield (
+                f"{key}: the {what} itself broke the bar, at {first['time']:.4g} s and {distance:g} m from "
+                f"the {side} end, before any reflected wave had returned there; {cure}"
+            )
+
+
+def _pushing(case: BarCase) -> Iterator[tuple[str, str, str, str, str]]:
+    """Loads and driven ends that can move: key, what it is, side, name of its wave, and what keeps the bar whole."""
+    horizon, finer = case.method.largest_horizon, "take a smaller bar.spacing"
+    for load in case.load:
+        cure = f"give load.{load.name}.nodes = {horizon}" if load.nodes < horizon else finer
+        yield f"load.{load.name}", "load", load.side, load.wave, cure
+    for side, waves in case.driving.items():
+        if 0 not in case.side(side).prescribed(normal_axis(side)):
+            yield f"boundary.{side}", "incoming wave", side, waves["p"], f"{finer}, or a weaker or slower wave"
+
+
+def _no_tension(case: BarCase, file: h5py.File) -> Iterator[str]:
+    """A breakable bar whose recorded tension is far below its strength.
+
+    No warning where one before the run has already reported it.
+    """
+    strength = case.bar.least_strength
+    foreseen = [*stress_beside_strength(case), *ends_too_soon(case)]
+    if np.isinf(strength) or len(file["cracks/time"]) > 0 or foreseen:
+        return
+    groups = [*file["histories"].values(), *snapshots_of(file)]
+    if not groups:
+        return
+    tension = max(0.0, *(float(np.max(group["stress"][:])) for group in groups))
+    if tension < NOTHING * strength:
+        yield (
+            f"bar: the largest tension reached is {stress_in_words(tension)}, {100.0 * tension / strength:.2g} % of "
+            f"the strength, {stress_in_words(strength)}; nothing can break"
+        )
