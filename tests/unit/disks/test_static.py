@@ -8,6 +8,7 @@ from dembound.disks.loading import LOOK
 from dembound.disks.scene import DiskScene, column_alone
 from dembound.disks.stability import choose_step
 from dembound.disks.static import settle
+from dembound.disks.static_scene import StaticScene
 from dembound.disks.system import DiskSystem
 from dembound.errors import CaseError
 from dembound.kernels.contacts import TENSION
@@ -223,10 +224,23 @@ def test_static_supports_hold_free_field_sides(bar, sides: str, still: list[int]
 
 
 def test_the_dashpots_of_a_free_field_act_unless_the_stage_has_its_own_side(bar) -> None:
-    with_dashpots, without = (settle(packed_ground(bar, sides, **NICHE)) for sides in (None, "free"))
+    grounds = [packed_ground(bar, sides, **NICHE) for sides in (None, "free")]
+    beside = np.setdiff1d(grounds[0].edges["right"].nodes, grounds[0].edges["bottom"].nodes)
+    of_run = damping(grounds[0], beside)
+    in_stage = [damping(StaticScene(ground, ground.case.static).scene, beside) for ground in grounds]
+    assert np.all(of_run > 0.0)
+    assert np.array_equal(in_stage[0], of_run)
+    assert not in_stage[1].any()
+    # they outdo local damping, so that the body creeps into place
+    steps = [settle(ground).steps for ground in grounds]
+    assert steps[0] > steps[1]
 
-    # ρcD of a side outdo local damping: the body creeps into place
-    assert with_dashpots.steps > 2 * without.steps
+
+def damping(ground: DiskScene, nodes: np.ndarray) -> np.ndarray:
+    """Dashpot constants (2, k) N·s/m along x and y on nodes (k,)."""
+    found = np.zeros((3, ground.count))
+    found[ground.supports.component, ground.supports.node] = ground.supports.damping
+    return found[:2, nodes]
 
 
 def test_what_is_carried_is_the_base_s_and_not_the_dashpots(bar) -> None:
