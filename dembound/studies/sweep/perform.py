@@ -5,8 +5,8 @@ import logging
 import math
 import threading
 import time
-from collections.abc import Callable, Collection, Mapping
-from contextlib import chdir, suppress
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import chdir, contextmanager, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from dembound.casefile.disks import DiskCase
 from dembound.casefile.model import as_kind
 from dembound.casefile.sweep import Action, Method
 from dembound.errors import CaseError, DemboundError
-from dembound.interrupts import Interrupts, Stopped
+from dembound.interrupts import Interrupts, Stopped, look
 from dembound.kinds import loads
 from dembound.motion.trackers import Run
 from dembound.results.folder import Folder
@@ -93,16 +93,11 @@ def forget_replaced(folder: Path, names: Collection[str]) -> None:
 
 def perform(task: Task) -> Outcome | None:
     """The outcome of a member, which is also written; None if it was asked to stop. One thread is used."""
-    import numba
-
     with ALONE:
-        if task.stop.exists():
-            return None
-        before = numba.get_num_threads()
-        numba.set_num_threads(1)
         began, outcome = time.perf_counter(), Outcome(task.name, task.name if task.action == "run" else "")
         try:
-            with chdir(task.current), Interrupts(task.stop):
+            with chdir(task.current), Interrupts(task.stop), _one_thread():
+                look()
                 outcome.values, outcome.warnings = _ACTIONS[task.action](task)
         except Stopped:
             return None
@@ -111,11 +106,22 @@ def perform(task: Task) -> Outcome | None:
         except Exception as error:  # a bug, which must not end the sweep; it is a line in its table
             logging.getLogger(__name__).exception("%s: a bug", task.name)
             outcome.failure = f"a bug: {type(error).__name__}: {' '.join(str(error).split())}"
-        finally:
-            numba.set_num_threads(before)
         outcome.seconds = time.perf_counter() - began
         outcome.write(task.folder, task.key)
         return outcome
+
+
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    """Inside, the solver uses one thread."""
+    import numba
+
+    before = numba.get_num_threads()
+    numba.set_num_threads(1)
+    try:
+        yield
+    finally:
+        numba.set_num_threads(before)
 
 
 class Begun(Progress):

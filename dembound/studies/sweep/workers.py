@@ -9,9 +9,11 @@ import threading
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import wait as wait_for
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from multiprocessing.connection import wait
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -58,8 +60,9 @@ class Workers(ABC):
 
 
 class Process(NamedTuple):
-    """A process of this machine: a pool with this worker alone, and its number, known once it has begun."""
+    """A process of this machine, the pool with this worker alone, and its number, known once it has begun."""
 
+    child: BaseProcess
     pool: ProcessPoolExecutor
     number: Future[int]
 
@@ -83,8 +86,11 @@ class Processes(Workers):
     def _new(self) -> Process:
         """A new process; not forked, as this one may have threads."""
         pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _prepare, (self._stop,))
+        others = multiprocessing.active_children()
         with _signals_blocked():
-            return Process(pool, pool.submit(os.getpid))
+            number = pool.submit(os.getpid)
+        (child,) = (each for each in multiprocessing.active_children() if each not in others)
+        return Process(child, pool, number)
 
     def has_room(self, under_way: int) -> bool:
         """Up to the number of processes."""
@@ -107,19 +113,20 @@ class Processes(Workers):
 
     def kill(self) -> None:
         """End all processes at once."""
-        for process in multiprocessing.active_children():
-            process.kill()
+        for process in self._all():
+            process.child.kill()
 
     def dismiss(self) -> None:
         """End the processes without a task, and those that still import what they need for it."""
-        begun = [process.number for process, performed in self._working if not performed.done()]
-        working = {number.result() for number in begun if number.done() and number.exception() is None}
-        for process in multiprocessing.active_children():
-            if process.pid not in working:
-                process.kill()
+        busy = [process for process, performed in self._working if process.number.done() and not performed.done()]
+        for process in self._all():
+            if process not in busy:
+                process.child.kill()
 
     def close(self) -> None:
-        """Wait for all processes to end."""
+        """Wait for the tasks under way; all processes end at once after them, as Python's own end takes a second."""
+        wait_for([performing for _, performing in self._working])
+        self.dismiss()
         for process in self._all():
             process.pool.shutdown()
 

@@ -1,9 +1,11 @@
 """Real processes, of this machine and of a Dask cluster: one is killed in the middle, and no member is lost."""
 
+import atexit
 import json
 import multiprocessing
 import os
 import signal
+import time
 from contextlib import contextmanager
 
 import pytest
@@ -11,7 +13,7 @@ import pytest
 from dembound.errors import CaseError
 from dembound.studies.sweep.perform import MEMBERS
 from dembound.studies.sweep.study import Options, sweep
-from dembound.studies.sweep.workers import cluster
+from dembound.studies.sweep.workers import cluster, processes
 from dembound.version import __version__
 
 kills = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="Windows has no SIGKILL")
@@ -57,6 +59,21 @@ def test_no_member_is_lost_with_a_worker_that_is_killed(rods, tmp_path, workers)
     assert energies == pytest.approx([energies[0], 4.0 * energies[0], 9.0 * energies[0]], rel=1e-9)
     assert standings[-1]._replace(kept=0) == (3, 3, 0, 0, 0)
     assert sweep(members, Options(processes=1), folder, standings.append) == outcomes
+
+
+@kills
+def test_the_end_of_processes_is_not_waited_for_and_others_are_left_alone(tmp_path) -> None:
+    own = multiprocessing.get_context("spawn").Process(target=time.sleep, args=(600.0,), daemon=True)
+    own.start()
+    try:
+        with processes(1, tmp_path / "stop") as workers:
+            (process,) = workers._waiting
+            process.pool.submit(atexit.register, time.sleep, 600.0).result()
+            began = time.monotonic()
+        assert time.monotonic() - began < 300.0
+        assert own.is_alive()
+    finally:
+        own.kill()
 
 
 def test_a_cluster_that_does_not_answer_is_bad_input(monkeypatch) -> None:
