@@ -77,11 +77,8 @@ def digests(record: Path) -> Found:
     def visit(name: str, item: Any) -> None:
         if isinstance(item, h5py.Dataset):
             values = np.asarray(item[()])
-            text = (
-                hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()[:16]
-                if values.dtype != object
-                else ""
-            )
+            numbers = values.dtype != object  # texts are in the case, too
+            text = hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()[:16] if numbers else ""
             norm = f" {np.linalg.norm(values):.10g}" if name.startswith("histories/") else ""
             found[name] = text + norm
 
@@ -187,9 +184,8 @@ def main() -> None:
     if options.verb == "write":
         written(options.sections, options.names, options.file)
         return
-    lines = list(
-        differences(*(json.loads(each.read_text(encoding="utf-8")) for each in (options.before, options.after)))
-    )
+    before, after = (json.loads(each.read_text(encoding="utf-8")) for each in (options.before, options.after))
+    lines = list(differences(before, after))
     print("\n".join(lines) or "no difference")
     sys.exit(bool(lines))
 

@@ -22,6 +22,7 @@ COMMANDS = (
     "reductions",
     "reflection_packets",
     "estimates",
+    "golden",
 )
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the benchmarks measure processes as Unix does")
