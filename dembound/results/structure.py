@@ -161,10 +161,10 @@ def _require_attributes(file: h5py.File, name: str, item: Any, size: int, is_hea
             if dtype.kind not in kinds or shape != wanted:
                 raise _refused(file, where, f"must be {'text' if kinds == TEXTS else _numbers(wanted)}")
         if dtype.kind == "O":
-            value = np.empty(shape, dtype)
-            found.read(value)
+            texts = np.empty(shape, dtype)
+            found.read(texts)
             if shape == ():
-                value[()].decode()  # fails for bytes that are no text
+                texts.item().decode()  # fails for bytes that are no text
 
 
 def _bytes_declared(file: h5py.File, name: str, item: Any, shape: tuple[int, ...] | None, dtype: Any) -> int:
