@@ -85,7 +85,7 @@ def test_record_has_all_monitors_and_the_name_of_the_problem(tmp_path) -> None:
     results = Results(tmp_path / "new")
     assert list(results.histories) == ["right", "below"]
     assert len(results.particles) == len(results.cracks) == len(results.snapshots) == 0
-    with pytest.raises(CaseError, match="array: is \"radius\", there are none"):
+    with pytest.raises(CaseError, match='array: is "radius", there are none'):
         results.particles["radius"]
 
 
