@@ -94,6 +94,10 @@ COSTS = ("cpu", "wall", "wall_time", "seconds")
 """Datasets of times that were measured."""
 
 
+CALIBRATED = "*_calibrated.toml"
+"""The cases that ``calibrate`` writes beside its own."""
+
+
 class Scene:
     """A folder with the cases, and what each command makes of them when nothing ends it."""
 
@@ -112,10 +116,14 @@ class Scene:
                 assert process.returncode == 0, said
                 self.duration[command] = time.monotonic() - began
             (folder / "results").rename(folder / f"whole-{command}")
+            for file in folder.glob(CALIBRATED):
+                file.rename(folder / f"whole-{command}" / file.name)
 
     def end(self, command: str, number: int, delay: float, found: Found, cold: Path | None, *, resumes: bool) -> bool:
         """Send a signal after a delay (s), and compare what is left; returns False if the command was over by then."""
         shutil.rmtree(self.folder / "results", ignore_errors=True)
+        for file in self.folder.glob(CALIBRATED):
+            file.unlink()
         process = started(command, self.folder, cold)
         try:
             process.wait(delay)
@@ -157,6 +165,8 @@ class Scene:
         )
         assert done.returncode == 0, f"{said}\n{done.stderr}"
         whole = self.folder / f"whole-{command}"
+        for file in whole.glob(CALIBRATED):
+            assert (self.folder / file.name).read_bytes() == file.read_bytes(), said
         for record in whole.rglob("*.h5"):
             assert numbers(results / record.relative_to(whole)) == numbers(record), f"{said}\n{record}"
 

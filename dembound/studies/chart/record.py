@@ -44,7 +44,11 @@ class Record:
             group = file.get(f"runs/{key}")
             if group is None:
                 return None
-            found = Outcome(**{name: _plain(group.attrs[name]) for name in NUMBERS})
+            values = {name: _plain(group.attrs[name]) for name in NUMBERS}
+            for name, value in values.items():
+                if not isinstance(value, str if name == "failure" else int | float):
+                    raise TypeError(f"runs/{key}, attribute {name}: is {value!r}")  # which open_record tells of
+            found = Outcome(**values)
             found.gauges = _read_gauges(group["gauges"])
             found.findings = {
                 name: Finding(float(value[()]), text_of(value.attrs["unit"]))
