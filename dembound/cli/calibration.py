@@ -94,6 +94,7 @@ def calibrate_sides(
     All other lines of the case remain. A calibrated case that differs in more than the β found is not replaced.
     """
     from dembound.casefile.edit import edited
+    from dembound.results.reader import replacing
     from dembound.studies.all_sides import calibrate_all, changes_of
     from dembound.studies.calibration import calibrate
 
@@ -121,7 +122,8 @@ def calibrate_sides(
         _print_result(one)
         found = [one]
         _leave(one, folder.with_name(f"{folder.name}_{one.side}_{one.motion}_{one.method}"))
-    target.write_bytes(edited(text, changes_of(found)).encode())
+    with replacing(target) as part:
+        part.write_bytes(edited(text, changes_of(found)).encode())
     out.print(f"wrote {target}")
 
 

@@ -1,9 +1,10 @@
-"""What dashpots and springs at sides along a plane wave take from it, computed on a coarse grid without a run.
+"""What sides along a plane wave take from it that do not move as ground beyond them would, without a run.
 
-Ground that goes on beyond a side moves with the wave; dashpots and springs hold the side back instead. With u the
-motion of the undisturbed ground, which depends on the coordinate along the wave alone, and t(u) the traction that the
-ground beyond has on the side, the error e by a side with dashpots C and springs K obeys the equations of the body, into
-which no wave enters, under the force −C ė − K e − (C u̇ + K u + t(u)) per length of the side.
+Ground that goes on beyond a side moves with the wave; dashpots, springs and walls hold the side back instead, and a
+free one lacks its traction. With u the motion of the undisturbed ground, which depends on the coordinate along the wave
+alone, and t(u) the traction that the ground beyond has on the side, the error e by a side with dashpots C and springs K
+obeys the equations of the body, into which no wave enters, under the force −C ė − K e − (C u̇ + K u + t(u)) per length
+of the side. Where a wall holds a component, e = −u.
 
 Ground and error are computed with linear and bilinear elements of the homogenised packing and central differences.
 Holes are left out. Components and axes are 0 across the wave and 1 along it.
@@ -225,6 +226,7 @@ def error_beside(
         damping[row] += end.damping * grid.weights(side)
         springs[row] += end.stiffness * grid.weights(side)
         moves[row] &= end.moves
+    walls = [(grid.row(side), grid.free & ~grid.ends[side].moves) for side in sides]
     taken, kept = mass / step + 0.5 * damping, mass / step - 0.5 * damping
     loads, weights = _loads(grid, sides, ground), weights[:, :, None]
     found = np.zeros((len(ground.u), len(nodes), 2))
@@ -234,6 +236,8 @@ def error_beside(
         for side, load in loads.items():
             force[grid.row(side)] += load[n]
         speed = np.where(moves, (kept * speed + force) / taken, 0.0)
+        for row, held in walls:
+            speed[row] = np.where(held, -ground.v[n], speed[row])
         now += step * speed
         found[n] = np.sum(weights * speed[nodes], axis=1)
     return found
@@ -268,14 +272,25 @@ class Taken(NamedTuple):
 
 
 def taken_from_waves(scene: DiskScene) -> Iterator[Taken]:
-    """What absorbing sides along the waves of driven sides take from them; the ground beyond free-field sides moves."""
+    """What sides along the waves of driven sides take from them; the ground beyond free-field sides moves."""
     case = scene.case
     for driven, waves in case.driving.items():
-        axis = normal_axis(driven)
-        along = [side for side in SIDES if normal_axis(side) != axis and side in scene.edges]
-        sides = [side for side in along if case.side(side).factors and not case.side(side).needs_column]
+        sides = [side for side in SIDES if normal_axis(side) != normal_axis(driven) and _takes(scene, side)]
         if sides and (shares := _shares(scene, driven, waves, sides)):
             yield Taken(driven, list(waves.values()), sides, shares)
+
+
+def _takes(scene: DiskScene, side: str) -> bool:
+    """Whether a side stands in for ground beyond it that would move with a wave along it, and does not move so itself.
+
+    Mirror planes do so, too, as the image moves the other way. Sides are free where a case does not give them: of
+    upright ones that is taken as forgotten.
+    """
+    table = scene.case.side(side)
+    if side not in scene.edges or table.needs_column or table.is_outside or table.waves:
+        return False
+    forgotten = side not in scene.case.boundary and normal_axis(side) == 0
+    return table.is_artificial or table.is_mirror or forgotten
 
 
 def _shares(scene: DiskScene, driven: str, waves: Mapping[Motion, str], sides: Sequence[str]) -> dict[str, float]:

@@ -50,16 +50,16 @@ def _reason(scene: DiskScene, side: str, motion: Motion, beta: float, share: flo
 
 
 def _take_from_waves(scene: DiskScene) -> Iterator[str]:
-    """Dashpots and springs at sides along the wave of a driven side."""
+    """Sides along the wave of a driven side that do not move as ground beyond them would."""
     for found in taken_from_waves(scene):
         place, most = max(found.shares.items(), key=lambda each: each[1])
         if most <= TAKEN:
             continue
-        least = f" and {100.0 * min(found.shares.values()):.0f} % where least" if len(found.shares) > 1 else ""
+        least = f", {100.0 * min(found.shares.values()):.0f} % where least" if len(found.shares) > 1 else ""
         sides = " and ".join(f"boundary.{side}" for side in found.sides)
         upright = normal_axis(found.driven) == 1
         cure = f'"free_field", or "outside" there and at {found.driven}' if upright else '"periodic"'
         yield (
-            f"{sides}: hold the ground back along wave {' and '.join(found.waves)} from {found.driven} and take about "
-            f"{100.0 * most:.0f} % of it at {place}{least} (RMS of the velocity); take {cure}"
+            f"{sides}: along wave {' and '.join(found.waves)} from {found.driven} no side moves as ground beyond it "
+            f"would; at {place} about {100.0 * most:.0f} % of the velocity is wrong{least} (RMS); take {cure}"
         )

@@ -51,6 +51,7 @@ def disk_warnings(scene: DiskScene, time_step: float) -> list[str]:
     """All of them, one line each; time_step in s."""
     return [
         *_empty_holes(scene),
+        *_holes_at_periodic_sides(scene),
         *_steady_without_static(scene),
         *_locked_in(scene),
         *_settles_in_tension(scene),
@@ -75,6 +76,19 @@ def _empty_holes(scene: DiskScene) -> Iterator[str]:
         tiles = np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 1, 2)
         if not hole.contains((origin + tiles * brick.size + brick.positions).reshape(-1, 2)).any():
             yield f"{place}: no particle is centred in it, so it removes none"
+
+
+def _holes_at_periodic_sides(scene: DiskScene) -> Iterator[str]:
+    """Holes that a periodic side cuts: the part beyond it does not come in again at the opposite side."""
+    left, bottom, right, top = scene.case.packing.box
+    for place, hole in numbered("hole", scene.case.hole):
+        x0, y0, x1, y1 = hole.box
+        cut = {"left": x0 < left < x1, "right": x0 < right < x1, "bottom": y0 < bottom < y1, "top": y0 < top < y1}
+        for side in (side for side in SIDES if cut[side] and scene.case.side(side).is_periodic):
+            yield (
+                f"{place}: is cut by the periodic {side} side, and the part beyond it is not removed at the opposite "
+                "side; move it, or give that part as a hole of its own"
+            )
 
 
 def _steady_without_static(scene: DiskScene) -> Iterator[str]:

@@ -14,6 +14,7 @@ from dembound.casefile.magnitudes import (
     large_velocity,
     stress_warnings,
     time_warnings,
+    waves_used,
 )
 from dembound.disks.incident_facts import arrival
 from dembound.disks.scene import DiskScene, boundary_medium
@@ -87,12 +88,13 @@ def _too_few_per_wavelength(scene: DiskScene) -> Iterator[str]:
 
 
 def particles_per_wavelength(scene: DiskScene) -> dict[str, float]:
-    """Shortest wavelength of every wave, at its highest frequency and the scene's slowest speed, in diameters."""
+    """Shortest wavelength of waves in use, at their highest frequency and the scene's slowest speed, in diameters."""
     speed = slowest_speed(scene.ground)
     spacing = scene.ground.brick.mean_diameter
     return {
         name: speed / wave.highest_frequency() / spacing if np.isfinite(speed) else np.inf
         for name, wave in scene.case.wave.items()
+        if name in waves_used(scene.case)
     }
 
 

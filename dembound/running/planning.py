@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from dembound.casefile import Case
+from dembound.casefile.magnitudes import waves_used
 from dembound.casefile.unlikely import unlikely
 from dembound.errors import CaseError, DemboundError
 from dembound.kinds import checked, kind_of
@@ -96,9 +97,16 @@ def warnings_before(planned: Plan) -> list[str]:
     """Warnings about probable mistakes, known before the run, one line each."""
     return [
         *unlikely(planned.scene.case),
+        *_unused_waves(planned.scene.case),
         *planned.kind.warnings_before(planned.scene, planned.time_step),
         *_interval_warnings(planned),
     ]
+
+
+def _unused_waves(case: Case) -> Iterator[str]:
+    """Waves that no side and no load uses, probably as a name is misspelt."""
+    for name in case.wave.keys() - waves_used(case):
+        yield f"wave.{name}: no side and no load uses it"
 
 
 def _interval_warnings(planned: Plan) -> Iterator[str]:

@@ -56,8 +56,13 @@ def velocities(of: DiskCase, component: int) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("motion", "side"),
-    [("s", {"type": "viscous"}), ("p", {"type": "viscoelastic", "distance": 20.0})],
-    ids=["S, viscous", "P, viscoelastic"],
+    [
+        ("s", {"type": "viscous"}),
+        ("p", {"type": "viscoelastic", "distance": 20.0}),
+        ("s", {"type": "roller"}),
+        ("s", {"type": "free", "artificial": True}),
+    ],
+    ids=["S, viscous", "P, viscoelastic", "S, roller", "S, free"],
 )
 def test_the_share_that_sides_take_is_foreseen(motion: str, side: dict) -> None:
     held_back = case(motion, side)

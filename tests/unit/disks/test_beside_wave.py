@@ -69,10 +69,23 @@ def test_springs_take_more_than_dashpots_alone_and_less_of_wider_bodies() -> Non
 
 
 @pytest.mark.parametrize(
-    "along", [{"type": "free"}, {"type": "roller"}, {"type": "free_field"}], ids=lambda t: t["type"]
+    "along",
+    [{"type": "free"}, {"type": "fixed", "artificial": False}, {"type": "free_field"}],
+    ids=["free", "a true wall", "free field"],
 )
-def test_sides_without_dashpots_or_whose_ground_moves_are_not_asked_about(along: dict) -> None:
+def test_sides_that_end_the_body_or_whose_ground_moves_are_not_asked_about(along: dict) -> None:
     assert list(taken_from_waves(scene_of("bottom", along))) == []
+
+
+@pytest.mark.parametrize(
+    "along", [{"type": "roller"}, {"type": "symmetry"}, {"type": "fixed"}], ids=lambda t: t["type"]
+)
+def test_walls_and_mirrors_hold_what_moves_across_them(along: dict) -> None:
+    """Rollers and mirrors do not disturb a wave that moves along them."""
+    assert min(shares("bottom", along)) > 0.5
+    moving = scene_of("bottom", along, **{"boundary.bottom": {"type": "viscous_input", "wave_p": "pulse"}})
+    taken = [share for found in taken_from_waves(moving) for share in found.shares.values()]
+    assert (max(taken) < 1e-12) == (along["type"] != "fixed")
 
 
 def test_nothing_is_said_of_waves_that_do_not_move_or_come_too_late() -> None:

@@ -83,9 +83,10 @@ def test_sides_along_a_wave_are_warned_of(bar) -> None:
     }
     (line,) = [line for line in warned(bar(plate)) if "along wave" in line]
     assert line.startswith(
-        "boundary.left and boundary.right: hold the ground back along wave pulse from bottom and take"
+        "boundary.left and boundary.right: along wave pulse from bottom no side moves as ground beyond it would; at "
+        "monitor "
     )
-    assert line.endswith('% where least (RMS of the velocity); take "free_field", or "outside" there and at bottom')
+    assert line.endswith('% where least (RMS); take "free_field", or "outside" there and at bottom')
 
     moving = {**plate, "boundary.left": {"type": "free_field"}, "boundary.right": {"type": "free_field"}}
     across = {
@@ -95,6 +96,16 @@ def test_sides_along_a_wave_are_warned_of(bar) -> None:
     }
     for other in (moving, across):
         assert [line for line in warned(bar(other)) if "along wave" in line] == []
+
+
+@pytest.mark.parametrize("given", [{}, {"type": "free"}], ids=["forgotten", "free on purpose"])
+def test_upright_sides_that_a_case_does_not_give_are_taken_as_forgotten(bar, given: dict) -> None:
+    """Beside a wave from below the ground goes on beyond them, if the case does not say that they are free."""
+    sides = {"left": given, "right": given} if given else {}
+    enters = {"bottom": {"type": "viscous_input", "wave_s": "pulse"}}
+    middle = {"monitor": [{"name": "middle", "position": [10.0, 5.0]}]}
+    plate = {"packing.size": [20.0, 10.0], "run.duration": 0.1, **TWO_WAYS, **middle, "boundary": enters | sides}
+    assert len([line for line in warned(bar(plate)) if "along wave" in line]) == (not given)
 
 
 def test_the_numbers_of_the_side_are_printed(bar) -> None:

@@ -8,6 +8,7 @@ from warned_cases import DENSE, SLOW, warned
 from dembound.disks.packed_material import PackedMaterial
 from dembound.disks.scene import build
 from dembound.disks.warnings import _steady_without_static
+from dembound.running import plan, warnings_before
 
 PERIODIC = {f"boundary.{side}": {"type": "periodic"} for side in ("left", "right", "bottom", "top")}
 
@@ -109,6 +110,27 @@ def test_a_packing_that_was_given_its_speed_or_no_speed_is_not_warned_of(bar) ->
     assert warned(bar({**soft, "material.match": "assembly"})) == []
     moduli = {"density": 2500.0, "emod": 2.25e9, "pb_emod": 0.25e9}
     assert warned(bar({**DENSE, "motion.held": [], "material": moduli})) == []
+
+
+@pytest.mark.parametrize(
+    ("middle", "cut"),
+    [(0.0, "left"), (10.0, "right"), (5.0, None), (1.5, None)],
+    ids=["left", "right", "inside", "at it"],
+)
+def test_a_hole_that_a_periodic_side_cuts_is_warned_of(bar, middle: float, cut: str | None) -> None:
+    """The circle of 1.5 m touches the side at x = 0 with its middle at 1.5 m."""
+    hole = {"name": "t", "type": "circle", "centre": [middle, 5.0], "radius": 1.5}
+    ring = {"left": {"type": "periodic"}, "right": {"type": "periodic"}, "top": {"type": "velocity", "wave_s": "pulse"}}
+    case = bar({**SLOW, "motion.held": [], "packing.size": [10.0, 10.0], "hole": [hole], "boundary": ring})
+    found = [line.split(", and")[0] for line in warned(case) if line.startswith("hole")]
+    assert found == ([] if cut is None else [f"hole[1, t]: is cut by the periodic {cut} side"])
+
+
+def test_a_wave_that_nothing_uses_is_warned_of_alone(bar) -> None:
+    """Also where it would be too short for the disks."""
+    other = {"wave.other": {"type": "cosine", "amplitude": 1.0, "period": 1e-4}}
+    lines = warnings_before(plan(bar({**SLOW, **other})))
+    assert [line for line in lines if "other" in line] == ["wave.other: no side and no load uses it"]
 
 
 def test_holes_that_remove_nothing_are_warned_of(bar) -> None:
