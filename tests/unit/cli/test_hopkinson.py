@@ -111,6 +111,7 @@ def test_a_specimen_may_be_as_wide_as_the_bars_and_e_be_measured(dembound, tmp_p
     ("options", "said"),
     [
         (("--density", 2.6), "--density: is 2.6 kg/m³, where soils"),
+        (("--wave-speed", 2.74, "--attenuation", 0), "--wave-speed: is 2.74 m/s, where soils"),
         (("--youngs-modulus", 20), "--youngs-modulus: is 20 Pa, where soils"),
         (("--youngs-modulus", 20e3), "--youngs-modulus: is 2e+04 Pa, with the wave speed, 2740 m/s, that of a density"),
         (("--youngs-modulus", 20e3, "--density", 2600), "--youngs-modulus: is 2e+04 Pa, must be within a factor of 2"),
