@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 
@@ -55,6 +56,7 @@ def bar_warnings(scene: BarScene, time_step: float) -> list[str]:
         *_unlikely_speeds(case),
         *_large_strains(case),
         *_fades(case),
+        *_bonded_impacts(case),
         *_impacts(case, time_step),
         *_monitors_in_gaps(scene),
     ]
@@ -111,6 +113,17 @@ def _fades(case: BarCase) -> Iterator[str]:
             f"bar.attenuation: leaves {100.0 * left:.2g} % of a wave along the bar of {case.bar.length:g} m; is it in "
             "1/m? 1 dB/m is 0.115 1/m"
         )
+
+
+def _bonded_impacts(case: BarCase) -> Iterator[str]:
+    """Neighbours of different velocities that are bonded, so that they cannot part after their impact."""
+    for number, (left, right) in enumerate(itertools.pairwise(case.bar.range), start=2):
+        if right.interface == "bonded" and left.velocity != right.velocity:
+            yield (
+                f'bar.range[{number}, {right.name}].interface: is "bonded", while {left.name} has '
+                f"{left.velocity:g} m/s at the start and {right.name} {right.velocity:g} m/s: they pull each other as "
+                'hard as they push; give interface = "contact"'
+            )
 
 
 def _impacts(case: BarCase, time_step: float) -> Iterator[str]:

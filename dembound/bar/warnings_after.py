@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dembound.bar.banded import ROUNDING
+from dembound.bar.entering import MOMENTS, entering_pressure
 from dembound.bar.scene import BarScene
 from dembound.bar.warnings import ends_too_soon, stress_beside_strength
 from dembound.boundaries import normal_axis
@@ -94,10 +95,19 @@ def _torn_by_the_load(case: BarCase, summary: Mapping[str, Any]) -> Iterator[str
         near = case.method.largest_horizon * end.length / end.cells * (1.0 + ROUNDING)
         distance = first["start"][0] if side == "left" else bar.length - first["start"][1]
         if distance <= near and first["time"] < case.wave[wave].start + 2.0 * end.length / end.speed:
+            if pull := _pull(case, side, first["time"]):
+                cure = f"change the sign of {f'{key}.pressure' if what == 'load' else f'wave.{wave}'} if it is to push"
+                what = f"{what} pulls, with {stress_in_words(pull)}, and"
             yield (
                 f"{key}: the {what} itself broke the bar, at {first['time']:.4g} s and {distance:g} m from "
                 f"the {side} end, before any reflected wave had returned there; {cure}"
             )
+
+
+def _pull(case: BarCase, side: str, until: float) -> float:
+    """Largest tension (Pa) that enters at an end up to a time (s); 0 where it is smaller than the largest pressure."""
+    pressure = entering_pressure(case, side, np.linspace(0.0, until, MOMENTS))
+    return max(0.0, -float(pressure.min())) if -pressure.min() > pressure.max() else 0.0
 
 
 def _pushing(case: BarCase) -> Iterator[tuple[str, str, str, str, str]]:

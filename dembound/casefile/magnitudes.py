@@ -28,6 +28,9 @@ FEWEST_STEPS = 10.0
 SMALL_PART = 0.1
 """Share of its peak that a wave must reach within the run; below it only the first rise of the wave is simulated."""
 
+MISSED = 0.05
+"""Share of its peak by which a wave may vary before t = 0, where no run has it; the noise before a trigger is less."""
+
 WEAK, STRONG = 1e-4, 1e3
 """Stresses over the strength, below and above which one of them is probably in another unit.
 
@@ -70,15 +73,33 @@ def is_quasi_static(case: Case, name: str, travel: float) -> bool:
 def time_warnings(case: Case, time_step: float, travel: float) -> Iterator[str]:
     """At most one warning for every wave far longer or shorter than the run, the step or the travel time.
 
+    Before them those of waves that begin before the run.
+
     time_step : s. travel : time (s) a wave takes through the scene; nan where no wave can run.
     """
     used = waves_used(case)
+    yield from (f"wave.{name}: {early}" for name in case.wave if name in used for early in _too_early(case.wave[name]))
     for name, wave in case.wave.items():
         doubts = chain(
             _too_long(wave, case.run.duration, travel), _too_short(wave, case.run.duration, time_step, travel)
         )  # in this order: the length of a wave that starts very late is lost in rounding
         if name in used and (doubt := next(doubts, None)):
             yield f"wave.{name}: {doubt}; are all times in s and lengths in m?"
+
+
+def _too_early(wave: Wave) -> Iterator[str]:
+    """A record of which a part comes before the run, in words; a steady velocity is the same later."""
+    begin = wave.begin()
+    if not begin < 0.0:
+        return
+    before = np.union1d(np.linspace(begin, 0.0, SAMPLES), np.clip(wave.peak_time(), begin, 0.0))
+    velocities = wave.velocity(before)
+    if np.ptp(velocities) > MISSED * wave.peak():
+        largest = int(np.abs(velocities).argmax())
+        yield (
+            f"reaches {100.0 * abs(velocities[largest]) / wave.peak():.3g} % of its peak at {before[largest]:.4g} s, "
+            f"before the run begins at t = 0, and this part is left out; give start = {wave.start - begin:.6g}"
+        )
 
 
 def _too_long(wave: Wave, duration: float, travel: float) -> Iterator[str]:

@@ -8,7 +8,12 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.gauge.noise import Noise
-from dembound.gauge.plausibility import implausible_length, implausible_signal
+from dembound.gauge.plausibility import (
+    implausible_length,
+    implausible_modulus,
+    implausible_signal,
+    implausible_size,
+)
 from dembound.gauge.recorded import (
     BarMetadata,
     GaugeMetadata,
@@ -51,7 +56,7 @@ class Gauge:
     def in_pascals(self, speed: float) -> "Gauge":
         """The same with stresses in Pa: strains times E, by default ρc² with c = speed, m/s.
 
-        Raises CaseError where they cannot be known.
+        Raises CaseError where they cannot be known, and for a modulus that is not that of the density and the speed.
         """
         if self.unit == "Pa":
             return self
@@ -63,6 +68,8 @@ class Gauge:
             modulus = self.density * speed**2
         if modulus is None:
             raise CaseError(["--youngs-modulus: is missing, or --density for E = ρc², to make stresses of strains"])
+        if problems := list(implausible_modulus(modulus, self.density, speed)):
+            raise CaseError(problems)
         return replace(self, stress=modulus * self.stress, unit="Pa", modulus=modulus)
 
 
@@ -107,6 +114,8 @@ def read_gauge(
     problems += not_above_zero("--youngs-modulus", modulus, "Pa")
     if not is_record(path):
         problems += implausible_length(long or 0.0)
+        problems += implausible_size("--density", density, "density", "kg/m³") if not problems else []
+        problems += implausible_size("--youngs-modulus", modulus, "modulus", "Pa") if not problems else []
         problems += implausible_signal(signal.values, may_be_clipped=may_be_clipped) if not problems else []
     if problems:
         raise CaseError(problems)

@@ -7,6 +7,7 @@ import numpy as np
 from dembound.gauge.estimates import Estimate, tension_peaks
 from dembound.gauge.findings import Findings
 from dembound.gauge.peaks import NOISE_FACTOR, SMALLEST, positive_peaks, white_noise, width_of
+from dembound.meanings import MEANINGS
 
 LONGEST = 100.0
 """Length of a bar, m, above which millimetres were meant."""
@@ -35,6 +36,9 @@ CLOSE, FAR = 0.01, 0.2
 NOISY = 0.015
 """Noise over the height of a wave from which strengths get a warning: it has raised them by 2 to 3 % there."""
 
+TIED = 2.0
+"""Ratio of E and ρc² up to which both may be of one bar: measured ones differ by some per cent."""
+
 UNCERTAIN_SPEED, UNCERTAIN_DECAY = 0.01, 0.2
 """Relative standard errors of wave speed and attenuation from which a warning is due."""
 
@@ -43,6 +47,32 @@ def implausible_length(length: float) -> Iterator[str]:
     """Message about a length, m, that is one in mm."""
     if LONGEST < length < np.inf:
         yield f"--length: is {length:g} m, must be at most {LONGEST:g} m; positions and lengths are in m, not mm"
+
+
+def implausible_size(option: str, value: float | None, means: str, unit: str) -> Iterator[str]:
+    """Message about an option whose value, in its unit, has no likely size of its meaning (`dembound.meanings`)."""
+    if value is not None and np.isfinite(value) and (doubt := MEANINGS[means].doubt(value, unit)):
+        yield f"{option}: {doubt}"
+
+
+def implausible_modulus(modulus: float | None, density: float | None, speed: float) -> Iterator[str]:
+    """Message about a modulus E, Pa, that no bar with this wave speed, m/s, and density, kg/m³, has: E = ρc².
+
+    Without a density it is compared with the likely ones.
+    """
+    if modulus is None or not (0.0 < modulus < np.inf and 0.0 < speed < np.inf):
+        return
+    likely = MEANINGS["density"]
+    least, most = (likely.low, likely.high) if density is None else (density / TIED, density * TIED)
+    if least <= modulus / speed**2 <= most:
+        return
+    says = f"--youngs-modulus: is {modulus:.4g} Pa, "
+    if density is None:
+        says += f"with the wave speed, {speed:.4g} m/s, that of a density E/c² of {modulus / speed**2:.3g} kg/m³"
+    else:
+        says += f"must be within a factor of {TIED:g} of ρc², {density * speed**2:.4g} Pa"
+    units = [slip for slip in MEANINGS["modulus"].slips if least <= slip.mend(modulus) / speed**2 <= most]
+    yield says + "".join(f"; likely {slip.what}: write {slip.mend(modulus):.4g}" for slip in units)
 
 
 def implausible_signal(values: np.ndarray, *, may_be_clipped: bool = False) -> Iterator[str]:

@@ -14,6 +14,7 @@ import numpy as np
 
 from dembound.errors import CaseError
 from dembound.gauge.peaks import CREST, noise_left, smooth, white_noise, width_of
+from dembound.gauge.plausibility import implausible_modulus, implausible_size
 from dembound.gauge.separation import Bar, moved, separated
 
 ONSET = 0.02
@@ -27,6 +28,9 @@ FADE = 0.08
 
 ENDED = 0.05
 """Share of its largest value below which the incident pulse has ended when the reflected one begins."""
+
+ROUNDING = 1e-6
+"""Tolerance with which a specimen is as wide as the bars."""
 
 Window = tuple[float, float]
 """First and last time of a pulse at its gauge, s."""
@@ -81,9 +85,15 @@ class Setup:
         by default ρc²; disperse : whether waves disperse as in a round bar, see `Bar`, which needs ν; others : as the
         attributes.
 
-        Raises CaseError for data that are no lengths, areas or speeds, and for waves that disperse with ν not within
-        0 to 0.5.
+        Raises CaseError for data that are no lengths, areas or speeds, or of unlikely size, for a modulus that is not
+        that of ρ and c, and for waves that disperse with ν not within 0 to 0.5.
         """
+        sizes = [
+            *implausible_size("--wave-speed", speed, "wave speed", "m/s"),
+            *implausible_size("--density", density, "density", "kg/m³"),
+        ]
+        if problems := sizes or list(implausible_modulus(modulus, density, speed)):
+            raise CaseError(problems)
         if disperse and (poisson is None or not 0.0 < poisson < 0.5):
             raise CaseError(["--poisson: is needed by --dispersion-correction, above 0 and below 0.5"])
         bar = Bar(speed, attenuation, 0.5 * diameter, poisson) if disperse else Bar(speed, attenuation)
@@ -119,8 +129,25 @@ class Setup:
                 yield f"{option}: is {value:g} m, must be at most 50 m; lengths are in m, not mm"
         if self.specimen_length > 1.0:
             yield f"--specimen-length: is {self.specimen_length:g} m, must be at most 1 m; lengths are in m, not mm"
+        yield from self._too_thick()
         if self.second_gauge is not None and not 0.0 <= self.second_gauge < self.incident_gauge:
             yield "--second-gauge: must be between the first one and the specimen"
+
+    def _too_thick(self) -> Iterator[str]:
+        """A bar thicker than long, a specimen wider than the bars, and diameters of unlikely size."""
+        if not (0.0 < self.area < np.inf and 0.0 < self.specimen_area < np.inf):
+            return
+        bar, specimen = (2.0 * math.sqrt(area / math.pi) for area in (self.area, self.specimen_area))
+        farther = max(self.incident_gauge, self.transmitted_gauge)
+        thick = list(implausible_size("--bar-diameter", bar, "thickness", "m"))
+        if not thick and bar > farther:
+            thick = [
+                f"--bar-diameter: is {bar:g} m, more than a gauge is from the specimen, {farther:g} m; is it in m?"
+            ]
+        wide = list(implausible_size("--specimen-diameter", specimen, "thickness", "m"))
+        if not wide and specimen > bar * (1.0 + ROUNDING):
+            wide = [f"--specimen-diameter: is {specimen:g} m, must be at most that of the bars, {bar:g} m; is it in m?"]
+        yield from (*thick, *wide)
 
 
 class Signals(NamedTuple):

@@ -31,6 +31,7 @@ from dembound.gauge.plausibility import (
     contradicting_speeds,
     few_returns,
     first_return,
+    implausible_size,
     raised_by_noise,
     uncertain_decay,
     uncertain_speed,
@@ -154,7 +155,8 @@ def _problems_with_options(
         if gauge.metadata is not None and gauge.metadata.ends[1] != FREE:
             end = gauge.metadata.ends[1]
             yield f"--spall: assumes a pulse reflected by a free end, the end opposite the load is {end}"
-    yield from not_above_zero("--wave-speed", speed, "m/s")
+    unfit = list(not_above_zero("--wave-speed", speed, "m/s"))
+    yield from unfit or implausible_size("--wave-speed", speed, "wave speed", "m/s")
     if coefficient is not None and not 0.0 <= coefficient < np.inf:
         yield f"--attenuation: is {coefficient:g} 1/m, must be finite and not below 0"
     if gauge.metadata is not None and (speed is None or coefficient is None):

@@ -79,6 +79,10 @@ class FileWave(Wave):
         times, velocities = self._samples()
         return float(times[np.abs(velocities).argmax()])
 
+    def begin(self) -> float:
+        """Time of the first line, s."""
+        return self.start + self._times[0]
+
     def duration(self) -> float:
         """Time from which the wave is over, s: that of the last line."""
         return self.start + self._times[-1]

@@ -71,6 +71,10 @@ class Wave(Table, ABC):
         defines it otherwise.
         """
 
+    def begin(self) -> float:
+        """Time (s) before which the velocity is zero, counted from t = 0 like `start`."""
+        return self.start
+
     def dominant_period(self) -> float:
         """One over the dominant frequency, s; 0 for a step, infinite where nothing oscillates."""
         frequency = self.dominant_frequency()

@@ -316,6 +316,18 @@ def test_fronts_of_impacts_need_one_step_for_a_spacing(spacing: float, courant: 
     assert key is None or found[0].startswith(key)
 
 
+@pytest.mark.parametrize(
+    ("interface", "velocity", "warned"), [("bonded", 0.0, True), ("bonded", 5.0, False), ("contact", 0.0, False)]
+)
+def test_a_striker_that_is_bonded_is_warned_of(interface: str, velocity: float, warned: bool) -> None:
+    ranges = [STRIKER[0], STRIKER[1] | {"interface": interface, "velocity": velocity}]
+    bar = {key: value for key, value in SPALLING["bar"].items() if key != "length"} | {"range": ranges}
+    scene = build_bar(small(SPALLING | EXACT | {"bar": bar, "load": [], "wave": {}}))
+    found = [line for line in bar_warnings(scene, choose_step(scene)[0]) if "interface" in line]
+    said = 'bar.range[2, rod].interface: is "bonded", while striker has 5 m/s at the start and rod 0 m/s: they pull'
+    assert [line[: len(said)] for line in found] == warned * [said]
+
+
 def test_monitors_in_gaps_are_warned_of() -> None:
     # ranges end at 0.2 m and begin at 0.25 m
     ranges = [STRIKER[0], STRIKER[1] | {"gap": 0.05}]

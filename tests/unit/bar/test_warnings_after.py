@@ -126,10 +126,27 @@ def test_a_wave_that_tears_the_end_where_it_enters_is_warned_of(run, side: str, 
     assert not run(changes | {"bar.spacing": 0.0025})  # fifty cells in a pulse
 
 
-def test_a_load_that_is_spread_already_takes_finer_nodes(run) -> None:
-    (warning,) = run(SUDDEN | blow(-3e7, 3))
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_a_load_that_pulls_is_told_to_pull(run, side: str, sign: float) -> None:
+    (warning,) = run(SUDDEN | blow(-3e7 * sign, 3, side) | {"wave.hit.amplitude": sign})
 
-    assert warning.endswith("take a smaller bar.spacing")
+    assert warning.startswith("load.blow: the load pulls, with ")
+    assert warning.endswith("; change the sign of load.blow.pressure if it is to push")
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_wave_that_pulls_is_told_to_pull(run, side: str) -> None:
+    # a wave of 10 m/s outwards is a tension of 25 MPa, three times the strength
+    changes = {
+        **SUDDEN,
+        "load": [],
+        "wave.hit.amplitude": -10.0 if side == "left" else 10.0,
+        "boundary": {side: {"type": "viscous_input", "wave_p": "hit"}},
+    }
+    (warning,) = run(changes)
+    assert warning.startswith(f"boundary.{side}: the incoming wave pulls, with ")
+    assert warning.endswith("; change the sign of wave.hit if it is to push")
 
 
 @pytest.mark.parametrize(

@@ -92,6 +92,28 @@ def test_a_record_is_as_long_as_its_file(bar, tmp_path) -> None:
     assert len(doubts(bar({"wave.pulse": {"type": "file", "path": str(path)}}), time_step=0.9e-3)) == 1
 
 
+@pytest.mark.parametrize(
+    ("lines", "start", "share", "early"),
+    [
+        ([(-0.004, 0.0), (-0.002, -2.0), (0.004, 0.0)], 0.0, "100 % of its peak at -0.002 s", "0.004"),
+        ([(-0.004, 0.0), (-0.002, 2.0), (0.004, 0.0)], 0.001, "100 % of its peak at -0.001 s", "0.004"),
+        ([(-0.004, 0.0), (0.004, 2.0), (0.006, 0.0)], 0.0, "50 % of its peak at 0 s", "0.004"),
+        ([(-0.004, 0.0), (-0.002, 2.0), (0.004, 0.0)], 0.004, None, ""),
+        ([(-0.004, 0.0), (0.0, 0.0), (0.004, 2.0), (0.006, 0.0)], 0.0, None, ""),
+        ([(-0.004, 0.04), (-0.002, -0.04), (0.0, 0.0), (0.004, 2.0), (0.006, 0.0)], 0.0, None, ""),  # noise
+        ([(-0.004, 2.0), (0.01, 2.0)], 0.0, None, ""),  # steady, so that nothing is lost
+    ],
+)
+def test_a_record_with_its_pulse_before_the_run(bar, tmp_path, lines, start: float, share, early: str) -> None:
+    path = tmp_path / "blow.txt"
+    np.savetxt(path, lines)
+    case = bar({"wave.pulse": {"type": "file", "path": str(path), "start": start}})
+    said = f"wave.pulse: reaches {share}, before the run begins at t = 0, and this part is left out; give start = "
+    assert doubts(case) == ([f"{said}{early}"] if share else [])
+    if share:
+        assert doubts(bar({"wave.pulse": {"type": "file", "path": str(path), "start": float(early)}})) == []
+
+
 def test_a_wave_is_doubted_once_and_only_if_it_is_used(bar) -> None:
     odd = bar({"wave.pulse.period": 10.0 * FAR, "wave.spare": {"type": "cosine", "amplitude": 1.0, "period": 1e-9}})
 

@@ -76,6 +76,55 @@ def test_options_without_meaning_are_bad_input(dembound, tmp_path) -> None:
         assert dembound("hopkinson", "incident.csv", *TEST, *options)[::2] == (2, said)
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--bar-diameter", 20), "is 20 m, where bars have 1e-05 to 5; likely in mm: write 0.02 or in cm: write 0.2"),
+        (("--bar-diameter", 1.5), "is 1.5 m, more than a gauge is from the specimen, 1 m; is it in m?"),
+        (("--specimen-diameter", 0.021), "is 0.021 m, must be at most that of the bars, 0.02 m; is it in m?"),
+        (("--density", 7.8), "is 7.8 kg/m³, where soils, rocks and metals have 100 to 23,000; likely in g/cm³ or t/m³"),
+        (("--wave-speed", 5), "is 5 m/s, where soils, rocks and metals have 10 to 19,000; likely in km/s: write 5000"),
+        (
+            ("--youngs-modulus", 210e3),
+            "is 2.1e+05 Pa, must be within a factor of 2 of ρc², 1.95e+11 Pa; likely in MPa: write 2.1e+11\n",
+        ),
+        (("--youngs-modulus", 69e9), "is 6.9e+10 Pa, must be within a factor of 2 of ρc², 1.95e+11 Pa\n"),
+    ],
+)
+def test_other_units_and_bars_that_cannot_be_are_bad_input(dembound, tmp_path, options, said) -> None:
+    given = signals()
+    write(tmp_path / "incident.csv", given, given.incident)
+    code, _, told = dembound("hopkinson", "incident.csv", *TEST, *options)
+    assert (code, told.count("\n")) == (2, 1)
+    assert told.startswith(f"{options[0]}: {said}")
+
+
+def test_a_specimen_may_be_as_wide_as_the_bars_and_e_be_measured(dembound, tmp_path) -> None:
+    given = signals()
+    write(tmp_path / "incident.csv", given, given.incident)
+    write(tmp_path / "transmitted.csv", given, given.transmitted)
+    options = ("--specimen-diameter", 0.02, "--youngs-modulus", 205e9)
+    assert dembound("hopkinson", "incident.csv", "transmitted.csv", *TEST, *options).code == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--density", 2.6), "--density: is 2.6 kg/m³, where soils"),
+        (("--wave-speed", 2.74, "--attenuation", 0), "--wave-speed: is 2.74 m/s, where soils"),
+        (("--youngs-modulus", 20), "--youngs-modulus: is 20 Pa, where soils"),
+        (("--youngs-modulus", 20e3), "--youngs-modulus: is 2e+04 Pa, with the wave speed, 2740 m/s, that of a density"),
+        (("--youngs-modulus", 20e3, "--density", 2600), "--youngs-modulus: is 2e+04 Pa, must be within a factor of 2"),
+    ],
+)
+def test_a_gauge_refuses_other_units_of_the_bar(dembound, tmp_path, options, said) -> None:
+    np.savetxt(tmp_path / "strain.txt", signal())
+    place = ("--position", POSITION, "--length", LENGTH, "--spall", 0.79, "--unit", "ue", "--wave-speed", 2740)
+    code, _, told = dembound("gauge", "strain.txt", *place, *options)
+    assert (code, told.count("\n")) == (2, 1)
+    assert told.startswith(said)
+
+
 def test_a_gauge_has_its_columns_units_and_filters(dembound, tmp_path) -> None:
     time, values = signal().T
     values = noise(0.005)(time, values) + 0.1 * np.sin(2e6 * time) + 0.3
