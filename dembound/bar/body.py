@@ -46,6 +46,7 @@ class BarBody(Scene):
     kind = "bar"
     energy_unit = "J"
     record_width = 7
+    in_snapshots = ("stress", "damage")
     block = 2048
 
     @property

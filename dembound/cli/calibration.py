@@ -140,13 +140,14 @@ def _text_for(target: Path, path: Path, case: DiskCase, changes: list[str] | Non
 
 
 def _factors(case: DiskCase, boundary: Side | None, wave: WaveType | None) -> list[str]:
-    """The keys of the factors that are calibrated."""
+    """The keys of the factors that are calibrated; raises CaseError if the side has none, or cannot move."""
     from dembound.studies.all_sides import factors_of
-    from dembound.studies.calibration import default_motion
+    from dembound.studies.calibration import calibrated_motion
 
     if boundary is None:
         return [f"boundary.{side}.beta_{motion}" for side, motion in factors_of(case)]
-    return [f"boundary.{boundary.value}.beta_{wave.value if wave else default_motion(case, boundary.value)}"]
+    motion = calibrated_motion(case, boundary.value, wave.value if wave else None)  # type: ignore[arg-type]
+    return [f"boundary.{boundary.value}.beta_{motion}"]
 
 
 def _require_no_other(target: Path, text: str, factors: Sequence[str]) -> None:

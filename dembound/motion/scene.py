@@ -34,6 +34,7 @@ class Scene(ABC):
     kind : name of the kind of body in records.
     energy_unit : the unit of its energies.
     record_width : columns of a probe's record, see kernels.tables.Log.
+    in_snapshots : names of what each snapshot has of this kind of body, beside its motion.
     block : steps between two returns of the compiled loop.
     has_history : whether its law is history-dependent.
     weight : energies of the whole scene over those of this one, see `whole`.
@@ -47,6 +48,7 @@ class Scene(ABC):
     kind: str
     energy_unit: str
     record_width: int
+    in_snapshots: tuple[str, ...] = ()
     block: int
     has_history: bool = False
     weight: float = 1.0

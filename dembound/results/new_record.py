@@ -41,17 +41,19 @@ Layout of ``run.h5`` (every dataset of numbers has its unit as attribute ``unit`
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dembound.errors import RecordError
 from dembound.motion.energy import Entry, Ledger, SideEntry
 from dembound.motion.kind import Stage
 from dembound.motion.scene import Scene
 from dembound.motion.trackers import Run
 from dembound.results.datasets import describe, make, write
+from dembound.results.reader import finite, snapshots_of
 from dembound.version import __version__
 
 if TYPE_CHECKING:
@@ -101,8 +103,77 @@ def begin_record(
     run : to be recorded, of whose whole scene all nodes are written. step_limit : s. sides : those with histories.
     ledger : its energy ledger, if it has one. stages : those before the run.
     """
-    scene = run.scene.whole
     describe(file, header_of(run) | {"step_limit": step_limit, "complete": False})
+    _lay_out(file, run.scene.whole, sides, None if ledger is None else ledger.side_names)
+    write_stages(file, stages)
+
+
+def write_stages(file: h5py.File, stages: Sequence[Stage]) -> None:
+    """Write the stages before the run that a record does not have."""
+    for stage in stages:
+        group = file.require_group(stage.name)
+        describe(group, stage.facts)
+        if "displacement" not in group:
+            write(group, "displacement", stage.displacement.T, DISPLACEMENT_UNIT)
+
+
+def require_laid_out(file: h5py.File, scene: Scene, counts: Mapping[str, int]) -> None:
+    """Raise RecordError if a record lacks anything that a run of the whole scene, with a ledger, needs to go on in it.
+
+    counts : rows and snapshots that it must have, see `Recorder.counts`.
+    """
+    import h5py
+
+    with h5py.File("layout", "w", driver="core", backing_store=False) as layout:
+        _lay_out(layout, scene, [name for name in scene.sides if name in scene.edges], list(scene.sides))
+        wanted: dict[str, Any] = {}
+        layout.visititems(wanted.__setitem__)
+        for name, item in wanted.items():
+            kind = name.split("/")[0]
+            _require_like(file, name, item, counts["sides" if kind == "boundaries" else kind] if _grows(item) else 0)
+    snapshots = snapshots_of(file)[: counts["snapshots"]]
+    if len(snapshots) < counts["snapshots"]:
+        raise _lacking(file, f"{counts['snapshots']} snapshots, it has {len(snapshots)}")
+    for group in snapshots:
+        for name in sorted({*MOTION, *scene.in_snapshots, *snapshots[0]}):  # a law that begins later may add others
+            if name not in group:
+                raise _lacking(file, f"{group.name[1:]}/{name}")
+        if "time" not in group.attrs:
+            raise _lacking(file, f"{group.name[1:]}, attribute time")
+
+
+def _grows(item: h5py.HLObject) -> bool:
+    """Whether it is a dataset to which rows are appended."""
+    return hasattr(item, "maxshape") and item.shape != () and item.maxshape[0] is None
+
+
+def _require_like(file: h5py.File, name: str, wanted: h5py.HLObject, rows: int) -> None:
+    """Raise RecordError if a record has nothing like a group or dataset of its layout, fewer rows, or as `finite`."""
+    found = file.get(name)
+    if found is None or hasattr(found, "dtype") != hasattr(wanted, "dtype"):
+        raise _lacking(file, name)
+    if missing := sorted(set(wanted.attrs) - set(found.attrs)):
+        raise _lacking(file, f"{name}, attribute {missing[0]}")
+    if not hasattr(wanted, "dtype"):
+        return
+    shapes = [(each.dtype.kind, each.shape[1:] if _grows(each) else each.shape) for each in (found, wanted)]
+    if shapes[0] != shapes[1] or _grows(found) != _grows(wanted):
+        raise _lacking(file, f"{name} as this case records it")
+    if _grows(found) and len(found) < rows:
+        raise _lacking(file, f"{rows} rows in {name}, it has {len(found)}")
+    if _grows(found) and found.dtype.kind == "f":
+        finite(found)
+
+
+def _lacking(file: h5py.File, what: str) -> RecordError:
+    return RecordError([f"{file.filename}: cannot be continued: it lacks {what}"])
+
+
+def _lay_out(file: h5py.File, scene: Scene, sides: Collection[str], entered: Sequence[str] | None) -> None:
+    """Make the groups and datasets of a whole scene.
+
+    sides : those with histories; entered : those with energies, None for a record without a ledger.
+    """
     group = file.create_group("particles")
     for name, (values, unit) in scene.columns.items():
         write(group, name, values, unit)
@@ -112,14 +183,10 @@ def begin_record(
     _make_histories(file, scene)
     _write_boundaries(file, scene, sides)
     make(file.create_group("cracks"), CRACKS)
-    if ledger is not None:
-        _make_energy(file, scene, ledger)
+    if entered is not None:
+        _make_energy(file, scene, entered)
     make(file.create_group("laws"), LAWS)
     file.create_group("snapshots")
-    for stage in stages:
-        group = file.require_group(stage.name)
-        describe(group, stage.facts)
-        write(group, "displacement", stage.displacement.T, DISPLACEMENT_UNIT)
 
 
 def header_of(run: Run) -> dict[str, Any]:
@@ -147,12 +214,12 @@ def header_of_monitor(scene: Scene, name: str) -> dict[str, Any]:
     return places | scene.attributes_of_monitor(name)
 
 
-def _make_energy(file: h5py.File, scene: Scene, ledger: Ledger) -> None:
-    """Empty columns of the ledger, and of its sides."""
+def _make_energy(file: h5py.File, scene: Scene, sides: Sequence[str]) -> None:
+    """Empty columns of the ledger, and of these sides."""
     unit = scene.energy_unit
     columns = [(field.name, (), "f8", "s" if field.name == "time" else unit) for field in fields(Entry)]
     make(file.create_group("energy"), columns)
-    for side in ledger.side_names:
+    for side in sides:
         make(file.create_group(f"energy/sides/{side}"), [(name, (), "f8", unit) for name in SideEntry._fields])
 
 

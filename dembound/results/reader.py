@@ -110,9 +110,25 @@ def require_equal_rows(file: h5py.File) -> None:
             raise RecordError([f"{file.filename}: is damaged: {names[0]} has columns of different lengths"])
 
 
+def finite(column: h5py.Dataset) -> np.ndarray:
+    """The numbers of a column that every run records finite, as one whose motion grows without bound ends before.
+
+    Raises RecordError for others.
+    """
+    values: np.ndarray = column[:]
+    if not np.isfinite(values).all():
+        row = int(np.argmin(np.isfinite(values.reshape(len(values), -1)).all(axis=1)))
+        name = column.name.removeprefix("/")
+        raise RecordError([f"{column.file.filename}: is damaged: {name} has a number that is not finite in row {row}"])
+    return values
+
+
 def history_of(group: h5py.Group, quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """Times (k,) in s and values (k, …) of a history; of an interrupted run up to where both were written."""
-    time, values = group["time"][:], group[quantity][:]
+    """Times (k,) in s and values (k, …) of a history; of an interrupted run up to where both were written.
+
+    Raises CaseError for an empty one, RecordError for numbers that are not finite.
+    """
+    time, values = finite(group["time"]), finite(group[quantity])
     count = min(len(time), len(values))
     if count == 0:
         raise CaseError([f"{group.file.filename}: has no samples yet; a run that was interrupted can be resumed"])
@@ -223,11 +239,11 @@ def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
     time. The work of the forces that balance a settled stress and the energy absorbed by boundaries are not included,
     as both also grow in an unstable run.
 
-    Raises CaseError when there is no entry, and RecordError for the ledger of an earlier version.
+    Raises CaseError when there is no entry, RecordError for the ledger of an earlier version, and as `finite`.
     """
     if "energy" not in file:
         require_run(file)
-    columns = {name: item[:] for name, item in datasets_of(file["energy"]).items()} if "energy" in file else {}
+    columns = {name: finite(item) for name, item in datasets_of(file["energy"]).items()} if "energy" in file else {}
     if not any(map(len, columns.values())):
         raise CaseError([f"{file.filename}: has no entries in its energy ledger"])
     if missing := [name for name in ("time", "error", "supplied") if name not in columns]:
@@ -241,7 +257,7 @@ def energy_of(file: h5py.File) -> dict[str, np.ndarray]:
 def side_energies_of(file: h5py.File) -> dict[str, dict[str, np.ndarray]]:
     """Of every side of an open record energies (k,) that came in, were absorbed, and are stored in springs."""
     sides = file.get("energy/sides", {})
-    return {side: {name: dataset[:] for name, dataset in group.items()} for side, group in sides.items()}
+    return {side: {name: finite(dataset) for name, dataset in group.items()} for side, group in sides.items()}
 
 
 def record_names(paths: Sequence[Path]) -> list[str]:

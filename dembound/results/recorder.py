@@ -20,7 +20,15 @@ from dembound.motion.kind import Stage, StalledError
 from dembound.motion.trackers import Run
 from dembound.results.committed import FORMAT, CommittedFile
 from dembound.results.datasets import datasets_of, describe, extend, text, write
-from dembound.results.new_record import DISPLACEMENT_UNIT, MOTION, SIDE_HISTORY, VELOCITY_UNIT, begin_record, header_of
+from dembound.results.new_record import (
+    DISPLACEMENT_UNIT,
+    MOTION,
+    SIDE_HISTORY,
+    VELOCITY_UNIT,
+    begin_record,
+    header_of,
+    write_stages,
+)
 from dembound.results.reader import snapshot_of, snapshots_of
 
 if TYPE_CHECKING:
@@ -87,6 +95,7 @@ class Recorder:
             begin_record(self.file, self.run, step_limit, self._sides, self.ledger, stages)
         else:
             self._cut(counts)
+            write_stages(self.file, stages)
         self._find_datasets()
         for stage in stages if counts is None else ():
             self._append_cracks(stage.cracks, 0.0)  # before the run began

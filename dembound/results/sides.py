@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from dembound.errors import CaseError
-from dembound.results.reader import is_line, open_record, require_run
+from dembound.results.reader import finite, is_line, open_record, require_run
 
 OPPOSITE = {"left": "right", "right": "left", "bottom": "top", "top": "bottom"}
 
@@ -33,7 +33,7 @@ class SideHistory:
 
 
 def read_side_history(path: Path, side: str) -> SideHistory:
-    """The history of a side of a run; raises CaseError if the file cannot be read or has none."""
+    """The history of a side of a run; raises CaseError if the file has none, RecordError as `finite`."""
     with open_record(path) as file:
         require_run(file)
         there = {name: group for name, group in file.get("boundaries", {}).items() if "force" in group}
@@ -42,11 +42,11 @@ def read_side_history(path: Path, side: str) -> SideHistory:
         group, axis = there[side], 0 if side in ("left", "right") else 1
         area = group["diameter"][0] if is_line(file.attrs["size"]) else group.attrs["body_length"]
         outward = 1.0 if side in ("right", "top") else -1.0
-        traction = outward * group["force"][:] / area
-        displacement, strain = group["displacement"][:, :2], None
+        traction = outward * finite(group["force"]) / area
+        displacement, strain = finite(group["displacement"])[:, :2], None
         if (other := there.get(OPPOSITE[side])) is not None:
             column = file.attrs.get("column", 0)
             means = [each["position"][:][each["particle"][:] >= column, axis].mean() for each in (group, other)]
-            strain = (displacement[:, axis] - other["displacement"][:, axis]) / (means[0] - means[1])
+            strain = (displacement[:, axis] - finite(other["displacement"])[:, axis]) / (means[0] - means[1])
         stress = np.stack([traction[:, axis], traction[:, 1 - axis]], axis=1)
-        return SideHistory(group["time"][:], displacement, stress, strain)
+        return SideHistory(finite(group["time"]), displacement, stress, strain)

@@ -142,7 +142,7 @@ class _Job:
             logging.getLogger(__name__).info(f"{self.case.name}: {disk_facts(planned, results, written)}")
 
     def _plan(self) -> Plan:
-        """The plan; that of a resumed run has the time step of its checkpoint."""
+        """The plan; that of a resumed run has the time step of its checkpoint, and a record in which it can go on."""
         planned = plan(self.case, self.clock)
         if self.found is None:
             if self.begun_for is None:
@@ -151,6 +151,7 @@ class _Job:
         time_step, regular_steps = (self.found.facts[name] for name in ("time_step", "regular_steps"))
         if abs(planned.time_step - time_step) > 1e-9 * time_step:
             raise CaseError([f"run.time_step: is {planned.time_step} s here, and {time_step} s in the checkpoint"])
+        self.found.require_record(planned.scene)
         steps = max(1, math.ceil(self.case.run.duration / time_step - 1e-9))
         return replace(planned, time_step=time_step, steps=steps, regular_steps=regular_steps)
 

@@ -14,12 +14,14 @@ import tomli_w
 from dembound.casefile import Case
 from dembound.errors import CaseError, RecordError
 from dembound.kinds import loads
+from dembound.motion.scene import Scene
 from dembound.motion.state import Arrays
 from dembound.results.checkpoint import FILE, Checkpoint, differences
 from dembound.results.damage import require_readable
 from dembound.results.folder import PARTIAL, Folder, with_name
 from dembound.results.kept_stages import FOLDER as STAGES
-from dembound.results.reader import open_record, text_of
+from dembound.results.new_record import require_laid_out
+from dembound.results.reader import open_record, text_of, understood
 from dembound.running.recorded import case_of
 
 SILENCE = ("until", "silent_level", "silent_for")
@@ -73,6 +75,13 @@ class Unfinished:
     def arrays(self) -> Arrays:
         """The arrays of the checkpoint, read anew."""
         return Checkpoint.read(self.path / FILE).arrays
+
+    def require_record(self, scene: Scene) -> None:
+        """Raise RecordError if the record of the run, if it has begun, lacks what the whole scene appends to it."""
+        if (counts := self.facts["counts"]) is not None:
+            record = self.path / "run.h5"
+            with open_record(record) as file, understood(record):
+                require_laid_out(file, scene, counts)
 
     def copy_to(self, partial: Path) -> None:
         """Copy what a run is continued from to its partial folder, unless it is there.

@@ -17,7 +17,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from dembound.boundaries import OPPOSITE, Boundary, Motion, axis_of_motion, normal_axis
+from dembound.boundaries import OPPOSITE, Motion, axis_of_motion, normal_axis
 from dembound.casefile.disks import DiskCase
 from dembound.disks.matching import factors_in, homogenised_beta
 from dembound.disks.reduction import reduced
@@ -151,9 +151,8 @@ def calibrate(
     if not 0.0 < tolerance < np.inf:
         raise CaseError([f"--tolerance: is {tolerance:g}, must be above 0"])
     plain, left_out = linear_medium(case)
-    table = _dashpots(plain, side)
-    motion = motion or default_motion(case, side)
-    _must_move(case, side, motion)
+    motion = calibrated_motion(case, side, motion)
+    table = plain.side(side)
     pulse = calibration_pulse(case, side, motion)
     kind: Literal["absorbing", "input"] = "input" if table.waves else "absorbing"
     if method == "homogenised":
@@ -241,12 +240,18 @@ def _travel(scene: DiskScene, side: str, motion: Motion) -> float:
     return float(scene.assembly.size[axis]) / scene.ground.wave_speeds(axis)[0 if motion == "p" else 1]
 
 
-def _dashpots(case: DiskCase, side: str) -> Boundary:
+def calibrated_motion(case: DiskCase, side: str, motion: Motion | None = None) -> Motion:
+    """The motion, or else the default one, for which a side is calibrated.
+
+    Raises CaseError when the side has no dashpots or its motion is held.
+    """
     table = case.side(side)
     if not table.factors:
         usable = ", ".join(name for name, other in case.boundary.items() if other.factors) or "none"
         raise CaseError([f"boundary.{side}: is {table.type}, only viscous sides can be calibrated; here: {usable}"])
-    return table
+    motion = motion or default_motion(case, side)
+    _must_move(case, side, motion)
+    return motion
 
 
 def default_motion(case: DiskCase, side: str) -> Motion:

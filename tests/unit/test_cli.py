@@ -604,7 +604,9 @@ def test_one_side_or_all_of_them_are_calibrated(dembound, written, tmp_path) -> 
 
 
 def test_calibrating_a_side_without_dashpots_is_bad_input(dembound, written, tmp_path) -> None:
-    answer = dembound("calibrate", written(), "--boundary", "top")
+    path = written()
+    path.with_name(f"{path.stem}_calibrated.toml").write_text("# another case, whose side is not looked for first")
+    answer = dembound("calibrate", path, "--boundary", "top")
 
     assert answer.code == 2
     assert answer.err == "boundary.top: is free, only viscous sides can be calibrated; here: left, right\n"

@@ -18,11 +18,13 @@ from dembound.results.reader import (
     place_in_words,
     record_names,
     replacing,
+    side_energies_of,
     snapshot_of,
     snapshots_of,
     text_of,
 )
 from dembound.results.results import Results
+from dembound.results.sides import read_side_history
 
 
 def test_what_is_no_record_is_refused_by_name(tmp_path):
@@ -77,6 +79,36 @@ def test_the_history_of_an_interrupted_run_ends_where_both_columns_do(small_run,
         time, velocity = history_of(file["histories/front"], "velocity")
         np.testing.assert_array_equal(time, file["histories/front/time"][:5])
     assert velocity.shape == (5, 3)
+
+
+@pytest.mark.parametrize(
+    ("column", "read"),
+    [
+        ("histories/front/velocity", lambda path, file: history_of(file["histories/front"], "velocity")),
+        ("histories/front/time", lambda path, file: history_of(file["histories/front"], "velocity")),
+        ("energy/kinetic", lambda path, file: energy_of(file)),
+        ("energy/sides/left/absorbed", lambda path, file: side_energies_of(file)),
+        ("boundaries/left/force", lambda path, file: read_side_history(path, "left")),
+        ("boundaries/left/displacement", lambda path, file: read_side_history(path, "left")),
+        ("boundaries/left/time", lambda path, file: read_side_history(path, "left")),
+    ],
+)
+@pytest.mark.parametrize("value", [np.nan, -np.inf])
+def test_numbers_that_are_not_finite_are_refused(small_run, tmp_path, column: str, read, value: float) -> None:
+    path = tmp_path / "run.h5"
+    path.write_bytes(small_run.read_bytes())
+    with h5py.File(path, "r+") as file:
+        side = file["boundaries/left"]
+        side.attrs["body_length"] = 2.5
+        for name, width in (("force", 2), ("displacement", 3)):
+            side[name] = np.zeros((5, width))
+        side["time"] = np.arange(5.0)
+        if column not in file:
+            file[column] = np.zeros(5)
+        file[column][3] = value
+    reason = f"{column} has a number that is not finite in row 3"
+    with pytest.raises(RecordError, match=reason), open_record(path) as file:
+        read(path, file)
 
 
 def test_records_tell_bars_from_disks(small_run, spalled_run):

@@ -281,6 +281,64 @@ def test_a_damaged_record_is_not_continued(case, tmp_path) -> None:
     assert not (tmp_path / "bar.partial").exists()
 
 
+def parts_of(record) -> list[str]:
+    names: list[str] = []
+    with h5py.File(record) as file:
+        file.visit(names.append)
+    return names
+
+
+def contents(folder) -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("is_complete", [True, False])
+def test_a_record_that_lacks_any_part_is_not_continued(case, tmp_path, is_complete: bool) -> None:
+    folder = run_case(case, tmp_path / "runs")
+    if not is_complete:
+        folder = folder.rename(folder.with_name("bar.partial"))
+    record = folder / "run.h5"
+    whole = record.read_bytes()
+    for part in parts_of(record):
+        with h5py.File(record, "a") as file:
+            del file[part]
+        before = contents(tmp_path)
+        with pytest.raises(RecordError, match=r"run\.h5: cannot be continued: it lacks ") as refused:
+            resume_case(folder, until=0.03)
+        assert len(str(refused.value).splitlines()) == 1
+        assert contents(tmp_path) == before, part
+        record.write_bytes(whole)
+    assert resume_case(folder, until=0.03).name == "bar"
+
+
+@pytest.mark.parametrize(
+    ("part", "change", "reason"),
+    [
+        (
+            "histories/gauge/velocity",
+            lambda values: values[:3],
+            "it lacks .* rows in histories/gauge/velocity, it has",
+        ),
+        ("histories/gauge/velocity", lambda values: np.full_like(values, np.nan), "velocity has a number that is not"),
+        ("energy/kinetic", lambda values: np.full_like(values, np.inf), "energy/kinetic has a number that is not"),
+        ("particles/volume", lambda values: values[1:], "it lacks particles/volume as this case records it"),
+    ],
+)
+def test_a_record_with_other_numbers_is_not_continued(case, tmp_path, part, change, reason) -> None:
+    folder = run_case(case, tmp_path).rename(tmp_path / "bar.partial")
+    with h5py.File(folder / "run.h5", "a") as file:
+        file.attrs["complete"] = False  # its columns may then differ in length
+        old, values, grows = file[part], change(file[part][()]), file[part].maxshape[0] is None
+        unit = old.attrs["unit"]
+        del file[part]
+        shape = (None, *values.shape[1:]) if grows else None
+        file.create_dataset(part, data=values, maxshape=shape).attrs["unit"] = unit
+    before = contents(tmp_path)
+    with pytest.raises(RecordError, match=reason):
+        resume_case(folder, until=0.03)
+    assert contents(tmp_path) == before
+
+
 def test_a_checkpoint_of_another_version_is_refused(case, tmp_path, monkeypatch) -> None:
     monkeypatch.setattr("dembound.results.checkpoint.__version__", "0.0.1")
     folder = run_case(case, tmp_path)
