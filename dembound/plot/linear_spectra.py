@@ -45,7 +45,7 @@ def plot_spectra(runs: Sequence[Path], component: Literal["x", "y"] | None = Non
     for index, (label, run) in enumerate(zip(record_names(runs), drawn, strict=True)):
         for name, history in run.items():
             values = history.values[:, column]
-            if len(values) < FEWEST or not values.any() or not np.isfinite(values).all():
+            if len(values) < FEWEST or not values.any():
                 continue
             frequencies, amplitudes = spectrum_of(history, column)
             spectra.append((frequencies, amplitudes))
